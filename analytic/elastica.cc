@@ -1,0 +1,1 @@
+#include "analytic/elastica.h"

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "problem/field_model.h"
+
+namespace ciliaval::analytic {
+
+/// How the magnetisation is carried along. F (ideal hard magnet): m = F·M/J in solids, M dr in
+/// rods. R (rigid sections): m = R·M with the polar rotation in solids, M d₃ dS in rods. The two
+/// differ under shear and extension only.
+enum class PushForward { F, R };
+
+/// How an integral that has a closed form is computed.
+enum class Method { closed_form, quadrature };
+
+/// Each magnetic segment's total moment as one dipole at the centroid of its centreline.
+struct DipoleOptions {
+  PushForward push_forward = PushForward::F;
+};
+class DipoleField : public FieldModel {
+ public:
+  explicit DipoleField(DipoleOptions options = {}) : options_(options) {}
+  Field field(const Cilium& cilium, const Deformation& deformation,
+              std::span<const Vector3> points) const override;
+
+ private:
+  DipoleOptions options_;
+};
+
+/// Dipoles along the centreline (Eq. 5–7, the paper's "single-dipole" model).
+struct LineOptions {
+  PushForward push_forward = PushForward::F;
+  Method method =
+      Method::closed_form;   ///< two poles; F only: with R and shear it falls back to quadrature
+  double tolerance = 1e-10;  ///< relative to |B|, of the quadrature
+};
+class LineField : public FieldModel {
+ public:
+  explicit LineField(LineOptions options = {}) : options_(options) {}
+  Field field(const Cilium& cilium, const Deformation& deformation,
+              std::span<const Vector3> points) const override;
+
+ private:
+  LineOptions options_;
+};
+
+/// Volume integral over the bent rod (Eq. 8–9, the paper's "multi-dipole" model).
+struct VolumeOptions {
+  enum class Slices {
+    wedge,   ///< the true volume of the bent rod, Jacobian 1 − κ·(offset)
+    stacked  ///< the paper's Eq. 8–9: flat slices of equal thickness dS, no Jacobian
+  };
+  Slices slices = Slices::wedge;
+  Method method =
+      Method::closed_form;   ///< wedge: two charged discs; stacked: a stack of current loops
+  double tolerance = 1e-10;  ///< relative to |B|
+};
+class VolumeField : public FieldModel {
+ public:
+  explicit VolumeField(VolumeOptions options = {}) : options_(options) {}
+  Field field(const Cilium& cilium, const Deformation& deformation,
+              std::span<const Vector3> points) const override;
+
+ private:
+  VolumeOptions options_;
+};
+
+/// The field of a solid model's own deformed magnet.
+struct MeshOptions {
+  PushForward push_forward =
+      PushForward::F;       ///< F: reference charge on the deformed faces; R: volume quadrature
+  double tolerance = 1e-8;  ///< relative to |B|
+};
+class MeshField : public FieldModel {
+ public:
+  explicit MeshField(MeshOptions options = {}) : options_(options) {}
+  bool needs_body() const override { return true; }
+  Field field(const Cilium& cilium, const Deformation& deformation,
+              std::span<const Vector3> points) const override;
+
+ private:
+  MeshOptions options_;
+};
+
+}  // namespace ciliaval::analytic

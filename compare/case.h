@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analytic/elastica.h"
+#include "analytic/field_models.h"
+#include "fem/beam/beam.h"
+#include "fem/solid/solid.h"
+#include "problem/cilium.h"
+#include "problem/load.h"
+#include "problem/types.h"
+
+namespace ciliaval::compare {
+
+/// The knobs of every model, with their defaults from the models' own headers.
+struct ModelOptions {
+  analytic::ElasticaOptions elastica;
+  fem::BeamOptions beam;
+  fem::SolidOptions solid;
+  analytic::DipoleOptions dipole;
+  analytic::LineOptions line;
+  analytic::VolumeOptions volume;
+  analytic::MeshOptions mesh;
+};
+
+/// A validation case, as a case file states it (docs/cases.md), in SI units.
+struct Case {
+  std::string name;   ///< a plain file name: the results go to DIR/name
+  std::string title;  ///< for people
+  Cilium cilium;
+  LoadPath load_path;
+  std::vector<double> flow_velocity;   ///< v of each step, m/s, if the flow was given by its
+                                       ///< velocity; otherwise empty
+  std::vector<Vector3> sensors;        ///< m
+  std::vector<std::string> mechanics;  ///< ids of mechanics models, in the order asked for
+  std::vector<std::string> fields;     ///< ids of field models
+  ModelOptions options;
+};
+
+/// Reads and checks a case file. Throws InputError with every fault found, a line each:
+/// `file:line:column: what is wrong; did you mean …?`; FileError if the file cannot be read.
+Case read_case(const std::filesystem::path& file);
+
+/// The case as TOML with every value it used, defaults included, in SI units: read_case() of it
+/// gives the same case.
+std::string to_toml(const Case& c);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/registry.h"
+
+namespace ciliaval::compare {
+
+const std::vector<MechanicsEntry>& mechanics_models() {
+  static const std::vector<MechanicsEntry> entries{
+      {"elastica", "the paper's inextensible, shear-rigid elastica (Eq. 1-4)",
+       [](const ModelOptions& o) { return std::make_unique<analytic::Elastica>(o.elastica); }},
+      {"beam", "geometrically exact Simo-Reissner beam FEM: bending, shear, extension, torsion",
+       [](const ModelOptions& o) { return std::make_unique<fem::Beam>(o.beam); }},
+      {"solid", "3D finite-strain near-incompressible solid FEM",
+       [](const ModelOptions& o) { return std::make_unique<fem::Solid>(o.solid); }},
+  };
+  return entries;
+}
+
+const std::vector<FieldEntry>& field_models() {
+  static const std::vector<FieldEntry> entries{
+      {"dipole", "each magnetic segment as one dipole at its centroid",
+       [](const ModelOptions& o) { return std::make_unique<analytic::DipoleField>(o.dipole); }},
+      {"line", "dipoles along the centreline (Eq. 5-7, the paper's single-dipole model)",
+       [](const ModelOptions& o) { return std::make_unique<analytic::LineField>(o.line); }},
+      {"volume", "volume of the bent rod (Eq. 8-9, the paper's multi-dipole model)",
+       [](const ModelOptions& o) { return std::make_unique<analytic::VolumeField>(o.volume); }},
+      {"mesh", "the solid's own deformed magnet (with `solid` only)",
+       [](const ModelOptions& o) { return std::make_unique<analytic::MeshField>(o.mesh); }},
+  };
+  return entries;
+}
+
+}  // namespace ciliaval::compare

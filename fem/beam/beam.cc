@@ -1,0 +1,1 @@
+#include "fem/beam/beam.h"

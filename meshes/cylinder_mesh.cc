@@ -1,0 +1,1 @@
+#include "meshes/cylinder_mesh.h"

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "problem/centreline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "problem/error.h"
+
+namespace ciliaval {
+
+double CentrelinePoint::theta() const {
+  const Vector3 d3 = normal();
+  return std::atan2(std::hypot(d3.x(), d3.y()), d3.z());
+}
+
+double CentrelinePoint::bending_curvature() const {
+  const Vector3 d3 = normal();
+  return (curvature - curvature.dot(d3) * d3).norm();
+}
+
+Centreline::Centreline(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
+  if (pieces_.empty()) throw InputError("a centreline needs at least one piece");
+  for (Piece& piece : pieces_) {
+    if (piece.S.size() < 2 || piece.S.size() != piece.states.size())
+      throw InputError("a piece of a centreline needs two nodes or more, each with its state");
+    if (!std::is_sorted(piece.S.begin(), piece.S.end()))
+      throw InputError("the nodes of a centreline must increase");
+    if (!breaks_.empty() && breaks_.back() != piece.S.front())
+      throw InputError("the pieces of a centreline do not join");
+    if (breaks_.empty()) breaks_.push_back(piece.S.front());
+    breaks_.push_back(piece.S.back());
+    // q and −q are the same rotation; interpolation needs neighbours on the same side.
+    for (std::size_t i = 1; i < piece.states.size(); ++i) {
+      Quaternion& q = piece.states[i].rotation;
+      if (q.dot(piece.states[i - 1].rotation) < 0) q.coeffs() = -q.coeffs();
+    }
+    bases_.emplace_back(piece.S);
+  }
+}
+
+std::size_t Centreline::piece_at(double S) const {
+  if (pieces_.empty()) throw InputError("the centreline is empty");
+  if (std::isnan(S)) throw InputError("the material point of a centreline is not a number");
+  const auto above = std::upper_bound(breaks_.begin(), breaks_.end(), S);
+  const auto index = std::max<std::ptrdiff_t>(above - breaks_.begin() - 1, 0);
+  return std::min(static_cast<std::size_t>(index), pieces_.size() - 1);
+}
+
+CentrelinePoint Centreline::at(double S) const {
+  return at(S, piece_at(S));
+}
+
+CentrelinePoint Centreline::at(double S, std::size_t piece) const {
+  const Piece& p = pieces_.at(piece);
+  const LagrangeBasis& basis = bases_[piece];
+  S = std::clamp(S, p.S.front(), p.S.back());
+  std::vector<double> values(basis.size());
+  std::vector<double> derivatives(basis.size());
+  basis.values_and_derivatives(S, values, derivatives);
+
+  CentrelinePoint point;
+  point.derivative.setZero();
+  Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    const SectionState& state = p.states[i];
+    point.position += values[i] * state.position;
+    point.derivative += derivatives[i] * state.position;
+    rotation += values[i] * state.rotation.coeffs();
+    point.curvature += values[i] * state.curvature;
+    point.forces.force += values[i] * state.forces.force;
+    point.forces.moment += values[i] * state.forces.moment;
+  }
+  point.rotation.coeffs() = rotation.normalized();
+  return point;
+}
+
+Centreline straight_centreline(const std::vector<double>& breaks) {
+  std::vector<Centreline::Piece> pieces;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    Centreline::Piece piece{{breaks[i], breaks[i + 1]}, std::vector<SectionState>(2)};
+    piece.states[0].position = breaks[i] * Vector3::UnitZ();
+    piece.states[1].position = breaks[i + 1] * Vector3::UnitZ();
+    pieces.push_back(std::move(piece));
+  }
+  return Centreline(std::move(pieces));
+}
+
+}  // namespace ciliaval

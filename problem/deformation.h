@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <memory>
+
+#include "problem/centreline.h"
+#include "problem/solid_body.h"
+
+namespace ciliaval {
+
+/// What every mechanics model hands back: the centreline and, from a solid model, the body. Models
+/// are compared at common material points S of the centreline, never mesh point against mesh point.
+struct Deformation {
+  Centreline centreline;
+  std::shared_ptr<const SolidBody> body;  ///< null for rods
+};
+
+}  // namespace ciliaval

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "problem/cilium.h"
+#include "problem/deformation.h"
+
+namespace ciliaval {
+
+/// μ₀, H/m, as in the paper (Eq. 5): 4π·10⁻⁷ exactly.
+inline constexpr double vacuum_permeability = 4e-7 * 3.14159265358979323846;
+
+struct Field {
+  std::vector<Vector3> B;            ///< flux density, T, one for each point
+  std::vector<Vector3> uncertainty;  ///< estimate of the numerical error of each component, T;
+                                     ///< empty if the model has none
+};
+
+/// A model of the magnetic field of the deformed cilium.
+class FieldModel {
+ public:
+  virtual ~FieldModel() = default;
+
+  /// Whether the model needs Deformation::body.
+  virtual bool needs_body() const { return false; }
+
+  /// B of the deformed magnet at the points (m). Inside the magnet it is B, not μ₀H. Throws
+  /// InputError where B diverges (the end face's rim; a dipole) or if the deformation lacks what
+  /// the model needs, SolverError if the accuracy asked cannot be reached.
+  virtual Field field(const Cilium& cilium, const Deformation& deformation,
+                      std::span<const Vector3> points) const = 0;
+};
+
+}  // namespace ciliaval

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "problem/cilium.h"
+#include "problem/deformation.h"
+#include "problem/load.h"
+
+namespace ciliaval {
+
+enum class Status {
+  converged,
+  slipped_off,  ///< the contact force is larger than any equilibrium bears: a result, not an error
+  failed        ///< the solver did not converge
+};
+
+/// Result of one step of a load path.
+struct MechanicsStep {
+  Load load;
+  Status status = Status::failed;
+  std::string message;                     ///< why, if not converged; otherwise empty or a remark
+  std::optional<Deformation> deformation;  ///< there if converged
+  double applied_force = 0;  ///< the horizontal force along e that the model really applied, N
+  std::optional<double> slip_off_force;  ///< contact: the largest force an equilibrium bears, N, if
+                                         ///< the model found it
+  std::optional<double> contact_arclength;  ///< contact: S of the material point at z = h, m
+  std::optional<double> tip_uncertainty;  ///< estimate of the tip position's discretisation error,
+                                          ///< m, if the model has one
+  std::size_t unknowns = 0;               ///< of the largest system solved
+  int iterations = 0;                     ///< nonlinear iterations, all cutbacks included
+  double seconds = 0;                     ///< wall time
+};
+
+struct MechanicsResult {
+  Deformation undeformed;            ///< the straight cilium in this model's own discretisation
+  std::vector<MechanicsStep> steps;  ///< one for each load of the path
+};
+
+/// Called with a short line of text while a long solution goes on ("step 2/4, load 0.5, iteration
+/// 3, residual 1e-4").
+using Progress = std::function<void(const std::string&)>;
+
+/// A model of the bending cilium: load path in, states out. How it steps from load to load is its
+/// own affair.
+class MechanicsModel {
+ public:
+  virtual ~MechanicsModel() = default;
+
+  /// Solves the path from the straight cilium. A step that slips off or does not converge is marked
+  /// so and the rest goes on where it can. Throws InputError if the cilium or a load is not valid.
+  virtual MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
+                                const Progress& progress = {}) const = 0;
+};
+
+}  // namespace ciliaval
