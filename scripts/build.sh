@@ -1,0 +1,36 @@
+# Sourced by run.sh and test.sh: installs what is missing, configures and builds one preset.
+# SPDX-License-Identifier: LGPL-2.1-or-later
+
+say() { printf '\n== %s\n' "$*" >&2; }
+die() { printf 'error: %s\n' "$*" >&2; exit 1; }
+
+# Installs the packages of scripts/packages.txt that are not there yet.
+install_packages() {
+  command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
+    die "this is not a Debian system; install the equivalents of scripts/packages.txt by hand, then run 'cmake --preset release && cmake --build --preset release'"
+  local missing=() package
+  while read -r package; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+  done < <(grep -v '^#' scripts/packages.txt)
+  [ ${#missing[@]} -eq 0 ] && return
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    as_root=(sudo)
+    command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; } ||
+      die "these packages are missing, and neither root nor sudo is at hand to install them; ask an administrator for:
+  apt-get install ${missing[*]}"
+  fi
+  say "installing ${missing[*]}"
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=600 -qq)
+  "${apt[@]}" update >&2 || die "'apt-get update' failed: are the package sources reachable?"
+  "${apt[@]}" install -y --no-install-recommends "${missing[@]}" >&2 ||
+    die "apt-get could not install ${missing[*]}"
+}
+
+# build PRESET: configures and builds it; what has not changed is not built again.
+build() {
+  say "building build/$1"
+  cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log" >&2; rm -f "build-$1.log"; die "configuring the preset '$1' failed"; }
+  rm -f "build-$1.log"
+  cmake --build --preset "$1" >&2 || die "the build failed"
+}

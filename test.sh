@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds CiliaVal and runs its tests.
+# SPDX-License-Identifier: LGPL-2.1-or-later
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+. scripts/build.sh
+
+preset=release
+labels=(-LE slow)
+while [ $# -gt 0 ]; do
+  case $1 in
+    --all) labels=() ;;
+    --preset) shift; preset=${1:?--preset needs a name: release, debug or sanitize} ;;
+    *)
+      echo "usage: ./test.sh [--all] [--preset release|debug|sanitize]   (--all: the long tests, label 'slow', too)"
+      [ "$1" = --help ] || [ "$1" = -h ] || exit 2
+      exit 0
+      ;;
+  esac
+  shift
+done
+
+install_packages
+build "$preset"
+say "testing"
+# One thread a test: ctest runs two of them side by side.
+export DEAL_II_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+ctest --preset "$preset" -j "$(nproc)" "${labels[@]}"
