@@ -4,6 +4,8 @@
 #include <array>
 #include <span>
 
+#include "problem/error.h"
+
 namespace ciliaval {
 namespace {
 
@@ -15,6 +17,8 @@ struct Shape {
   std::array<double, max_nodes> derivative;
 
   Shape(const LagrangeBasis& basis, double x) : value{}, derivative{} {
+    if (basis.size() > max_nodes)
+      throw InputError("a solid cell has at most 16 nodes along an edge");
     basis.values_and_derivatives(x, std::span(value).first(basis.size()),
                                  std::span(derivative).first(basis.size()));
   }

@@ -30,7 +30,7 @@ install_packages() {
 # build PRESET: configures and builds it; what has not changed is not built again.
 build() {
   say "building build/$1"
-  cmake --preset "$1" >"build-$1.log" 2>&1 || { cat "build-$1.log" >&2; rm -f "build-$1.log"; die "configuring the preset '$1' failed"; }
-  rm -f "build-$1.log"
+  local log
+  log=$(cmake --preset "$1" 2>&1) || { printf '%s\n' "$log" >&2; die "configuring the preset '$1' failed"; }
   cmake --build --preset "$1" >&2 || die "the build failed"
 }
