@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "problem/centreline.h"
+#include "problem/cilium.h"
+#include "problem/load.h"
+
+/// The planar elastica without units, which both forms of analytic::Elastica solve: lengths in L,
+/// forces in P (F of a point force, qL of a distributed one), moments in PL.
+namespace ciliaval::analytic {
+
+/// How the internal force H(S) depends on the shape.
+enum class PlanarLoad {
+  contact,  ///< H = 1 below z = h, M = (h − z)₊
+  flow,     ///< H = z_tip − z, M = (z_tip − z)²/2
+  section,  ///< H = 1 below S = s, M = z(s) − z
+  dead      ///< H = 1 − S, M = ∫_S^1 (z(σ) − z(S)) dσ
+};
+
+struct PlanarProblem {
+  PlanarLoad kind = PlanarLoad::contact;
+  std::vector<double> ends;        ///< S/L of the segments' ends: 0, …, 1
+  std::vector<double> compliance;  ///< max(EI)/EI of each segment, ≥ 1
+  double load = 0;                 ///< PL²/max(EI); θ'(S) = load · compliance · M
+  double point = 1;                ///< h/L (contact) or s/L (section)
+};
+
+/// Units of a planar problem.
+struct PlanarUnits {
+  double length = 0;  ///< L, m
+  double force = 0;   ///< P, N
+};
+
+/// The problem of one load on a cilium. Throws InputError if PL²/EI is not representable.
+PlanarProblem planar_problem(const Cilium& cilium, const Load& load);
+PlanarUnits planar_units(const Cilium& cilium, const Load& load);
+
+/// State at one material point, in the problem's units.
+struct PlanarState {
+  double S = 0;
+  double theta = 0;                   ///< θ, rad
+  double phi = std::numbers::pi / 2;  ///< π/2 − θ, kept apart: it carries the digits near 90°
+  double w = 0;
+  double z = 0;
+  double moment = 0;     ///< M
+  double force = 0;      ///< H, exerted by the part above on the part below
+  double curvature = 0;  ///< θ'(S)
+};
+
+/// A solved shape.
+struct PlanarShape {
+  std::vector<double> breaks;  ///< 0, …, 1; θ(S) is smooth between them
+  /// State at S, which lies in the piece [breaks[i], breaks[i+1]]; one-sided at its ends.
+  std::function<PlanarState(double S, std::size_t i)> state;
+  std::optional<double> contact;  ///< S at z = h
+  double error = 0;               ///< estimate of the largest error of w, z and θ at the tip
+  int iterations = 0;             ///< integrations along the whole cilium
+};
+
+/// Adds a break, unless one is already there within 1e-13 (a piece must have room for its nodes).
+void add_break(std::vector<double>& breaks, double S);
+
+/// The shape as a Centreline in the plane of `direction` (e): Chebyshev pieces between the breaks,
+/// bisected until interpolation meets `tolerance` at points between the nodes. The rotation is the
+/// angle θ about e_z × e, κ = θ' e_z × e, the force H e, the moment M e_z × e. Throws SolverError
+/// if the shape is not smooth enough or not finite.
+Centreline planar_centreline(const PlanarShape& shape, const PlanarUnits& units,
+                             const Vector3& direction, double tolerance);
+
+}  // namespace ciliaval::analytic
