@@ -31,7 +31,7 @@ class DipoleField : public FieldModel {
 struct LineOptions {
   PushForward push_forward = PushForward::F;
   Method method =
-      Method::closed_form;   ///< two poles; F only: with R and shear it falls back to quadrature
+      Method::closed_form;   ///< two poles, F only: R has no closed form and takes the quadrature
   double tolerance = 1e-10;  ///< relative to |B|, of the quadrature
 };
 class LineField : public FieldModel {

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytic/dipole.h"
+#include "analytic/field_points.h"
+#include "analytic/order_raising.h"
+
+namespace ciliaval::analytic {
+
+/// A point of a patch and the strength of its source per dξ: a charge (double, A·m) or a moment
+/// (Vector3, A·m²).
+template <class Strength>
+struct PatchPoint {
+  Vector3 position;  ///< m
+  Strength strength;
+};
+
+inline Vector3 source_field(double charge, const Vector3& offset) {
+  return pole_field(charge, offset);
+}
+inline Vector3 source_field(const Vector3& moment, const Vector3& offset) {
+  return dipole_field(moment, offset);
+}
+
+/// B of sources spread over smooth patches ξ ∈ [0,1]^dim, by tensor Gauss–Legendre quadrature.
+/// A patch is cut into 2^dim boxes as long as its middle is nearer to the field point than 1.5
+/// times its half-diameter; then the order is raised box by box (`raise_orders`). Points and
+/// strengths of uncut patches are kept for the next field point, up to order 8.
+template <int dim, class Strength>
+class PatchIntegral {
+ public:
+  using Coordinates = std::array<double, dim>;
+  using Source = std::function<PatchPoint<Strength>(std::size_t patch, const Coordinates& xi)>;
+
+  /// `name` is what a message calls the integral.
+  PatchIntegral(std::size_t patches, Source source, std::string name)
+      : source_(std::move(source)), name_(std::move(name)), kept_(patches) {
+    for (std::size_t i = 0; i < patches; ++i) {
+      whole_.push_back({i, {}, 1});
+      balls_.push_back(ball_around(whole_.back()));
+    }
+  }
+
+  /// `inside` (T, the μ₀m of a point in the magnet) plus B of the sources at x, its tolerance
+  /// relative to |B|. Throws SolverError on or too near to a patch.
+  FieldValue field(const Vector3& x, const Vector3& inside, double tolerance) {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < whole_.size(); ++i) append_graded(whole_[i], balls_[i], x, boxes);
+    return raise_orders(boxes,
+                        [&](const Box& box, std::size_t order) { return field_of(box, order, x); },
+                        {tolerance, dim == 2 ? 24 : 16, name_, x, inside});
+  }
+
+ private:
+  /// low + size·[0,1]^dim of a patch.
+  struct Box {
+    std::size_t patch;
+    Coordinates low;
+    double size;
+  };
+  struct Ball {
+    Vector3 centre;
+    double radius;
+  };
+
+  /// Calls `visit(index)` for every index of a grid of n^dim.
+  template <class Visit>
+  static void for_each_index(std::size_t n, Visit visit) {
+    std::array<std::size_t, dim> index{};
+    while (true) {
+      visit(index);
+      std::size_t d = 0;
+      while (d < dim && ++index[d] == n) index[d++] = 0;
+      if (d == dim) return;
+    }
+  }
+
+  /// A ball around the images of the box's corners and midpoints.
+  Ball ball_around(const Box& box) const {
+    Coordinates middle;
+    for (std::size_t d = 0; d < dim; ++d) middle[d] = box.low[d] + box.size / 2;
+    Ball ball{source_(box.patch, middle).position, 0};
+    for_each_index(3, [&](const std::array<std::size_t, dim>& index) {
+      Coordinates xi;
+      for (std::size_t d = 0; d < dim; ++d)
+        xi[d] = box.low[d] + box.size * static_cast<double>(index[d]) / 2;
+      const double distance = (source_(box.patch, xi).position - ball.centre).norm();
+      ball.radius = std::max(ball.radius, distance);
+    });
+    return ball;
+  }
+
+  void append_graded(const Box& box, const Ball& ball, const Vector3& x,
+                     std::vector<Box>& boxes) const {
+    if ((x - ball.centre).norm() >= 1.5 * ball.radius) {
+      boxes.push_back(box);
+      return;
+    }
+    if (box.size < 1e-7)
+      throw SolverError("the " + name_ + " was asked at " + to_string(x) +
+                        ", on one of them or too near to it: move the point away");
+    for_each_index(2, [&](const std::array<std::size_t, dim>& index) {
+      Box part{box.patch, box.low, box.size / 2};
+      for (std::size_t d = 0; d < dim; ++d)
+        part.low[d] += part.size * static_cast<double>(index[d]);
+      append_graded(part, ball_around(part), x, boxes);
+    });
+  }
+
+  std::vector<PatchPoint<Strength>> points_of(const Box& box, std::size_t order) const {
+    const QuadratureRule& rule = unit_gauss_legendre(order);
+    std::vector<PatchPoint<Strength>> points;
+    for_each_index(order, [&](const std::array<std::size_t, dim>& index) {
+      Coordinates xi;
+      double weight = 1;
+      for (std::size_t d = 0; d < dim; ++d) {
+        xi[d] = box.low[d] + box.size * rule.nodes[index[d]];
+        weight *= box.size * rule.weights[index[d]];
+      }
+      points.push_back(source_(box.patch, xi));
+      points.back().strength *= weight;
+    });
+    return points;
+  }
+
+  static Vector3 field_of(const std::vector<PatchPoint<Strength>>& points, const Vector3& x) {
+    Vector3 B = Vector3::Zero();
+    for (const PatchPoint<Strength>& point : points)
+      B += source_field(point.strength, x - point.position);
+    return B;
+  }
+
+  Vector3 field_of(const Box& box, std::size_t order, const Vector3& x) {
+    if (box.size < 1 || order > 8) return field_of(points_of(box, order), x);
+    auto& kept = kept_[box.patch];
+    auto points = kept.find(order);
+    if (points == kept.end()) points = kept.emplace(order, points_of(box, order)).first;
+    return field_of(points->second, x);
+  }
+
+  Source source_;
+  std::string name_;
+  std::vector<Box> whole_;
+  std::vector<Ball> balls_;
+  std::vector<std::map<std::size_t, std::vector<PatchPoint<Strength>>>> kept_;
+};
+
+}  // namespace ciliaval::analytic

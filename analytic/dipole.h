@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "problem/types.h"
+
+namespace ciliaval::analytic {
+
+/// Flux density (T) of a dipole of moment m (A·m²) at the offset a (m) from it, paper's Eq. 5:
+///   B = μ₀/4π [3(m·a)a/a⁵ − m/a³].  Not finite at a = 0.
+Vector3 dipole_field(const Vector3& moment, const Vector3& offset);
+
+/// Flux density (T) of a magnetic pole of strength q (A·m) at the offset a (m) from it:
+///   B = μ₀ q a/(4π a³).  Not finite at a = 0.
+Vector3 pole_field(double strength, const Vector3& offset);
+
+}  // namespace ciliaval::analytic

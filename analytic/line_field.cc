@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <cmath>
+
+#include "analytic/dipole.h"
+#include "analytic/field_models.h"
+#include "analytic/field_points.h"
+#include "analytic/order_raising.h"
+#include "analytic/rod_magnet.h"
+#include "problem/error.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+/// B = Σ μ₀q a/(4πa³) of the poles q = πR²(M below − M above) at the magnet's ends.
+FieldValue field_of_poles(const RodMagnet& magnet, double area, const Vector3& x) {
+  FieldValue sum;
+  for (const RodEnd& end : magnet.ends) {
+    const Vector3& pole = end.section.centre;
+    if ((x - pole).norm() <= rounding_of_offset(x, pole))
+      throw InputError("the field of the model `line` diverges at its pole " + to_string(x) +
+                       ": move the point, or take the model `volume`");
+    sum += with_rounding(pole_field(area * end.magnetization_jump, x - pole), x, pole);
+  }
+  return sum;
+}
+
+/// ∫ dB over the dipoles M πR² dr (F) or M πR² d₃ dS (R) of the centreline.
+FieldValue field_of_dipoles(const RodMagnet& magnet, double area, const LineOptions& options,
+                            const Vector3& x) {
+  const auto parts = graded_stretches(
+      magnet, [&](const CentrelinePoint& point) { return (x - point.position).norm(); },
+      1e-9 * magnet.centreline.length());
+  if (!parts)
+    throw SolverError("the quadrature of the model `line` was asked at " + to_string(x) +
+                      ", on the centreline, where it diverges: move the point, or take the model "
+                      "`volume`");
+  const auto contribution = [&](const RodStretch& part, std::size_t order) {
+    const QuadratureRule& rule = unit_gauss_legendre(order);
+    const double length = part.end - part.begin;
+    Vector3 B = Vector3::Zero();
+    for (std::size_t i = 0; i < order; ++i) {
+      const CentrelinePoint point = at(magnet, part, part.begin + rule.nodes[i] * length);
+      const Vector3 axis =
+          options.push_forward == PushForward::F ? point.derivative : point.normal();
+      const double strength = part.magnetization * area * rule.weights[i] * length;
+      B += dipole_field(strength * axis, x - point.position);
+    }
+    return B;
+  };
+  return raise_orders(*parts, contribution,
+                      {options.tolerance, 54, "quadrature of the model `line`", x});
+}
+
+}  // namespace
+
+Field LineField::field(const Cilium& cilium, const Deformation& deformation,
+                       std::span<const Vector3> points) const {
+  const RodMagnet magnet = rod_magnet(cilium, deformation);
+  const bool poles =
+      options_.method == Method::closed_form && options_.push_forward == PushForward::F;
+  return field_at(points, [&](const Vector3& x) {
+    return poles ? field_of_poles(magnet, cilium.area(), x)
+                 : field_of_dipoles(magnet, cilium.area(), options_, x);
+  });
+}
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/order_raising.h"
+
+#include <cstdio>
+#include <map>
+#include <mutex>
+
+namespace ciliaval::analytic {
+
+const QuadratureRule& unit_gauss_legendre(std::size_t n) {
+  static std::mutex mutex;
+  static std::map<std::size_t, QuadratureRule> rules;  // nodes of a map never move
+  const std::lock_guard lock(mutex);
+  auto rule = rules.find(n);
+  if (rule == rules.end()) rule = rules.emplace(n, gauss_legendre(n, 0, 1)).first;
+  return rule->second;
+}
+
+void throw_tolerance_missed(const OrderRaising& asked, double reached) {
+  char text[128];
+  std::snprintf(text, sizeof text, " to %.2g of |B|, but its orders differ by %.2g",
+                asked.tolerance, reached);
+  throw SolverError("the " + asked.integral + " was asked at " + to_string(asked.x) + text +
+                    ": move the point away from the magnet or ask for a larger tolerance");
+}
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
+#include <boost/math/special_functions/ellint_3.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "analytic/charged_disc.h"
+#include "analytic/current_loop.h"
+#include "analytic/dipole.h"
+#include "analytic/elliptic.h"
+#include "bent_rods.h"
+#include "derby_olbert.h"
+#include "problem/field_model.h"
+#include "problem/lagrange.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+using oracle::record;
+using Real = boost::multiprecision::cpp_bin_float_50;
+
+const std::vector<double> moduli = {1e-6, 1e-3, 0.1, 0.5, 0.9, 0.99, 0.9999, 1 - 1e-8};
+
+// Oracle: Boost.Math's ellint_1, ellint_2, ellint_3 in 50 digits. Measured 4e-16; margin 5.
+TEST(EllipticIntegrals, BulirschAgreesWithLegendresThreeKinds) {
+  double error = 0;
+  for (const double kc : moduli) {
+    const Real k = sqrt(1 - Real(kc) * kc);
+    const Real K = boost::math::ellint_1(k);
+    const Real E = boost::math::ellint_2(k);
+    const auto compare = [&](double value, const Real& exact) {
+      error = std::max(error, std::abs(static_cast<double>(value / exact - 1)));
+    };
+    compare(bulirsch_cel(kc, 1, 1, 1), K);
+    compare(bulirsch_cel(kc, 1, 1, kc * kc), E);
+    for (const double p : {1e-8, 1e-3, 0.3, 0.999, 2.0, 50.0})
+      compare(bulirsch_cel(kc, p, 1, 1), boost::math::ellint_3(k, 1 - Real(p)));
+  }
+  record("cel against Boost.Math, relative", error);
+  EXPECT_LT(error, 2e-15);
+}
+
+// Oracle: as before, D and C by their textbook forms, whose cancellation 50 digits bear.
+TEST(EllipticIntegrals, KeepAllDigitsAsTheModulusVanishes) {
+  double error = 0;
+  for (const double kc : moduli) {
+    const Real m = 1 - Real(kc) * kc;
+    const Real K = boost::math::ellint_1(Real(sqrt(m)));
+    const Real E = boost::math::ellint_2(Real(sqrt(m)));
+    const CompleteElliptic value = complete_elliptic(kc, static_cast<double>(m));
+    for (const Real& ratio : {Real(value.K / K), Real(value.E / E), Real(value.D / ((K - E) / m)),
+                              Real(value.C / (((2 - m) * K - 2 * E) / (m * m)))})
+      error = std::max(error, std::abs(static_cast<double>(ratio - 1)));
+  }
+  record("K, E, D, C against Boost.Math, relative", error);
+  EXPECT_LT(error, 1e-14);
+}
+
+TEST(EllipticIntegrals, AreThoseOfTheCircleForAVanishingModulus) {
+  const CompleteElliptic value = complete_elliptic(1, 0);
+  EXPECT_DOUBLE_EQ(value.K, std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(value.E, std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(value.D, std::numbers::pi / 4);
+  EXPECT_DOUBLE_EQ(value.C, std::numbers::pi / 16);
+}
+
+// Oracle: the charge integral H = ∫ a/(4πa³) dA by Gauss–Legendre × trapezoid, points where that
+// converges to rounding error.
+TEST(ChargedDisc, IsTheFieldOfItsCharge) {
+  const QuadratureRule radial = gauss_legendre(40, 0, 1);
+  const int azimuths = 160;
+  double error = 0;
+  for (const double rho : {0.0, 1e-9, 0.4, 1.0, 1.7, 2.9, 3.1}) {
+    for (const double zeta : {-1.5, -0.7, 0.6, 2.0}) {
+      Vector3 H = Vector3::Zero();
+      for (std::size_t i = 0; i < radial.nodes.size(); ++i) {
+        for (int j = 0; j < azimuths; ++j) {
+          const double phi = 2 * std::numbers::pi * j / azimuths;
+          const double r = radial.nodes[i];
+          const Vector3 a(rho - r * std::cos(phi), -r * std::sin(phi), zeta);
+          H += radial.weights[i] * r / (2 * azimuths) * a / std::pow(a.norm(), 3);
+        }
+      }
+      const MeridianVector value = charged_disc_field(rho, zeta);
+      error = std::max(error, (Vector3(value.radial, 0, value.axial) - H).norm() / H.norm());
+    }
+  }
+  record("disc against the integral of its charge, relative", error);
+  EXPECT_LT(error, 1e-13);
+}
+
+// Oracle: Gauss. The normal component jumps by the charge across the disc and not beside it.
+TEST(ChargedDisc, JumpsByItsChargeAndOnlyOnTheDisc) {
+  for (const double rho : {0.0, 0.3, 0.99}) {
+    EXPECT_DOUBLE_EQ(charged_disc_field(rho, 0.0).axial, 0.5);
+    EXPECT_DOUBLE_EQ(charged_disc_field(rho, -0.0).axial, -0.5);
+    EXPECT_NEAR(charged_disc_field(rho, 1e-12).axial, 0.5, 1e-9);
+  }
+  for (const double rho : {1.01, 2.0, 5.0}) EXPECT_EQ(charged_disc_field(rho, 0.0).axial, 0);
+}
+
+// The two branches of H_ζ meet at three radii. Measured 1.3e-14 (36 ε of the closed form).
+TEST(ChargedDisc, SeriesMeetsTheClosedFormAtThreeRadii) {
+  double error = 0;
+  for (int i = 0; i <= 20; ++i) {
+    const double angle = std::numbers::pi / 2 * i / 20;
+    const auto at = [&](double a) {
+      return charged_disc_field(a * std::sin(angle), a * std::cos(angle));
+    };
+    // H ~ a⁻²: from one point to the other it changes by 4e-15.
+    const MeridianVector inner = at(3 * (1 - 1e-15));
+    const MeridianVector outer = at(3 * (1 + 1e-15));
+    error = std::max(error,
+                     std::abs(inner.axial - outer.axial) / std::hypot(inner.axial, inner.radial));
+  }
+  record("disc, series against closed form at three radii", error);
+  EXPECT_LT(error, 6e-14);
+}
+
+// Oracle: Biot–Savart by the trapezoidal rule, which converges geometrically on a closed loop.
+TEST(CurrentLoop, IsBiotAndSavartsIntegral) {
+  const int n = 600;
+  double error = 0;
+  for (const double rho : {0.0, 1e-9, 0.5, 0.9, 1.2, 3.0, 40.0, 300.0}) {
+    for (const double zeta : {-2.0, -0.2, 0.3, 25.0, 300.0}) {
+      Eigen::Matrix<long double, 3, 1> H = Eigen::Matrix<long double, 3, 1>::Zero();
+      for (int i = 0; i < n; ++i) {
+        const long double phi = 2 * std::numbers::pi_v<long double> * i / n;
+        const Eigen::Matrix<long double, 3, 1> a(rho - std::cos(phi), -std::sin(phi), zeta);
+        const Eigen::Matrix<long double, 3, 1> tangent(-std::sin(phi), std::cos(phi), 0);
+        H += tangent.cross(a) / (2 * n * std::pow(a.norm(), 3.0L));
+      }
+      const MeridianVector value = current_loop_field(rho, zeta);
+      const Vector3 exact = H.cast<double>();
+      error =
+          std::max(error, (Vector3(value.radial, 0, value.axial) - exact).norm() / exact.norm());
+    }
+  }
+  record("loop against Biot-Savart, relative, to 400 radii", error);
+  EXPECT_LT(error, 1e-13);
+}
+
+// Oracle: two poles ±q at a distance h → 0 are a dipole qh; finite differences, error O(h²).
+TEST(Dipole, IsTwoPolesThatMoveTogether) {
+  const Vector3 axis(0.3, -0.5, 0.8);
+  const Vector3 a(1.0, 2.0, -0.7);
+  const double h = 1e-4;
+  const Vector3 poles = (pole_field(1, a - h / 2 * axis) - pole_field(1, a + h / 2 * axis)) / h;
+  EXPECT_LT(oracle::relative_difference(poles, dipole_field(axis, a)), 1e-8);
+}
+
+}  // namespace
+}  // namespace ciliaval::analytic
