@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/case_keys.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <type_traits>
+
+namespace ciliaval::compare {
+namespace {
+
+constexpr std::array<std::string_view, 3> known_mechanics{"elastica", "beam", "solid"};
+constexpr std::array<std::string_view, 4> known_fields{"dipole", "line", "volume", "mesh"};
+
+constexpr std::array<LaterKey, 6> known_later{{
+    {"environment", "gravity, buoyancy and uniform fields"},
+    {"cilium.segment.density", "weight (it goes with [environment])"},
+    {"load.displacement", "displacement control (load type 'probe')"},
+    {"models.potential", "the field model 'potential'"},
+    {"models.solid.symmetry", "symmetry of the solid"},
+    {"models.solid.initial_guess", "the choice of the solid's initial guess"},
+}};
+
+const std::array<TextKey, 6> text_keys{{
+    {"case", "name", "text", "",
+     "Name of the results' folder: letters, digits, `.`, `_`, `-`, not starting with `.` or `-`, "
+     "at most 100."},
+    {"case", "title", "text", "the name", "A line for people, at most 200 characters."},
+    {"cilium.segment", "name", "text", "", "Name of the segment, different from the others'."},
+    {"load", "type", "`contact`, `flow`, `section` or `dead`", "",
+     "What the load is and does as the cilium bends."},
+    {"models", "mechanics", "list of `elastica`, `beam`, `solid`", "",
+     "The mechanics models to run, at least one."},
+    {"models", "fields", "list of `dipole`, `line`, `volume`, `mesh`", "none",
+     "The field models to run on the deformation of each mechanics model; `mesh` takes `solid` "
+     "only."},
+}};
+
+const std::array<const QuantityKey*, 15> quantity_keys{
+    &key::diameter,         &key::segment_length, &key::young_modulus,    &key::poisson_ratio,
+    &key::magnetization,    &key::load_force,     &key::height,           &key::force_per_height,
+    &key::velocity,         &key::density,        &key::drag_coefficient, &key::arclength,
+    &key::force_per_length, &key::azimuth,        &key::position};
+
+/// A knob that is a double, an unsigned int or a bool of the options of one model.
+template <typename Options, typename T>
+Knob number_knob(Options ModelOptions::*model, T Options::*member, std::string_view id,
+                 std::string_view name, const Quantity& quantity, const Range& range,
+                 std::string_view doc) {
+  static_assert(std::is_same_v<T, double> || std::is_same_v<T, unsigned int> ||
+                std::is_same_v<T, bool>);
+  return {id,
+          name,
+          quantity,
+          range,
+          {},
+          {},
+          doc,
+          [=](const ModelOptions& o) { return KnobValue((o.*model).*member); },
+          [=](ModelOptions& o, const KnobValue& v) { (o.*model).*member = std::get<T>(v); }};
+}
+
+/// A knob that is an enumeration, by the names of its values.
+template <typename Options, typename T>
+Knob choice_knob(Options ModelOptions::*model, T Options::*member, std::string_view id,
+                 std::string_view name, std::vector<std::pair<std::string_view, T>> values,
+                 std::string_view doc) {
+  std::vector<std::string_view> choices;
+  for (const auto& [text, value] : values) choices.push_back(text);
+  return {id,
+          name,
+          quantity::number,
+          {},
+          choices,
+          {},
+          doc,
+          [=](const ModelOptions& o) {
+            for (const auto& [text, value] : values)
+              if ((o.*model).*member == value) return KnobValue(std::string(text));
+            return KnobValue(std::string(values.front().first));
+          },
+          [=](ModelOptions& o, const KnobValue& v) {
+            for (const auto& [text, value] : values)
+              if (std::get<std::string>(v) == text) (o.*model).*member = value;
+          }};
+}
+
+/// A choice that has one value in this version.
+Knob single_choice_knob(std::string_view id, std::string_view name, std::string_view value,
+                        std::vector<std::string_view> not_yet, std::string_view doc) {
+  return {id,
+          name,
+          quantity::number,
+          {},
+          {value},
+          std::move(not_yet),
+          doc,
+          [=](const ModelOptions&) { return KnobValue(std::string(value)); },
+          [](ModelOptions&, const KnobValue&) {}};
+}
+
+constexpr Range any_bool{};
+constexpr Range tolerance_range{1e-15, 1e-3, false,
+                                "double precision resolves no less, and more is no solution"};
+constexpr Range iterations_range{1, 1000, false, "the solver must end"};
+constexpr Range cutbacks_range{0, 50, false, "50 halvings leave nothing of a step"};
+
+void append_elastica(std::vector<Knob>& all) {
+  using analytic::ElasticaOptions;
+  all.push_back(choice_knob(
+      &ModelOptions::elastica, &ElasticaOptions::form, "elastica", "form",
+      {{"arclength", ElasticaOptions::Form::arclength}, {"height", ElasticaOptions::Form::height}},
+      "`arclength`: dθ/dS = M/(EI), any load; `height`: the paper's "
+      "quadrature in z (Eq. 1-4), `contact` and `flow` only."));
+  all.push_back(number_knob(&ModelOptions::elastica, &ElasticaOptions::tolerance, "elastica",
+                            "tolerance", quantity::number, tolerance_range,
+                            "Relative, of position over length and of angle."));
+}
+
+void append_beam(std::vector<Knob>& all) {
+  using fem::BeamOptions;
+  constexpr auto beam = &ModelOptions::beam;
+  all.push_back(number_knob(beam, &BeamOptions::degree, "beam", "degree", quantity::number,
+                            {1, 20, false, "higher elements gain nothing here"},
+                            "Degree of the interpolation of position and rotation."));
+  all.push_back(number_knob(beam, &BeamOptions::refinement, "beam", "refinement", quantity::number,
+                            {0, 12, false, "finer beams exceed the memory of a machine"},
+                            "Each step halves the elements."));
+  all.push_back(number_knob(beam, &BeamOptions::shear_rigid, "beam", "shear_rigid",
+                            quantity::number, any_bool,
+                            "No shear and no extension: the elastica's assumptions."));
+  all.push_back(number_knob(beam, &BeamOptions::tolerance, "beam", "tolerance", quantity::number,
+                            tolerance_range, "Of the residual and the increment, relative."));
+  all.push_back(number_knob(beam, &BeamOptions::max_iterations, "beam", "max_iterations",
+                            quantity::number, iterations_range,
+                            "Newton iterations of a load increment."));
+  all.push_back(number_knob(beam, &BeamOptions::max_cutbacks, "beam", "max_cutbacks",
+                            quantity::number, cutbacks_range,
+                            "Halvings of a load increment that does not converge."));
+}
+
+void append_solid(std::vector<Knob>& all) {
+  using fem::SolidOptions;
+  constexpr auto solid = &ModelOptions::solid;
+  all.push_back(single_choice_knob("solid", "material", "neo-hooke", {"mooney-rivlin", "yeoh"},
+                                   "Energy: μ/2 (Ī₁-3) + K/2 (J-1)²."));
+  all.push_back(number_knob(solid, &SolidOptions::refinement, "solid", "refinement",
+                            quantity::number,
+                            {0, 2, false, "the solid has the levels coarse, default and fine"},
+                            "Mesh: 0 coarse, 1 default, 2 fine."));
+  all.push_back(number_knob(solid, &SolidOptions::kernel_width, "solid", "kernel_width",
+                            quantity::length, key::length_range,
+                            "Half-width w of the contact kernel; `contact` needs 0 < h-w and h+w "
+                            "below the tip."));
+  all.push_back(number_knob(solid, &SolidOptions::tolerance, "solid", "tolerance", quantity::number,
+                            tolerance_range,
+                            "Of the residual, relative to the applied force, and of the "
+                            "increment."));
+  all.push_back(number_knob(solid, &SolidOptions::max_iterations, "solid", "max_iterations",
+                            quantity::number, iterations_range,
+                            "Newton iterations of a load increment."));
+  all.push_back(number_knob(solid, &SolidOptions::max_cutbacks, "solid", "max_cutbacks",
+                            quantity::number, cutbacks_range,
+                            "Halvings of a load increment that does not converge."));
+}
+
+void append_fields(std::vector<Knob>& all) {
+  using analytic::Method;
+  using analytic::PushForward;
+  using Slices = analytic::VolumeOptions::Slices;
+  const std::vector<std::pair<std::string_view, PushForward>> push_forward{{"F", PushForward::F},
+                                                                           {"R", PushForward::R}};
+  const std::vector<std::pair<std::string_view, Method>> method{
+      {"closed_form", Method::closed_form}, {"quadrature", Method::quadrature}};
+  constexpr std::string_view rod = "`F`: M dr (ideal hard magnet); `R`: M d₃ dS (rigid sections).";
+
+  all.push_back(choice_knob(&ModelOptions::dipole, &analytic::DipoleOptions::push_forward, "dipole",
+                            "push_forward", push_forward, rod));
+  all.push_back(choice_knob(&ModelOptions::line, &analytic::LineOptions::push_forward, "line",
+                            "push_forward", push_forward, rod));
+  all.push_back(choice_knob(&ModelOptions::line, &analytic::LineOptions::method, "line", "method",
+                            method, "`closed_form`: two poles; `quadrature`: its check."));
+  all.push_back(number_knob(&ModelOptions::line, &analytic::LineOptions::tolerance, "line",
+                            "tolerance", quantity::number, tolerance_range,
+                            "Relative to the field, of the quadrature."));
+  all.push_back(choice_knob(&ModelOptions::volume, &analytic::VolumeOptions::slices, "volume",
+                            "slices", {{"wedge", Slices::wedge}, {"stacked", Slices::stacked}},
+                            "`wedge`: the true volume of the bent rod; `stacked`: the paper's Eq. "
+                            "8-9, flat slices of equal thickness."));
+  all.push_back(choice_knob(&ModelOptions::volume, &analytic::VolumeOptions::method, "volume",
+                            "method", method,
+                            "`closed_form`: charged discs or current loops; `quadrature`: their "
+                            "check."));
+  all.push_back(number_knob(&ModelOptions::volume, &analytic::VolumeOptions::tolerance, "volume",
+                            "tolerance", quantity::number, tolerance_range,
+                            "Relative to the field."));
+  all.push_back(choice_knob(&ModelOptions::mesh, &analytic::MeshOptions::push_forward, "mesh",
+                            "push_forward", push_forward,
+                            "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M (rigid sections)."));
+  all.push_back(number_knob(&ModelOptions::mesh, &analytic::MeshOptions::tolerance, "mesh",
+                            "tolerance", quantity::number, tolerance_range,
+                            "Relative to the field."));
+}
+
+std::string row(std::string_view table, std::string_view name, std::string_view value,
+                std::string_view range, std::string_view fallback, std::string_view doc) {
+  return fmt::format("| `{}.{}` | {} | {} | {} | {} |\n", table, name, value, range,
+                     fallback.empty() ? "required" : fallback, doc);
+}
+
+std::string row(const QuantityKey& k) {
+  const std::string value = k.quantity.unit.empty()
+                                ? std::string(k.quantity.name)
+                                : fmt::format("{}, `\"{}\"`", k.quantity.name, k.quantity.example);
+  return row(k.table, k.name, value, describe(k.range, k.quantity), k.fallback, k.doc);
+}
+
+std::string row(const Knob& knob) {
+  const KnobValue fallback = knob.get(ModelOptions{});
+  std::string value = "`true` or `false`";
+  std::string range;
+  if (!knob.choices.empty()) {
+    value = fmt::format("`{}`", fmt::join(knob.choices, "` or `"));
+  } else if (!std::holds_alternative<bool>(fallback)) {
+    const bool whole = std::holds_alternative<unsigned int>(fallback);
+    value = whole ? "whole number" : knob.quantity.name;
+    range = describe(knob.range, knob.quantity);
+  }
+  return row(fmt::format("models.{}", knob.model), knob.name, value, range,
+             fmt::format("`{}`", to_toml(knob, fallback)), knob.doc);
+}
+
+}  // namespace
+
+std::string describe(const Range& range, const Quantity& quantity) {
+  const std::string unit = quantity.unit.empty() ? "" : fmt::format(" {}", quantity.unit);
+  if (range.excludes_ends)
+    return fmt::format("between {:g}{} and {:g}{}, both excluded", range.lower, unit, range.upper,
+                       unit);
+  return fmt::format("from {:g}{} to {:g}{}", range.lower, unit, range.upper, unit);
+}
+
+const std::vector<Knob>& knobs() {
+  static const std::vector<Knob> all = [] {
+    std::vector<Knob> list;
+    append_elastica(list);
+    append_beam(list);
+    append_solid(list);
+    append_fields(list);
+    return list;
+  }();
+  return all;
+}
+
+std::span<const std::string_view> mechanics_ids() {
+  return known_mechanics;
+}
+
+std::span<const std::string_view> field_ids() {
+  return known_fields;
+}
+
+std::span<const LaterKey> later_keys() {
+  return known_later;
+}
+
+std::string to_toml(const Knob& knob, const KnobValue& value) {
+  return std::visit(
+      [&knob](const auto& v) -> std::string {
+        using T = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<T, std::string>) return fmt::format("\"{}\"", v);
+        if constexpr (std::is_same_v<T, bool>) return v ? "true" : "false";
+        if constexpr (std::is_same_v<T, unsigned int>) return fmt::format("{}", v);
+        if constexpr (std::is_same_v<T, double>)
+          return knob.quantity.unit.empty()
+                     ? format_number(v)
+                     : fmt::format("\"{}\"", format_quantity(v, knob.quantity));
+      },
+      value);
+}
+
+std::string key_table() {
+  std::string table =
+      "| key | value | range | default | meaning |\n| --- | --- | --- | --- | --- |\n";
+  for (const std::string_view part : {"case", "cilium", "cilium.segment", "load", "sensor"}) {
+    for (const TextKey& k : text_keys)
+      if (k.table == part) table += row(k.table, k.name, k.value, "", k.fallback, k.doc);
+    for (const QuantityKey* k : quantity_keys)
+      if (k->table == part) table += row(*k);
+  }
+  for (const TextKey& k : text_keys)
+    if (k.table == "models") table += row(k.table, k.name, k.value, "", k.fallback, k.doc);
+  for (const Knob& knob : knobs()) table += row(knob);
+  return table;
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "compare/case.h"
+#include "compare/case_toml.h"
+
+namespace ciliaval::compare {
+
+/// Each function reads one table of a case file into the case and adds a fault for everything in it
+/// that is wrong by itself; what contradicts another table is check_together()'s. They return
+/// whether the table had no fault.
+
+bool read_header(Section& root, Case& c);  ///< [case]
+bool read_cilium(Section& root, Case& c);  ///< [cilium], [[cilium.segment]]
+bool read_load(Section& root, Case& c);    ///< [load]; needs the diameter for `velocity`
+bool read_sensor(Section& root, Case& c);  ///< [sensor]
+bool read_models(Section& root, Case& c);  ///< [models], [models.<id>]
+
+/// The tables that had no fault by themselves.
+struct RightTables {
+  bool cilium = false;
+  bool load = false;
+  bool models = false;
+};
+
+/// Faults between tables of which each is right by itself: a contact height or section beyond the
+/// tip, a contact kernel that does not fit, fields without a sensor or a magnet, …
+void check_together(const toml::table& root, const Case& c, const RightTables& right,
+                    Faults& faults);
+
+/// Puts a section that lies within rounding of a segment's end exactly there, so that "20 mm" is
+/// the tip of 3 mm + 17 mm.
+void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
+
+/// Whether the name is a plain file name: [A-Za-z0-9._-], 1 to 100 long, not starting with '.' or
+/// '-'.
+bool is_plain_file_name(std::string_view name);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/units.h"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <system_error>
+#include <type_traits>
+
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+constexpr std::string_view blanks = " \t";
+constexpr std::size_t longest_unit = 64;     ///< bytes; UDUNITS' parser is not asked to read more
+constexpr std::size_t longest_exponent = 2;  ///< digits
+
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+
+ut_system* unit_system() {
+  static ut_system* const system = [] {
+    ut_set_error_message_handler(ut_ignore);  // UDUNITS would write to stderr
+    return ut_read_xml(nullptr);              // lives as long as the program
+  }();
+  if (system == nullptr)
+    throw FileError(
+        "the units' database of UDUNITS-2 cannot be read; is it installed, and does the "
+        "environment variable UDUNITS2_XML_PATH, if set, name it?");
+  return system;
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// A letter of a unit's name; bytes of UTF-8 sequences (µ, Ω, °) count as such.
+bool is_letter(char c) {
+  return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string wanted(const Quantity& expected) {
+  return fmt::format("write {} {}, such as \"{}\"", expected.article, expected.name,
+                     expected.example);
+}
+
+/// Whether every number in the unit is an exponent: right after a name, '^' or "**", perhaps with a
+/// sign. Others are factors or offsets ("3 mm 2", "m @ 3") that a person did not mean.
+bool numbers_are_exponents(std::string_view unit) {
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (!is_digit(unit[i])) continue;
+    std::size_t before = i;
+    if (before > 0 && (unit[before - 1] == '-' || unit[before - 1] == '+')) --before;
+    const char c = before > 0 ? unit[before - 1] : ' ';
+    const bool power = c == '*' && before > 1 && unit[before - 2] == '*';
+    if (!is_letter(c) && c != '^' && !power) return false;
+    const std::size_t start = i;
+    while (i < unit.size() && is_digit(unit[i])) ++i;
+    if (i - start > longest_exponent) return false;
+  }
+  return true;
+}
+
+/// "deg", which UDUNITS does not know, as "degree".
+std::string with_degrees(std::string_view unit) {
+  constexpr std::string_view word = "deg";
+  std::string result;
+  for (std::size_t i = 0; i < unit.size();) {
+    const bool starts = i == 0 || !is_letter(unit[i - 1]);
+    const bool ends = i + word.size() >= unit.size() || !is_letter(unit[i + word.size()]);
+    if (unit.substr(i, word.size()) == word && starts && ends) {
+      result += "degree";
+      i += word.size();
+    } else {
+      result += unit[i++];
+    }
+  }
+  return result;
+}
+
+/// What a unit is as a multiple of 1.
+struct Scale {
+  double factor = 1;
+  bool pure = true;  ///< no dimension, no radian, no offset, not logarithmic
+};
+
+ut_status visit_basic(const ut_unit* /*unit*/, void* scale) {
+  static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_product(const ut_unit* /*unit*/, int count, const ut_unit* const* /*units*/,
+                        const int* /*powers*/, void* scale) {
+  if (count != 0) static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_timestamp(const ut_unit* /*unit*/, const ut_unit* /*time*/, double /*origin*/,
+                          void* scale) {
+  static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_logarithmic(const ut_unit* /*unit*/, double /*base*/, const ut_unit* /*reference*/,
+                            void* scale) {
+  static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_galilean(const ut_unit* unit, double factor, const ut_unit* underlying,
+                         double offset, void* scale);
+
+const ut_visitor scale_visitor{visit_basic, visit_product, visit_galilean, visit_timestamp,
+                               visit_logarithmic};
+
+ut_status visit_galilean(const ut_unit* /*unit*/, double factor, const ut_unit* underlying,
+                         double offset, void* scale) {
+  auto* s = static_cast<Scale*>(scale);
+  s->factor *= factor;
+  if (offset != 0) s->pure = false;
+  return ut_accept_visitor(underlying, &scale_visitor, scale);
+}
+
+/// The factor from the unit to the SI unit of `expected`. ut_get_converter() would also turn 1/m
+/// into m, and takes radians for plain numbers: so the quotient of the two units is looked at.
+double factor_to_si(std::string_view unit, const Quantity& expected) {
+  ut_system* const system = unit_system();
+  const Unit given(ut_parse(system, with_degrees(unit).c_str(), UT_UTF8));
+  if (!given)
+    throw InputError(fmt::format("unknown unit {}: {}", in_quotes(unit), wanted(expected)));
+  const Unit si(ut_parse(system, std::string(expected.unit).c_str(), UT_UTF8));
+  const Unit quotient(ut_divide(given.get(), si.get()));
+  Scale scale;
+  if (!quotient || ut_accept_visitor(quotient.get(), &scale_visitor, &scale) != UT_SUCCESS ||
+      !scale.pure)
+    throw InputError(fmt::format("{} is not a unit of {} {}: {}", in_quotes(unit), expected.article,
+                                 expected.name, wanted(expected)));
+  return scale.factor;
+}
+
+/// The number at the start of the text, which is cut off from it.
+double take_number(std::string_view& text, const Quantity& expected) {
+  const std::string_view whole = text;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const std::size_t sign = text.starts_with('-') && text.size() == whole.size() ? 1 : 0;
+  const char first = text.size() > sign ? text[sign] : ' ';
+  double value = 0;
+  // from_chars() reads "nan" and "inf" too.
+  if (!is_digit(first) && first != '.')
+    throw InputError(fmt::format("{} does not start with a finite number: {}", in_quotes(whole),
+                                 wanted(expected)));
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range)
+    throw InputError(
+        fmt::format("the number of {} is outside the range of double precision", in_quotes(whole)));
+  if (error != std::errc())
+    throw InputError(fmt::format("{} does not start with a finite number: {}", in_quotes(whole),
+                                 wanted(expected)));
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+}  // namespace
+
+double parse_quantity(std::string_view text, const Quantity& expected) {
+  std::string_view rest = trimmed(text);
+  if (rest.empty()) throw InputError(fmt::format("the text is empty: {}", wanted(expected)));
+  const double value = take_number(rest, expected);
+  if (rest.starts_with(','))
+    throw InputError(fmt::format("{} has a comma: write the decimal point, such as \"0.5 mm\"",
+                                 in_quotes(text)));
+  const std::string_view unit = trimmed(rest);
+  if (unit.empty())
+    throw InputError(fmt::format("{} has no unit: {}", in_quotes(text), wanted(expected)));
+  for (const char c : unit)
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0)
+      throw InputError(fmt::format("{} has a control character in its unit", in_quotes(text)));
+  if (unit.size() > longest_unit)
+    throw InputError(fmt::format("the unit of {} is too long to be one", in_quotes(text)));
+  if (!numbers_are_exponents(unit))
+    throw InputError(fmt::format(
+        "the unit {} has a number that is not a small exponent: write the number first, then the "
+        "unit alone, such as \"{}\"",
+        in_quotes(unit), expected.example));
+
+  const double factor = factor_to_si(unit, expected);
+  // Factors such as 1000 and 1/1000 come from UDUNITS with a rounding error.
+  constexpr double rounding = 1e-14;
+  const double divisor = std::round(1 / factor);
+  const double multiple = std::round(factor);
+  double result = value * factor;
+  if (factor < 1 && std::abs(factor * divisor - 1) < rounding) result = value / divisor;
+  if (factor > 1 && std::abs(multiple / factor - 1) < rounding) result = value * multiple;
+  if (!std::isfinite(result))
+    throw InputError(fmt::format("{} is not finite in {}", in_quotes(text), expected.unit));
+  return result;
+}
+
+std::string format_number(double value) {
+  return fmt::format("{}", value);
+}
+
+std::string format_quantity(double value, const Quantity& quantity) {
+  if (quantity.unit.empty()) return format_number(value);
+  return fmt::format("{} {}", format_number(value), quantity.unit);
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string result = "'";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // Cut between characters only: bytes 10xxxxxx continue one.
+    if (i >= longest && (byte & 0xC0) != 0x80) {
+      result += "...";
+      break;
+    }
+    if (byte < 0x20 || byte == 0x7F)
+      result += fmt::format("\\x{:02X}", byte);
+    else
+      result += text[i];
+  }
+  return result + "'";
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace ciliaval::compare {
+
+/// A kind of physical quantity that a file states as text with a unit.
+struct Quantity {
+  std::string_view article;  ///< "a" or "an", for messages
+  std::string_view name;     ///< "length"
+  std::string_view unit;     ///< its SI unit as UDUNITS-2 writes it, "m"; empty: a plain number
+  std::string_view example;  ///< as a person would write it, "3 mm"
+};
+
+namespace quantity {
+inline constexpr Quantity length{"a", "length", "m", "3 mm"};
+inline constexpr Quantity pressure{"a", "pressure", "Pa", "0.1 MPa"};
+inline constexpr Quantity magnetization{"a", "magnetization M = B_r/mu_0", "A/m", "75 kA/m"};
+inline constexpr Quantity force{"a", "force", "N", "1 mN"};
+inline constexpr Quantity force_per_length{"a", "force per length", "N/m", "0.3 N/m"};
+inline constexpr Quantity velocity{"a", "velocity", "m/s", "0.5 m/s"};
+inline constexpr Quantity density{"a", "density", "kg/m^3", "1000 kg/m^3"};
+inline constexpr Quantity angle{"an", "angle", "rad", "30 deg"};
+inline constexpr Quantity number{"a", "plain number", "", "0.49"};
+}  // namespace quantity
+
+/// The value in SI units of a text such as "3 mm", "1.5e-3 N" or "30 deg".
+///
+/// Number and unit are parsed apart: the number strictly (decimal point, finite), the unit by
+/// UDUNITS-2 ("deg" is read as degree). Where the unit is 1/n of the SI unit the number is divided
+/// by the whole number n, so that "17 mm" is exactly the double 0.017. The text must have the
+/// dimension of `expected`, which must not be a plain number.
+///
+/// Throws InputError that names the fault and an example: no number, no unit, a number within the
+/// unit ("3 mm 2"), an unknown unit, an offset or logarithmic one ("degC", "m @ 3"), another
+/// dimension (also the reciprocal, which UDUNITS would convert), not finite. Throws FileError if
+/// UDUNITS' database of units cannot be read. Not thread-safe, as UDUNITS is not.
+double parse_quantity(std::string_view text, const Quantity& expected);
+
+/// The shortest decimal that reads back as the same double: at most 17 significant digits.
+std::string format_number(double value);
+
+/// The value with its SI unit, in full precision: parse_quantity() of it gives the same double. A
+/// plain number has no unit.
+std::string format_quantity(double value, const Quantity& quantity);
+
+/// The text between single quotes for a message: control characters escaped, the rest of a long
+/// text cut off.
+std::string in_quotes(std::string_view text);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Each fault is put into a case file without one; the place that the message must name is counted
+// by hand in case_texts.h.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "case_texts.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct BadCase {
+  const char* name;
+  std::string_view part;      ///< of good_case
+  std::string_view replaced;  ///< by this
+  const char* place;          ///< "line:column"
+  std::string_view message;
+  std::string_view advice = "";  ///< what the message says besides
+};
+
+void PrintTo(const BadCase& bad, std::ostream* out) {
+  *out << bad.name;
+}
+
+class BadCaseFile : public testing::TestWithParam<BadCase> {};
+
+TEST_P(BadCaseFile, IsRefusedWithOneLocatedMessage) {
+  const BadCase& bad = GetParam();
+  const std::string text = replaced(good_case, bad.part, bad.replaced);
+  ASSERT_FALSE(text.empty()) << "not in the good case: " << bad.part;
+  const std::string faults = faults_of(text);
+  EXPECT_EQ(lines(faults).size(), 1U) << faults;
+  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
+  EXPECT_THAT(faults, HasSubstr(bad.message));
+  EXPECT_THAT(faults, HasSubstr(bad.advice));
+}
+
+constexpr std::string_view slip = "taken for a slip in the sign or the unit";
+
+const BadCase syntax[]{
+    {"UnquotedQuantity", "\"3 mm\"", "3 mm", "6:14", "expected a comment or whitespace, saw 'm'",
+     "write it in quotes"},
+    {"OpenTable", "[cilium]", "[cilium", "5:8", "Error while parsing table header"},
+    {"OpenText", "\"good\"", "\"good", "2:13", "Error while parsing string"},
+    {"MissingValue", "\"16 mm\"", "", "24:10", "Error while parsing key-value pair"},
+    {"RepeatedKey", "azimuth", "height", "25:10", "cannot redefine existing string 'height'"},
+    {"RepeatedTable", "[sensor]", "[load]", "27:1", "cannot redefine existing table 'load'"},
+    {"NotUtf8", "A case", "A c\xffse", "3:12", "invalid utf-8 sequence"},
+    {"ControlCharacter", "A case", std::string_view("A \0ase", 6), "3:12", "control characters"},
+    {"IntegerTooLarge", "refinement = 1", "refinement = 99999999999999999999", "35:34",
+     "not representable in 64 bits"},
+    {"FloatTooLarge", "= 0.49", "= 1e400", "12:22", "could not be interpreted as a value"},
+    {"DeepKey", "refinement",
+     "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a", "35:1",
+     "a dotted key of more than 32 parts"},
+};
+
+const BadCase keys[]{
+    {"UnknownKeyInSegment", "length =", "lenght =", "10:1",
+     "unknown key 'lenght' in [[cilium.segment]] (valid: name, length, young_modulus, "
+     "poisson_ratio, magnetization)",
+     "; did you mean 'length'?"},
+    {"UnknownKeyInCase", "title", "titel", "3:1", "unknown key 'titel' in [case]",
+     "did you mean 'title'?"},
+    {"UnknownKeyInLoad", "azimuth", "azimut", "25:1",
+     "unknown key 'azimut' in [load] of type 'contact'", "did you mean 'azimuth'?"},
+    {"KeyOfAnotherLoadType", "azimuth = \"30 deg\"", "velocity = \"1 m/s\"", "25:1",
+     "unknown key 'velocity' in [load] of type 'contact' (valid: type, force, height, azimuth)"},
+    {"UnknownKeyInModels", "[models.solid]", "[models.sold]", "34:9",
+     "unknown key 'sold' in [models]", "did you mean 'solid'?"},
+    {"UnknownKnob", "refinement", "refinment", "35:1", "unknown key 'refinment' in [models.solid]",
+     "did you mean 'refinement'?"},
+    {"UnknownKeyWithoutANeighbour", "refinement", "colour", "35:1",
+     "unknown key 'colour' in [models.solid] (valid: material, refinement"},
+    {"CaseOfAKeyMatters", "title", "Title", "3:1", "unknown key 'Title'", "did you mean 'title'?"},
+    {"MissingDiameter", "diameter = \"3 mm\"", "", "5:1", "[cilium] needs 'diameter'"},
+    {"MissingLength", "length = \"3 mm\"", "", "8:1", "[[cilium.segment]] needs 'length'"},
+    {"MissingModulus", "young_modulus = \"3 MPa\"", "", "14:1",
+     "[[cilium.segment]] needs 'young_modulus'"},
+    {"MissingType", "type = \"contact\"", "", "21:1", "[load] needs 'type'"},
+    {"MissingForce", "force = [\"1 mN\", \"2 mN\", \"4 mN\"]", "", "21:1",
+     "[load] of type 'contact' needs 'force'"},
+    {"MissingHeight", "height = \"16 mm\"", "", "21:1", "needs 'height'"},
+    {"SegmentIsOneTable", "[[cilium.segment]]\nname = \"base\"", "[cilium.base]\nname = \"base\"",
+     "8:9", "unknown key 'base' in [cilium] (valid: diameter, segment)"},
+    {"TableIsAText", "[sensor]\nposition = [\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
+     "[models.line]\n", "32:10", "'fields' need a place: add [sensor] with 'position'"},
+};
+
+const BadCase values[]{
+    {"NumberWithoutUnit", "diameter = \"3 mm\"", "diameter = 3", "6:12",
+     "'diameter': the number 3 has no unit: write a length, such as \"3 mm\""},
+    {"TextWithoutUnit", "diameter = \"3 mm\"", "diameter = \"3\"", "6:12", "'3' has no unit"},
+    {"ForceWithALengthsUnit", "\"2 mN\"", "\"2 mm\"", "23:18",
+     "'force': 'mm' is not a unit of a force: write a force, such as \"1 mN\""},
+    {"MagnetizationInTesla", "\"75 kA/m\"", "\"0.09 T\"", "19:17",
+     "'T' is not a unit of a magnetization"},
+    {"UnknownUnit", "\"16 mm\"", "\"16 milimeter\"", "24:10", "unknown unit 'milimeter'"},
+    {"OffsetUnit", "\"16 mm\"", "\"16 mm @ 3\"", "24:10", "not a small exponent"},
+    {"ReciprocalUnit", "\"16 mm\"", "\"16 mm-1\"", "24:10", "'mm-1' is not a unit of a length"},
+    {"AngleWithoutUnit", "\"30 deg\"", "\"30\"", "25:11",
+     "'30' has no unit: write an angle, such as \"30 deg\""},
+    {"AngleInRadiansByMistake", "\"30 deg\"", "\"30 rad\"", "25:11", "did you mean deg?"},
+    {"NotANumber", "\"16 mm\"", "\"nan mm\"", "24:10", "does not start with a finite number"},
+    {"NotANumberInToml", "= 0.49", "= nan", "12:17", "'poisson_ratio': the number must be finite"},
+    {"InfiniteInToml", "= 0.49", "= -inf", "12:17", "the number must be finite"},
+    {"HugeLength", "length = \"17 mm\"", "length = \"1e308 m\"", "16:10",
+     "'length' is 1e+308 m ('1e308 m'), but must be from 1e-09 m to 100 m", slip},
+    {"HugeModulus", "\"3 MPa\"", "\"1e308 Pa\"", "17:17", "'young_modulus' is 1e+308 Pa", slip},
+    {"HugeMagnetization", "\"75 kA/m\"", "\"-1e308 A/m\"", "19:17", "the strongest magnets"},
+    {"HugeForce", "\"4 mN\"", "\"1e308 N\"", "23:26", "'force' is 1e+308 N"},
+    {"HugePosition", "\"0.2 mm\"", "\"1e308 m\"", "28:24", "'position' is 1e+308 m"},
+    {"NegativeLength", "length = \"3 mm\"", "length = \"-3 mm\"", "10:10", "'length' is -0.003 m",
+     slip},
+    {"ZeroDiameter", "diameter = \"3 mm\"", "diameter = \"0 mm\"", "6:12", "'diameter' is 0 m",
+     slip},
+    {"NegativeModulus", "\"0.1 MPa\"", "\"-0.1 MPa\"", "11:17", "'young_modulus' is -100000 Pa"},
+    {"ZeroModulus", "\"0.1 MPa\"", "\"0 MPa\"", "11:17", "'young_modulus' is 0 Pa"},
+    {"NegativeForce", "\"1 mN\"", "\"-1 mN\"", "23:10", "add 180 deg to the azimuth"},
+    {"IncompressibleExactly", "= 0.49", "= 0.5", "12:17",
+     "'poisson_ratio' is 0.5, but must be between -1 and 0.5, both excluded"},
+    {"PoissonBelow", "= 0.49", "= -1", "12:17", "between -1 and 0.5, both excluded"},
+    {"PoissonAsText", "= 0.49", "= \"0.49\"", "12:17", "write a plain number without quotes"},
+    {"QuantityIsATable", "diameter = \"3 mm\"", "diameter = {x = 1}", "6:12", "found a table"},
+    {"QuantityIsADate", "\"16 mm\"", "2000-01-01", "24:10", "found a date or time"},
+    {"QuantityIsTrue", "\"16 mm\"", "true", "24:10", "such as \"3 mm\", found true"},
+    {"TitleIsANumber", "\"A case without a fault\"", "3", "3:9", "must be a text in quotes"},
+    {"TitleHasTwoLines", "A case", "A\\ncase", "3:9", "line breaks"},
+    {"EmptyName", "\"good\"", "\"\"", "2:8", "must be a plain file name"},
+    {"NameClimbs", "\"good\"", "\"../good\"", "2:8", "must be a plain file name"},
+    {"NameIsAPath", "\"good\"", "\"a/b\"", "2:8", "must be a plain file name"},
+    {"NameIsAnOption", "\"good\"", "\"-good\"", "2:8", "not starting with '.' or '-'"},
+    {"NameIsTheParent", "\"good\"", "\"..\"", "2:8", "must be a plain file name"},
+    {"NameHasABlank", "\"good\"", "\"go od\"", "2:8", "must be a plain file name"},
+    {"NameHasABackslash", "\"good\"", "'a\\b'", "2:8", "must be a plain file name"},
+    {"NameHasAnEscape", "\"good\"", "\"\\u001b[2J\"", "2:8", "'\\x1B[2J' must be a plain"},
+    {"SegmentWithoutAName", "\"base\"", "\" \"", "9:8", "'name' must not be empty"},
+    {"SegmentNameTwice", "\"magnet\"", "\"base\"", "15:8", "name 'base' is already taken"},
+    {"FractionalRefinement", "refinement = 1", "refinement = 1.5", "35:14",
+     "'refinement' must be a whole number, found the number 1.5"},
+    {"NegativeRefinement", "refinement = 1", "refinement = -1", "35:14",
+     "'refinement' is -1, but must be from 0 to 2"},
+    {"HugeRefinement", "refinement = 1", "refinement = 9000000000000000000", "35:14",
+     "'refinement' is 9e+18"},
+    {"ToleranceZero", "refinement = 1", "tolerance = 0", "35:13", "'tolerance' is 0, but must be"},
+    {"ToleranceWithUnit", "refinement = 1", "tolerance = \"1e-9 N\"", "35:13",
+     "'tolerance': write a plain number"},
+    {"KernelWithoutUnit", "refinement = 1", "kernel_width = 0.5", "35:16",
+     "'kernel_width': the number 0.5 has no unit"},
+    {"FlagIsANumber", "[models.solid]\nrefinement = 1", "[models.beam]\nshear_rigid = 1", "35:15",
+     "'shear_rigid' must be true or false, found the number 1"},
+    {"UnknownChoice", "[models.solid]\nrefinement = 1", "[models.volume]\nslices = \"wegde\"",
+     "35:10", "'slices' cannot be 'wegde' (valid: wedge, stacked)", "did you mean 'wedge'?"},
+    {"UnknownPushForward", "[models.solid]\nrefinement = 1", "[models.mesh]\npush_forward = \"U\"",
+     "35:16", "'push_forward' cannot be 'U' (valid: F, R)"},
+};
+
+const BadCase lists[]{
+    {"EmptyMechanics",
+     "[\"elastica\", \"beam\", \"solid\"]\nfields = [\"dipole\", \"line\", "
+     "\"volume\", \"mesh\"]",
+     "[]", "31:13", "'mechanics' is empty: name at least one of elastica, beam, solid"},
+    {"MechanicsIsAText", "[\"elastica\", \"beam\", \"solid\"]", "\"beam\"", "31:13",
+     "'mechanics' must be a list, such as [\"elastica\"], found the text 'beam'"},
+    {"UnknownMechanics", "\"elastica\"", "\"elastika\"", "31:14",
+     "'mechanics' cannot be 'elastika' (valid: elastica, beam, solid)", "did you mean 'elastica'?"},
+    {"UnknownField", "\"volume\"", "\"volumen\"", "32:29",
+     "'fields' cannot be 'volumen' (valid: dipole, line, volume, mesh)", "did you mean 'volume'?"},
+    {"MechanicsTwice", "\"beam\"", "\"elastica\"", "31:26", "'mechanics' lists 'elastica' twice"},
+    {"FieldTwice", "\"line\"", "\"dipole\"", "32:21", "'fields' lists 'dipole' twice"},
+    {"NumberAmongIds", "\"beam\"", "1", "31:26", "'mechanics' must be a text in quotes"},
+    {"EmptyLoadPath", "[\"1 mN\", \"2 mN\", \"4 mN\"]", "[]", "23:9",
+     "'force' lists 0 values: a load path has 1 to 10000 steps"},
+    {"NestedLoadPath", "\"2 mN\"", "[\"2 mN\"]", "23:18", "such as \"1 mN\", found a list"},
+    {"ListsOfDifferentLength", "\"16 mm\"", "[\"16 mm\", \"15 mm\"]", "24:10",
+     "'height' lists 2 values, but 'force' lists 3: all lists of a load path have the same length"},
+    {"EmptyPosition", "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]", "[]", "28:12",
+     "'position' must be a point"},
+    {"TwoCoordinates", "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]", "[\"-0.1 mm\", \"0.2 mm\"]",
+     "28:12", "a point has three coordinates", "found 2"},
+    {"FourCoordinates", "\"-1.55 mm\"]", "\"-1.55 mm\", \"1 mm\"]", "28:12", "found 4"},
+    {"CoordinateNotFinite", "\"0.2 mm\"", "\"inf mm\"", "28:24",
+     "does not start with a finite number"},
+    {"PositionIsAText", "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]", "\"0 mm\"", "28:12",
+     "'position' must be a point", "found the text '0 mm'"},
+};
+
+const BadCase contradictions[]{
+    {"HeightAboveTheTip", "\"16 mm\"", "\"21 mm\"", "24:10",
+     "the contact height 0.021 m must lie between the base and the tip of the cilium, which is "
+     "0.02 m high"},
+    {"HeightAtTheTip", "\"16 mm\"", "\"20 mm\"", "24:10", "must lie between the base and the tip"},
+    {"OneHeightOfThePathAbove", "\"16 mm\"", "[\"16 mm\", \"21 mm\", \"15 mm\"]", "24:20",
+     "the contact height 0.021 m"},
+    {"KernelAboveTheTip", "\"16 mm\"", "\"19.6 mm\"", "24:10",
+     "the solid's contact kernel, 0.0005 m below and above the contact height 0.0196 m",
+     "set a smaller 'kernel_width'"},
+    {"KernelBelowTheBase", "\"16 mm\"", "\"0.4 mm\"", "24:10", "must lie between the base and"},
+    {"WideKernel", "refinement = 1", "kernel_width = \"5 mm\"", "24:10", "0.005 m below and above"},
+    {"SectionBeyondTheTip",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = "
+     "\"16 mm\"",
+     "type = \"section\"\nforce = \"1 mN\"\narclength = \"20.1 mm\"", "24:13",
+     "the loaded section at arc length 0.0201 m lies beyond the tip at 0.02 m"},
+    {"HeightFormWithASection",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"\nazimuth = "
+     "\"30 deg\"\n",
+     "type = \"section\"\nforce = \"1 mN\"\narclength = \"20 mm\"\n[models.elastica]\nform = "
+     "\"height\"\n",
+     "26:8",
+     "the elastica's form 'height' (Eq. 1-4) takes the load types 'contact' and 'flow', "
+     "not 'section'"},
+    {"HeightFormWithADeadLoad",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"\nazimuth = "
+     "\"30 deg\"\n",
+     "type = \"dead\"\nforce_per_length = \"0.1 N/m\"\n[models.elastica]\nform = \"height\"\n",
+     "25:8", "not 'dead'"},
+    {"VelocityAndForce",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"",
+     "type = \"flow\"\nforce_per_height = \"0.1 N/m\"\nvelocity = \"0.5 m/s\"", "24:12",
+     "'velocity' contradicts 'force_per_height'"},
+    {"DensityWithForce",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"",
+     "type = \"flow\"\nforce_per_height = \"0.1 N/m\"\ndensity = \"1 g/cm^3\"", "24:11",
+     "'density' goes with 'velocity'"},
+    {"DragCoefficientWithForce",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"",
+     "type = \"flow\"\nforce_per_height = \"0.1 N/m\"\ndrag_coefficient = 1", "24:20",
+     "'drag_coefficient' goes with 'velocity'"},
+    {"FlowOfNothing",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"",
+     "type = \"flow\"", "21:1", "needs 'force_per_height' or 'velocity'"},
+    {"NegativeVelocity",
+     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"",
+     "type = \"flow\"\nvelocity = \"-0.5 m/s\"", "23:12", "add 180 deg to the azimuth"},
+    {"FieldsWithoutAMagnet", "magnetization = \"75 kA/m\"", "", "32:10",
+     "no [[cilium.segment]] has a 'magnetization'"},
+    {"FieldsOfNoMagnetization", "\"75 kA/m\"", "\"0 A/m\"", "32:10", "'fields' need a magnet"},
+    {"MeshWithoutSolid", ", \"solid\"]", "]", "32:39", "add 'solid' to 'mechanics'"},
+    {"TooLongTogether", "length = \"3 mm\"", "length = \"100 m\"", "8:1",
+     "the segments are 100.017 m long together"},
+};
+
+const BadCase later[]{
+    {"Probe", "\"contact\"", "\"probe\"", "22:8",
+     "'type' = 'probe' is not available in this version (valid: contact, flow, section, dead)"},
+    {"UnknownLoad", "\"contact\"", "\"contract\"", "22:8", "'type' cannot be 'contract'",
+     "did you mean 'contact'?"},
+    {"Potential", "\"mesh\"", "\"potential\"", "32:39",
+     "'fields' = 'potential' is not available in this version"},
+    {"PotentialKnobs", "[models.solid]\nrefinement = 1", "[models.potential]", "34:9",
+     "'models.potential' is not available in this version"},
+    {"Environment", "[models.solid]\nrefinement = 1", "[environment]\ngravity = 1", "34:2",
+     "'environment' is not available in this version: gravity, buoyancy and uniform fields"},
+    {"SegmentDensity", "poisson_ratio = 0.49", "poisson_ratio = 0.49\ndensity = \"1 g/cm^3\"",
+     "13:1", "'cilium.segment.density' is not available in this version"},
+    {"MooneyRivlin", "refinement = 1", "material = \"mooney-rivlin\"", "35:12",
+     "'material' = 'mooney-rivlin' is not available in this version (valid: neo-hooke)"},
+    {"UnknownMaterial", "refinement = 1", "material = \"neo-hook\"", "35:12",
+     "'material' cannot be 'neo-hook'", "did you mean 'neo-hooke'?"},
+    {"Symmetry", "refinement = 1", "symmetry = true", "35:1",
+     "'models.solid.symmetry' is not available in this version"},
+};
+
+std::string name_of(const testing::TestParamInfo<BadCase>& info) {
+  return info.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Syntax, BadCaseFile, testing::ValuesIn(syntax), name_of);
+INSTANTIATE_TEST_SUITE_P(Keys, BadCaseFile, testing::ValuesIn(keys), name_of);
+INSTANTIATE_TEST_SUITE_P(Values, BadCaseFile, testing::ValuesIn(values), name_of);
+INSTANTIATE_TEST_SUITE_P(Lists, BadCaseFile, testing::ValuesIn(lists), name_of);
+INSTANTIATE_TEST_SUITE_P(Contradictions, BadCaseFile, testing::ValuesIn(contradictions), name_of);
+INSTANTIATE_TEST_SUITE_P(Later, BadCaseFile, testing::ValuesIn(later), name_of);
+
+}  // namespace
+}  // namespace ciliaval::compare
