@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -44,7 +45,9 @@ class PatchIntegral {
   PatchIntegral(std::size_t patches, Source source, std::string name)
       : source_(std::move(source)), name_(std::move(name)), kept_(patches) {
     for (std::size_t i = 0; i < patches; ++i) {
-      whole_.push_back({i, {}, 1});
+      Box whole{i, {}, {}};
+      whole.size.fill(1);
+      whole_.push_back(whole);
       balls_.push_back(ball_around(whole_.back()));
     }
   }
@@ -60,11 +63,20 @@ class PatchIntegral {
   }
 
  private:
-  /// low + size·[0,1]^dim of a patch.
+  /// low + size·ξ of a patch, ξ ∈ [0,1]^dim.
   struct Box {
     std::size_t patch;
     Coordinates low;
-    double size;
+    Coordinates size;
+
+    Coordinates at(const Coordinates& xi) const {
+      Coordinates point;
+      for (std::size_t d = 0; d < dim; ++d) point[d] = low[d] + size[d] * xi[d];
+      return point;
+    }
+    bool is_whole() const {
+      return std::all_of(size.begin(), size.end(), [](double length) { return length == 1; });
+    }
   };
   struct Ball {
     Vector3 centre;
@@ -83,19 +95,43 @@ class PatchIntegral {
     }
   }
 
+  static Coordinates middle() {
+    Coordinates xi;
+    xi.fill(0.5);
+    return xi;
+  }
+
+  Vector3 position(const Box& box, const Coordinates& xi) const {
+    return source_(box.patch, box.at(xi)).position;
+  }
+
   /// A ball around the images of the box's corners and midpoints.
   Ball ball_around(const Box& box) const {
-    Coordinates middle;
-    for (std::size_t d = 0; d < dim; ++d) middle[d] = box.low[d] + box.size / 2;
-    Ball ball{source_(box.patch, middle).position, 0};
+    Ball ball{position(box, middle()), 0};
     for_each_index(3, [&](const std::array<std::size_t, dim>& index) {
       Coordinates xi;
-      for (std::size_t d = 0; d < dim; ++d)
-        xi[d] = box.low[d] + box.size * static_cast<double>(index[d]) / 2;
-      const double distance = (source_(box.patch, xi).position - ball.centre).norm();
-      ball.radius = std::max(ball.radius, distance);
+      for (std::size_t d = 0; d < dim; ++d) xi[d] = static_cast<double>(index[d]) / 2;
+      ball.radius = std::max(ball.radius, (position(box, xi) - ball.centre).norm());
     });
     return ball;
+  }
+
+  /// The direction in which the box is longest in space.
+  std::size_t longest_direction(const Box& box) const {
+    std::size_t longest = 0;
+    double largest = 0;
+    for (std::size_t d = 0; d < dim; ++d) {
+      Coordinates low = middle();
+      Coordinates high = middle();
+      low[d] = 0;
+      high[d] = 1;
+      const double length = (position(box, high) - position(box, low)).norm();
+      if (length > largest) {
+        largest = length;
+        longest = d;
+      }
+    }
+    return longest;
   }
 
   void append_graded(const Box& box, const Ball& ball, const Vector3& x,
@@ -104,15 +140,15 @@ class PatchIntegral {
       boxes.push_back(box);
       return;
     }
-    if (box.size < 1e-7)
+    const std::size_t direction = longest_direction(box);
+    if (box.size[direction] < 1e-7)
       throw SolverError("the " + name_ + " was asked at " + to_string(x) +
                         ", on one of them or too near to it: move the point away");
-    for_each_index(2, [&](const std::array<std::size_t, dim>& index) {
-      Box part{box.patch, box.low, box.size / 2};
-      for (std::size_t d = 0; d < dim; ++d)
-        part.low[d] += part.size * static_cast<double>(index[d]);
-      append_graded(part, ball_around(part), x, boxes);
-    });
+    Box half = box;
+    half.size[direction] /= 2;
+    append_graded(half, ball_around(half), x, boxes);
+    half.low[direction] += half.size[direction];
+    append_graded(half, ball_around(half), x, boxes);
   }
 
   std::vector<PatchPoint<Strength>> points_of(const Box& box, std::size_t order) const {
@@ -122,10 +158,10 @@ class PatchIntegral {
       Coordinates xi;
       double weight = 1;
       for (std::size_t d = 0; d < dim; ++d) {
-        xi[d] = box.low[d] + box.size * rule.nodes[index[d]];
-        weight *= box.size * rule.weights[index[d]];
+        xi[d] = rule.nodes[index[d]];
+        weight *= box.size[d] * rule.weights[index[d]];
       }
-      points.push_back(source_(box.patch, xi));
+      points.push_back(source_(box.patch, box.at(xi)));
       points.back().strength *= weight;
     });
     return points;
@@ -139,7 +175,7 @@ class PatchIntegral {
   }
 
   Vector3 field_of(const Box& box, std::size_t order, const Vector3& x) {
-    if (box.size < 1 || order > 8) return field_of(points_of(box, order), x);
+    if (!box.is_whole() || order > 8) return field_of(points_of(box, order), x);
     auto& kept = kept_[box.patch];
     auto points = kept.find(order);
     if (points == kept.end()) points = kept.emplace(order, points_of(box, order)).first;

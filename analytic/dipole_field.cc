@@ -63,7 +63,7 @@ Field DipoleField::field(const Cilium& cilium, const Deformation& deformation,
     FieldValue sum;
     for (const Dipole& dipole : sources) {
       const Vector3 offset = x - dipole.position;
-      if (offset.norm() <= rounding_of_offset(x, dipole.position))
+      if (offset.norm() <= 1e-12 * cilium.length())
         throw InputError("the field of the dipole diverges at its own position " + to_string(x) +
                          ": move the point, or take the model `volume`");
       sum += with_rounding(dipole_field(dipole.moment, offset), x, dipole.position);

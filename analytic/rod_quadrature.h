@@ -13,8 +13,8 @@ namespace ciliaval::analytic {
 /// (Eq. 9 with one 1/cosθ). Gauss–Legendre in S, on stretches no longer than their distance from x,
 /// and in r, trapezoid in φ; the order of each of the three directions is raised by itself until
 /// raising it by half moves B by less than tolerance·|B|/3. The three changes are the uncertainty.
-/// Throws SolverError inside the rod, or so near to it that the tolerance needs more than 2·10⁷
-/// nodes.
+/// Throws SolverError inside the rod, so near to it that the tolerance needs more than 2·10⁷
+/// nodes, or if the changes are down to rounding (10⁻¹⁴|B|) and still above the tolerance.
 FieldValue rod_field_by_quadrature(const RodMagnet& magnet, VolumeOptions::Slices slices,
                                    double tolerance, const Vector3& x);
 
