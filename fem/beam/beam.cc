@@ -1,1 +1,147 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/beam/beam.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <sstream>
+
+#include "fem/beam/centreline.h"
+#include "fem/beam/cilium_beam.h"
+#include "fem/beam/contact.h"
+#include "fem/beam/newton.h"
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+namespace {
+
+void require_valid(const BeamOptions& options) {
+  if (options.degree < 1 || options.degree > 20)
+    throw InputError("beam: the degree must lie between 1 and 20");
+  if (options.refinement > 12) throw InputError("beam: the refinement must not exceed 12");
+  if (!(options.tolerance > 0 && options.tolerance < 1e-3))
+    throw InputError("beam: the tolerance must lie between 0 and 1e-3");
+  if (options.max_iterations < 1) throw InputError("beam: max_iterations must be at least 1");
+}
+
+/// Load path of dead and flow loads: the equilibrium is followed from one load to the next.
+class PathSolver {
+ public:
+  PathSolver(Cilium cilium, BeamOptions options) : cilium_(std::move(cilium)), options_(options) {}
+
+  beam::BeamStep solve(const Load& load, const beam::PathProgress& progress) {
+    std::optional<double> load_at;
+    if (const auto* section = std::get_if<SectionLoad>(&load)) load_at = section->arclength;
+    if (!beam_ || load_at != load_at_) {
+      load_at_ = load_at;
+      beam_ = beam::cilium_beam(cilium_, options_, load_at);
+      state_ = beam_->system.reference_state();
+      applied_ = {};
+    }
+    const beam::Loads from = applied_;
+    const beam::Loads to = beam::loads(load, *beam_);
+    const beam::PathReport report = beam::advance(
+        beam_->system, state_, from, to,
+        {options_.tolerance, options_.max_iterations, options_.max_cutbacks}, {}, progress);
+    applied_ = report.converged ? to : beam::combine(1 - report.reached, from, report.reached, to);
+    beam::BeamStep step;
+    step.status = report.converged ? Status::converged : Status::failed;
+    step.message = report.message;
+    step.iterations = report.iterations;
+    return step;
+  }
+
+  const beam::CiliumBeam& beam() const { return *beam_; }
+  const beam::State& state() const { return state_; }
+  const beam::Loads& applied() const { return applied_; }
+
+ private:
+  Cilium cilium_;
+  BeamOptions options_;
+  std::optional<double> load_at_;
+  std::optional<beam::CiliumBeam> beam_;
+  beam::State state_;
+  beam::Loads applied_;
+};
+
+beam::PathProgress told(const Progress& progress, std::size_t step, std::size_t steps) {
+  if (!progress) return {};
+  return [progress, step, steps](double fraction, const beam::NewtonReport& report) {
+    std::ostringstream text;
+    text << "beam: step " << step + 1 << "/" << steps << ", fraction " << fraction
+         << " of the increment, " << report.increments.size() << " iterations, residual "
+         << report.residuals.back() << (report.converged ? "" : ", not converged");
+    progress(text.str());
+  };
+}
+
+MechanicsStep solve_step(const Load& load, PathSolver& path, beam::ContactSolver& contact,
+                         const beam::PathProgress& progress) {
+  const auto record = [&](auto& solver, const beam::BeamStep& outcome) {
+    MechanicsStep step;
+    step.load = load;
+    step.status = outcome.status;
+    step.message = outcome.message;
+    step.slip_off_force = outcome.slip_off_force;
+    step.contact_arclength = outcome.contact_arclength;
+    step.iterations = outcome.iterations;
+    if (step.status != Status::converged) return step;
+    const beam::System& system = solver.beam().system;
+    step.unknowns = system.n_unknowns();
+    const Vector3 reaction = system.reaction(system.residual(solver.state(), solver.applied()), 0);
+    step.applied_force = -reaction.dot(direction(load));
+    step.deformation = Deformation{beam::centreline(system, solver.state()), nullptr};
+    return step;
+  };
+  if (const auto* contact_load = std::get_if<ContactLoad>(&load))
+    return record(contact, contact.solve(*contact_load, progress));
+  return record(path, path.solve(load, progress));
+}
+
+std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
+                                      const BeamOptions& options, const Progress& progress) {
+  PathSolver path_solver(cilium, options);
+  beam::ContactSolver contact_solver(cilium, options);
+  std::vector<MechanicsStep> steps;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    steps.push_back(
+        solve_step(path[i], path_solver, contact_solver, told(progress, i, path.size())));
+    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+    steps.back().seconds = time.count();
+  }
+  return steps;
+}
+
+/// Distance to the tips of the same path with one degree less.
+void estimate_tip_uncertainty(const Cilium& cilium, const LoadPath& path, BeamOptions options,
+                              std::vector<MechanicsStep>& steps) {
+  --options.degree;
+  const std::vector<MechanicsStep> coarse = solve_path(cilium, path, options, {});
+  const double L = cilium.length();
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    steps[i].seconds += coarse[i].seconds;
+    if (!steps[i].deformation || !coarse[i].deformation) continue;
+    const Vector3 difference = steps[i].deformation->centreline.at(L).position -
+                               coarse[i].deformation->centreline.at(L).position;
+    steps[i].tip_uncertainty = difference.norm();
+  }
+}
+
+}  // namespace
+
+MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
+                            const Progress& progress) const {
+  require_valid(options_);
+  ciliaval::require_valid(cilium);
+  for (const Load& load : path) ciliaval::require_valid(load, cilium);
+  MechanicsResult result;
+  const beam::CiliumBeam straight = beam::cilium_beam(cilium, options_);
+  result.undeformed.centreline =
+      beam::centreline(straight.system, straight.system.reference_state());
+  result.steps = solve_path(cilium, path, options_, progress);
+  if (options_.degree > 1) estimate_tip_uncertainty(cilium, path, options_, result.steps);
+  return result;
+}
+
+}  // namespace ciliaval::fem

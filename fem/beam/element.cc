@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/beam/element.h"
+
+#include "fem/beam/kinematics.h"
+
+namespace ciliaval::fem::beam {
+namespace {
+
+using Eigen::Index;
+
+/// r, dr/dξ, p and dp/dξ at a Gauss point.
+struct Interpolation {
+  Vector3 r = Vector3::Zero();
+  Vector3 t = Vector3::Zero();
+  Vector4 p = Vector4::Zero();
+  Vector4 s = Vector4::Zero();
+
+  Interpolation(const ReferenceElement& reference, std::span<const Vector3> position,
+                std::span<const Quaternion> rotation, std::size_t g) {
+    for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
+      const double N = reference.values(static_cast<Index>(g), static_cast<Index>(a));
+      const double D = reference.derivatives(static_cast<Index>(g), static_cast<Index>(a));
+      r += N * position[a];
+      t += D * position[a];
+      p += N * rotation[a].coeffs();
+      s += D * rotation[a].coeffs();
+    }
+  }
+};
+
+Index node_row(std::size_t a) {
+  return static_cast<Index>(6 * a);
+}
+
+Index point_row(const ReferenceElement& reference, std::size_t g) {
+  return static_cast<Index>(6 * (reference.n_nodes() + g));
+}
+
+/// Adds one Gauss point's part of the residual; `gradient` collects ∂Π/∂q_a.
+void add_residual(const ReferenceElement& reference, const ElementData& data, std::size_t g,
+                  const Interpolation& x, const Strain& strain, const StressPower& f,
+                  const Vector3& n, const Vector3& m, Eigen::VectorXd& residual,
+                  std::vector<Vector4>& gradient) {
+  const double w = reference.weights[g];
+  const double h = data.length;
+  const Vector3 load = h * data.force_per_length + x.t[2] * data.force_per_height;
+  for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
+    const double N = w * reference.values(static_cast<Index>(g), static_cast<Index>(a));
+    const double D = w * reference.derivatives(static_cast<Index>(g), static_cast<Index>(a));
+    residual.segment<3>(node_row(a)) += D * f.t - N * load;
+    gradient[a] += N * f.p + D * f.s;
+  }
+  const Index row = point_row(reference, g);
+  residual.segment<3>(row) =
+      w * (strain.gamma - data.gamma0[g] - h * data.section.force_compliance.cwiseProduct(n));
+  residual.segment<3>(row + 3) =
+      w * (strain.kappa - data.kappa0[g] - h * data.section.moment_compliance.cwiseProduct(m));
+}
+
+/// Adds one Gauss point's part of the tangent but for the curvature of the rotation update.
+void add_tangent(const ReferenceElement& reference, const ElementData& data, std::size_t g,
+                 const Strain& strain, const StressPower& f, const std::vector<Matrix43>& E,
+                 Eigen::MatrixXd& K) {
+  const double w = reference.weights[g];
+  const Index row = point_row(reference, g);
+  for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
+    const Index ra = node_row(a);
+    const double Na = reference.values(static_cast<Index>(g), static_cast<Index>(a));
+    const double Da = reference.derivatives(static_cast<Index>(g), static_cast<Index>(a));
+    for (std::size_t b = 0; b < reference.n_nodes(); ++b) {
+      const Index rb = node_row(b);
+      const double Nb = reference.values(static_cast<Index>(g), static_cast<Index>(b));
+      const double Db = reference.derivatives(static_cast<Index>(g), static_cast<Index>(b));
+      const Matrix4 H = Na * Nb * f.pp + Na * Db * f.sp.transpose() + Da * Nb * f.sp;
+      K.block<3, 3>(ra + 3, rb + 3) += w * E[a].transpose() * H * E[b];
+      K.block<3, 3>(ra, rb + 3) += w * Da * Nb * f.tp * E[b];
+      K.block<3, 3>(ra + 3, rb) += w * Na * Db * E[a].transpose() * f.tp.transpose();
+      K.block<3, 1>(ra, rb + 2) -= w * Na * Db * data.force_per_height;
+    }
+    const Matrix3 force_spin = w * Na * strain.gamma_p * E[a];
+    const Matrix3 moment_spin = w * (Na * strain.kappa_p + Da * strain.kappa_s) * E[a];
+    K.block<3, 3>(row, ra) = w * Da * strain.gamma_t;
+    K.block<3, 3>(ra, row) = w * Da * strain.gamma_t.transpose();
+    K.block<3, 3>(row, ra + 3) = force_spin;
+    K.block<3, 3>(ra + 3, row) = force_spin.transpose();
+    K.block<3, 3>(row + 3, ra + 3) = moment_spin;
+    K.block<3, 3>(ra + 3, row + 3) = moment_spin.transpose();
+  }
+  K.diagonal().segment<3>(row) = -w * data.length * data.section.force_compliance;
+  K.diagonal().segment<3>(row + 3) = -w * data.length * data.section.moment_compliance;
+}
+
+/// ∂(E_aᵀ g_a)/∂θ_a at constant g_a: ¼ (e_i∘e_j∘q)·g = −¼ (q·g) δ_ij + ½ ε_ijk R_k, R = E_aᵀ g_a.
+Matrix3 update_curvature(const Quaternion& q, const Vector4& g, const Vector3& R) {
+  Matrix3 K = -0.25 * q.coeffs().dot(g) * Matrix3::Identity();
+  K(0, 1) += R[2] / 2;
+  K(1, 2) += R[0] / 2;
+  K(2, 0) += R[1] / 2;
+  K(1, 0) -= R[2] / 2;
+  K(2, 1) -= R[0] / 2;
+  K(0, 2) -= R[1] / 2;
+  return K;
+}
+
+}  // namespace
+
+void set_reference_strains(const ReferenceElement& reference, std::span<const Vector3> position,
+                           std::span<const Quaternion> rotation, ElementData& data) {
+  data.gamma0.resize(reference.n_points());
+  data.kappa0.resize(reference.n_points());
+  for (std::size_t g = 0; g < reference.n_points(); ++g) {
+    const Interpolation x(reference, position, rotation, g);
+    const Strain e = strain(x.p, x.s, x.t);
+    data.gamma0[g] = e.gamma;
+    data.kappa0[g] = e.kappa;
+  }
+}
+
+double element_energy(const ReferenceElement& reference, const ElementData& data,
+                      const ElementState& state) {
+  double energy = 0;
+  for (std::size_t g = 0; g < reference.n_points(); ++g) {
+    const Interpolation x(reference, state.position, state.rotation, g);
+    const Strain e = strain(x.p, x.s, x.t);
+    const Vector3& n = state.force[g];
+    const Vector3& m = state.moment[g];
+    const double complementary = 0.5 * n.dot(data.section.force_compliance.cwiseProduct(n)) +
+                                 0.5 * m.dot(data.section.moment_compliance.cwiseProduct(m));
+    energy +=
+        reference.weights[g] * (n.dot(e.gamma - data.gamma0[g]) + m.dot(e.kappa - data.kappa0[g]) -
+                                data.length * (complementary + data.force_per_length.dot(x.r)));
+  }
+  return energy;
+}
+
+void element_residual(const ReferenceElement& reference, const ElementData& data,
+                      const ElementState& state, Eigen::VectorXd& residual,
+                      Eigen::MatrixXd* tangent) {
+  const std::size_t n_nodes = reference.n_nodes();
+  residual.setZero(reference.n_unknowns());
+  if (tangent != nullptr) tangent->setZero(reference.n_unknowns(), reference.n_unknowns());
+  std::vector<Matrix43> E(n_nodes);
+  for (std::size_t a = 0; a < n_nodes; ++a) E[a] = spin_derivative(state.rotation[a]);
+  std::vector<Vector4> gradient(n_nodes, Vector4::Zero());
+
+  for (std::size_t g = 0; g < reference.n_points(); ++g) {
+    const Interpolation x(reference, state.position, state.rotation, g);
+    const Strain e = strain(x.p, x.s, x.t);
+    const StressPower f = stress_power(x.p, x.t, e, state.force[g], state.moment[g]);
+    add_residual(reference, data, g, x, e, f, state.force[g], state.moment[g], residual, gradient);
+    if (tangent != nullptr) add_tangent(reference, data, g, e, f, E, *tangent);
+  }
+  for (std::size_t a = 0; a < n_nodes; ++a) {
+    const Vector3 moment = E[a].transpose() * gradient[a];
+    residual.segment<3>(node_row(a) + 3) = moment;
+    if (tangent != nullptr)
+      tangent->block<3, 3>(node_row(a) + 3, node_row(a) + 3) +=
+          update_curvature(state.rotation[a], gradient[a], moment);
+  }
+}
+
+Eigen::VectorXd element_length_derivative(const ReferenceElement& reference,
+                                          const ElementData& data, const ElementState& state) {
+  Eigen::VectorXd derivative = Eigen::VectorXd::Zero(reference.n_unknowns());
+  for (std::size_t g = 0; g < reference.n_points(); ++g) {
+    const double w = reference.weights[g];
+    for (std::size_t a = 0; a < reference.n_nodes(); ++a)
+      derivative.segment<3>(node_row(a)) -=
+          w * reference.values(static_cast<Index>(g), static_cast<Index>(a)) *
+          data.force_per_length;
+    const Index row = point_row(reference, g);
+    derivative.segment<3>(row) =
+        -w * (Vector3::UnitZ() + data.section.force_compliance.cwiseProduct(state.force[g]));
+    derivative.segment<3>(row + 3) =
+        -w * data.section.moment_compliance.cwiseProduct(state.moment[g]);
+  }
+  return derivative;
+}
+
+}  // namespace ciliaval::fem::beam

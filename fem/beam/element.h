@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fem/beam/section.h"
+#include "problem/types.h"
+
+namespace ciliaval::fem::beam {
+
+/// Lagrange polynomials of degree p on the p+1 nodes of [0, 1], tabulated at the p Gauss points.
+struct ReferenceElement {
+  std::vector<double> nodes;    ///< ξ_a, increasing, p+1 of them
+  std::vector<double> points;   ///< Gauss points ξ_g, increasing, p of them
+  std::vector<double> weights;  ///< w_g
+  Eigen::MatrixXd values;       ///< N_a(ξ_g), row g, column a
+  Eigen::MatrixXd derivatives;  ///< dN_a/dξ(ξ_g)
+
+  std::size_t n_nodes() const { return nodes.size(); }
+  std::size_t n_points() const { return points.size(); }
+  /// Unknowns of an element: (r, θ) at each node, then (n, m) at each Gauss point.
+  Eigen::Index n_unknowns() const {
+    return static_cast<Eigen::Index>(6 * (n_nodes() + n_points()));
+  }
+};
+
+/// What an element is apart from its state.
+struct ElementData {
+  double length = 0;  ///< h, reference arc length, m; 0 is allowed
+  Section section;
+  std::vector<Vector3> gamma0;  ///< hΓ₀ = Λ₀ᵀ dr₀/dξ at the Gauss points, m
+  std::vector<Vector3> kappa0;  ///< hK₀ at the Gauss points, rad
+  Vector3 force_per_length = Vector3::Zero();  ///< dead load per reference length, N/m
+  Vector3 force_per_height = Vector3::Zero();  ///< load per unit of current height z, N/m
+};
+
+/// Views of an element's part of the state.
+struct ElementState {
+  std::span<const Vector3> position;     ///< r_a at the nodes, m
+  std::span<const Quaternion> rotation;  ///< q_a at the nodes, neighbours of one sign
+  std::span<const Vector3> force;        ///< n at the Gauss points, material components, N
+  std::span<const Vector3> moment;       ///< m at the Gauss points, material components, N·m
+};
+
+/// Strains hΓ₀ and hK₀ of the reference configuration by the interpolation of the element.
+void set_reference_strains(const ReferenceElement& reference, std::span<const Vector3> position,
+                           std::span<const Quaternion> rotation, ElementData& data);
+
+/// Hellinger–Reissner energy of the element less the work of its dead load,
+///   Π = Σ_g w_g [n·(γ − hΓ₀) + m·(κ − hK₀) − ½h (n·C_n n + m·C_m m) − h q·r],   J.
+/// force_per_height has no potential and is left out.
+double element_energy(const ReferenceElement& reference, const ElementData& data,
+                      const ElementState& state);
+
+/// Residual R (the gradient of the energy by (r, θ, n, m), θ the spatial spin, plus the work of
+/// force_per_height) in the units N, N·m, m, rad; and its tangent, if one is asked for.
+void element_residual(const ReferenceElement& reference, const ElementData& data,
+                      const ElementState& state, Eigen::VectorXd& residual,
+                      Eigen::MatrixXd* tangent);
+
+/// ∂R/∂h at fixed nodal state for an element that is straight and adapted in the reference
+/// configuration (Γ₀ = e₃, K₀ = 0).
+Eigen::VectorXd element_length_derivative(const ReferenceElement& reference,
+                                          const ElementData& data, const ElementState& state);
+
+}  // namespace ciliaval::fem::beam

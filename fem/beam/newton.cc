@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/beam/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "problem/error.h"
+
+namespace ciliaval::fem::beam {
+namespace {
+
+using Eigen::Index;
+
+/// Largest turn of a section in one iteration, rad: beyond it the linearisation says nothing.
+constexpr double max_spin = 2.0;
+
+/// Maximum norms of a vector of unknowns or residuals by kind.
+struct Norms {
+  double nodal = 0;    ///< r and θ, or the equilibrium equations
+  double spin = 0;     ///< θ alone
+  double section = 0;  ///< n and m, or the strain equations
+};
+
+Norms norms(const System& system, const State& state, const Eigen::VectorXd& vector) {
+  Norms result;
+  const auto at = [&](std::size_t i) {
+    return system.supported()[i] ? 0.0 : std::abs(vector[static_cast<Index>(i)]);
+  };
+  for (std::size_t c = 0; c < 6; ++c) {
+    for (std::size_t j = 0; j < state.position.size(); ++j) {
+      const double value = at(system.node_unknown(j, c));
+      result.nodal = std::max(result.nodal, value);
+      if (c >= 3) result.spin = std::max(result.spin, value);
+    }
+    for (std::size_t k = 0; k < state.force.size(); ++k)
+      result.section = std::max(result.section, at(system.point_unknown(k, c)));
+  }
+  return result;
+}
+
+/// Largest section force, dimensionless.
+double load_level(const System& system, const State& state) {
+  double level = 0;
+  for (std::size_t k = 0; k < state.force.size(); ++k)
+    level = std::max({level, state.force[k].lpNorm<Eigen::Infinity>() / system.force_scale(),
+                      state.moment[k].lpNorm<Eigen::Infinity>() /
+                          (system.force_scale() * system.length_scale())});
+  return level;
+}
+
+/// The interpolation of quaternions needs neighbours on the same half of the sphere.
+bool neighbours_agree(const State& state) {
+  for (std::size_t j = 1; j < state.rotation.size(); ++j)
+    if (!(state.rotation[j].dot(state.rotation[j - 1]) > 0)) return false;
+  return true;
+}
+
+/// Newton increment of the bordered system: the beam's unknowns and the one scalar.
+struct Increment {
+  Eigen::VectorXd beam;
+  double scalar = 0;  ///< of s/L or of the load factor
+};
+
+Increment increment(System& system, const State& state, const Loads& loads,
+                    const Eigen::VectorXd& residual,
+                    const std::optional<HeightCondition>& condition) {
+  system.factorize(state, loads);
+  Increment result{-system.solve(residual), 0};
+  if (!condition) return result;
+  const bool shifts = condition->unknown == HeightCondition::Unknown::shift;
+  const Eigen::VectorXd response = -system.solve(shifts ? system.shift_derivative(state, loads)
+                                                        : system.point_load_derivative(loads));
+  const std::size_t node = system.vertex_node(condition->vertex);
+  const auto z = static_cast<Index>(system.node_unknown(node, 2));
+  const double gap = (condition->height - state.position[node][2]) / system.length_scale();
+  result.scalar = (gap - result.beam[z]) / response[z];
+  result.beam += result.scalar * response;
+  return result;
+}
+
+void apply(const System& system, State& state, const Increment& step,
+           const std::optional<HeightCondition>& condition) {
+  system.update(state, step.beam);
+  if (!condition) return;
+  if (condition->unknown == HeightCondition::Unknown::shift)
+    state.shift += step.scalar * system.length_scale();
+  else
+    state.load_factor += step.scalar;
+}
+
+std::string history(const std::vector<double>& values) {
+  std::ostringstream text;
+  text.precision(2);
+  text << std::scientific;
+  for (std::size_t i = 0; i < values.size(); ++i) text << (i == 0 ? "" : ", ") << values[i];
+  return text.str();
+}
+
+}  // namespace
+
+NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,
+                    const std::optional<HeightCondition>& condition) {
+  NewtonReport report;
+  State trial = state;
+  system.prescribe(trial, loads);
+  double last_increment = INFINITY;
+  for (unsigned int iteration = 0; iteration <= options.max_iterations; ++iteration) {
+    const Eigen::VectorXd residual = system.residual(trial, loads);
+    // The level's floor decides only about an unloaded beam, whose residual is rounding error.
+    const double level = std::max(load_level(system, trial), 1e-8);
+    const Norms r = norms(system, trial, residual);
+    report.residuals.push_back(std::max(r.nodal / std::max(level, 1.0), r.section));
+    if (!std::isfinite(report.residuals.back()) || !residual.allFinite()) {
+      report.reason = "the residual is not a number";
+      return report;
+    }
+    if (r.nodal <= options.tolerance * level && r.section <= options.tolerance &&
+        last_increment <= options.tolerance) {
+      report.converged = true;
+      state = std::move(trial);
+      return report;
+    }
+    if (iteration == options.max_iterations) break;
+    Increment step;
+    try {
+      step = increment(system, trial, loads, residual, condition);
+    } catch (const SolverError& error) {
+      report.reason = error.what();
+      return report;
+    }
+    const Norms d = norms(system, trial, step.beam);
+    last_increment = std::max({d.nodal, d.section / std::max(level, 1.0), std::abs(step.scalar)});
+    report.increments.push_back(last_increment);
+    if (!std::isfinite(last_increment) || d.spin > max_spin) {
+      report.reason = "a section would turn by more than 2 rad in one iteration";
+      return report;
+    }
+    apply(system, trial, step, condition);
+    if (!neighbours_agree(trial)) {
+      report.reason = "neighbouring sections are turned by more than 180 deg to each other";
+      return report;
+    }
+  }
+  report.reason =
+      "no convergence in " + std::to_string(options.max_iterations) + " Newton iterations";
+  return report;
+}
+
+PathReport advance(System& system, State& state, const Loads& from, const Loads& to,
+                   const NewtonOptions& options, const std::optional<HeightCondition>& condition,
+                   const PathProgress& progress) {
+  PathReport report;
+  double step = 1;
+  unsigned int halvings = 0;
+  while (report.reached < 1) {
+    const double aim = std::min(1.0, report.reached + step);
+    report.last = newton(system, state, combine(1 - aim, from, aim, to), options, condition);
+    report.iterations += static_cast<int>(report.last.increments.size());
+    if (progress) progress(aim, report.last);
+    if (report.last.converged) {
+      report.reached = aim;
+      step *= 2;
+      halvings = halvings > 0 ? halvings - 1 : 0;
+      continue;
+    }
+    ++report.cutbacks;
+    if (++halvings > options.max_cutbacks) {
+      std::ostringstream text;
+      text << "no equilibrium found at the fraction " << aim
+           << " of the load increment: " << report.last.reason << " (residuals "
+           << history(report.last.residuals) << "); last converged at the fraction "
+           << report.reached << "; more cutbacks, elements or smaller load steps may help";
+      report.message = text.str();
+      return report;
+    }
+    step = (aim - report.reached) / 2;
+  }
+  report.converged = true;
+  return report;
+}
+
+}  // namespace ciliaval::fem::beam

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/beam/system.h"
+
+namespace ciliaval::fem::beam {
+
+struct NewtonOptions {
+  double tolerance = 1e-12;  ///< of the dimensionless residual and of the dimensionless increment
+  unsigned int max_iterations = 30;
+  unsigned int max_cutbacks = 8;  ///< halvings of one load increment
+};
+
+/// One more equation, z = height at a vertex, with one more unknown: the shift of a moving mesh
+/// (State::shift) or the factor on the point loads (State::load_factor).
+struct HeightCondition {
+  enum class Unknown { shift, load_factor };
+  std::size_t vertex = 0;
+  double height = 0;  ///< h, m
+  Unknown unknown = Unknown::shift;
+};
+
+/// What Newton's method did: dimensionless maximum norms, one for each iteration.
+struct NewtonReport {
+  bool converged = false;
+  std::vector<double> residuals;   ///< before the iteration's update
+  std::vector<double> increments;  ///< of the iteration's update
+  std::string reason;              ///< why it did not converge
+};
+
+/// Newton's method with the consistent tangent from the given state. Converged: the strain
+/// equations hold to tolerance × L, the equilibrium equations to tolerance × the section forces,
+/// and the last increment is below tolerance × L, tolerance rad and tolerance × the section forces.
+/// The state is left as it was unless that is reached.
+NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,
+                    const std::optional<HeightCondition>& condition = {});
+
+/// What a load path did.
+struct PathReport {
+  bool converged = false;
+  double reached = 0;  ///< fraction t of the path that the state has reached, 1 if converged
+  int iterations = 0;  ///< of all attempts
+  int cutbacks = 0;
+  NewtonReport last;    ///< of the last attempt
+  std::string message;  ///< empty if converged: step, residual history, last converged load
+};
+
+/// Called with the fraction aimed at and the report of the attempt.
+using PathProgress = std::function<void(double fraction, const NewtonReport& report)>;
+
+/// Follows the loads (1−t) from + t to, t = 0…1, from a state in equilibrium with `from`. The first
+/// attempt is the whole path; an increment that fails is halved, one that converges is doubled. If
+/// it fails, the state is the last converged one.
+PathReport advance(System& system, State& state, const Loads& from, const Loads& to,
+                   const NewtonOptions& options,
+                   const std::optional<HeightCondition>& condition = {},
+                   const PathProgress& progress = {});
+
+}  // namespace ciliaval::fem::beam

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "problem/types.h"
+
+namespace ciliaval::fem::beam {
+
+/// Linear elastic law of a cross-section in compliance form, Γ = C_n n and K = C_m m, in the
+/// section's own axes d₁, d₂ (in the section) and d₃ (its normal). A zero entry is a rigid mode.
+struct Section {
+  Vector3 force_compliance;   ///< C_n = (1/kGA₁, 1/kGA₂, 1/EA), 1/N
+  Vector3 moment_compliance;  ///< C_m = (1/EI₁, 1/EI₂, 1/GJ), 1/(N·m²)
+};
+
+/// Stiffnesses of a cross-section; infinity is a rigid mode.
+struct SectionStiffness {
+  double EA = 0;    ///< extension along d₃, N
+  double kGA1 = 0;  ///< shear along d₁, N
+  double kGA2 = 0;  ///< shear along d₂, N
+  double GJ = 0;    ///< torsion about d₃, N·m²
+  double EI1 = 0;   ///< bending about d₁, N·m²
+  double EI2 = 0;   ///< bending about d₂, N·m²
+};
+
+/// Throws InputError if a stiffness is not positive.
+Section section(const SectionStiffness& stiffness);
+
+/// Shear coefficient k = 6(1+ν)/(7+6ν) of the solid circular section (G. R. Cowper, The shear
+/// coefficient in Timoshenko's beam theory, J. Appl. Mech. 33, 1966, Eq. 34).
+double cowper_circle(double poisson_ratio);
+
+/// Solid circular section of diameter d (m), Young's modulus E (Pa) and Poisson's ratio ν:
+/// EA = Eπd²/4, EI = Eπd⁴/64, GJ = Gπd⁴/32, kGA with Cowper's k, G = E/(2(1+ν)).
+SectionStiffness circular_section(double diameter, double young_modulus, double poisson_ratio);
+
+/// The same section without shear and extension: C_n = 0, Kirchhoff's inextensible rod.
+Section rigid_in_shear(const Section& section);
+
+}  // namespace ciliaval::fem::beam
