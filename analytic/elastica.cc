@@ -61,10 +61,10 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsS
     step.message = message.str();
     return;
   }
-  // The height form is good to some 1e-11; finer pieces would resolve its noise.
+  // Near 90° the height form has noise of some 1e-11, which finer pieces would resolve.
   const double resolution = std::max(options.tolerance / 10, height_form ? 1e-11 : 1e-13);
-  step.deformation.emplace();
-  step.deformation->centreline = planar_centreline(*shape, units, direction(step.load), resolution);
+  step.deformation =
+      Deformation{planar_centreline(*shape, units, direction(step.load), resolution), nullptr};
   step.status = Status::converged;
   step.applied_force = applied_force(step.load, *step.deformation);
   if (shape->contact) step.contact_arclength = *shape->contact * units.length;

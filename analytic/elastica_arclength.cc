@@ -236,26 +236,33 @@ PlanarState look_up(const std::vector<TaylorStep>& steps, double S, double a, do
   return above->at(S);
 }
 
-/// Largest difference of position (over length) and angle (over `angle`).
-double difference(const PlanarState& a, const PlanarState& b, double angle) {
-  return std::max({std::abs(a.w - b.w), std::abs(a.z - b.z), std::abs(a.theta - b.theta) / angle});
+/// What two integrations with different steps say of the error.
+struct ErrorEstimate {
+  double position = 0;  ///< of the tip, over the length
+  double angle = 0;     ///< relative
+  double rounding = 0;  ///< what the last bits of the load and of S make of either
+};
+
+ErrorEstimate difference(const PlanarState& a, const PlanarState& b, double angle) {
+  return {std::max(std::abs(a.w - b.w), std::abs(a.z - b.z)), std::abs(a.theta - b.theta) / angle,
+          0};
 }
 
 PlanarShape shape_of(const PlanarProblem& problem, std::vector<TaylorStep> steps,
-                     std::optional<double> contact, double error, int iterations,
+                     std::optional<double> contact, const ErrorEstimate& error, int iterations,
                      double tolerance) {
-  if (!(error <= tolerance))
+  if (!(std::max(error.position, error.angle) <= std::max(tolerance, error.rounding)))
     throw SolverError((std::ostringstream()
-                       << "elastica: two integrations with different steps differ by " << error
-                       << " (relative), which is more than the tolerance of " << tolerance
-                       << "; ask for less")
+                       << "elastica: two integrations with different steps differ by "
+                       << error.position << " of the length and by " << error.angle
+                       << " of the angle, more than the tolerance of " << tolerance)
                           .str());
   PlanarShape shape;
   shape.breaks = problem.ends;
   if (contact) add_break(shape.breaks, *contact);
   if (problem.kind == PlanarLoad::section) add_break(shape.breaks, problem.point);
   shape.contact = contact;
-  shape.error = error;
+  shape.error = error.position;
   shape.iterations = iterations;
   const auto shared = std::make_shared<const std::vector<TaylorStep>>(std::move(steps));
   shape.state = [shared, breaks = shape.breaks](double S, std::size_t i) {
@@ -270,7 +277,9 @@ std::optional<PlanarShape> solve_contact(const PlanarProblem& problem, const Acc
   const auto tip = contact_tip(problem, finer, &steps);
   if (!tip) return std::nullopt;
   const auto check = contact_tip(problem, accuracy, nullptr);
-  const double error = check ? difference(*tip, *check, tip->theta) : 1;
+  ErrorEstimate error = check ? difference(*tip, *check, tip->theta) : ErrorEstimate{1, 1, 0};
+  // The last bit of the load moves cos θ at the contact by ε/cos θ.
+  error.rounding = 16 * epsilon / std::max(std::sin(tip->phi), epsilon);
   const PlanarState last = steps.back().end_state();
   const bool tail = last.moment == 0 && last.force == 0;
   const double contact = tail ? steps.back().start() : last.S;
@@ -286,7 +295,12 @@ PlanarShape solve_from_top(const PlanarProblem& problem, const Accuracy& accurac
   const PlanarState base = descend(problem, from, finer, &steps);
   const PlanarState check = descend(problem, from, accuracy, nullptr);
   const double angle = std::atan(std::exp(from.x));
-  const double error = std::max(difference(base, check, angle), std::abs(base.theta) / angle);
+  ErrorEstimate error = difference(base, check, angle);
+  error.position += std::abs(base.theta);  // turns the whole cilium
+  error.angle += std::abs(base.theta) / angle;
+  double curvature = 0;  // the last bit of S moves θ by εθ', in every step
+  for (const TaylorStep& step : steps) curvature = std::max(curvature, step.end_state().curvature);
+  error.rounding = 4 * epsilon * curvature / angle * static_cast<double>(steps.size());
   complete_from_top(problem, from.S, steps);
   return shape_of(problem, std::move(steps), std::nullopt, error, iterations + 2, tolerance);
 }
@@ -296,7 +310,7 @@ PlanarShape upright(const PlanarProblem& problem) {
   std::vector<TaylorStep> steps{TaylorStep::straight(base, ForceLaw::constant, 1)};
   const auto contact =
       problem.kind == PlanarLoad::contact ? std::optional(problem.point) : std::nullopt;
-  return shape_of(problem, std::move(steps), contact, 0, 0, 1);
+  return shape_of(problem, std::move(steps), contact, {}, 0, 1);
 }
 
 Accuracy step_accuracy(double tolerance) {
@@ -320,8 +334,7 @@ double slip_off_arclength(const PlanarProblem& problem, double tolerance) {
   const auto above = [&](double log_load) {
     return tip_above_contact(problem, std::exp(log_load), accuracy);
   };
-  // Uniformly as stiff as its stiffest segment, the cilium lies level at h when sin θ = PL²/EI h²/2
-  // = 1.
+  // As stiff all over as its stiffest segment, the cilium lies level at h for PL²/EI = 2/h².
   double b = std::log(2.01 / (problem.point * problem.point));
   double f_b = above(b);
   double step = 0.25;

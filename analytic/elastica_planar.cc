@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -17,6 +18,7 @@ namespace {
 constexpr std::size_t node_count = 16;
 constexpr std::size_t check_count = 4;
 constexpr int max_bisections = 40;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Values of the nodes' Lagrange polynomials at points between nodes near both ends and the middle,
 /// where interpolation errs most.
@@ -77,21 +79,29 @@ class CentrelineBuilder {
   bool resolved(const std::array<PlanarState, node_count>& nodes, double a, double b,
                 std::size_t piece) const {
     std::array<std::array<double, 7>, node_count> values{};
-    std::array<double, 7> scale{1, 1, 1, 1, 0, 0, 0};
+    std::array<double, 7> scale{};
+    std::array<double, 7> allowed{};
     for (std::size_t i = 0; i < node_count; ++i) {
       values[i] = components(nodes[i]);
-      for (std::size_t c = 4; c < scale.size(); ++c)
+      for (std::size_t c = 0; c < scale.size(); ++c)
         scale[c] = std::max(scale[c], std::abs(values[i][c]));
     }
-    // κ L ≪ 1 bends nothing, M and H ≪ 1 are noise: relative to the larger of both.
-    for (std::size_t c = 4; c < scale.size(); ++c) scale[c] = std::max(scale[c], 1.0);
+    for (std::size_t c = 0; c < scale.size(); ++c) {
+      // κL, M and H are relative to 1 or more: less bends nothing. And the last bits of S move a
+      // value by its slope: no interpolation resolves that.
+      double slope = 0;
+      for (std::size_t i = 0; i + 1 < node_count; ++i)
+        slope = std::max(slope,
+                         std::abs(values[i + 1][c] - values[i][c]) / (nodes[i + 1].S - nodes[i].S));
+      allowed[c] = tolerance_ * std::max(scale[c], 1.0) + 4 * epsilon * b * slope;
+    }
     for (std::size_t j = 0; j < check_count; ++j) {
       const auto exact = components(shape_.state(std::lerp(a, b, checks_.position[j]), piece));
       for (std::size_t c = 0; c < exact.size(); ++c) {
         double interpolated = 0;
         for (std::size_t i = 0; i < node_count; ++i)
           interpolated += checks_.values[j][i] * values[i][c];
-        if (!(std::abs(interpolated - exact[c]) <= tolerance_ * scale[c])) return false;
+        if (!(std::abs(interpolated - exact[c]) <= allowed[c])) return false;
       }
     }
     return true;

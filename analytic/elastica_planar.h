@@ -59,7 +59,7 @@ struct PlanarShape {
   /// State at S, which lies in the piece [breaks[i], breaks[i+1]]; one-sided at its ends.
   std::function<PlanarState(double S, std::size_t i)> state;
   std::optional<double> contact;  ///< S at z = h
-  double error = 0;               ///< estimate of the largest error of w, z and θ at the tip
+  double error = 0;               ///< estimate of the error of w and z at the tip
   int iterations = 0;             ///< integrations along the whole cilium
 };
 
