@@ -1,2 +1,56 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
+
+#include <deal.II/fe/mapping_q_cache.h>
+#include <deal.II/grid/tria.h>
+
+#include <memory>
+#include <vector>
+
+#include "problem/cilium.h"
+
+namespace ciliaval::meshes {
+
+/// Boundary ids of the cylinder.
+inline constexpr dealii::types::boundary_id base_id = 0;    ///< Z = 0
+inline constexpr dealii::types::boundary_id mantle_id = 1;  ///< X² + Y² = R²
+inline constexpr dealii::types::boundary_id tip_id = 2;     ///< Z = L
+
+/// How finely the cylinder is meshed. Lengths are in diameters, so that one set of options suits
+/// every cilium.
+struct CylinderMeshOptions {
+  unsigned int square_cells = 4;  ///< n: cells along a side of the section's inner square; the
+                                  ///< section has n² + 4nm cells; n even
+  unsigned int rings = 2;         ///< m: rings of cells between the square and the mantle
+  double ring_ratio = 0.7;        ///< width of a ring over that of its inner neighbour
+  double finest_layer = 0.08;     ///< thickness of the layers at the clamped end and at interfaces
+  double coarsest_layer = 0.4;    ///< largest thickness of a layer
+  double growth = 0.25;           ///< growth of the thickness with the distance from the nearest of
+                                  ///< those planes; 0: all layers as thin as the finest
+  std::vector<double> planes;     ///< further reference arc lengths S where mesh planes must lie, m
+};
+
+/// Arc lengths 0 = Z₀ < Z₁ < … = L of the planes between the layers, m. All segment interfaces and
+/// all planes asked for are among them (one within 1e-9 L of an earlier one counts as that one);
+/// between them the thickness follows min(coarsest, finest + growth·distance to the clamped end or
+/// the next interface). Throws InputError if the options are out of range or a plane lies outside
+/// [0, L].
+std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions& options);
+
+/// The straight cylinder of the cilium: an o-grid (inner square and rings) extruded through
+/// layer_planes(). Material ids are the segments' indices, boundary ids as above. The mesh lines
+/// along the third local coordinate ζ run from base to tip and are straight: X and Y are constant
+/// on them. The mantle is a cylinder, the cells are transfinite inside. The triangulation must be
+/// empty and must stay at its place in memory, for its manifolds point to it. Throws InputError if
+/// the cilium or the options are not valid.
+void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
+                   dealii::Triangulation<3>& triangulation);
+
+/// Polynomial mapping of the curved cells, its support points computed once. Use the degree of the
+/// displacement's element (isoparametric): with a higher one, the element cannot represent linear
+/// fields, hence no rigid rotation. Degree 2 leaves errors of 3e-6 in the area and 7e-6 in the second
+/// moment of the section of 48 cells.
+std::unique_ptr<dealii::MappingQCache<3>> cylinder_mapping(
+    const dealii::Triangulation<3>& triangulation, unsigned int degree = 2);
+
+}  // namespace ciliaval::meshes

@@ -1,1 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solid.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "fem/solid/body.h"
+#include "fem/solid/fibres.h"
+#include "fem/solid/load_path.h"
+#include "fem/solid/newton.h"
+#include "fem/solid/section.h"
+#include "fem/solid/space.h"
+#include "meshes/cylinder_mesh.h"
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+namespace {
+
+meshes::CylinderMeshOptions mesh_options(const SolidOptions& options, const LoadPath& path) {
+  meshes::CylinderMeshOptions mesh = cylinder_mesh_options(options.refinement);
+  for (const Load& load : path)
+    if (const auto* section = std::get_if<SectionLoad>(&load))
+      mesh.planes.push_back(section->arclength);
+  return mesh;
+}
+
+std::vector<NeoHooke> materials(const Cilium& cilium) {
+  std::vector<NeoHooke> result;
+  for (const Segment& segment : cilium.segments)
+    result.push_back({segment.shear_modulus(), segment.bulk_modulus()});
+  return result;
+}
+
+std::vector<DirichletCondition> clamped_base() {
+  return {{.boundary = meshes::base_id}};
+}
+
+/// The discretised cilium. Its members refer to one another: it stays where it is made.
+struct Discretisation {
+  dealii::Triangulation<3> triangulation;
+  std::unique_ptr<dealii::MappingQCache<3>> mapping;
+  std::unique_ptr<SolidSpace> space;
+  std::unique_ptr<Fibres> fibres;
+
+  Discretisation(const Cilium& cilium, const meshes::CylinderMeshOptions& options) {
+    meshes::make_cylinder(cilium, options, triangulation);
+    mapping = meshes::cylinder_mapping(triangulation, element_degree);
+    space = std::make_unique<SolidSpace>(triangulation, *mapping, materials(cilium));
+    fibres = std::make_unique<Fibres>(*space);
+  }
+};
+
+Deformation deformation(const Discretisation& discretisation, const Cilium& cilium,
+                        const SolidState& state) {
+  const auto& [space, fibres] = std::tie(*discretisation.space, *discretisation.fibres);
+  return {centreline(space, fibres, state), std::make_shared<const SolidBody>(solid_body(
+                                                space, fibres, cilium, state, element_degree))};
+}
+
+/// S of the centreline's lowest point at z = h; empty if there is none.
+std::optional<double> contact_arclength(const Centreline& centreline, double height) {
+  for (std::size_t i = 0; i < centreline.pieces().size(); ++i) {
+    double low = centreline.breaks()[i];
+    double high = centreline.breaks()[i + 1];
+    if (!(centreline.at(low, i).position.z() <= height &&
+          centreline.at(high, i).position.z() >= height))
+      continue;
+    while (true) {
+      const double middle = low + (high - low) / 2;
+      if (!(middle > low && middle < high)) return middle;
+      (centreline.at(middle, i).position.z() < height ? low : high) = middle;
+    }
+  }
+  return std::nullopt;
+}
+
+void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
+  ciliaval::require_valid(cilium);
+  for (const Load& load : path) {
+    ciliaval::require_valid(load, cilium);
+    if (type(load) != type(path.front()))
+      throw InputError("a load path cannot change from one load type to another");
+    const auto* contact = std::get_if<ContactLoad>(&load);
+    if (contact != nullptr && !(contact->height >= options.kernel_width &&
+                                contact->height + options.kernel_width <= cilium.length()))
+      throw InputError(
+          "the solid spreads the contact force over h - kernel_width < z < h + kernel_width, which "
+          "must lie between the base and the tip: choose a smaller kernel_width");
+  }
+}
+
+}  // namespace
+
+meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
+  meshes::CylinderMeshOptions options;
+  switch (refinement) {
+    case 0:
+      options.square_cells = 2;
+      options.rings = 1;
+      options.finest_layer = 0.15;
+      options.coarsest_layer = 0.8;
+      return options;
+    case 1:
+      options.square_cells = 4;
+      options.rings = 2;
+      options.finest_layer = 0.08;
+      options.coarsest_layer = 0.4;
+      return options;
+    case 2:
+      options.square_cells = 4;
+      options.rings = 3;
+      options.finest_layer = 0.04;
+      options.coarsest_layer = 0.25;
+      return options;
+    default:
+      throw InputError("the solid has the refinement levels 0, 1 and 2, not " +
+                       std::to_string(refinement));
+  }
+}
+
+Solid::Solid(SolidOptions options) : options_(options) {
+  cylinder_mesh_options(options_.refinement);
+  if (!(std::isfinite(options_.kernel_width) && options_.kernel_width > 0))
+    throw InputError("the solid's kernel_width must be finite and positive");
+  if (!(options_.tolerance > 0 && options_.tolerance < 1))
+    throw InputError("the solid's tolerance must lie between 0 and 1");
+  if (options_.max_iterations == 0) throw InputError("the solid needs max_iterations of 1 or more");
+}
+
+MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
+                             const Progress& progress) const {
+  require_valid(cilium, path, options_);
+  const Discretisation discretisation(cilium, mesh_options(options_, path));
+  const SolidSpace& space = *discretisation.space;
+  MechanicsResult result{deformation(discretisation, cilium, space.undeformed()), {}};
+  if (path.empty()) return result;
+
+  Newton newton(space, increment_constraints(space, clamped_base()));
+  LoadPathOptions options{{options_.tolerance, options_.max_iterations, 0},
+                          options_.max_cutbacks,
+                          options_.kernel_width};
+  LoadPathSolver solver(space, *discretisation.fibres, newton, path.front(), options);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string label =
+        "step " + std::to_string(i + 1) + "/" + std::to_string(path.size()) + ", ";
+    const Progress report =
+        progress ? Progress([&](const std::string& text) { progress(label + text); }) : Progress();
+    const LoadPathOutcome outcome = solver.advance(path[i], report);
+    MechanicsStep step;
+    step.load = path[i];
+    step.status = outcome.status;
+    step.message = outcome.status == Status::failed ? label + outcome.message : outcome.message;
+    step.slip_off_force = outcome.slip_off_force;
+    step.iterations = outcome.iterations;
+    step.unknowns = space.unknowns();
+    if (outcome.status == Status::converged) {
+      step.deformation = deformation(discretisation, cilium, solver.current().state);
+      step.applied_force = solver.current().applied_force;
+      if (const auto* contact = std::get_if<ContactLoad>(&path[i]))
+        step.contact_arclength = contact_arclength(step.deformation->centreline, contact->height);
+    }
+    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.steps.push_back(std::move(step));
+  }
+  return result;
+}
+
+}  // namespace ciliaval::fem

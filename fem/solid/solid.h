@@ -3,10 +3,14 @@
 
 #include "problem/mechanics_model.h"
 
+namespace ciliaval::meshes {
+struct CylinderMeshOptions;
+}
+
 namespace ciliaval::fem {
 
 struct SolidOptions {
-  unsigned int refinement = 1;
+  unsigned int refinement = 1;   ///< mesh: 0 coarse, 1 default, 2 fine (cylinder_mesh_options())
   double kernel_width = 0.5e-3;  ///< half-width of the contact kernel k(z−h), m
   double tolerance =
       1e-9;  ///< of the residual, relative to the applied force, and of the increment
@@ -14,10 +18,20 @@ struct SolidOptions {
   unsigned int max_cutbacks = 5;
 };
 
-/// 3D finite-strain near-incompressible neo-Hooke solid of the two-material cilium.
+/// The mesh of a refinement level. Throws InputError if there is none of that number.
+meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement);
+
+/// 3D finite-strain near-incompressible neo-Hooke solid of the two-material cilium: Q2
+/// displacement, discontinuous linear pressure, full cylinder, clamped base (docs/solid.md).
 class Solid : public MechanicsModel {
  public:
-  explicit Solid(SolidOptions options = {}) : options_(options) {}
+  /// Throws InputError if an option is out of range.
+  explicit Solid(SolidOptions options = {});
+
+  /// Besides the interface's: throws InputError if the contact kernel h ± kernel_width does not fit
+  /// between the base and the tip of the straight cilium.
+  /// A contact step whose fibre ends come into the kernel is `slipped_off`; slip_off_force is the
+  /// lower end of a 1 % bracket, which the message gives.
   MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                         const Progress& progress = {}) const override;
 

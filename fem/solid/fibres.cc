@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/fibres.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/full_matrix.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "problem/error.h"
+#include "problem/lagrange.h"
+
+namespace ciliaval::fem {
+namespace {
+
+/// Derivatives of quadratic_basis().
+Eigen::Vector3d quadratic_derivative(double x) {
+  return {4 * x - 3, 4 - 8 * x, 4 * x - 1};
+}
+
+Eigen::Matrix<double, 9, 1> plane_values(double xi, double eta) {
+  return (quadratic_basis(xi) * quadratic_basis(eta).transpose()).reshaped<Eigen::ColMajor>();
+}
+
+/// Roots in (0, 1) of the quadratic polynomial with the values z at 0, ½, 1, less `level`.
+void append_roots(const Eigen::Vector3d& z, double level, std::vector<double>& roots) {
+  const double c = z[0] - level;
+  const double b = -3 * z[0] + 4 * z[1] - z[2];
+  const double a = 2 * z[0] - 4 * z[1] + 2 * z[2];
+  const double discriminant = b * b - 4 * a * c;
+  if (discriminant < 0) return;
+  const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
+  for (const double root : {a != 0 ? q / a : -1.0, q != 0 ? c / q : -1.0})
+    if (root > 0 && root < 1) roots.push_back(root);
+}
+
+/// Calls integrate(ζ, weight) for a Gauss rule on each part of the fibre inside the support.
+template <typename Integrate>
+void integrate_along(const Eigen::Vector3d& z, const HeightDensity& density,
+                     const QuadratureRule& rule, const Integrate& integrate) {
+  std::vector<double> ends{0, 1};
+  if (density.support) {
+    const auto [low, high] = *density.support;
+    // A quadratic stays within 1¼ times the spread of its values at 0, ½, 1.
+    const double margin = (z.maxCoeff() - z.minCoeff()) / 4;
+    if (z.maxCoeff() + margin < low || z.minCoeff() - margin > high) return;
+    append_roots(z, low, ends);
+    append_roots(z, high, ends);
+    std::sort(ends.begin(), ends.end());
+  }
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double width = ends[i + 1] - ends[i];
+    if (!(width > 0)) continue;
+    const double middle = quadratic_basis(ends[i] + width / 2).dot(z);
+    if (density.support && !(middle > (*density.support)[0] && middle < (*density.support)[1]))
+      continue;
+    for (std::size_t m = 0; m < rule.nodes.size(); ++m)
+      integrate(ends[i] + width * rule.nodes[m], width * rule.weights[m]);
+  }
+}
+
+/// Forces f_a (per e) and derivatives ∂f_a/∂u_z,b of one cell.
+struct FibreShare {
+  Eigen::Matrix<double, element_nodes, 1> force;
+  Eigen::Matrix<double, element_nodes, element_nodes> derivative;
+};
+
+FibreShare fibre_share(const Fibres& fibres, const FibreCell& cell,
+                       const Eigen::Matrix<double, 9, 3>& u_z, const HeightDensity& density,
+                       const QuadratureRule& rule, bool with_derivative) {
+  FibreShare share;
+  share.force.setZero();
+  share.derivative.setZero();
+  const Eigen::Vector3d Z(cell.bottom, (cell.bottom + cell.top) / 2, cell.top);
+  for (int q = 0; q < section_points; ++q) {
+    const auto s = fibres.section_values().col(q);
+    const Eigen::Vector3d z = Z + u_z.transpose() * s;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    Matrix3 derivative = Matrix3::Zero();
+    integrate_along(z, density, rule, [&](double zeta, double weight) {
+      const Eigen::Vector3d N = quadratic_basis(zeta);
+      const Eigen::Vector3d dN = quadratic_derivative(zeta);
+      const double g = density.value(N.dot(z));
+      force += weight * g * dN.dot(z) * N;
+      if (with_derivative)
+        derivative +=
+            weight * N * (density.derivative(N.dot(z)) * dN.dot(z) * N + g * dN).transpose();
+    });
+    if (force.isZero(0)) continue;
+    const double area = cell.area[static_cast<std::size_t>(q)];
+    for (int k = 0; k < 3; ++k) {
+      share.force.segment<9>(Eigen::Index{9} * k) += area * force[k] * s;
+      if (!with_derivative) continue;
+      for (int l = 0; l < 3; ++l)
+        share.derivative.block<9, 9>(Eigen::Index{9} * k, Eigen::Index{9} * l) +=
+            (area * derivative(k, l) * s) * s.transpose();
+    }
+  }
+  return share;
+}
+
+Eigen::Matrix<double, 9, 3> vertical_displacements(const SolidElement& element,
+                                                   const dealii::Vector<double>& displacement) {
+  const Eigen::Matrix<double, element_nodes, 1> u_z =
+      nodal_displacements(element, displacement).col(2);
+  return u_z.reshaped<Eigen::ColMajor>(9, 3);
+}
+
+void subtract_derivative(const SolidElement& element, const FibreShare& share,
+                         const Vector3& direction,
+                         const dealii::AffineConstraints<double>& constraints,
+                         dealii::SparseMatrix<double>& matrix) {
+  using dealii::types::global_dof_index;
+  const auto& dofs = element.dofs;
+  const std::vector<global_dof_index> columns(dofs.begin() + 2 * element_nodes, dofs.end());
+  dealii::FullMatrix<double> local(element_nodes, element_nodes);
+  for (unsigned int c = 0; c < 2; ++c) {
+    const auto first = dofs.begin() + c * element_nodes;
+    const std::vector<global_dof_index> rows(first, first + element_nodes);
+    for (unsigned int a = 0; a < element_nodes; ++a)
+      for (unsigned int b = 0; b < element_nodes; ++b)
+        local(a, b) = -direction[c] * share.derivative(a, b);
+    constraints.distribute_local_to_global(local, rows, columns, matrix);
+  }
+}
+
+}  // namespace
+
+Eigen::Vector3d quadratic_basis(double zeta) {
+  return {(1 - zeta) * (1 - 2 * zeta), 4 * zeta * (1 - zeta), zeta * (2 * zeta - 1)};
+}
+
+Fibres::Fibres(const SolidSpace& space) {
+  const dealii::QGauss<1> gauss(section_points_1d);
+  const dealii::QGauss<2> section(section_points_1d);
+  std::vector<dealii::Point<3>> points;
+  for (int q = 0; q < section_points; ++q) {
+    const dealii::Point<2>& x = section.point(static_cast<unsigned int>(q));
+    values_.col(q) = plane_values(x[0], x[1]);
+    points_.row(q) << x[0], x[1];
+    for (const double zeta : {0.0, 0.5, 1.0}) points.emplace_back(x[0], x[1], zeta);
+  }
+  dealii::FEValues<3> values(space.mapping(), space.scalar_element(), dealii::Quadrature<3>(points),
+                             dealii::update_jacobians | dealii::update_quadrature_points);
+  double volume = 0;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const SolidElement& element : space.elements()) {
+    values.reinit(element.cell);
+    FibreCell cell;
+    cell.bottom = element.cell->vertex(0)[2];
+    cell.top = element.cell->vertex(4)[2];
+    for (unsigned int q = 0; q < section_points; ++q) {
+      const auto& jacobian = values.jacobian(3 * q + 1);
+      cell.area[q] =
+          section.weight(q) * (jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0]);
+      cell.X[q] = values.quadrature_point(3 * q + 1)[0];
+      cell.Y[q] = values.quadrature_point(3 * q + 1)[1];
+      volume += cell.area[q] * (cell.top - cell.bottom);
+      for (unsigned int m = 0; m < 3; ++m) {
+        const dealii::Point<3>& X = values.quadrature_point(3 * q + m);
+        const dealii::Point<3>& middle = values.quadrature_point(3 * q + 1);
+        const double Z = cell.bottom + 0.5 * m * (cell.top - cell.bottom);
+        if (!(std::hypot(X[0] - middle[0], X[1] - middle[1], X[2] - Z) <= 1e-9 * element.size) ||
+            !(cell.top > cell.bottom))
+          throw InputError(
+              "the loads of the solid need a mesh extruded along z: a cell's third local "
+              "coordinate "
+              "is not parallel to z");
+      }
+    }
+    lowest = std::min(lowest, cell.bottom);
+    height_ = std::max(height_, cell.top);
+    cells_.push_back(cell);
+  }
+  area_ = volume / (height_ - lowest);
+}
+
+HeightDensity contact_density(double force, double area, double height, double half_width) {
+  const double w = half_width;
+  const double g = force / area;
+  constexpr double pi = std::numbers::pi;
+  return {[=](double z) { return g * (1 + std::cos(pi * (z - height) / w)) / (2 * w); },
+          [=](double z) { return -g * pi * std::sin(pi * (z - height) / w) / (2 * w * w); },
+          std::array{height - w, height + w}};
+}
+
+HeightDensity flow_density(double force_per_height, double area) {
+  return {[=](double) { return force_per_height / area; }, [](double) { return 0.0; }, {}};
+}
+
+void add_fibre_forces(const SolidSpace& space, const Fibres& fibres, const HeightDensity& density,
+                      const Vector3& direction, const dealii::Vector<double>& displacement,
+                      dealii::Vector<double>& forces,
+                      const dealii::AffineConstraints<double>& constraints,
+                      dealii::SparseMatrix<double>* matrix) {
+  const QuadratureRule rule = gauss_legendre(density.support ? 10 : 3, 0, 1);
+  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+    const SolidElement& element = space.elements()[e];
+    const FibreShare share =
+        fibre_share(fibres, fibres.cells()[e], vertical_displacements(element, displacement),
+                    density, rule, matrix != nullptr);
+    if (share.force.isZero(0)) continue;
+    for (std::size_t c = 0; c < 2; ++c)
+      for (std::size_t a = 0; a < element_nodes; ++a)
+        forces[element.dofs[c * element_nodes + a]] +=
+            direction[static_cast<Eigen::Index>(c)] * share.force[static_cast<Eigen::Index>(a)];
+    if (matrix != nullptr) subtract_derivative(element, share, direction, constraints, *matrix);
+  }
+}
+
+dealii::Vector<double> section_force(const SolidSpace& space, const Fibres& fibres, double force,
+                                     double arclength, const Vector3& direction) {
+  dealii::Vector<double> forces(space.unknowns());
+  double area = 0;
+  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+    const FibreCell& cell = fibres.cells()[e];
+    if (std::abs(cell.top - arclength) > 2e-9 * fibres.height()) continue;
+    const auto& dofs = space.elements()[e].dofs;
+    for (int q = 0; q < section_points; ++q) {
+      const double dA = cell.area[static_cast<std::size_t>(q)];
+      area += dA;
+      for (std::size_t c = 0; c < 2; ++c)
+        for (std::size_t a = 0; a < 9; ++a)
+          forces[dofs[c * element_nodes + 18 + a]] +=
+              force / fibres.area() * dA * direction[static_cast<Eigen::Index>(c)] *
+              fibres.section_values()(static_cast<Eigen::Index>(a), q);
+    }
+  }
+  if (std::abs(area - fibres.area()) > 1e-9 * fibres.area())
+    throw InputError("the solid's mesh has no plane at the loaded section");
+  return forces;
+}
+
+double lowest_tip_point(const SolidSpace& space, const Fibres& fibres,
+                        const dealii::Vector<double>& displacement) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+    if (fibres.cells()[e].top < fibres.height() * (1 - 1e-9)) continue;
+    const auto u_z = vertical_displacements(space.elements()[e], displacement);
+    lowest = std::min(lowest, fibres.height() + u_z.col(2).minCoeff());
+  }
+  return lowest;
+}
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "fem/solid/fibres.h"
+#include "fem/solid/newton.h"
+#include "fem/solid/space.h"
+#include "problem/load.h"
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::fem {
+
+/// The load's nodal forces as a function of the displacement (docs/solid.md).
+ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, const Load& load,
+                               double kernel_width);
+
+/// The solid in equilibrium with a load.
+struct Equilibrium {
+  Load load;
+  SolidState state;
+  double applied_force = 0;  ///< resultant of the external forces along e, N
+};
+
+struct LoadPathOptions {
+  NewtonOptions newton;
+  unsigned int max_cutbacks = 5;
+  double kernel_width = 0.5e-3;    ///< half-width of the contact kernel, m
+  double force_shortfall = 1e-6;   ///< relative; a contact force that falls short by more slips off
+  double slip_off_bracket = 0.01;  ///< relative width at which the search for the slip-off ends
+};
+
+struct LoadPathOutcome {
+  Status status = Status::failed;
+  std::string message;
+  std::optional<double> slip_off_force;  ///< N
+  int iterations = 0;
+};
+
+/// Follows a load path from equilibrium to equilibrium: each step is taken at once from a linear
+/// extrapolation of the last two, and halved where Newton's method fails.
+class LoadPathSolver {
+ public:
+  /// Starts from the straight solid under no load of the path's type. The space, fibres and Newton
+  /// solver must outlive it.
+  LoadPathSolver(const SolidSpace& space, const Fibres& fibres, Newton& newton, const Load& first,
+                 LoadPathOptions options);
+
+  /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
+  /// a load fully applied.
+  LoadPathOutcome advance(const Load& target, const Progress& progress = {});
+
+  const Equilibrium& current() const { return current_; }
+
+ private:
+  struct Attempt;
+  Attempt attempt(const Load& load, LoadPathOutcome& outcome, const Progress& progress);
+  SolidState predicted(const Load& load) const;
+  void accept(Attempt&& attempt);
+  LoadPathOutcome slip_off(const Load& slipped, LoadPathOutcome outcome, const Progress& progress);
+  void restart(const Load& load);
+
+  const SolidSpace& space_;
+  const Fibres& fibres_;
+  Newton& newton_;
+  LoadPathOptions options_;
+  Equilibrium current_;
+  std::optional<Equilibrium> previous_;
+  std::optional<Load> slipped_;  ///< the smallest load known to slip off
+};
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/sparse_direct.h>
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/sparsity_pattern.h>
+#include <deal.II/lac/vector.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fem/solid/space.h"
+
+namespace ciliaval::fem {
+
+/// External forces f(u): adds them to `forces` and, where `matrix` is not null, −∂f/∂u to it.
+using ExternalForces = std::function<void(
+    const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+    const dealii::AffineConstraints<double>& constraints, dealii::SparseMatrix<double>* matrix)>;
+
+struct NewtonOptions {
+  double tolerance = 1e-9;  ///< of the remaining increment, relative to the displacement,
+                            ///< and of the residual, relative to the force scale, as far as
+                            ///< rounding errors let it fall
+  unsigned int max_iterations = 25;  ///< linear systems factorised
+  double least_force = 0;            ///< lower bound of the force scale, N
+};
+
+struct NewtonResult {
+  bool converged = false;
+  std::string reason;                ///< why not
+  std::vector<double> residuals;     ///< relative, before each iteration and at the end
+  std::vector<double> increments;    ///< ‖Δu‖_max of each iteration, m
+  dealii::Vector<double> reactions;  ///< internal − external forces at the end, all rows, N
+  dealii::Vector<double> external;   ///< external forces at the end, N
+  int iterations() const { return static_cast<int>(increments.size()); }
+};
+
+/// Called after each evaluation of the residual: iteration, relative residual.
+using NewtonProgress = std::function<void(int, double)>;
+
+/// Newton's method for internal(u, p) = external(u), p condensed, by sparse LU (UMFPACK) of the
+/// unsymmetric tangent. It holds the matrix and its sparsity from one solution to the next.
+///
+/// The force scale of the residual is the l₂ norm of the nodal external forces or, if they vanish,
+/// of the reactions at the constrained degrees of freedom. Once the residual is below the
+/// tolerance, or below 1e-6, where rounding errors may keep it, the increment that the last
+/// factorisation gives for it estimates the error of the displacement that is left; that must be
+/// below the tolerance.
+class Newton {
+ public:
+  Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints);
+
+  /// Solves from the given state, which must satisfy the Dirichlet conditions; it holds the last
+  /// iterate at the end, converged or not.
+  NewtonResult solve(const ExternalForces& external, SolidState& state,
+                     const NewtonOptions& options, const NewtonProgress& progress = {});
+
+ private:
+  const SolidSpace& space_;
+  dealii::AffineConstraints<double> constraints_;
+  dealii::SparsityPattern sparsity_;
+  dealii::SparseMatrix<double> matrix_;
+  double size_;  ///< diameter of the body, m
+};
+
+}  // namespace ciliaval::fem
