@@ -67,6 +67,7 @@ Knob choice_knob(Options ModelOptions::*model, T Options::*member, std::string_v
                  std::string_view name, std::vector<std::pair<std::string_view, T>> values,
                  std::string_view doc) {
   std::vector<std::string_view> choices;
+  choices.reserve(values.size());
   for (const auto& [text, value] : values) choices.push_back(text);
   return {id,
           name,

@@ -210,7 +210,7 @@ std::optional<std::string> read_text(const toml::node& node, std::string_view na
 std::optional<std::string> read_choice(const toml::node& node, std::string_view name,
                                        std::span<const std::string_view> choices,
                                        std::span<const std::string_view> not_yet, Faults& faults) {
-  const std::optional<std::string> text = read_text(node, name, faults);
+  std::optional<std::string> text = read_text(node, name, faults);
   if (!text) return std::nullopt;
   if (std::find(choices.begin(), choices.end(), *text) != choices.end()) return text;
   const bool planned = std::find(not_yet.begin(), not_yet.end(), *text) != not_yet.end();

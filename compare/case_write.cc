@@ -115,6 +115,7 @@ std::string sensor(const Case& c) {
 std::string models(const Case& c) {
   const auto ids = [](const std::vector<std::string>& names) {
     std::vector<std::string> texts;
+    texts.reserve(names.size());
     for (const std::string& name : names) texts.push_back(fmt::format("\"{}\"", name));
     return list(texts);
   };

@@ -41,9 +41,10 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// A letter of a unit's name; bytes of UTF-8 sequences (µ, Ω, °) count as such.
+/// A letter of a unit's name; '%' and bytes of UTF-8 sequences (µ, Ω, °, ²) count as such.
 bool is_letter(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' ||
+         static_cast<unsigned char>(c) >= 0x80;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -57,21 +58,65 @@ std::string wanted(const Quantity& expected) {
                      expected.example);
 }
 
-/// Whether every number in the unit is an exponent: right after a name, '^' or "**", perhaps with a
-/// sign. Others are factors or offsets ("3 mm 2", "m @ 3") that a person did not mean.
-bool numbers_are_exponents(std::string_view unit) {
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (!is_digit(unit[i])) continue;
-    std::size_t before = i;
-    if (before > 0 && (unit[before - 1] == '-' || unit[before - 1] == '+')) --before;
-    const char c = before > 0 ? unit[before - 1] : ' ';
-    const bool power = c == '*' && before > 1 && unit[before - 2] == '*';
-    if (!is_letter(c) && c != '^' && !power) return false;
-    const std::size_t start = i;
-    while (i < unit.size() && is_digit(unit[i])) ++i;
-    if (i - start > longest_exponent) return false;
+/// Reads a unit from left to right.
+struct UnitReader {
+  std::string_view rest;
+
+  char next() const { return rest.empty() ? '\0' : rest.front(); }
+  bool take(char c) {
+    if (next() != c) return false;
+    rest.remove_prefix(1);
+    return true;
   }
-  return true;
+  std::size_t take_all(bool (*kind)(char)) {
+    std::size_t count = 0;
+    for (; !rest.empty() && kind(rest.front()); rest.remove_prefix(1)) ++count;
+    return count;
+  }
+  std::string_view take_name() {
+    const std::string_view before = rest;
+    return before.substr(0, take_all(is_letter));
+  }
+  /// Nothing, "2", "-2", "^2", "^-2" or "**-2". Returns whether that is so.
+  bool take_exponent() {
+    const bool raised = take('^') || (rest.starts_with("**") && take('*') && take('*'));
+    const bool is_signed = take('-') || take('+');
+    const std::size_t digits = take_all(is_digit);
+    return digits <= longest_exponent && (digits > 0 || (!raised && !is_signed));
+  }
+  /// Blanks, '.', '*' or '/', blanks. Returns whether there was any.
+  bool take_separator() {
+    const std::size_t before = rest.size();
+    const auto blank = [](char c) { return blanks.find(c) != std::string_view::npos; };
+    take_all(blank);
+    if (next() == '.' || next() == '*' || next() == '/') rest.remove_prefix(1);
+    take_all(blank);
+    return rest.size() != before;
+  }
+};
+
+/// Words that make an offset of what follows.
+bool is_offset_word(std::string_view name) {
+  return name == "since" || name == "after" || name == "from" || name == "ref";
+}
+
+/// Whether the unit is a product or quotient of names with small exponents, as "kg m s^-2" or
+/// "N/(mm s)". What else UDUNITS reads (factors as in "3 mm 2", offsets as in "m @ 3", logarithms)
+/// is not what a person meant, and on some of the rest its parser loses memory.
+bool is_product_of_names(std::string_view unit) {
+  UnitReader reader{unit};
+  int open = 0;
+  while (true) {
+    while (reader.take('(')) ++open;
+    const std::string_view name = reader.take_name();
+    if (name.empty() || is_offset_word(name) || !reader.take_exponent()) return false;
+    while (open > 0 && reader.take(')')) {
+      --open;
+      if (!reader.take_exponent()) return false;
+    }
+    if (reader.rest.empty()) return open == 0;
+    if (!reader.take_separator()) return false;
+  }
 }
 
 /// "deg", which UDUNITS does not know, as "degree".
@@ -186,11 +231,11 @@ double parse_quantity(std::string_view text, const Quantity& expected) {
       throw InputError(fmt::format("{} has a control character in its unit", in_quotes(text)));
   if (unit.size() > longest_unit)
     throw InputError(fmt::format("the unit of {} is too long to be one", in_quotes(text)));
-  if (!numbers_are_exponents(unit))
-    throw InputError(fmt::format(
-        "the unit {} has a number that is not a small exponent: write the number first, then the "
-        "unit alone, such as \"{}\"",
-        in_quotes(unit), expected.example));
+  if (!is_product_of_names(unit))
+    throw InputError(
+        fmt::format("the unit {} is not a product of units with small exponents, such as \"kg m "
+                    "s^-2\": write the number first, then the unit alone, such as \"{}\"",
+                    in_quotes(unit), expected.example));
 
   const double factor = factor_to_si(unit, expected);
   // Factors such as 1000 and 1/1000 come from UDUNITS with a rounding error.

@@ -33,10 +33,11 @@ inline constexpr Quantity number{"a", "plain number", "", "0.49"};
 /// by the whole number n, so that "17 mm" is exactly the double 0.017. The text must have the
 /// dimension of `expected`, which must not be a plain number.
 ///
-/// Throws InputError that names the fault and an example: no number, no unit, a number within the
-/// unit ("3 mm 2"), an unknown unit, an offset or logarithmic one ("degC", "m @ 3"), another
-/// dimension (also the reciprocal, which UDUNITS would convert), not finite. Throws FileError if
-/// UDUNITS' database of units cannot be read. Not thread-safe, as UDUNITS is not.
+/// Throws InputError that names the fault and an example: no number, no unit, a unit that is not
+/// a product of names with exponents ("mm 2", "m @ 3", "lg(re mW)"), an unknown unit, an offset one
+/// ("degC"), another dimension (also the reciprocal, which UDUNITS would convert), not finite.
+/// Throws FileError if UDUNITS' database of units cannot be read. Not thread-safe, as UDUNITS is
+/// not.
 double parse_quantity(std::string_view text, const Quantity& expected);
 
 /// The shortest decimal that reads back as the same double: at most 17 significant digits.

@@ -101,7 +101,7 @@ const BadCase values[]{
     {"MagnetizationInTesla", "\"75 kA/m\"", "\"0.09 T\"", "19:17",
      "'T' is not a unit of a magnetization"},
     {"UnknownUnit", "\"16 mm\"", "\"16 milimeter\"", "24:10", "unknown unit 'milimeter'"},
-    {"OffsetUnit", "\"16 mm\"", "\"16 mm @ 3\"", "24:10", "not a small exponent"},
+    {"OffsetUnit", "\"16 mm\"", "\"16 mm @ 3\"", "24:10", "is not a product of units"},
     {"ReciprocalUnit", "\"16 mm\"", "\"16 mm-1\"", "24:10", "'mm-1' is not a unit of a length"},
     {"AngleWithoutUnit", "\"30 deg\"", "\"30\"", "25:11",
      "'30' has no unit: write an angle, such as \"30 deg\""},

@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <random>
 #include <string>
 #include <string_view>
 
 #include "case_texts.h"
 #include "compare/case.h"
+#include "compare/units.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -99,6 +101,26 @@ TEST(MutatedCases, AreReadOrRefusedWithAPlace) {
   // Both happen often: comments, blanks and digits can change, keys and quotes cannot.
   EXPECT_GT(read, 1000);
   EXPECT_GT(refused, 10000);
+}
+
+TEST(RandomQuantities, AreFiniteOrRefused) {
+  constexpr std::array<std::string_view, 40> parts{
+      "1",     "3",  "0", "7.5", "-",     "+",    ".",   "e",   "e3",  " ",
+      "m",     "mm", "N", "k",   "Pa",    "s",    "kg",  "deg", "rad", "/",
+      "*",     "**", "^", "^-2", "-1",    "2",    "(",   ")",   "@",   "since",
+      "lg(re", "°",  "µ", "²",   "lb(re", "degC", "nan", "inf", "%",   "per"};
+  std::mt19937 random(7);
+  int read = 0;
+  for (int i = 0; i < 100000; ++i) {
+    std::string text(parts[random() % 4]);
+    for (std::size_t n = 1 + random() % 6; n > 0; --n) text += parts[random() % parts.size()];
+    try {
+      ASSERT_TRUE(std::isfinite(parse_quantity(text, quantity::length))) << text;
+      ++read;
+    } catch (const InputError&) {
+    }  // any other exception ends the test
+  }
+  EXPECT_GT(read, 100);
 }
 
 }  // namespace
