@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/commands.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <system_error>
+
+#include "compare/case.h"
+#include "compare/errors.h"
+#include "compare/field_grid.h"
+#include "compare/output_folder.h"
+#include "compare/provenance.h"
+#include "compare/registry.h"
+#include "compare/results.h"
+#include "compare/run.h"
+#include "compare/table.h"
+#include "compare/vtk/output.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One line of stderr that is written over and over, if stderr is a terminal; nothing in the first
+/// two seconds.
+class ProgressLine {
+ public:
+  ProgressLine() = default;
+  ~ProgressLine() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  Progress callback() {
+    if (isatty(STDERR_FILENO) == 0) return {};
+    return [this](const std::string& text) { show(text); };
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void show(const std::string& text) {
+    using namespace std::chrono_literals;
+    const auto now = Clock::now();
+    if (now - start_ < 2s || now - last_ < 100ms) return;
+    fmt::print(stderr, "\r\033[K{}", text);
+    std::fflush(stderr);
+    last_ = now;
+    shown_ = true;
+  }
+
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_ = start_;
+  bool shown_ = false;
+};
+
+/// stdout is the result: that it cannot be written is an error.
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    throw FileError(std::string("cannot write to the standard output: ") + std::strerror(errno));
+}
+
+/// All cases, or one InputError with the faults of all files.
+std::vector<Case> read_cases(const std::vector<fs::path>& files) {
+  std::vector<Case> cases;
+  std::string faults;
+  for (const fs::path& file : files) {
+    try {
+      cases.push_back(read_case(file));
+    } catch (const InputError& error) {
+      faults += (faults.empty() ? "" : "\n") + std::string(error.what());
+    }
+  }
+  if (!faults.empty()) throw InputError(faults);
+  std::map<std::string, fs::path> file_of;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto [first, added] = file_of.emplace(cases[i].name, files[i]);
+    if (!added)
+      throw InputError(
+          fmt::format("`{}` and `{}` both have the name \"{}\": the results of one "
+                      "would replace those of the other; rename one",
+                      first->second.string(), files[i].string(), cases[i].name));
+  }
+  return cases;
+}
+
+ExitCode run_one(const Case& problem, OutputFolder& folder, const std::string& command) {
+  ProgressLine line;
+  const Progress progress = line.callback();
+  const CaseResult result = run(problem, mechanics_models(), field_models(), progress);
+  const std::vector<Comparison> comparisons = compare_models(result);
+  const auto grid = sample_field(result, field_models(), progress);
+  const Provenance origin = provenance(command);
+  write_text(folder.path() / "case.toml", to_toml(problem));
+  write_results(result, comparisons, origin, folder.path());
+  vtk::write_vtk(result, grid, origin, folder.path() / "vtk");
+  folder.commit();
+  print(table(result, comparisons));
+  return all_solved(result) ? ExitCode::pass : ExitCode::solver;
+}
+
+/// The folder of the shipped cases: installed beside the program, or the build tree's sources.
+std::optional<fs::path> shipped_cases() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return std::nullopt;
+  for (const char* data : {CILIAVAL_INSTALLED_DATA, CILIAVAL_SOURCE_DATA}) {
+    const fs::path folder = (program.parent_path() / data / "cases").lexically_normal();
+    if (fs::is_directory(folder, error)) return folder;
+  }
+  return std::nullopt;
+}
+
+std::string title_of(const fs::path& file) {
+  try {
+    return read_case(file).title;
+  } catch (const Error&) {
+    return "(cannot be read: see `ciliaval validate`)";
+  }
+}
+
+std::string list_of_cases() {
+  const auto folder = shipped_cases();
+  if (!folder) return "Shipped cases: none found beside the program\n";
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(*folder))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::string text = fmt::format("Shipped cases, in {}\n", folder->string());
+  for (const fs::path& file : files)
+    text += fmt::format("  {:<28} {}\n", file.lexically_relative(*folder).string(), title_of(file));
+  return text;
+}
+
+}  // namespace
+
+ExitCode run_cases(const std::vector<fs::path>& files, const fs::path& directory,
+                   const std::string& command) {
+  const std::vector<Case> cases = read_cases(files);
+  std::vector<OutputFolder> folders;
+  folders.reserve(cases.size());
+  for (const Case& problem : cases) folders.emplace_back(directory, problem.name);
+  ExitCode code = ExitCode::pass;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const ExitCode one = run_one(cases[i], folders[i], command);
+    if (one != ExitCode::pass) code = one;
+    print(fmt::format("Results: {}\n{}", folders[i].target().string(),
+                      i + 1 < cases.size() ? "\n" : ""));
+  }
+  return code;
+}
+
+void validate_cases(const std::vector<fs::path>& files) {
+  const std::vector<Case> cases = read_cases(files);
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    print(
+        fmt::format("{}: case \"{}\" is valid: {} load steps, {} sensors, mechanics {}, fields "
+                    "{}\n",
+                    files[i].string(), cases[i].name, cases[i].load_path.size(),
+                    cases[i].sensors.size(), cases[i].mechanics.size(), cases[i].fields.size()));
+}
+
+void list() {
+  std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
+  for (const MechanicsEntry& entry : mechanics_models())
+    text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
+  text += "\nField models\n";
+  for (const FieldEntry& entry : field_models())
+    text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
+  text +=
+      "\nLoads\n"
+      "  contact    horizontal force that stays at a height while the cilium slides under it\n"
+      "  flow       horizontal force per unit of current height: drag\n"
+      "  section    dead force on one material cross-section\n"
+      "  dead       dead force per unit of reference length\n\n";
+  print(text + list_of_cases());
+}
+
+std::string version_line() {
+  const Provenance origin = provenance("");
+  return fmt::format("ciliaval {} (git {})", origin.version, origin.git);
+}
+
+}  // namespace ciliaval::compare

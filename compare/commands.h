@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ciliaval::compare {
+
+/// What the program returns.
+enum class ExitCode {
+  pass = 0,
+  usage = 2,        ///< the command line or a case file cannot be used
+  solver = 3,       ///< a model did not converge; the results of the others are written
+  input_output = 4  ///< a file could not be read or written
+};
+
+/// `ciliaval run`: reads and checks all case files and output folders before anything runs, then
+/// runs each case, writes its results to DIRECTORY/name and its table to stdout. `command` is the
+/// command line, for the provenance. Throws InputError (also if two cases have the same name) and
+/// FileError.
+ExitCode run_cases(const std::vector<std::filesystem::path>& files,
+                   const std::filesystem::path& directory, const std::string& command);
+
+/// `ciliaval validate`: reads and checks, and says so on stdout. Throws InputError with the faults
+/// of all files, FileError.
+void validate_cases(const std::vector<std::filesystem::path>& files);
+
+/// `ciliaval list`: models, loads and shipped cases, to stdout.
+void list();
+
+/// "ciliaval 0.1.0 (git …)"
+std::string version_line();
+
+}  // namespace ciliaval::compare

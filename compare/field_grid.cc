@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/field_grid.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <memory>
+
+#include "compare/results.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+bool converged_anywhere(const MechanicsRun& run) {
+  return std::any_of(run.result.steps.begin(), run.result.steps.end(),
+                     [](const MechanicsStep& step) { return step.deformation.has_value(); });
+}
+
+const MechanicsRun* mechanics_to_draw(const CaseResult& result) {
+  const MechanicsRun* chosen = nullptr;
+  for (const MechanicsRun& run : result.mechanics) {
+    if (!converged_anywhere(run)) continue;
+    if (!run.result.undeformed.body || chosen == nullptr || chosen->result.undeformed.body)
+      chosen = &run;
+  }
+  return chosen;
+}
+
+ModelOptions with_closed_forms(ModelOptions options) {
+  options.line.method = analytic::Method::closed_form;
+  options.volume.method = analytic::Method::closed_form;
+  return options;
+}
+
+void lay_out(FieldGrid& grid, const CaseResult& result, const MechanicsRun& run) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& sensor : result.problem.sensors) box.extend(sensor);
+  for (const MechanicsStep& step : run.result.steps)
+    if (step.deformation)
+      for (const double S : output_points(step.deformation->centreline))
+        box.extend(step.deformation->centreline.at(S).position);
+  const Vector3 margin = Vector3::Constant(2 * result.problem.cilium.diameter);
+  grid.origin = box.min() - margin;
+  const Vector3 size = box.max() + margin - grid.origin;
+  for (Eigen::Index i = 0; i < 3; ++i)
+    grid.spacing[i] = size[i] / (grid.points[static_cast<std::size_t>(i)] - 1);
+}
+
+/// B at some points. A model refuses all of them if B diverges at one: then each is asked alone.
+void sample(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
+            std::span<const Vector3> points, FieldGrid::Step& step) {
+  const auto add = [&](const Vector3& B) {
+    const bool valid = B.allFinite();
+    step.B.push_back(valid ? B : Vector3::Zero());
+    step.valid.push_back(valid ? 1 : 0);
+  };
+  try {
+    for (const Vector3& B : model.field(cilium, deformation, points).B) add(B);
+  } catch (const Error&) {
+    if (points.size() == 1) {
+      step.B.emplace_back(Vector3::Zero());
+      step.valid.push_back(0);
+    } else {
+      for (const Vector3& point : points)
+        sample(model, cilium, deformation, std::span(&point, 1), step);
+    }
+  }
+}
+
+FieldGrid::Step sample_grid(const FieldGrid& grid, const FieldModel& model, const Cilium& cilium,
+                            const Deformation& deformation) {
+  FieldGrid::Step step;
+  std::vector<Vector3> row;
+  for (int k = 0; k < grid.points[2]; ++k)
+    for (int j = 0; j < grid.points[1]; ++j) {
+      row.clear();
+      for (int i = 0; i < grid.points[0]; ++i)
+        row.emplace_back(grid.origin + grid.spacing.cwiseProduct(Vector3(i, j, k)));
+      sample(model, cilium, deformation, row, step);
+    }
+  return step;
+}
+
+}  // namespace
+
+std::optional<FieldGrid> sample_field(const CaseResult& result, std::span<const FieldEntry> fields,
+                                      const Progress& progress) {
+  const MechanicsRun* run = mechanics_to_draw(result);
+  const std::vector<std::string>& asked = result.problem.fields;
+  std::unique_ptr<FieldModel> model;
+  FieldGrid grid;
+  for (const FieldEntry& entry : fields) {
+    if (std::find(asked.begin(), asked.end(), entry.id) == asked.end()) continue;
+    auto candidate = entry.make(with_closed_forms(result.problem.options));
+    if (candidate->needs_body()) continue;
+    model = std::move(candidate);
+    grid.field = entry.id;
+  }
+  if (run == nullptr || !model) return std::nullopt;
+  grid.mechanics = run->model;
+  lay_out(grid, result, *run);
+  for (const MechanicsStep& step : run->result.steps) {
+    grid.steps.emplace_back();
+    if (!step.deformation) continue;
+    if (progress) progress("field grid: step " + std::to_string(grid.steps.size()));
+    grid.steps.back() = sample_grid(grid, *model, result.problem.cilium, *step.deformation);
+  }
+  return grid;
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace ciliaval::compare {
+
+/// The results of one case, never half-written: everything goes into the temporary folder
+/// DIR/.NAME.PID.tmp, which commit() exchanges with DIR/NAME in one step. Whenever the program
+/// ends, DIR/NAME holds either the old results or the new ones, complete.
+class OutputFolder {
+ public:
+  /// Makes DIR and the temporary folder, and removes temporary folders of the same name that
+  /// processes which are no longer alive have left. Throws FileError with the path and the reason
+  /// if they cannot be made and written.
+  OutputFolder(std::filesystem::path directory, std::string name);
+  /// Removes the temporary folder unless it was committed.
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  OutputFolder(OutputFolder&& other) noexcept;
+  OutputFolder& operator=(OutputFolder&&) = delete;
+
+  /// Where to write.
+  const std::filesystem::path& path() const { return temporary_; }
+  /// DIR/NAME, where the results will be.
+  const std::filesystem::path& target() const { return target_; }
+
+  /// Puts the new results in the place of the old ones. Throws FileError if that cannot be done;
+  /// the old ones are then untouched.
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;  ///< empty once committed
+};
+
+}  // namespace ciliaval::compare

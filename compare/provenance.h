@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace ciliaval::compare {
+
+/// Where a result comes from.
+struct Provenance {
+  std::string version;                           ///< of CiliaVal
+  std::string git;                               ///< `git describe` of the sources, or "unknown"
+  std::map<std::string, std::string> libraries;  ///< name → version
+  std::string command;                           ///< as it was called
+  std::string date;                              ///< ISO 8601, UTC
+};
+
+/// This program's provenance, now. `command` is handed through.
+Provenance provenance(std::string command);
+
+}  // namespace ciliaval::compare

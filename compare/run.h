@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compare/case.h"
+#include "compare/registry.h"
+#include "problem/field_model.h"
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::compare {
+
+/// What one mechanics model made of the load path.
+struct MechanicsRun {
+  std::string model;       ///< id
+  MechanicsResult result;  ///< one step for each load; if the model threw, all of them failed with
+                           ///< its message
+};
+
+/// B of one pair of models at one step.
+struct FieldStep {
+  Field field;                          ///< B at the sensors, T; empty if it failed
+  std::vector<Vector3> dB;              ///< ΔB = B − B(undeformed), T
+  std::vector<Vector3> dB_uncertainty;  ///< sum of the two uncertainties, T; empty if unknown
+  double seconds = 0;                   ///< wall time
+  std::string failure;                  ///< why there is no field; empty if there is one
+};
+
+/// What one field model made of the deformations of one mechanics model.
+struct FieldRun {
+  std::string mechanics;  ///< ids
+  std::string field;
+  FieldStep undeformed;                         ///< its ΔB is zero
+  std::vector<std::optional<FieldStep>> steps;  ///< none where the mechanics did not converge
+
+  std::string name() const { return mechanics + "/" + field; }
+};
+
+/// Results of a case. Both lists are in the order of the registry, the less detailed model first;
+/// field runs go by mechanics first. In a comparison the later one is the reference.
+struct CaseResult {
+  Case problem;
+  std::vector<MechanicsRun> mechanics;
+  std::vector<FieldRun> fields;
+};
+
+/// Runs the models that the case asks for: each mechanics model along the load path, then each
+/// field model on the undeformed cilium and on every converged step (a model that needs a body only
+/// where there is one). What one model throws, or a result that is not finite, is recorded as its
+/// failure and does not stop the others. Throws InputError if the case names a model that is not
+/// among the entries.
+CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
+               std::span<const FieldEntry> fields, const Progress& progress = {});
+
+/// Whether nothing failed. A cilium that slipped off is a result, not a failure.
+bool all_solved(const CaseResult& result);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/vtk/datasets.h"
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkIntArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkStringArray.h>
+#include <vtkTriQuadraticHexahedron.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <array>
+#include <string>
+
+#include "compare/results.h"
+
+namespace ciliaval::compare::vtk {
+namespace {
+
+/// A named array that grows tuple by tuple; its unit goes to the data set's field data.
+class Column {
+ public:
+  Column(const char* name, int components, const char* unit) : unit_(unit) {
+    array_->SetName(name);
+    array_->SetNumberOfComponents(components);
+  }
+  Column(const std::string& name, int components, const char* unit)
+      : Column(name.c_str(), components, unit) {}
+
+  void add(double value) { array_->InsertNextValue(value); }
+  void add(const Vector3& v) { array_->InsertNextTuple(v.data()); }
+  void add_symmetric(const Matrix3& s) {
+    const std::array<double, 6> voigt{s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
+    array_->InsertNextTuple(voigt.data());
+  }
+
+  void attach(vtkDataSet& data) const {
+    data.GetPointData()->AddArray(array_);
+    vtkFieldData* fields = data.GetFieldData();
+    auto* units = vtkStringArray::SafeDownCast(fields->GetAbstractArray("units"));
+    if (units == nullptr) {
+      vtkNew<vtkStringArray> made;
+      made->SetName("units");
+      fields->AddArray(made);
+      units = made;
+    }
+    units->InsertNextValue(std::string(array_->GetName()) + ": " + unit_);
+  }
+
+ private:
+  vtkNew<vtkDoubleArray> array_;
+  std::string unit_;
+};
+
+vtkNew<vtkPoints> double_points() {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  return points;
+}
+
+void add_point(vtkPoints& points, const Vector3& x) {
+  points.InsertNextPoint(x.x(), x.y(), x.z());
+}
+
+/// Points with one vertex cell each.
+vtkSmartPointer<vtkPolyData> vertices(const std::vector<Vector3>& positions) {
+  const vtkNew<vtkPoints> points = double_points();
+  const vtkNew<vtkCellArray> cells;
+  for (const Vector3& x : positions) {
+    const vtkIdType id = points->GetNumberOfPoints();
+    add_point(*points, x);
+    cells->InsertNextCell(1, &id);
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetVerts(cells);
+  return data;
+}
+
+/// Value at ξ of what is given at the nodes of a cell.
+template <class T>
+T interpolate(const LagrangeBasis& nodes, const std::vector<T>& nodal, const Vector3& xi, T value) {
+  const std::size_t n = nodes.size();
+  std::array<std::vector<double>, 3> basis;
+  for (std::size_t a = 0; a < 3; ++a) {
+    basis[a].resize(n);
+    nodes.values(xi[static_cast<Eigen::Index>(a)], basis[a]);
+  }
+  std::size_t node = 0;
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = 0; i < n; ++i, ++node)
+        value += basis[0][i] * basis[1][j] * basis[2][k] * nodal[node];
+  return value;
+}
+
+}  // namespace
+
+vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
+  const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
+  const double* coordinates = hexahedron->GetParametricCoords();  // VTK's order of the 27 points
+  const vtkNew<vtkPoints> points = double_points();
+  Column displacement("displacement", 3, "m");
+  Column jacobian("J", 1, "1");
+  Column stress("cauchy_stress", 6, "Pa");
+  Column magnetization("magnetization", 3, "A/m");
+  const vtkNew<vtkIntArray> material;
+  material->SetName("MaterialIDs");
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  bool with_jacobian = true;
+  bool with_stress = true;
+  for (const SolidCell& cell : body.cells) {
+    with_jacobian = with_jacobian && !cell.jacobian.empty();
+    with_stress = with_stress && !cell.cauchy_stress.empty();
+  }
+  for (const SolidCell& cell : body.cells) {
+    std::array<vtkIdType, 27> ids{};
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const Vector3 xi(coordinates + 3 * i);
+      const SolidPoint point = evaluate(body.nodes, cell, xi);
+      const Matrix3& F = point.deformation_gradient;
+      ids[i] = points->GetNumberOfPoints();
+      add_point(*points, point.reference);
+      displacement.add(Vector3(point.current - point.reference));
+      magnetization.add(Vector3(F * cell.magnetization / F.determinant()));
+      if (with_jacobian) jacobian.add(interpolate(body.nodes, cell.jacobian, xi, 0.0));
+      if (with_stress)
+        stress.add_symmetric(
+            interpolate<Matrix3>(body.nodes, cell.cauchy_stress, xi, Matrix3::Zero()));
+    }
+    grid->InsertNextCell(VTK_TRIQUADRATIC_HEXAHEDRON, static_cast<vtkIdType>(ids.size()),
+                         ids.data());
+    material->InsertNextValue(static_cast<int>(cell.segment));
+  }
+  grid->SetPoints(points);
+  grid->GetCellData()->AddArray(material);
+  displacement.attach(*grid);
+  if (with_jacobian) jacobian.attach(*grid);
+  if (with_stress) stress.attach(*grid);
+  magnetization.attach(*grid);
+  return grid;
+}
+
+vtkSmartPointer<vtkPolyData> rod_polyline(const Cilium& cilium, const Centreline& centreline) {
+  const vtkNew<vtkPoints> points = double_points();
+  const vtkNew<vtkCellArray> line;
+  Column arclength("S", 1, "m");
+  Column radius("radius", 1, "m");
+  Column displacement("displacement", 3, "m");
+  Column d1("d1", 3, "1");
+  Column d2("d2", 3, "1");
+  Column d3("d3", 3, "1");
+  Column theta("theta", 1, "rad");
+  Column kappa("kappa", 1, "1/m");
+  Column curvature("curvature", 3, "1/m");
+  Column force("section_force", 3, "N");
+  Column moment("section_moment", 3, "N m");
+  const vtkNew<vtkIntArray> segment;
+  segment->SetName("segment");
+  const std::vector<double> material_points = output_points(centreline);
+  line->InsertNextCell(static_cast<int>(material_points.size()));
+  for (const double S : material_points) {
+    const CentrelinePoint p = centreline.at(S);
+    line->InsertCellPoint(points->GetNumberOfPoints());
+    add_point(*points, p.position);
+    arclength.add(S);
+    radius.add(cilium.radius());
+    displacement.add(Vector3(p.position - S * Vector3::UnitZ()));
+    d1.add(Vector3(p.rotation * Vector3::UnitX()));
+    d2.add(Vector3(p.rotation * Vector3::UnitY()));
+    d3.add(p.normal());
+    theta.add(p.theta());
+    kappa.add(p.bending_curvature());
+    curvature.add(p.curvature);
+    force.add(p.forces.force);
+    moment.add(p.forces.moment);
+    segment->InsertNextValue(static_cast<int>(cilium.segment_at(S)));
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetLines(line);
+  for (const Column* column : {&arclength, &radius, &displacement, &d1, &d2, &d3, &theta, &kappa,
+                               &curvature, &force, &moment})
+    column->attach(*data);
+  data->GetPointData()->AddArray(segment);
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& centreline,
+                                     analytic::PushForward push_forward) {
+  constexpr int slices = 64;
+  const std::vector<double> ends = cilium.interfaces();
+  std::vector<Vector3> positions;
+  Column moment("moment", 3, "A m^2");
+  for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
+    const double M = cilium.segments[i].magnetization;
+    if (M == 0) continue;
+    const double dS = (ends[i + 1] - ends[i]) / slices;
+    for (int k = 0; k < slices; ++k) {
+      const double S = ends[i] + k * dS;
+      const CentrelinePoint middle = centreline.at(S + dS / 2);
+      positions.push_back(middle.position);
+      const Vector3 axis = push_forward == analytic::PushForward::F
+                               ? Vector3(centreline.at(S + dS).position - centreline.at(S).position)
+                               : Vector3(middle.normal() * dS);
+      moment.add(Vector3(cilium.area() * M * axis));
+    }
+  }
+  auto data = vertices(positions);
+  moment.attach(*data);
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> sensors(const CaseResult& result, std::size_t step) {
+  auto data = vertices(result.problem.sensors);
+  for (const FieldRun& run : result.fields) {
+    if (!run.steps[step] || !run.steps[step]->failure.empty()) continue;
+    const std::string pair = run.mechanics + "_" + run.field;
+    Column B("B_" + pair, 3, "T");
+    Column dB("dB_" + pair, 3, "T");
+    for (const Vector3& value : run.steps[step]->field.B) B.add(value);
+    for (const Vector3& value : run.steps[step]->dB) dB.add(value);
+    B.attach(*data);
+    dB.attach(*data);
+  }
+  return data;
+}
+
+vtkSmartPointer<vtkImageData> field_image(const FieldGrid& grid, const FieldGrid::Step& step) {
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(grid.points.data());
+  image->SetOrigin(grid.origin.x(), grid.origin.y(), grid.origin.z());
+  image->SetSpacing(grid.spacing.x(), grid.spacing.y(), grid.spacing.z());
+  Column B("B", 3, "T");
+  for (const Vector3& value : step.B) B.add(value);
+  B.attach(*image);
+  const vtkNew<vtkUnsignedCharArray> valid;
+  valid->SetName("valid");
+  for (const std::uint8_t flag : step.valid) valid->InsertNextValue(flag);
+  image->GetPointData()->AddArray(valid);
+  return image;
+}
+
+}  // namespace ciliaval::compare::vtk

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "synthetic.h"
+
+namespace ciliaval {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_text;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+struct Outcome {
+  int code = -1;
+  std::string out;
+  std::string err;
+};
+
+/// Runs the program; its stdout and stderr go to files, so neither is a terminal.
+Outcome ciliaval(const fs::path& folder, const std::string& arguments) {
+  const fs::path out = folder / "stdout.txt";
+  const fs::path err = folder / "stderr.txt";
+  const std::string command = "cd '" + folder.string() + "' && '" CILIAVAL_PROGRAM "' " +
+                              arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+}
+
+/// A case that the rods solve in a moment.
+fs::path write_case(const fs::path& folder, const std::string& name, const std::string& models) {
+  const fs::path file = folder / (name + ".toml");
+  std::ofstream(file) << "[case]\nname = \"" << name << R"("
+title = "A quick one"
+[cilium]
+diameter = "3 mm"
+[[cilium.segment]]
+name = "base"
+length = "3 mm"
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.49
+[[cilium.segment]]
+name = "magnet"
+length = "17 mm"
+young_modulus = "3 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+[load]
+type = "contact"
+force = ["1 mN", "9 mN"]
+height = "16 mm"
+azimuth = "30 deg"
+[sensor]
+position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
+[models]
+)" << models;
+  return file;
+}
+
+constexpr const char* rods =
+    "mechanics = [\"elastica\", \"beam\"]\nfields = [\"line\", \"volume\"]\n";
+
+TEST(CommandLine, WrongUsageIsExitCode2) {
+  const TemporaryFolder folder;
+  for (const char* arguments : {"", "cross", "run", "run none.toml", "run --colour", "validate",
+                                "validate none.toml", "list everything"}) {
+    const Outcome outcome = ciliaval(folder.path(), arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_NE(outcome.err, "") << arguments;
+  }
+}
+
+TEST(CommandLine, HelpTeachesByExample) {
+  const TemporaryFolder folder;
+  const Outcome help = ciliaval(folder.path(), "--help");
+  EXPECT_EQ(help.code, 0);
+  EXPECT_THAT(help.out, HasSubstr("ciliaval run my.toml"));
+  EXPECT_THAT(help.out, HasSubstr("Exit codes"));
+  EXPECT_EQ(ciliaval(folder.path(), "run --help").code, 0);
+  const Outcome version = ciliaval(folder.path(), "--version");
+  EXPECT_EQ(version.code, 0);
+  EXPECT_THAT(version.out, HasSubstr("ciliaval "));
+}
+
+TEST(CommandLine, ListsModelsLoadsAndShippedCases) {
+  const TemporaryFolder folder;
+  const Outcome list = ciliaval(folder.path(), "list");
+  EXPECT_EQ(list.code, 0);
+  for (const char* word : {"elastica", "beam", "solid", "dipole", "line", "volume", "mesh",
+                           "contact", "flow", "paper/fig3b.toml"})
+    EXPECT_THAT(list.out, HasSubstr(word));
+}
+
+TEST(CommandLine, ValidatesWithoutRunning) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "good", rods);
+  write_case(folder.path(), "bad", "mechanics = [\"elastika\"]\n");
+  const Outcome good = ciliaval(folder.path(), "validate good.toml");
+  EXPECT_EQ(good.code, 0);
+  EXPECT_THAT(good.out, HasSubstr("\"good\" is valid"));
+  EXPECT_FALSE(fs::exists(folder.path() / "results"));
+  const Outcome bad = ciliaval(folder.path(), "validate good.toml bad.toml");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("bad.toml:"));
+}
+
+// 9 mN is more than the paper's cilium bears (5.862 mN by the paper's model): a result, exit code
+// 0.
+TEST(CommandLine, RunsACaseAndWritesItsResults) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "quick", rods);
+  const Outcome run = ciliaval(folder.path(), "run quick.toml -o out");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_EQ(run.err, "");  // progress goes to a terminal only
+  EXPECT_THAT(run.out, HasSubstr("elastica - beam"));
+  const fs::path results = folder.path() / "out" / "quick";
+  const auto summary = nlohmann::json::parse(read_text(results / "summary.json"));
+  const auto& steps = summary["steps"];
+  EXPECT_EQ(steps[0]["mechanics"]["elastica"]["status"], "converged");
+  EXPECT_EQ(steps[1]["mechanics"]["elastica"]["status"], "slipped_off");
+  EXPECT_NEAR(steps[1]["mechanics"]["elastica"]["slip_off_force"].get<double>(), 5.862e-3, 0.5e-6);
+  EXPECT_TRUE(steps[0]["fields"].contains("beam/volume"));
+  EXPECT_THAT(summary["provenance"]["command"].get<std::string>(),
+              testing::StrEq("ciliaval run quick.toml -o out"));
+  EXPECT_TRUE(fs::exists(results / "elastica_0000.csv"));
+  EXPECT_TRUE(fs::exists(results / "vtk" / "field_beam_volume.pvd"));
+  // What was run is written back and can be run again.
+  EXPECT_EQ(ciliaval(folder.path(), "validate out/quick/case.toml").code, 0);
+}
+
+TEST(CommandLine, RefusesTwoCasesOfOneNameBeforeAnythingRuns) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "quick", rods);
+  fs::copy_file(folder.path() / "quick.toml", folder.path() / "copy.toml");
+  const Outcome run = ciliaval(folder.path(), "run quick.toml copy.toml");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_THAT(run.err, HasSubstr("both have the name"));
+  EXPECT_FALSE(fs::exists(folder.path() / "results"));
+}
+
+TEST(CommandLine, AnOutputThatCannotBeWrittenIsExitCode4) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "quick", rods);
+  const Outcome run = ciliaval(folder.path(), "run quick.toml -o quick.toml/results");
+  EXPECT_EQ(run.code, 4);
+  EXPECT_THAT(run.err, HasSubstr("quick.toml/results"));
+  const std::string full =
+      "cd '" + folder.path().string() + "' && '" CILIAVAL_PROGRAM "' list >/dev/full 2>stderr.txt";
+  const int status = std::system(full.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 4);
+  EXPECT_THAT(read_text(folder.path() / "stderr.txt"), HasSubstr("standard output"));
+}
+
+}  // namespace
+}  // namespace ciliaval

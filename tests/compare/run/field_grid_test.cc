@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/field_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "problem/error.h"
+#include "synthetic.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using test::arc;
+using test::converged;
+using test::field_entry;
+using test::mechanics_entry;
+using test::paper_case;
+
+constexpr double L = 20e-3;
+
+MechanicsEntry bend(const std::string& id, bool body) {
+  return mechanics_entry(id, [body](const Load& load) {
+    MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
+    if (body) step.deformation->body = std::make_shared<SolidBody>(test::BentBricks::body());
+    return step;
+  });
+}
+
+Vector3 linear(const Deformation&, const Vector3& x) {
+  return {x.x(), 2 * x.y(), 3 * x.z()};
+}
+
+// Oracle: a field B = (x, 2y, 3z), read back at each grid point.
+TEST(FieldGrid, IsTheMostDetailedRodAndFieldThatNeedsNoBody) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"rod", "beam", "solid"};
+  c.fields = {"line", "volume", "mesh"};
+  const std::vector<MechanicsEntry> mechanics{bend("rod", false), bend("beam", false),
+                                              bend("solid", true)};
+  const std::vector<FieldEntry> fields{
+      field_entry("line",
+                  [](const Deformation&, const Vector3&) -> Vector3 {
+                    return {9, 9, 9};
+                  }),
+      field_entry("volume", linear), field_entry("mesh", linear, {}, true)};
+  const auto grid = sample_field(run(c, mechanics, fields), fields);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->mechanics, "beam");
+  EXPECT_EQ(grid->field, "volume");
+  const auto& step = *grid->steps.at(0);
+  ASSERT_EQ(step.B.size(), 33u * 33 * 49);
+  const std::size_t i = 5 + 33 * (7 + 33 * 11);
+  const Vector3 x = grid->origin + grid->spacing.cwiseProduct(Vector3(5, 7, 11));
+  EXPECT_LT((step.B[i] - linear({}, x)).norm(), 1e-15);
+  // The box holds the sensor and the bent cilium.
+  const Vector3 top = grid->origin + grid->spacing.cwiseProduct(Vector3(32, 32, 48));
+  const Vector3 tip = arc(L, 3e-3, Vector3::UnitX(), 20).at(L).position;
+  for (const Vector3& point : {tip, c.sensors[0]}) {
+    EXPECT_TRUE((point.array() > grid->origin.array()).all());
+    EXPECT_TRUE((point.array() < top.array()).all());
+  }
+}
+
+TEST(FieldGrid, MasksThePointsAtWhichTheModelHasNoField) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"rod"};
+  c.fields = {"volume"};
+  const std::vector<MechanicsEntry> mechanics{bend("rod", false)};
+  const std::vector<FieldEntry> fields{
+      field_entry("volume", [](const Deformation&, const Vector3& x) -> Vector3 {
+        if (x.z() > 10e-3 && x.x() > 0) throw InputError("B diverges here");
+        return {1, 1, 1};
+      })};
+  const auto grid = sample_field(run(c, mechanics, fields), fields);
+  ASSERT_TRUE(grid);
+  const auto& step = *grid->steps.at(0);
+  std::size_t point = 0;
+  std::size_t masked = 0;
+  for (int k = 0; k < 49; ++k)
+    for (int j = 0; j < 33; ++j)
+      for (int i = 0; i < 33; ++i, ++point) {
+        const Vector3 x = grid->origin + grid->spacing.cwiseProduct(Vector3(i, j, k));
+        const bool diverges = x.z() > 10e-3 && x.x() > 0;
+        EXPECT_EQ(step.valid[point], diverges ? 0 : 1);
+        EXPECT_EQ(step.B[point].x(), diverges ? 0 : 1);
+        masked += diverges ? 1 : 0;
+      }
+  EXPECT_GT(masked, 100u);
+}
+
+}  // namespace
+}  // namespace ciliaval::compare

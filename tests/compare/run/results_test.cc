@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "problem/error.h"
+#include "synthetic.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using nlohmann::json;
+using test::arc;
+using test::converged;
+using test::field_entry;
+using test::mechanics_entry;
+using test::paper_case;
+using test::read_text;
+using test::TemporaryFolder;
+
+constexpr double L = 20e-3;
+const Provenance origin{
+    "1.2.3", "abc", {{"VTK", "9.1.0"}}, "ciliaval run x.toml", "2025-01-02T03:04:05Z"};
+
+/// Two models; the second slips off at the second step, and its field fails at the first.
+CaseResult two_models() {
+  Case c = paper_case({1e-3, 2e-3});
+  c.mechanics = {"one", "two"};
+  c.fields = {"tip"};
+  const std::vector<MechanicsEntry> mechanics{
+      mechanics_entry("one",
+                      [](const Load& load) {
+                        return converged(load,
+                                         arc(L, 3e-3, Vector3::UnitX(), 1e4 * magnitude(load)),
+                                         1.0 / 3 * 1e-6);
+                      }),
+      mechanics_entry("two", [](const Load& load) {
+        if (magnitude(load) < 1.5e-3)
+          return converged(load, arc(L, 3e-3, Vector3::UnitX(), 1.1e4 * magnitude(load)));
+        MechanicsStep step;
+        step.load = load;
+        step.status = Status::slipped_off;
+        step.message = "slipped, \"off\"";
+        step.slip_off_force = 1.4e-3;
+        return step;
+      })};
+  const std::vector<FieldEntry> fields{
+      field_entry("tip", [](const Deformation& d, const Vector3&) -> Vector3 {
+        return d.centreline.at(d.centreline.length()).position / 3;
+      })};
+  return run(c, mechanics, fields);
+}
+
+std::vector<std::string> keys(const json& object) {
+  std::vector<std::string> result;
+  for (const auto& [key, value] : object.items()) result.push_back(key);
+  return result;
+}
+
+// Oracle: the contract of the summary, key by key.
+TEST(Summary, HasTheKeysOfTheContract) {
+  const CaseResult result = two_models();
+  const json summary = json::parse(summary_json(result, compare_models(result), origin));
+  EXPECT_EQ(summary["schema"], 1);
+  EXPECT_EQ(summary["case"], "paper");
+  EXPECT_THAT(keys(summary["provenance"]),
+              testing::UnorderedElementsAre("version", "git", "libraries", "command", "date"));
+  ASSERT_EQ(summary["steps"].size(), 2u);
+  const json& step = summary["steps"][0];
+  EXPECT_THAT(keys(step), testing::IsSupersetOf({"load", "mechanics", "fields"}));
+  EXPECT_EQ(step["load"],
+            json({{"type", "contact"}, {"force", 1e-3}, {"height", 16e-3}, {"azimuth", 0.0}}));
+  EXPECT_THAT(keys(step["mechanics"]["one"]),
+              testing::IsSupersetOf({"status", "message", "tip", "tip_angle", "tip_uncertainty",
+                                     "applied_force", "slip_off_force", "contact_arclength",
+                                     "unknowns", "centreline", "seconds", "iterations"}));
+  EXPECT_THAT(keys(step["fields"]["one/tip"]),
+              testing::IsSupersetOf({"B", "dB", "uncertainty", "seconds"}));
+  ASSERT_FALSE(summary["comparisons"].empty());
+  for (const json& comparison : summary["comparisons"])
+    EXPECT_THAT(
+        keys(comparison),
+        testing::IsSupersetOf({"step", "sensor", "quantity", "component", "model", "reference",
+                               "difference", "relative", "unit", "uncertainty", "verdict"}));
+}
+
+TEST(Summary, GivesEveryDoubleBackToTheLastBit) {
+  const CaseResult result = two_models();
+  const json summary = json::parse(summary_json(result, compare_models(result), origin));
+  const json& step = summary["steps"][1];
+  const Centreline& c = result.mechanics[0].result.steps[1].deformation->centreline;
+  const CentrelinePoint tip = c.at(L);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    EXPECT_EQ(step["mechanics"]["one"]["tip"][i].get<double>(), tip.position[k]);
+    EXPECT_EQ(step["fields"]["one/tip"]["B"][0][i].get<double>(), tip.position[k] / 3);
+    EXPECT_EQ(step["fields"]["one/tip"]["dB"][0][i].get<double>(),
+              result.fields[0].steps[1]->dB[0][k]);
+  }
+  EXPECT_EQ(step["mechanics"]["one"]["tip_angle"].get<double>(), tip.theta());
+  EXPECT_EQ(step["mechanics"]["one"]["tip_uncertainty"].get<double>(), 1.0 / 3 * 1e-6);
+}
+
+TEST(Summary, WritesWhatIsUndefinedAsNull) {
+  CaseResult result = two_models();
+  const json summary = json::parse(summary_json(result, compare_models(result), origin));
+  const json& slipped = summary["steps"][1]["mechanics"]["two"];
+  EXPECT_EQ(slipped["status"], "slipped_off");
+  EXPECT_EQ(slipped["message"], "slipped, \"off\"");
+  EXPECT_EQ(slipped["slip_off_force"], 1.4e-3);
+  EXPECT_TRUE(slipped["tip"].is_null());
+  EXPECT_TRUE(slipped["centreline"].is_null());
+  EXPECT_FALSE(summary["steps"][1]["fields"].contains("two/tip"));
+  EXPECT_TRUE(summary["steps"][0]["fields"]["one/tip"]["uncertainty"].is_null());
+  std::size_t undefined = 0;
+  for (const json& c : summary["comparisons"])
+    if (c["component"] == "y" && c["statistic"] == "rrmse") {
+      EXPECT_TRUE(c["relative"].is_null());
+      EXPECT_THAT(c["note"].get<std::string>(), testing::HasSubstr("vanishes"));
+      ++undefined;
+    }
+  EXPECT_EQ(undefined, 2u);  // B and dB of one pair
+  Comparison c;
+  c.difference = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(
+      json::parse(summary_json(result, {c}, origin))["comparisons"][0]["difference"].is_null());
+}
+
+std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+    if (line.ends_with(',')) rows.back().emplace_back();
+  }
+  return rows;
+}
+
+// Oracle: the arc in closed form; interpolation on 24 Chebyshev points is exact to rounding.
+TEST(CentrelineCsv, IsTheCurveAtEquidistantPointsAndBreaks) {
+  const double k = 40;
+  const auto rows = parse_csv(centreline_csv(arc(L, 3.01e-3, Vector3::UnitX(), k)));
+  EXPECT_EQ(rows[0][0].front(), '#');
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"S", "x", "y", "z", "theta", "kappa"}));
+  ASSERT_EQ(rows.size(), 2 + 201 + 1u);  // the joint is not one of the 201
+  bool at_joint = false;
+  for (std::size_t i = 2; i < rows.size(); ++i) {
+    const double S = std::stod(rows[i][0]);
+    at_joint = at_joint || S == 3.01e-3;
+    EXPECT_NEAR(std::stod(rows[i][1]), (1 - std::cos(k * S)) / k, 1e-15);
+    EXPECT_NEAR(std::stod(rows[i][2]), 0, 1e-15);
+    EXPECT_NEAR(std::stod(rows[i][3]), std::sin(k * S) / k, 1e-15);
+    EXPECT_NEAR(std::stod(rows[i][4]), k * S, 1e-12);
+    EXPECT_NEAR(std::stod(rows[i][5]), k, 1e-11);
+  }
+  EXPECT_TRUE(at_joint);
+  EXPECT_EQ(std::stod(rows.back()[0]), L);
+}
+
+TEST(ErrorsCsv, HoldsEveryComparisonWithTheSameFigures) {
+  const CaseResult result = two_models();
+  const auto comparisons = compare_models(result);
+  const auto rows = parse_csv(errors_csv(comparisons));
+  ASSERT_EQ(rows.size(), comparisons.size() + 1);
+  for (std::size_t i = 0; i < comparisons.size(); ++i) {
+    const auto& row = rows[i + 1];
+    ASSERT_EQ(row.size(), rows[0].size());
+    EXPECT_EQ(row[2], comparisons[i].quantity);
+    EXPECT_EQ(std::stod(row[7]), *comparisons[i].difference);
+    EXPECT_EQ(row[8].empty(), !comparisons[i].relative);
+    if (comparisons[i].relative) {
+      EXPECT_EQ(std::stod(row[8]), *comparisons[i].relative);
+    }
+    EXPECT_EQ(row[0].empty(), !comparisons[i].step);
+  }
+}
+
+TEST(ErrorsCsv, QuotesANoteWithACommaAndAQuote) {
+  Comparison c;
+  c.note = "one, \"two\"";
+  EXPECT_THAT(errors_csv({c}), testing::HasSubstr(",\"one, \"\"two\"\"\"\n"));
+}
+
+TEST(WriteResults, WritesTheFilesThatTheSummaryNames) {
+  const TemporaryFolder folder;
+  const CaseResult result = two_models();
+  write_results(result, compare_models(result), origin, folder.path());
+  const json summary = json::parse(read_text(folder.path() / "summary.json"));
+  EXPECT_EQ(summary["steps"][1]["mechanics"]["one"]["centreline"], "one_0001.csv");
+  std::size_t files = 0;
+  for (const json& step : summary["steps"])
+    for (const auto& [model, m] : step["mechanics"].items())
+      if (!m["centreline"].is_null()) {
+        EXPECT_THAT(read_text(folder.path() / m["centreline"].get<std::string>()),
+                    testing::HasSubstr("S,x,y,z,theta,kappa"));
+        ++files;
+      }
+  EXPECT_EQ(files, 3u);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "errors.csv"));
+}
+
+TEST(WriteText, SaysWhichFileAndWhyOnAFullDisk) {
+  try {
+    write_text("/dev/full", "text");
+    FAIL() << "the disk is full";
+  } catch (const FileError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("/dev/full"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("No space left"));
+  }
+}
+
+TEST(ThisProvenance, NamesTheLibrariesAndTheTimeInUtc) {
+  const Provenance p = provenance("ciliaval run a.toml");
+  EXPECT_THAT(p.date, testing::MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:]{8}Z"));
+  EXPECT_THAT(p.libraries, testing::Contains(testing::Key("deal.II")));
+  EXPECT_THAT(p.libraries, testing::Contains(testing::Key("VTK")));
+  EXPECT_FALSE(p.git.empty());
+  EXPECT_EQ(p.command, "ciliaval run a.toml");
+}
+
+}  // namespace
+}  // namespace ciliaval::compare

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/run.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+
+#include "problem/error.h"
+#include "synthetic.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using test::arc;
+using test::converged;
+using test::field_entry;
+using test::mechanics_entry;
+using test::paper_case;
+
+constexpr double L = 20e-3;
+
+/// Dipole of unit moment at the tip along the tip's normal (Eq. 5).
+Vector3 tip_dipole(const Deformation& d, const Vector3& point) {
+  const CentrelinePoint tip = d.centreline.at(d.centreline.length());
+  const Vector3 a = point - tip.position;
+  const Vector3 m = tip.normal();
+  return 1e-7 * (3 * m.dot(a) * a / std::pow(a.norm(), 5) - m / std::pow(a.norm(), 3));
+}
+
+MechanicsEntry bend(const std::string& id) {
+  return mechanics_entry(id, [](const Load& load) {
+    return converged(load, arc(L, 3e-3, Vector3::UnitX(), 1e4 * magnitude(load)));
+  });
+}
+
+// Oracle: Eq. 5 by hand for a dipole above the sensor at the origin: B = μ₀/4π · 2m/z³ e_z.
+TEST(Run, SubtractsTheFieldOfTheUndeformedCilium) {
+  Case c = paper_case({1e-3});
+  c.sensors = {Vector3::Zero()};
+  c.mechanics = {"bend"};
+  c.fields = {"dipole"};
+  const std::vector<MechanicsEntry> mechanics{bend("bend")};
+  const std::vector<FieldEntry> fields{field_entry("dipole", tip_dipole)};
+  const CaseResult result = run(c, mechanics, fields);
+  ASSERT_EQ(result.fields.size(), 1u);
+  const FieldRun& field = result.fields[0];
+  EXPECT_EQ(field.name(), "bend/dipole");
+  const Vector3 B0(0, 0, 1e-7 * 2 / std::pow(L, 3));
+  EXPECT_LT((field.undeformed.field.B[0] - B0).norm(), 1e-14 * B0.norm());
+  const Deformation& bent = *result.mechanics[0].result.steps[0].deformation;
+  const Vector3 dB = tip_dipole(bent, Vector3::Zero()) - B0;
+  EXPECT_GT(dB.norm(), 0.01 * B0.norm());
+  EXPECT_LT((field.steps[0]->dB[0] - dB).norm(), 1e-14 * B0.norm());
+  EXPECT_TRUE(all_solved(result));
+}
+
+TEST(Run, RecordsWhatAModelThrowsAndGoesOnWithTheOthers) {
+  Case c = paper_case({1e-3, 2e-3});
+  c.mechanics = {"broken", "bend"};
+  c.fields = {"bad", "dipole"};
+  const std::vector<MechanicsEntry> mechanics{
+      mechanics_entry("broken",
+                      [](const Load&) -> MechanicsStep { throw SolverError("no equilibrium"); }),
+      bend("bend")};
+  const std::vector<FieldEntry> fields{
+      field_entry("bad",
+                  [](const Deformation&, const Vector3&) -> Vector3 {
+                    throw InputError("the sensor is on the rim");
+                  }),
+      field_entry("dipole", tip_dipole)};
+  const CaseResult result = run(c, mechanics, fields);
+  ASSERT_EQ(result.mechanics.size(), 2u);
+  for (const MechanicsStep& step : result.mechanics[0].result.steps) {
+    EXPECT_EQ(step.status, Status::failed);
+    EXPECT_EQ(step.message, "no equilibrium");
+  }
+  EXPECT_EQ(result.mechanics[0].result.steps.size(), 2u);
+  EXPECT_EQ(result.mechanics[1].result.steps[1].status, Status::converged);
+  ASSERT_EQ(result.fields.size(), 2u);  // of `bend` only
+  EXPECT_EQ(result.fields[0].steps[0]->failure, "the sensor is on the rim");
+  EXPECT_TRUE(result.fields[1].steps[0]->failure.empty());
+  EXPECT_FALSE(all_solved(result));
+}
+
+TEST(Run, TakesAFieldOrAShapeThatIsNotFiniteForAFailure) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"nan", "bend"};
+  c.fields = {"nan"};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<MechanicsEntry> mechanics{
+      mechanics_entry("nan",
+                      [=](const Load& load) {
+                        Centreline::Piece piece{{0, L}, std::vector<SectionState>(2)};
+                        piece.states[1].position = Vector3(nan, 0, L);
+                        return converged(load, Centreline({piece}));
+                      }),
+      bend("bend")};
+  const std::vector<FieldEntry> fields{
+      field_entry("nan", [=](const Deformation&, const Vector3&) -> Vector3 {
+        return {nan, 0, 0};
+      })};
+  const CaseResult result = run(c, mechanics, fields);
+  EXPECT_EQ(result.mechanics[0].result.steps[0].status, Status::failed);
+  EXPECT_FALSE(result.mechanics[0].result.steps[0].deformation);
+  EXPECT_FALSE(result.fields.back().steps[0]->failure.empty());
+  EXPECT_TRUE(result.fields.back().steps[0]->field.B.empty());
+}
+
+TEST(Run, ASlipOffIsAResultWithoutAFieldAndNoFailure) {
+  Case c = paper_case({1e-3, 9e-3});
+  c.mechanics = {"slips"};
+  c.fields = {"dipole"};
+  const std::vector<MechanicsEntry> mechanics{mechanics_entry("slips", [](const Load& load) {
+    if (magnitude(load) < 5e-3) return converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
+    MechanicsStep step;
+    step.load = load;
+    step.status = Status::slipped_off;
+    step.slip_off_force = 5.8e-3;
+    return step;
+  })};
+  const std::vector<FieldEntry> fields{field_entry("dipole", tip_dipole)};
+  const CaseResult result = run(c, mechanics, fields);
+  EXPECT_TRUE(all_solved(result));
+  EXPECT_TRUE(result.fields[0].steps[0]);
+  EXPECT_FALSE(result.fields[0].steps[1]);
+}
+
+TEST(Run, AFieldModelThatNeedsABodyRunsOnlyWhereThereIsOne) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"rod", "body"};
+  c.fields = {"mesh"};
+  const std::vector<MechanicsEntry> mechanics{
+      bend("rod"), mechanics_entry("body", [](const Load& load) {
+        MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
+        step.deformation->body = std::make_shared<SolidBody>(test::BentBricks::body());
+        return step;
+      })};
+  const std::vector<FieldEntry> fields{field_entry("mesh", tip_dipole, {}, true)};
+  const CaseResult result = run(c, mechanics, fields);
+  ASSERT_EQ(result.fields.size(), 1u);
+  EXPECT_EQ(result.fields[0].name(), "body/mesh");
+}
+
+TEST(Run, RefusesAModelThatDoesNotExist) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"elastika"};
+  const std::vector<MechanicsEntry> mechanics{bend("bend")};
+  EXPECT_THROW(run(c, mechanics, {}), InputError);
+}
+
+}  // namespace
+}  // namespace ciliaval::compare

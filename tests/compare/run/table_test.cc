@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "synthetic.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using test::converged;
+using test::field_entry;
+using test::mechanics_entry;
+using test::paper_case;
+using test::tilted;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double L = 20e-3;
+
+MechanicsEntry tilt(const std::string& id, double factor) {
+  return mechanics_entry(id, [=](const Load& load) {
+    return converged(load, tilted(L, 3e-3, Vector3::UnitX(), factor * 100 * magnitude(load)), 1e-9);
+  });
+}
+
+// Oracle: tilts of 0.1 and 0.2 rad by hand: tip x = 20 sin 0.1 = 1.9967 mm, angle 5.730 deg;
+// distance over deflection 2 sin(0.05)/sin(0.2) = 50.31 %; dBx = 0.1 T/m · tip x = 199.67 uT, error
+// against the reference sin 0.1/sin 0.2 − 1 = −49.7 %.
+TEST(Table, ShowsValuesWithUnitsAndErrorsAgainstTheReference) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"rough", "fine"};
+  c.fields = {"tip"};
+  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1), tilt("fine", 2)};
+  const std::vector<FieldEntry> fields{
+      field_entry("tip", [](const Deformation& d, const Vector3&) -> Vector3 {
+        return {0.1 * d.centreline.at(L).position.x(), 0, 5e-3};
+      })};
+  const CaseResult result = run(c, mechanics, fields);
+  const std::string text = table(result, compare_models(result));
+  EXPECT_THAT(text, HasSubstr("contact, force 1 mN at height 16 mm, azimuth 0 deg"));
+  EXPECT_THAT(text, ContainsRegex("rough +converged +1.9967 +0.0000 +19.9001 +5.730 +1 "));
+  EXPECT_THAT(text, ContainsRegex("rough - fine +50.31 +29.05 +50.31 +-50.00 .*resolved"));
+  EXPECT_THAT(text, ContainsRegex("rough/tip +0.1997 +0.0000 +5.0000 +199.67 +0.00 +0.00 "
+                                  "+-49.75 +0.00 +0.00"));
+  EXPECT_THAT(text, ContainsRegex("fine/tip .*ref. +ref. +ref."));
+  EXPECT_THAT(text, HasSubstr("divided by the largest |dB|"));
+  EXPECT_THAT(text, Not(HasSubstr("nan")));
+}
+
+TEST(Table, SaysWhyAModelHasNoResult) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"slips"};
+  const std::vector<MechanicsEntry> mechanics{mechanics_entry("slips", [](const Load& load) {
+    MechanicsStep step;
+    step.load = load;
+    step.status = Status::slipped_off;
+    step.slip_off_force = 5.862e-3;
+    return step;
+  })};
+  const CaseResult result = run(c, mechanics, {});
+  const std::string text = table(result, compare_models(result));
+  EXPECT_THAT(text, HasSubstr("slips off above 5.862 mN"));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare
