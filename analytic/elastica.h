@@ -11,10 +11,18 @@ struct ElasticaOptions {
     height      ///< the paper's quadrature in z (Eq. 1–4), contact and flow only
   };
   Form form = Form::arclength;
-  double tolerance = 1e-12;  ///< relative, of position over length and of angle
+  double tolerance = 1e-12;  ///< relative, of position over length and of angle, in (0, 1e-3]
 };
 
-/// The paper's bending model (Eq. 1–4): inextensible, shear-rigid elastica under horizontal loads.
+/// The paper's bending model (Eq. 1–4): inextensible, shear-rigid elastica under horizontal loads,
+///
+///     E I θ' = M,  w' = sin θ,  z' = cos θ,  M = F (h − z)₊, q (z_tip − z)²/2, …
+///
+/// docs/elastica.md has the equations of all loads, the limits of both forms and the measured
+/// errors. A contact step above the slip-off force has the status slipped_off; one that misses the
+/// tolerance has the status failed. Both leave the other steps alone. solve() throws InputError if
+/// the cilium, a load or the tolerance is not valid, or if the height form is asked for a section
+/// or dead load.
 class Elastica : public MechanicsModel {
  public:
   explicit Elastica(ElasticaOptions options = {}) : options_(options) {}

@@ -64,7 +64,9 @@ class CentrelineBuilder {
     }
     if (!resolved(nodes, a, b, piece)) {
       if (bisections == max_bisections)
-        throw SolverError("elastica: the shape cannot be interpolated to the tolerance asked");
+        throw SolverError(
+            "elastica: the shape cannot be interpolated to the tolerance asked; if it is of the "
+            "height form, whose quadrature loses digits near 90 deg, use the arc-length form");
       const double middle = std::midpoint(a, b);
       add(a, middle, piece, bisections + 1);
       add(middle, b, piece, bisections + 1);

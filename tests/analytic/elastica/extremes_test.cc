@@ -89,7 +89,7 @@ Real flow_slenderness(const Real& delta) {
 }
 
 // Oracle: the quadrature in z on one material in 50 digits, from the tip's own δ = 1 − sin θ:
-// qL³/EI = 6 (1 − δ) (L/z₂)³. Up to 2e9. Measured 7e-14, for z relative to z_tip; margin 14.
+// qL³/EI = 6 (1 − δ) (L/z₂)³. Up to 5e7. Measured 7e-14, for z relative to z_tip; margin 14.
 TEST(ElasticaExtremes, FlowTurnsTheCiliumLevel) {
   const Cilium cilium = uniform_cilium();
   const double length = cilium.length();
