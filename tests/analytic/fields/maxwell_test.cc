@@ -47,7 +47,7 @@ VectorField field_of(const FieldModel& model, const oracle::Shape& shape) {
   };
 }
 
-// Measured 2e-9 of |∇B|; margin 5.
+// Measured 6e-10 of |∇B|, the error of the differences; margin 15.
 TEST(Maxwell, FieldOutsideHasNeitherDivergenceNorCurl) {
   const std::vector<std::shared_ptr<FieldModel>> models = {
       std::make_shared<DipoleField>(), std::make_shared<LineField>(),
@@ -69,6 +69,7 @@ TEST(Maxwell, FieldOutsideHasNeitherDivergenceNorCurl) {
 
 // m = F·M/J is what makes the field of two discs solenoidal inside a sheared, twisted magnet: any
 // other m would leave μ₀∇·m, of the order μ₀Mκ = 6 T/m.
+// Measured 6e-12 T/m.
 TEST(Maxwell, FieldOfTheWedgeInsideHasNoDivergence) {
   const VolumeField model;
   const VectorField B = field_of(model, contorted());
@@ -79,7 +80,7 @@ TEST(Maxwell, FieldOfTheWedgeInsideHasNoDivergence) {
     error = std::max(
         error, std::abs(gradient(B, section.position + section.rotation * offset, 2e-5).trace()));
   record("divergence of B inside a contorted rod, T/m", error);
-  EXPECT_LT(error, 1e-6);
+  EXPECT_LT(error, 1e-9);
 }
 
 // Inside the arc m is known: M t for the wedge, M t/J for the stack, J = 1 − κ·offset.
@@ -166,6 +167,7 @@ double flux_around_the_upper_half(const VectorField& B, const CentrelinePoint& s
   return flux;
 }
 
+// Measured 7e-16 of μ₀MπR², which is what would be left if μ₀m were missing; margin 100.
 TEST(Maxwell, NoFluxLeavesAClosedSurfaceThroughTheMagnet) {
   const VolumeField model;
   const double magnet_flux =

@@ -58,6 +58,7 @@ TEST(MeshField, ConvergesAtTheOrderOfTheGeometry) {
   }
 }
 
+// Measured 7e-14; the tolerance asked is 1e-10.
 TEST(MeshField, OfHighDegreeIsDerbyAndOlbertsCylinder) {
   const CylinderBody cylinder{.degree = 9, .cuts = 2};
   const std::vector<Vector3> points = {oracle::paper_sensor,
@@ -71,9 +72,10 @@ TEST(MeshField, OfHighDegreeIsDerbyAndOlbertsCylinder) {
                                        {-0.6e-3, 0.5e-3, 19.9e-3}};
   const double error = error_of_straight(mesh_F, cylinder, points);
   record("mesh F of degree 9, out- and inside", error);
-  EXPECT_LT(error, 1e-9);
+  EXPECT_LT(error, 1e-10);
 }
 
+// Measured 2e-8, the geometry of degree 6; margin 6.
 TEST(MeshField, VolumeQuadratureOfRotatedMomentsIsDerbyAndOlbertsCylinder) {
   const CylinderBody cylinder{.degree = 6, .layers = 1};
   const double error = error_of_straight(mesh_R, cylinder, outside);
@@ -119,7 +121,8 @@ oracle::Map rod_map(const oracle::Shape& shape) {
 }
 
 // Oracle: the two discs of the model `volume`, out- and inside, for a rod in pure bending and one
-// that is sheared, stretched and twisted as well.
+// that is sheared, stretched and twisted as well. Measured 1.4e-11, the area of an end
+// face of degree 8.
 TEST(MeshField, OfABentRodIsTheFieldOfItsTwoDiscs) {
   const CylinderBody cylinder{.degree = 8};
   for (const auto& shape : {oracle::arc(60, 0.5), oracle::contorted()}) {
@@ -134,11 +137,12 @@ TEST(MeshField, OfABentRodIsTheFieldOfItsTwoDiscs) {
           std::max(error, relative_difference(flux_density(mesh_F, paper_cilium(), body, x),
                                               flux_density(VolumeField(), paper_cilium(), rod, x)));
     record("mesh F of degree 8 against the rod's two discs", error);
-    EXPECT_LT(error, 1e-7);
+    EXPECT_LT(error, 1e-9);
   }
 }
 
 // In pure bending F = Λ diag(1, 1, J), so that F·M/J = R·M = M d₃ and both fields are one.
+// Measured 8e-14, asked 1e-8.
 TEST(MeshField, PushForwardsAgreeInPureBending) {
   const CylinderBody cylinder{.degree = 6};
   const Deformation body = deformation_of(cylinder, rod_map(oracle::arc(60, 0.5)));
@@ -148,7 +152,7 @@ TEST(MeshField, PushForwardsAgreeInPureBending) {
         std::max(difference, relative_difference(flux_density(mesh_R, paper_cilium(), body, x),
                                                  flux_density(mesh_F, paper_cilium(), body, x)));
   record("mesh R against F in pure bending", difference);
-  EXPECT_LT(difference, 1e-7);
+  EXPECT_LT(difference, 1e-8);
 }
 
 /// ∫ b(moment, x − F X) dV₀ over the exact cylinder, Gauss–Legendre in r and z, trapezoid in φ.
@@ -173,7 +177,8 @@ Vector3 field_of_uniform_moment(const Vector3& moment, const Matrix3& F, const V
 }
 
 // Oracle: F = Q·U with a given rotation and stretch has the moments F·M and Q·M J per reference
-// volume, whose fields are integrated here over the exact cylinder.
+// volume, whose fields are integrated here over the exact cylinder. Measured 2e-8, the geometry of
+// degree 6; margin 6.
 TEST(MeshField, PushForwardsOfAHomogeneousDeformationAreTheirIntegrals) {
   const CylinderBody cylinder{.degree = 6, .layers = 1};
   const Quaternion Q(Eigen::AngleAxisd(0.8, Vector3(1, 2, -0.5).normalized()));
