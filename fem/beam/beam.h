@@ -6,7 +6,7 @@
 namespace ciliaval::fem {
 
 struct BeamOptions {
-  unsigned int degree = 5;      ///< of the interpolation of position and rotation
+  unsigned int degree = 6;      ///< of the interpolation of position and rotation
   unsigned int refinement = 1;  ///< each step halves the elements; 0 is one element between breaks
   bool shear_rigid = false;     ///< no shear and no extension: the elastica's assumptions
   double tolerance = 1e-12;     ///< of the residual and the increment, relative

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+#include <functional>
 
+#include "beams.h"
 #include "fem/beam/beam.h"
 #include "fem/beam/section.h"
 #include "oracles.h"
@@ -13,32 +14,337 @@
 namespace {
 
 using namespace ciliaval;
+using beams::measured;
 
-Cilium paper_cilium() {
-  return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
+constexpr double L = 20e-3;
+constexpr double h = 16e-3;
+
+/// The paper's cilium; E₁ = E₂/ratio.
+Cilium paper_cilium(double ratio = 30) {
+  return {3e-3, {{"base", 3e-3, 3e6 / ratio, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
 }
 
 std::vector<oracle::Stretch> stretches(const Cilium& cilium, bool shear_rigid) {
   std::vector<oracle::Stretch> beam;
   for (const Segment& s : cilium.segments) {
     const auto k = fem::beam::circular_section(cilium.diameter, s.young_modulus, s.poisson_ratio);
-    const double E = shear_rigid ? 0 : 1 / k.EA;
-    const double G = shear_rigid ? 0 : 1 / k.kGA1;
-    beam.push_back({s.length, k.EI1, E - G, E, G});
+    const double stretch = shear_rigid ? 0 : 1 / k.EA;
+    const double shear = shear_rigid ? 0 : 1 / k.kGA1;
+    beam.push_back({s.length, k.EI1, stretch - shear, stretch, shear});
   }
   return beam;
 }
 
-TEST(BeamContact, SlipsOffAtTheForceOfTheElastica) {
-  // Oracle: closed form of the shear-rigid contact elastica, 5.862 mN (root of its arc length).
-  fem::BeamOptions options;
-  options.shear_rigid = true;
+fem::BeamOptions options(bool shear_rigid) {
+  fem::BeamOptions result;
+  result.shear_rigid = shear_rigid;
+  return result;
+}
+
+CentrelinePoint tip(const MechanicsStep& step) {
+  return step.deformation->centreline.at(L);
+}
+
+/// Largest error of the tip's position relative to its deflection, and of its angle.
+double tip_error(const MechanicsStep& step, const oracle::Tip& exact) {
+  const CentrelinePoint t = tip(step);
+  const double position = Vector3(t.position - Vector3(exact.x, 0, exact.z)).norm();
+  return std::max(position / exact.x, std::abs(t.theta() - exact.theta));
+}
+
+TEST(BeamSection, CircularStiffnesses) {
+  // Oracle: textbook figures for d = 2, E = 5.2, ν = 0.3 (G = 2): A = π, I = π/4, J = π/2;
+  // Cowper's k = 7.8/8.8.
+  const auto k = fem::beam::circular_section(2, 5.2, 0.3);
+  EXPECT_NEAR(k.EA, 5.2 * beams::pi, 1e-14);
+  EXPECT_NEAR(k.EI1, 5.2 * beams::pi / 4, 1e-14);
+  EXPECT_NEAR(k.GJ, beams::pi, 1e-14);
+  EXPECT_NEAR(k.kGA2, 2 * beams::pi * 7.8 / 8.8, 1e-14);
+}
+
+TEST(BeamContact, MatchesTheContactElastica) {
+  // Oracle: closed forms by quadrature (oracles.h), without shear and with it. The default
+  // discretisation; measured below 5e-14.
+  for (const bool shear_rigid : {true, false}) {
+    const Cilium cilium = paper_cilium();
+    const auto result = fem::Beam(options(shear_rigid))
+                            .solve(cilium, {ContactLoad{1e-3, h, 0}, ContactLoad{4e-3, h, 0},
+                                            ContactLoad{5.5e-3, h, 0}});
+    for (const MechanicsStep& step : result.steps) {
+      ASSERT_EQ(step.status, Status::converged) << step.message;
+      const auto exact = oracle::contact(stretches(cilium, shear_rigid), magnitude(step.load), h);
+      EXPECT_LT(measured("tip", tip_error(step, exact.tip)), 1e-12);
+      EXPECT_LT(measured("arclength", std::abs(*step.contact_arclength - exact.arclength) / L),
+                1e-12);
+      const CentrelinePoint c = step.deformation->centreline.at(*step.contact_arclength);
+      EXPECT_LT(measured("height", std::abs(c.position[2] - h) / L), 1e-14);
+      EXPECT_NEAR(step.applied_force / magnitude(step.load), 1, 1e-12);
+    }
+  }
+}
+
+TEST(BeamContact, OneMaterial) {
+  // Oracle: z = h − √(h² − 2EI sin θ/F) of a uniform beam, that is sin θ = F h²/(2EI) at and above
+  // the contact.
+  const Cilium cilium{3e-3, {{"rod", L, 1e6, 0.49, 0}}};
+  const double EI = 1e6 * cilium.second_moment();
+  const double F = 0.5 * 2 * EI / (h * h);
+  const auto result = fem::Beam(options(true)).solve(cilium, {ContactLoad{F, h, 0}});
+  ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
+  EXPECT_NEAR(std::sin(tip(result.steps[0]).theta()), 0.5, 1e-12);
+}
+
+TEST(BeamContact, AlignsWithTheLoadWhereverItSlides) {
+  // Oracle: the same closed form. A low contact that leaves the base for the magnet as it slides,
+  // at stiffness ratios of 30 and 1000; each step also alone, without the path before it.
+  fem::BeamOptions fine;
+  fine.refinement = 2;
+  for (const double ratio : {30.0, 1000.0}) {
+    const Cilium cilium = paper_cilium(ratio);
+    const double low = 2e-3;
+    const double unit = 2 * stretches(cilium, false)[0].EI / (low * low);
+    LoadPath path;  // up to 98 % of the slip-off force
+    for (const double F : {0.25, 0.6, 0.83, 0.4}) path.push_back(ContactLoad{F * unit, low, 0});
+    const auto result = fem::Beam(fine).solve(cilium, path);
+    bool in_base = false;
+    bool in_magnet = false;
+    for (const MechanicsStep& step : result.steps) {
+      ASSERT_EQ(step.status, Status::converged) << step.message;
+      (*step.contact_arclength < 3e-3 ? in_base : in_magnet) = true;
+      const auto exact = oracle::contact(stretches(cilium, false), magnitude(step.load), low);
+      EXPECT_LT(measured("tip", tip_error(step, exact.tip)), 1e-10);
+      EXPECT_LT(measured("arclength", std::abs(*step.contact_arclength - exact.arclength) / L),
+                1e-10);
+      const auto alone = fem::Beam(fine).solve(cilium, {step.load});
+      EXPECT_LT(measured("path", (tip(alone.steps[0]).position - tip(step).position).norm() / L),
+                1e-10);
+    }
+    EXPECT_TRUE(in_base && in_magnet);
+  }
+}
+
+TEST(BeamContact, SlipsOffWhereTheElasticaDoes) {
+  // Oracle: root of the closed form's arc length; 5.862 mN in the shear-rigid limit.
   const Cilium cilium = paper_cilium();
-  const auto result = fem::Beam(options).solve(cilium, {ContactLoad{6e-3, 16e-3, 0}});
-  const double exact = oracle::slip_off_force(stretches(cilium, true), 16e-3);
-  EXPECT_NEAR(exact, 5.862e-3, 1e-6);
-  ASSERT_TRUE(result.steps[0].slip_off_force);
-  printf("slip %.3e\n", *result.steps[0].slip_off_force / exact - 1);
+  for (const bool shear_rigid : {true, false}) {
+    const auto result = fem::Beam(options(shear_rigid))
+                            .solve(cilium, {ContactLoad{5e-3, h, 0}, ContactLoad{6e-3, h, 0},
+                                            ContactLoad{4e-3, h, 0}});
+    const double exact = oracle::slip_off_force(stretches(cilium, shear_rigid), h);
+    if (shear_rigid) {
+      EXPECT_NEAR(exact, 5.862e-3, 5e-7);
+    }
+    ASSERT_TRUE(result.steps[1].slip_off_force);
+    EXPECT_LT(measured("force", std::abs(*result.steps[1].slip_off_force / exact - 1)), 1e-11);
+    EXPECT_EQ(result.steps[0].status, Status::converged);
+    EXPECT_EQ(result.steps[1].status, Status::slipped_off);
+    EXPECT_FALSE(result.steps[1].deformation);
+    EXPECT_NE(result.steps[1].message.find("no equilibrium"), std::string::npos);
+    // The path goes on after it.
+    ASSERT_EQ(result.steps[2].status, Status::converged);
+    const auto after = oracle::contact(stretches(cilium, shear_rigid), 4e-3, h);
+    EXPECT_LT(tip_error(result.steps[2], after.tip), 1e-12);
+  }
+}
+
+TEST(BeamContact, HoldsUpToTheSlipOffForce) {
+  const Cilium cilium = paper_cilium();
+  const double limit = oracle::slip_off_force(stretches(cilium, false), h);
+  const auto result = fem::Beam().solve(
+      cilium, {ContactLoad{limit * (1 - 1e-9), h, 0}, ContactLoad{limit * (1 + 1e-9), h, 0}});
+  ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
+  EXPECT_NEAR(*result.steps[0].contact_arclength / L, 1, 1e-8);
+  EXPECT_EQ(result.steps[1].status, Status::slipped_off);
+}
+
+TEST(BeamContact, UnloadedStandsStraight) {
+  const auto result = fem::Beam().solve(paper_cilium(), {ContactLoad{0, h, 0}});
+  ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
+  EXPECT_NEAR(*result.steps[0].contact_arclength, h, 1e-17);
+  EXPECT_LT((tip(result.steps[0]).position - L * Vector3::UnitZ()).norm(), 1e-17);
+}
+
+TEST(BeamFlow, MatchesTheElasticaOfThePaper) {
+  // Oracle: EI d(sin θ) = ½q(z₂ − z)² dz by quadrature (oracles.h), shear-rigid limit.
+  const Cilium cilium = paper_cilium();
+  const auto result =
+      fem::Beam(options(true)).solve(cilium, {FlowLoad{0.1, 0}, FlowLoad{0.5, 0}, FlowLoad{1, 0}});
+  for (const MechanicsStep& step : result.steps) {
+    ASSERT_EQ(step.status, Status::converged) << step.message;
+    const oracle::Tip exact = oracle::flow(stretches(cilium, true), magnitude(step.load));
+    EXPECT_LT(measured("tip", tip_error(step, exact)), 1e-9);
+    // The whole force is q z₂.
+    EXPECT_NEAR(step.applied_force / (magnitude(step.load) * exact.z), 1, 1e-9);
+  }
+}
+
+TEST(BeamLoads, SmallLoadsGiveTimoshenko) {
+  // Oracle: unit-load theorem for Timoshenko's beam of two materials,
+  //   w = ∫ M (L−S)/EI dS + ∫ V/kGA dS, with M = F(a−S), V = F or M = q(L−S)²/2, V = q(L−S).
+  // Deflections of 1e-6 L: the nonlinear part is 1e-12, rounding error 1e-10.
+  const Cilium cilium = paper_cilium();
+  const auto k1 = fem::beam::circular_section(3e-3, 0.1e6, 0.49);
+  const auto k2 = fem::beam::circular_section(3e-3, 3e6, 0.49);
+  const auto integral = [&](const auto& f1, const auto& f2, double end) {
+    const QuadratureRule a = gauss_legendre(4, 0, 3e-3);
+    const QuadratureRule b = gauss_legendre(4, 3e-3, end);
+    double sum = 0;
+    for (std::size_t g = 0; g < 4; ++g)
+      sum += a.weights[g] * f1(a.nodes[g]) + b.weights[g] * f2(b.nodes[g]);
+    return sum;
+  };
+  const auto deflection = [&](const auto& M, const auto& V, double end) {
+    return integral([&](double S) { return M(S) * (L - S) / k1.EI1 + V(S) / k1.kGA1; },
+                    [&](double S) { return M(S) * (L - S) / k2.EI1 + V(S) / k2.kGA1; }, end);
+  };
+  const double F = 1e-8;
+  const double q = 1e-6;
+  const auto point = [&](double a) {
+    return deflection([=](double S) { return F * (a - S); }, [=](double) { return F; }, a);
+  };
+  const double spread = deflection([=](double S) { return q * (L - S) * (L - S) / 2; },
+                                   [=](double S) { return q * (L - S); }, L);
+  struct Row {
+    Load load;
+    double deflection;
+    double force;
+  };
+  const std::vector<Row> rows{{ContactLoad{F, h, 0}, point(h), F},
+                              {SectionLoad{F, 12e-3, 0}, point(12e-3), F},
+                              {SectionLoad{F, L, 0}, point(L), F},
+                              {FlowLoad{q, 0}, spread, q * L},
+                              {DeadLoad{q, 0}, spread, q * L}};
+  for (const Row& row : rows) {
+    const auto result = fem::Beam().solve(cilium, {row.load});
+    ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
+    EXPECT_LT(measured(std::string(type(row.load)),
+                       std::abs(tip(result.steps[0]).position[0] / row.deflection - 1)),
+              1e-9);
+    EXPECT_NEAR(result.steps[0].applied_force / row.force, 1, 1e-9);
+  }
+}
+
+TEST(BeamLoads, TheBaseBearsTheLoadAsked) {
+  // Oracle: balance of forces, at large deflection.
+  const Cilium cilium = paper_cilium();
+  for (const Load& load : LoadPath{ContactLoad{4e-3, h, 2.1}, SectionLoad{4e-3, 12e-3, 2.1},
+                                   DeadLoad{0.3, 2.1}, FlowLoad{0.3, 2.1}}) {
+    const auto result = fem::Beam().solve(cilium, {load});
+    const MechanicsStep& step = result.steps[0];
+    ASSERT_EQ(step.status, Status::converged) << step.message;
+    double force = magnitude(load);
+    if (std::holds_alternative<DeadLoad>(load)) force *= L;
+    if (std::holds_alternative<FlowLoad>(load)) force *= tip(step).position[2];
+    EXPECT_LT(measured(std::string(type(load)), std::abs(step.applied_force / force - 1)), 1e-12);
+    const SectionForces base = step.deformation->centreline.at(0).forces;
+    EXPECT_LT((base.force - force * direction(load)).norm() / force, 1e-6);
+  }
+}
+
+TEST(BeamLoads, AzimuthTurnsTheSolution) {
+  const Cilium cilium = paper_cilium();
+  const double phi = 0.7;
+  const Quaternion turn(Eigen::AngleAxisd(phi, Vector3::UnitZ()));
+  const LoadPath plain{ContactLoad{4e-3, h, 0}, ContactLoad{5e-3, h, 0}};
+  const LoadPath turned{ContactLoad{4e-3, h, phi}, ContactLoad{5e-3, h, phi}};
+  const auto a = fem::Beam().solve(cilium, plain);
+  const auto b = fem::Beam().solve(cilium, turned);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_LT((turn * tip(a.steps[i]).position - tip(b.steps[i]).position).norm() / L, 1e-13);
+}
+
+TEST(BeamLoads, ResultsDoNotDependOnThePath) {
+  // Oracle: uniqueness; every step of a wild path against the same load alone.
+  const Cilium cilium = paper_cilium();
+  for (const LoadPath& path :
+       {LoadPath{FlowLoad{0.5, 0}, FlowLoad{0.2, 1}, FlowLoad{0.6, 3}},
+        LoadPath{SectionLoad{5e-3, L, 0}, SectionLoad{1e-3, 8e-3, 2}, SectionLoad{3e-3, 8e-3, -1}},
+        LoadPath{ContactLoad{5e-3, h, 0}, ContactLoad{1e-3, h, 3}, ContactLoad{3e-3, 12e-3, 3}}}) {
+    const auto result = fem::Beam().solve(cilium, path);
+    for (const MechanicsStep& step : result.steps) {
+      const auto alone = fem::Beam().solve(cilium, {step.load});
+      ASSERT_EQ(step.status, Status::converged) << step.message;
+      EXPECT_LT(measured(std::string(type(step.load)),
+                         (tip(step).position - tip(alone.steps[0]).position).norm() / L),
+                1e-11);
+    }
+  }
+}
+
+TEST(BeamCentreline, CarriesCurvatureAndSectionForces) {
+  // Oracle: statics. Under a contact force F at height h: n = F e, m = (h − z) F e_y, κ = m/EI
+  // below the contact and nothing above, at any S.
+  const Cilium cilium = paper_cilium();
+  const double F = 4e-3;
+  const auto result = fem::Beam().solve(cilium, {ContactLoad{F, h, 0}});
+  const Centreline& curve = result.steps[0].deformation->centreline;
+  const double contact = *result.steps[0].contact_arclength;
+  double error = 0;
+  for (double S = 0; S <= L; S += L / 97) {
+    const CentrelinePoint point = curve.at(S);
+    const double EI = (S < 3e-3 ? 0.1e6 : 3e6) * cilium.second_moment();
+    const double M = S < contact ? F * (h - point.position[2]) : 0;
+    const Vector3 n = (S < contact ? F : 0) * Vector3::UnitX();
+    error = std::max({error, (point.forces.force - n).norm() / F,
+                      (point.forces.moment - M * Vector3::UnitY()).norm() / (F * h),
+                      (point.curvature - M / EI * Vector3::UnitY()).norm() * EI / (F * h)});
+  }
+  EXPECT_LT(measured("error", error), 1e-6);
+  // Interfaces and the contact are breaks.
+  const auto has_break = [&](double S) {
+    for (const double b : curve.breaks())
+      if (std::abs(b - S) < 1e-15) return true;
+    return false;
+  };
+  EXPECT_TRUE(has_break(3e-3) && has_break(contact) && has_break(0) && has_break(L));
+}
+
+TEST(BeamCentreline, UndeformedIsStraight) {
+  const auto result = fem::Beam().solve(paper_cilium(), {});
+  for (const double S : {0.0, 1e-3, 3e-3, 11e-3, L}) {
+    const CentrelinePoint point = result.undeformed.centreline.at(S);
+    EXPECT_LT((point.position - S * Vector3::UnitZ()).norm(), 1e-17);
+    EXPECT_EQ(point.theta(), 0);
+    EXPECT_EQ(point.curvature.norm(), 0);
+  }
+}
+
+TEST(BeamUncertainty, IsNotBelowTheError) {
+  // Oracle: the closed form. On coarse meshes the estimate must hold what it says.
+  const Cilium cilium = paper_cilium();
+  for (const unsigned int degree : {2U, 3U, 4U}) {
+    fem::BeamOptions coarse;
+    coarse.degree = degree;
+    coarse.refinement = 0;
+    const auto result = fem::Beam(coarse).solve(cilium, {ContactLoad{4e-3, h, 0}});
+    const auto exact = oracle::contact(stretches(cilium, false), 4e-3, h).tip;
+    const double error = (tip(result.steps[0]).position - Vector3(exact.x, 0, exact.z)).norm();
+    EXPECT_GT(error, 1e-14);
+    EXPECT_GE(*result.steps[0].tip_uncertainty, error);
+  }
+}
+
+TEST(BeamFailure, IsAStatusWithAReasonAndThePathGoesOn) {
+  fem::BeamOptions impatient;
+  impatient.max_iterations = 4;
+  impatient.max_cutbacks = 0;
+  const auto result = fem::Beam(impatient).solve(
+      paper_cilium(), {DeadLoad{1e-7, 0}, DeadLoad{5, 0}, DeadLoad{2e-7, 0}});
+  EXPECT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
+  EXPECT_EQ(result.steps[1].status, Status::failed);
+  EXPECT_FALSE(result.steps[1].deformation);
+  EXPECT_NE(result.steps[1].message.find("residuals"), std::string::npos);
+  EXPECT_EQ(result.steps[2].status, Status::converged) << result.steps[2].message;
+}
+
+TEST(BeamFailure, RefusesOptionsOutOfRange) {
+  for (const auto& spoil : std::vector<std::function<void(fem::BeamOptions&)>>{
+           [](auto& o) { o.degree = 0; }, [](auto& o) { o.refinement = 40; },
+           [](auto& o) { o.tolerance = 0; }, [](auto& o) { o.max_iterations = 0; }}) {
+    fem::BeamOptions bad;
+    spoil(bad);
+    EXPECT_THROW(fem::Beam(bad).solve(paper_cilium(), {}), InputError);
+  }
 }
 
 }  // namespace

@@ -25,9 +25,10 @@ double root(const Function& f, double a, double b) {
   return (bracket.first + bracket.second) / 2;
 }
 
-/// sin θ from g = sin θ + ½ F β sin² θ, without cancellation.
+/// sin θ from g = sin θ + ½ F β sin² θ, without cancellation; 2 where there is none.
 double sine(double g, double F_beta) {
-  return 2 * g / (1 + std::sqrt(1 + 2 * F_beta * g));
+  const double discriminant = 1 + 2 * F_beta * g;
+  return discriminant < 0 ? 2 : 2 * g / (1 + std::sqrt(discriminant));
 }
 
 }  // namespace
@@ -89,6 +90,8 @@ Contact contact(const std::vector<Stretch>& beam, double F, double h) {
       const double limit =
           sine_at(h) < 1 ? h : root([&](double y) { return sine_at(y) - 1; }, z0, h);
       const double top = z0 + (limit - z0) * (1 - 1e-12);
+      // Bent to the horizontal below h: no stretch, however long, would reach the contact.
+      if (arclength(top) < stretch.length) return {1e3 * h, {}};
       z1 = root([&](double y) { return arclength(y) - stretch.length; }, z0, top);
       S += stretch.length;
     } else {

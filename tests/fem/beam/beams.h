@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "fem/beam/newton.h"
+
+// What the tests of the beam share.
+namespace beams {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double pi = std::numbers::pi;
+
+/// Records the largest of a test's measured errors of one name in its report (--gtest_output), and
+/// hands the error on.
+inline double measured(const std::string& what, double error) {
+  static std::map<std::pair<const void*, std::string>, double> worst;
+  double& record = worst[{testing::UnitTest::GetInstance()->current_test_info(), what}];
+  record = std::max(record, error);
+  std::ostringstream text;
+  text << std::scientific << record;
+  testing::Test::RecordProperty(what, text.str());
+  return error;
+}
+
+inline ciliaval::fem::beam::Mesh uniform_mesh(double length, std::size_t elements,
+                                              unsigned int degree,
+                                              const ciliaval::fem::beam::Section& law) {
+  ciliaval::fem::beam::Mesh mesh;
+  mesh.degree = degree;
+  mesh.sections.assign(elements, law);
+  for (std::size_t i = 0; i <= elements; ++i)
+    mesh.vertices.push_back(length * static_cast<double>(i) / static_cast<double>(elements));
+  return mesh;
+}
+
+inline ciliaval::fem::beam::Section isotropic(double EI, double GJ, double EA, double kGA) {
+  return ciliaval::fem::beam::section(
+      {.EA = EA, .kGA1 = kGA, .kGA2 = kGA, .GJ = GJ, .EI1 = EI, .EI2 = EI});
+}
+
+inline ciliaval::fem::beam::Loads end_load(std::size_t vertex, const ciliaval::Vector3& force,
+                                           const ciliaval::Vector3& moment) {
+  ciliaval::fem::beam::Loads loads;
+  loads.points.push_back({vertex, force, moment});
+  return loads;
+}
+
+/// Circular arc of radius R in the plane z = 0, base tangent +x, curving to −y; d₁ = e_z.
+inline ciliaval::fem::beam::Pose arc(double R, double S) {
+  const double phi = S / R;
+  ciliaval::Matrix3 directors;
+  directors.col(0) = ciliaval::Vector3::UnitZ();
+  directors.col(1) = ciliaval::Vector3(-std::sin(phi), -std::cos(phi), 0);
+  directors.col(2) = ciliaval::Vector3(std::cos(phi), -std::sin(phi), 0);
+  return {R * ciliaval::Vector3(std::sin(phi), std::cos(phi) - 1, 0),
+          ciliaval::Quaternion(directors)};
+}
+
+}  // namespace beams
