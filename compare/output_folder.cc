@@ -59,7 +59,8 @@ void remove_stale(const fs::path& directory, const fs::path& target, const std::
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path directory, std::string name) : target_(directory / name) {
+OutputFolder::OutputFolder(const fs::path& directory, const std::string& name)
+    : target_(directory / name) {
   fs::path temporary = directory / temporary_name(name, ".tmp");
   try {
     fs::create_directories(directory);

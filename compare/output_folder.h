@@ -14,7 +14,7 @@ class OutputFolder {
   /// Makes DIR and the temporary folder, and removes temporary folders of the same name that
   /// processes which are no longer alive have left. Throws FileError with the path and the reason
   /// if they cannot be made and written.
-  OutputFolder(std::filesystem::path directory, std::string name);
+  OutputFolder(const std::filesystem::path& directory, const std::string& name);
   /// Removes the temporary folder unless it was committed.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

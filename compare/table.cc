@@ -99,10 +99,11 @@ std::string mechanics_errors(const CaseResult& result, const std::vector<Compari
       if (tip == nullptr) continue;
       const Comparison* shape = get("deflection", "r2");
       rows += fmt::format("  {:<22}{:>9}{:>9}{:>9}{:>11}{:>12}{:>12}  {}\n",
-                          model + " - " + reference, percent(get("centreline", "maximum")),
-                          percent(get("centreline", "rms")), percent(tip),
-                          percent(get("tip_angle", "value")), cell(shape->r2, 1, "{:.6f}"),
-                          cell(shape->correlation, 1, "{:.6f}"), to_string(tip->verdict));
+                          fmt::format("{} - {}", model, reference),
+                          percent(get("centreline", "maximum")), percent(get("centreline", "rms")),
+                          percent(tip), percent(get("tip_angle", "value")),
+                          cell(shape->r2, 1, "{:.6f}"), cell(shape->correlation, 1, "{:.6f}"),
+                          to_string(tip->verdict));
     }
   if (rows.empty()) return rows;
   return fmt::format("\n  {:<22}{:>9}{:>9}{:>9}{:>11}{:>12}{:>12}  {}\n", "difference (1)",

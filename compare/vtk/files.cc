@@ -14,6 +14,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 #include <vtkXMLWriter.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "compare/results.h"
@@ -64,7 +65,7 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& 
   std::vector<std::string> lines{"CiliaVal " + provenance.version, "git: " + provenance.git,
                                  "command: " + provenance.command, "date: " + provenance.date};
   for (const auto& [library, version] : provenance.libraries)
-    lines.push_back(library + " " + version);
+    lines.push_back(fmt::format("{} {}", library, version));
   add_string(data, "provenance", lines);
   const bool per_length =
       std::holds_alternative<FlowLoad>(load) || std::holds_alternative<DeadLoad>(load);
