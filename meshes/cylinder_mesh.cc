@@ -68,6 +68,15 @@ std::vector<double> ring_radii(double phi, const CylinderMeshOptions& options) {
   return radii;
 }
 
+/// Radius of the mantle's nodes. A parabola through the ends and the middle of an arc of half-angle
+/// β of the unit circle bounds a sector of the area sin β (1 + (1 − cos β)/3), a little less than
+/// β.
+double node_radius(double radius, const CylinderMeshOptions& options) {
+  if (!options.equal_area) return radius;
+  const double beta = std::numbers::pi / (4.0 * options.square_cells);
+  return radius * std::sqrt(beta / (std::sin(beta) * (1 + (1 - std::cos(beta)) / 3)));
+}
+
 /// The o-grid of the section of radius R.
 void make_section(double radius, const CylinderMeshOptions& options, Triangulation<2>& section) {
   const unsigned int n = options.square_cells;
@@ -168,7 +177,7 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
                    Triangulation<3>& triangulation) {
   const std::vector<double> planes = layer_planes(cilium, options);
   Triangulation<2> section;
-  make_section(cilium.radius(), options, section);
+  make_section(node_radius(cilium.radius(), options), options, section);
   dealii::GridGenerator::extrude_triangulation(section, planes, triangulation);
 
   triangulation.set_all_manifold_ids(interior_manifold);

@@ -76,7 +76,7 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
   const auto u = nodal_displacements(element, state.displacement);
   // flux[i], row 3q + J: ∂P_iJ/∂u at Gauss point q, times the weight.
   std::array<Eigen::MatrixXd, 3> flux;
-  flux.fill(Eigen::MatrixXd(3 * element_points, element_dofs));
+  flux.fill(Eigen::MatrixXd::Zero(3 * element_points, element_dofs));
   for (int q = 0; q < element_points; ++q) {
     const Matrix3 F = deformation_gradient(element, u, q);
     const double p = pressure_at(element, state.pressure[index], q);
@@ -93,8 +93,9 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
   for (int i = 0; i < 3; ++i)
     stiffness.middleRows<element_nodes>(Eigen::Index{i} * element_nodes).noalias() =
         element.gradients * flux[static_cast<std::size_t>(i)];
-  stiffness.noalias() +=
-      equation.gradient.transpose() * (element.inverse_compliance * equation.gradient);
+  const Eigen::MatrixXd gradient = equation.gradient;
+  const Eigen::MatrixXd pressure = element.inverse_compliance * gradient;
+  stiffness.noalias() += gradient.transpose() * pressure;
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ struct PlaneIntegrals {
 
 struct LayerIntegrals {
   double top = 0;
+  double area = 0;                               ///< ∫ dA
   Eigen::Vector2d XY = Eigen::Vector2d::Zero();  ///< ∫ (X, Y) dA
   std::array<PlaneIntegrals, stations> station;
   std::array<PlaneIntegrals, gauss_planes> gauss;
@@ -57,6 +58,7 @@ void add_positions(const Fibres& fibres, const FibreCell& cell,
   for (int q = 0; q < section_points; ++q) {
     const auto i = static_cast<std::size_t>(q);
     const Eigen::Vector2d XY(cell.X[i], cell.Y[i]);
+    layer.area += cell.area[i];
     layer.XY += cell.area[i] * XY;
     for (std::size_t s = 0; s < stations; ++s) {
       const Vector3 x = position(fibres, cell, u, q, station_zeta[s]);
@@ -135,17 +137,18 @@ void differentiate_rotation(const std::vector<double>& S, std::vector<SectionSta
   }
 }
 
-Centreline::Piece piece(double bottom, const LayerIntegrals& layer, double area) {
+Centreline::Piece piece(double bottom, const LayerIntegrals& layer) {
   const double height = layer.top - bottom;
   Centreline::Piece piece;
   std::array<SectionForces, gauss_planes> forces;
   for (std::size_t g = 0; g < gauss_planes; ++g) {
     forces[g].force = layer.gauss[g].traction;
-    forces[g].moment = layer.gauss[g].moment - (layer.gauss[g].x / area).cross(forces[g].force);
+    forces[g].moment =
+        layer.gauss[g].moment - (layer.gauss[g].x / layer.area).cross(forces[g].force);
   }
   for (std::size_t s = 0; s < stations; ++s) {
     SectionState state;
-    state.position = layer.station[s].x / area;
+    state.position = layer.station[s].x / layer.area;
     state.rotation = section_rotation(layer.station[s].xX - state.position * layer.XY.transpose());
     const double t = (station_zeta[s] - gauss_zeta[0]) / (gauss_zeta[1] - gauss_zeta[0]);
     state.forces.force = (1 - t) * forces[0].force + t * forces[1].force;
@@ -174,7 +177,7 @@ Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B) {
 Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state) {
   std::vector<Centreline::Piece> pieces;
   for (const auto& [bottom, layer] : integrate_layers(space, fibres, state))
-    pieces.push_back(piece(bottom, layer, fibres.area()));
+    pieces.push_back(piece(bottom, layer));
   // Both sides of a break integrate the same plane in another order: make them equal to the bit.
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     pieces[i].S.front() = pieces[i - 1].S.back();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -80,6 +81,15 @@ std::optional<double> contact_arclength(const Centreline& centreline, double hei
   return std::nullopt;
 }
 
+/// Force scale under which a residual is rounding error: internal forces are rounded to about ε E
+/// d².
+double least_force(const Cilium& cilium) {
+  double stiffest = 0;
+  for (const Segment& segment : cilium.segments)
+    stiffest = std::max(stiffest, segment.young_modulus);
+  return 1e-8 * stiffest * cilium.area();
+}
+
 void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
   ciliaval::require_valid(cilium);
   for (const Load& load : path) {
@@ -107,16 +117,20 @@ meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
       options.coarsest_layer = 0.8;
       return options;
     case 1:
-      options.square_cells = 4;
-      options.rings = 2;
+      options.square_cells = 2;
+      options.rings = 3;
+      options.ring_ratio = 0.5;
       options.finest_layer = 0.08;
-      options.coarsest_layer = 0.4;
+      options.coarsest_layer = 0.5;
+      options.growth = 0.3;
       return options;
     case 2:
       options.square_cells = 4;
       options.rings = 3;
+      options.ring_ratio = 0.5;
       options.finest_layer = 0.04;
-      options.coarsest_layer = 0.25;
+      options.coarsest_layer = 0.5;
+      options.growth = 0.3;
       return options;
     default:
       throw InputError("the solid has the refinement levels 0, 1 and 2, not " +
@@ -142,7 +156,7 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
   if (path.empty()) return result;
 
   Newton newton(space, increment_constraints(space, clamped_base()));
-  LoadPathOptions options{{options_.tolerance, options_.max_iterations, 0},
+  LoadPathOptions options{{options_.tolerance, options_.max_iterations, least_force(cilium)},
                           options_.max_cutbacks,
                           options_.kernel_width};
   LoadPathSolver solver(space, *discretisation.fibres, newton, path.front(), options);

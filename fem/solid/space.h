@@ -54,8 +54,8 @@ struct SolidState {
   std::vector<PressureVector> pressure;  ///< coefficients of ψ, one vector for each element, Pa
 };
 
-/// Finite-element space of a hexahedral mesh. The triangulation and the mapping must outlive it. The
-/// mapping's degree should not exceed element_degree, or linear fields are not in the space.
+/// Finite-element space of a hexahedral mesh. The triangulation and the mapping must outlive it.
+/// The mapping's degree should not exceed element_degree, or linear fields are not in the space.
 class SolidSpace {
  public:
   /// `materials[i]` is that of the cells with material id i. Throws InputError if one is missing.
