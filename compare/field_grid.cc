@@ -16,14 +16,11 @@ bool converged_anywhere(const MechanicsRun& run) {
                      [](const MechanicsStep& step) { return step.deformation.has_value(); });
 }
 
+/// The most detailed one: the last that converged.
 const MechanicsRun* mechanics_to_draw(const CaseResult& result) {
-  const MechanicsRun* chosen = nullptr;
-  for (const MechanicsRun& run : result.mechanics) {
-    if (!converged_anywhere(run)) continue;
-    if (!run.result.undeformed.body || chosen == nullptr || chosen->result.undeformed.body)
-      chosen = &run;
-  }
-  return chosen;
+  const auto last =
+      std::find_if(result.mechanics.rbegin(), result.mechanics.rend(), converged_anywhere);
+  return last == result.mechanics.rend() ? nullptr : &*last;
 }
 
 ModelOptions with_closed_forms(ModelOptions options) {

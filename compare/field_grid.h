@@ -27,9 +27,9 @@ struct FieldGrid {
   std::vector<std::optional<Step>> steps;  ///< none where the mechanics did not converge
 };
 
-/// The most detailed field model that needs no body, on the most detailed rod (the most detailed
-/// mechanics model if there is no rod), sampled in a box that holds the sensors and the cilium at
-/// every step, two diameters wider. Closed forms are used whatever the case asks: the picture
+/// The most detailed field model that needs no body (it reads the centreline), on the most detailed
+/// mechanics model, sampled in a box that holds the sensors and the cilium at every step, two
+/// diameters wider. Closed forms are used whatever the case asks: the picture
 /// checks no quadrature. None if no such pair converged at any step.
 std::optional<FieldGrid> sample_field(const CaseResult& result, std::span<const FieldEntry> fields,
                                       const Progress& progress = {});

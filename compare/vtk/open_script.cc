@@ -16,6 +16,7 @@ import sys
 from paraview.simple import *
 
 here = os.path.dirname(os.path.abspath(globals().get("__file__", "open.py")))
+LoadPalette("WhiteBackground")
 view = GetActiveViewOrCreate("RenderView")
 times = [0.0]
 
@@ -100,9 +101,11 @@ for name in names("field_"):
 for name in names("sensors"):
     points = read(name)
     Show(points, view).PointSize = 8
-    for vector in points.PointData.keys():
-        if vector.startswith("dB_"):
-            Show(arrows(points, vector, diameter, vector), view)
+    changes = [vector for vector in points.PointData.keys() if vector.startswith("dB_")]
+    for vector in changes:
+        Show(arrows(points, vector, diameter, vector), view)
+    for vector in changes[:-1]:  # the arrows of the others lie on the most detailed pair's
+        Hide(FindSource(vector), view)
 
 animation = GetAnimationScene()
 animation.UpdateAnimationUsingDataTimeSteps()

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
     Models, EveryLoad,
     testing::Values(Load{ContactLoad{4e-3, contact_height, 0.5}}, Load{FlowLoad{0.375, 2.0}},
                     Load{SectionLoad{3e-3, 12e-3, -1.0}}, Load{DeadLoad{0.3, 0.0}}),
-    [](const testing::TestParamInfo<Load>& info) { return std::string(type(info.param)); });
+    [](const auto& load) { return std::string(type(load.param)); });
 
 // Oracle: the elastica's slip-off is a different algorithm (design: 5.862 mN).
 TEST(Models, ElasticaAndShearRigidBeamSlipOffAtTheSameForce) {

@@ -135,6 +135,34 @@ TEST(CommandLine, RunsACaseAndWritesItsResults) {
   EXPECT_EQ(ciliaval(folder.path(), "validate out/quick/case.toml").code, 0);
 }
 
+// One Newton iteration and no cutback are too few for the beam; the elastica's results are written.
+TEST(CommandLine, AModelThatDoesNotConvergeIsExitCode3) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "hard",
+             std::string(rods) + "[models.beam]\nmax_iterations = 1\nmax_cutbacks = 0\n");
+  const Outcome run = ciliaval(folder.path(), "run hard.toml");
+  EXPECT_EQ(run.code, 3);
+  const auto summary =
+      nlohmann::json::parse(read_text(folder.path() / "results" / "hard" / "summary.json"));
+  const auto& mechanics = summary["steps"][0]["mechanics"];
+  EXPECT_EQ(mechanics["beam"]["status"], "failed");
+  EXPECT_THAT(mechanics["beam"]["message"].get<std::string>(), HasSubstr("residual"));
+  EXPECT_EQ(mechanics["elastica"]["status"], "converged");
+}
+
+// `script` gives the program a terminal. The solid's coarse mesh takes longer than the 2 s after
+// which progress shows.
+TEST(CommandLineSlow, ShowsProgressOnATerminal) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "long", "mechanics = [\"solid\"]\n[models.solid]\nrefinement = 0\n");
+  const std::string command = "cd '" + folder.path().string() + "' && script -qec \"'" +
+                              CILIAVAL_PROGRAM +
+                              "' run long.toml >stdout.txt\" terminal.txt >/dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
+  EXPECT_THAT(read_text(folder.path() / "terminal.txt"), HasSubstr("solid: "));
+  EXPECT_THAT(read_text(folder.path() / "stdout.txt"), testing::Not(HasSubstr("\r")));
+}
+
 TEST(CommandLine, RefusesTwoCasesOfOneNameBeforeAnythingRuns) {
   const TemporaryFolder folder;
   write_case(folder.path(), "quick", rods);
