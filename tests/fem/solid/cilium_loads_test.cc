@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The loads of the cilium: exact totals, consistent linearisation.
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "fem/solid/assembly.h"
+#include "fem/solid/fibres.h"
+#include "fem/solid/forces.h"
+#include "fem/solid/load_path.h"
+#include "meshes/cylinder_mesh.h"
+#include "problem/error.h"
+#include "tests/fem/solid/cube.h"
+
+namespace ciliaval::fem {
+namespace {
+
+/// A coarse cilium, bent by hand: no equilibrium is needed to check forces and their derivatives.
+struct BentCilium {
+  dealii::Triangulation<3> triangulation;
+  std::unique_ptr<dealii::MappingQCache<3>> mapping;
+  std::vector<NeoHooke> materials{neo_hooke(1e5, 0.49), neo_hooke(3e5, 0.49)};
+  std::unique_ptr<SolidSpace> space;
+  std::unique_ptr<Fibres> fibres;
+  SolidState state;
+
+  BentCilium() {
+    meshes::CylinderMeshOptions options;
+    options.square_cells = 2;
+    options.rings = 1;
+    options.finest_layer = options.coarsest_layer = 0.7;
+    options.planes = {5e-3};
+    meshes::make_cylinder({3e-3, {{"a", 3e-3, 1e5, 0.49, 0}, {"b", 5e-3, 3e5, 0.49, 0}}}, options,
+                          triangulation);
+    mapping = meshes::cylinder_mapping(triangulation);
+    space = std::make_unique<SolidSpace>(triangulation, *mapping, materials);
+    fibres = std::make_unique<Fibres>(*space);
+    state = space->undeformed();
+    bend();
+    project_pressure(*space, state);
+  }
+
+  /// An arc of 0.5 rad with a little noise, so that nothing cancels by symmetry.
+  void bend() {
+    std::mt19937 generator(11);
+    std::uniform_real_distribution<double> noise(-2e-5, 2e-5);
+    std::vector<dealii::Point<3>> support(space->unknowns());
+    dealii::DoFTools::map_dofs_to_support_points<3, 3>(*mapping, space->dof_handler(), support);
+    const double kappa = 0.5 / 8e-3;
+    for (const SolidElement& element : space->elements()) {
+      for (std::size_t a = 0; a < element_nodes; ++a) {
+        const auto X = support.at(element.dofs[a]);
+        const double theta = kappa * X[2];
+        const Vector3 x((1 - std::cos(theta)) / kappa + X[0] * std::cos(theta), X[1],
+                        std::sin(theta) / kappa - X[0] * std::sin(theta));
+        for (std::size_t c = 0; c < 3; ++c) {
+          double& u = state.displacement[element.dofs[c * element_nodes + a]];
+          if (u == 0)
+            u = x[static_cast<Eigen::Index>(c)] - X[static_cast<unsigned int>(c)] +
+                noise(generator);
+        }
+      }
+    }
+  }
+
+  dealii::Vector<double> forces(const Load& load, const dealii::Vector<double>& u) const {
+    dealii::Vector<double> result(space->unknowns());
+    external_forces(*space, *fibres, load, 0.5e-3)(u, result, dealii::AffineConstraints<double>(),
+                                                   nullptr);
+    return result;
+  }
+};
+
+const std::vector<Load>& all_loads() {
+  static const std::vector<Load> loads{ContactLoad{2e-3, 5.3e-3, 0.4}, FlowLoad{0.3, 0.4},
+                                       SectionLoad{2e-3, 5e-3, 0.4}, DeadLoad{0.3, 0.4}};
+  return loads;
+}
+
+// Oracle: what the loads mean. Contact, section: F. Dead: q L. Flow: q times the mean height of the
+// tip's end face, which the centreline's end knows.
+TEST(CiliumLoads, ApplyExactlyTheForceAsked) {
+  const BentCilium cilium;
+  for (const Load& load : all_loads()) {
+    const Vector3 total = resultant(*cilium.space, cilium.forces(load, cilium.state.displacement));
+    double expected = magnitude(load);
+    if (type(load) == "dead") expected *= 8e-3;
+    if (type(load) == "flow") {
+      // ∫ z dA/A over the end face by the section points.
+      double height = 0;
+      for (std::size_t e = 0; e < cilium.space->elements().size(); ++e) {
+        const FibreCell& cell = cilium.fibres->cells()[e];
+        if (cell.top < 8e-3 * (1 - 1e-9)) continue;
+        const auto u = nodal_displacements(cilium.space->elements()[e], cilium.state.displacement);
+        for (int q = 0; q < section_points; ++q)
+          height += cell.area[static_cast<std::size_t>(q)] / cilium.fibres->area() *
+                    (8e-3 + u.col(2).tail<9>().dot(cilium.fibres->section_values().col(q)));
+      }
+      double base = 0;
+      for (std::size_t e = 0; e < cilium.space->elements().size(); ++e) {
+        const FibreCell& cell = cilium.fibres->cells()[e];
+        if (cell.bottom > 1e-9) continue;
+        const auto u = nodal_displacements(cilium.space->elements()[e], cilium.state.displacement);
+        for (int q = 0; q < section_points; ++q)
+          base += cell.area[static_cast<std::size_t>(q)] / cilium.fibres->area() *
+                  u.col(2).head<9>().dot(cilium.fibres->section_values().col(q));
+      }
+      expected *= height - base;
+    }
+    EXPECT_NEAR((total - expected * direction(load)).norm() / expected, 0, 1e-9) << type(load);
+  }
+}
+
+// Oracle: central differences of the residual internal(u, p) − external(u) along a random
+// direction, p held and p condensed. The contact rule's moving quadrature leaves 1e-9 of the load;
+// differences leave 1e-8.
+TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
+  const BentCilium cilium;
+  const SolidSpace& space = *cilium.space;
+  const dealii::AffineConstraints<double> none;
+  dealii::DynamicSparsityPattern pattern(space.unknowns());
+  dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), pattern);
+  dealii::SparsityPattern sparsity;
+  sparsity.copy_from(pattern);
+
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  dealii::Vector<double> direction(space.unknowns());
+  for (double& d : direction) d = uniform(generator);
+
+  const auto moved = [&](double step) {
+    dealii::Vector<double> u(cilium.state.displacement);
+    u.add(step, direction);
+    return u;
+  };
+  for (const Load& load : all_loads()) {
+    dealii::SparseMatrix<double> matrix(sparsity);
+    dealii::Vector<double> unused(space.unknowns());
+    external_forces(space, *cilium.fibres, load, 0.5e-3)(cilium.state.displacement, unused, none,
+                                                         &matrix);
+    dealii::Vector<double> product(space.unknowns());
+    matrix.vmult(product, direction);
+    const double h = 1e-8;
+    dealii::Vector<double> difference = cilium.forces(load, moved(-h));
+    difference -= cilium.forces(load, moved(h));
+    difference /= 2 * h;
+    product -= difference;
+    const bool follows = type(load) == "contact" || type(load) == "flow";
+    if (follows) {
+      EXPECT_GT(difference.l2_norm(), 0) << type(load);
+      EXPECT_LT(product.l2_norm(), 1e-6 * difference.l2_norm()) << type(load);
+    } else {
+      EXPECT_EQ(product.l2_norm(), 0) << type(load);
+    }
+  }
+
+  // Internal forces: with p = K π(J − 1) the condensed stiffness is the derivative of forces(u,
+  // p(u)).
+  const auto internal = internal_forces(space, cilium.state);
+  ASSERT_TRUE(internal);
+  dealii::SparseMatrix<double> matrix(sparsity);
+  add_stiffness(space, cilium.state, *internal, none, matrix);
+  dealii::Vector<double> product(space.unknowns());
+  matrix.vmult(product, direction);
+  const auto forces = [&](double step) {
+    SolidState state = cilium.state;
+    state.displacement = moved(step);
+    project_pressure(space, state);
+    return internal_forces(space, state)->forces;
+  };
+  const double h = 1e-9;
+  dealii::Vector<double> difference = forces(h);
+  difference -= forces(-h);
+  difference /= 2 * h;
+  product -= difference;
+  EXPECT_LT(product.l2_norm(), 1e-6 * difference.l2_norm());
+}
+
+// Oracle: where the kernel reaches beyond the end of the fibres, the missing part of its integral,
+// ∫ k from s₀ to w = ½ − s₀/(2w) − sin(πs₀/w)/(2π), is not applied.
+TEST(CiliumLoads, ContactForceFallsShortWhereTheFibresEnd) {
+  const BentCilium cilium;
+  const dealii::Vector<double> straight(cilium.space->unknowns());
+  const double w = 0.5e-3;
+  const double end = 0.2e-3;  // of the fibres above h
+  const Vector3 total =
+      resultant(*cilium.space, cilium.forces(ContactLoad{1e-3, 8e-3 - end, 0}, straight));
+  const double missing =
+      0.5 - end / (2 * w) - std::sin(std::numbers::pi * end / w) / (2 * std::numbers::pi);
+  EXPECT_NEAR(total.x() / 1e-3, 1 - missing, 1e-9);
+}
+
+TEST(CiliumLoads, RejectAMeshThatIsNotExtruded) {
+  const Block block(neo_hooke(1, 0.3), {2, 2, 2}, Vector3::Ones(), 0.2);
+  const SolidSpace space(block.triangulation, block.mapping, block.materials);
+  EXPECT_THROW(Fibres{space}, InputError);
+}
+
+TEST(CiliumLoads, RejectASectionWithoutAPlane) {
+  const BentCilium cilium;
+  EXPECT_THROW(section_force(*cilium.space, *cilium.fibres, 1, 5.1e-3, Vector3::UnitX()),
+               InputError);
+}
+
+}  // namespace
+}  // namespace ciliaval::fem

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/fe/mapping_q.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "fem/solid/assembly.h"
+#include "fem/solid/forces.h"
+#include "fem/solid/newton.h"
+#include "fem/solid/space.h"
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+
+/// A block [0, a] × [0, b] × [0, c] of one material; boundary ids 0…5: −x, +x, −y, +y, −z, +z.
+struct Block {
+  dealii::Triangulation<3> triangulation;
+  dealii::MappingQ<3> mapping{element_degree};
+  std::vector<NeoHooke> materials;
+
+  Block(const NeoHooke& material, const std::vector<unsigned int>& cells,
+        const Vector3& size = Vector3::Ones(), double distortion = 0)
+      : materials{material} {
+    dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, cells, dealii::Point<3>(),
+                                                      dealii::Point<3>(size[0], size[1], size[2]),
+                                                      true);
+    for (const auto& cell : triangulation.active_cell_iterators()) cell->set_material_id(0);
+    if (distortion > 0) dealii::GridTools::distort_random(distortion, triangulation, true, 7);
+  }
+};
+
+inline NeoHooke neo_hooke(double young_modulus, double poisson_ratio) {
+  return {young_modulus / (2 * (1 + poisson_ratio)), young_modulus / (3 * (1 - 2 * poisson_ratio))};
+}
+
+/// Calls visit(X, element, a) for every node of every element, a lexicographic.
+template <typename Visit>
+void for_each_node(const SolidSpace& space, const Visit& visit) {
+  const auto& points = space.scalar_element().get_unit_support_points();
+  for (const SolidElement& element : space.elements()) {
+    for (unsigned int a = 0; a < element_nodes; ++a) {
+      const auto X = space.mapping().transform_unit_to_real_cell(element.cell, points[a]);
+      visit(Vector3(X[0], X[1], X[2]), element, space.lexicographic()[a]);
+    }
+  }
+}
+
+/// Solves with Dirichlet conditions and dead nodal forces, in `steps` equal steps of both. `guess`
+/// is a displacement from whose nine tenths the inner nodes start.
+inline SolidState equilibrium(const SolidSpace& space,
+                              const std::vector<DirichletCondition>& conditions,
+                              const dealii::Vector<double>& forces, int steps,
+                              NewtonResult* last = nullptr,
+                              const std::function<Vector3(const Vector3&)>& guess = {}) {
+  Newton newton(space, increment_constraints(space, conditions));
+  SolidState state = space.undeformed();
+  if (guess) {
+    for_each_node(space, [&](const Vector3& X, const SolidElement& element, unsigned int a) {
+      const Vector3 u = 0.9 * guess(X);
+      for (unsigned int c = 0; c < 3; ++c)
+        state.displacement[element.dofs[c * element_nodes + a]] = u[c];
+    });
+  }
+  for (int step = 1; step <= steps; ++step) {
+    const double factor = static_cast<double>(step) / steps;
+    prescribe(space, conditions, state, factor);
+    dealii::Vector<double> scaled(forces);
+    scaled *= factor;
+    const NewtonResult result = newton.solve(dead_forces(scaled), state, {.tolerance = 1e-11});
+    if (!result.converged) throw SolverError("Newton: " + result.reason);
+    if (last != nullptr) *last = result;
+  }
+  return state;
+}
+
+/// Largest difference between the nodal displacements and a field.
+template <typename Field>
+double nodal_error(const SolidSpace& space, const SolidState& state, const Field& field) {
+  double error = 0;
+  for_each_node(space, [&](const Vector3& X, const SolidElement& element, unsigned int a) {
+    const Vector3 u = nodal_displacements(element, state.displacement).row(a).transpose();
+    error = std::max(error, (u - field(X)).norm());
+  });
+  return error;
+}
+
+}  // namespace ciliaval::fem
