@@ -14,7 +14,7 @@ namespace {
 
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
+  std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
 
@@ -51,7 +51,7 @@ ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, co
     return dead_forces(section_force(space, fibres, section->force, section->arclength, e));
   if (const auto* dead = std::get_if<DeadLoad>(&load)) {
     const Vector3 b = dead->force_per_length / fibres.area() * e;
-    return dead_forces(body_force(space, [b](const Vector3&) { return b; }));
+    return dead_forces(body_force(space, [&b](const Vector3&) -> Vector3 { return b; }));
   }
   HeightDensity density;
   if (const auto* contact = std::get_if<ContactLoad>(&load)) {

@@ -126,9 +126,9 @@ meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
       return options;
     case 2:
       options.square_cells = 4;
-      options.rings = 3;
+      options.rings = 2;
       options.ring_ratio = 0.5;
-      options.finest_layer = 0.04;
+      options.finest_layer = 0.05;
       options.coarsest_layer = 0.5;
       options.growth = 0.3;
       return options;
