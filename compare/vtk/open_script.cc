@@ -97,6 +97,12 @@ for name in names("field_"):
     colours.MapControlPointsToLogSpace()
     colours.UseLogScale = 1
     display.SetScalarBarVisibility(view, True)
+    bar = GetScalarBar(colours, view)
+    bar.Title = "|B| in T, " + name[len("field_"):].replace("_", "/")
+    bar.ComponentTitle = ""
+    bar.TitleFontSize = 8
+    bar.LabelFontSize = 8
+    bar.ScalarBarLength = 0.5
 
 for name in names("sensors"):
     points = read(name)
