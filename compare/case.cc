@@ -11,13 +11,13 @@
 #include <system_error>
 
 #include "compare/case_sections.h"
+#include "compare/case_syntax.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
 namespace {
 
 constexpr std::uintmax_t largest_file = 1'000'000;  ///< bytes
-constexpr int deepest_key = 32;                     ///< parts of a dotted key
 
 /// The text of a regular file. Throws InputError.
 std::string read_file(const std::filesystem::path& file) {
@@ -42,60 +42,10 @@ std::string read_file(const std::filesystem::path& file) {
   return text;
 }
 
-/// Refuses a dotted key of very many parts ("a.a.a.…"): toml++ nests a table for each, and the
-/// recursion over them has no limit. Throws InputError.
-void refuse_deep_keys(std::string_view text, std::string_view file) {
-  std::size_t line = 1;
-  int parts = 1;
-  char quote = 0;  // the one that opened the text we are in, on this line
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '\n') ++line;
-    if (c == '\n' || (quote == 0 && (c == ',' || c == '=' || c == '[' || c == '#'))) {
-      parts = 1;
-      quote = 0;
-    } else if (quote != 0) {
-      if (c == '\\' && quote == '"') ++i;
-      if (c == quote) quote = 0;
-    } else if (c == '"' || c == '\'') {
-      quote = c;
-    } else if (c == '.' && ++parts > deepest_key) {
-      throw InputError(
-          fmt::format("{}:{}:1: a dotted key of more than {} parts", file, line, deepest_key));
-    }
-  }
-}
-
-/// What to do about a syntax error, where that can be told from its line: a quantity without
-/// quotes.
-std::string_view advice(std::string_view text, std::size_t line_number) {
-  for (; line_number > 1 && text.find('\n') != std::string_view::npos; --line_number)
-    text.remove_prefix(text.find('\n') + 1);
-  const std::string_view line = text.substr(0, text.find('\n'));
-  const std::size_t equals = line.find('=');
-  if (equals == std::string_view::npos || line.find_first_of("\"'") != std::string_view::npos)
-    return "";
-  const std::size_t value = line.find_first_not_of(" \t[", equals + 1);
-  if (value == std::string_view::npos || line.find_first_of("+-.0123456789", value) != value)
-    return "";
-  return "; a quantity is a text: write it in quotes, such as \"3 mm\"";
-}
-
-toml::table parse(std::string_view text, std::string_view file) {
-  refuse_deep_keys(text, file);
-  try {
-    return toml::parse(text);
-  } catch (const toml::parse_error& error) {
-    const toml::source_position& where = error.source().begin;
-    throw InputError(fmt::format("{}:{}:{}: {}{}", file, where.line, where.column,
-                                 error.description(), advice(text, where.line)));
-  }
-}
-
 }  // namespace
 
 Case read_case(std::string_view text, std::string_view file) {
-  const toml::table table = parse(text, file);
+  const toml::table table = parse_toml(text, file);
   Faults faults;
   Section root(&table, "the case file", "", {}, faults);
   Case c;

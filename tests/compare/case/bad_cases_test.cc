@@ -53,12 +53,32 @@ const BadCase syntax[]{
     {"NotUtf8", "A case", "A c\xffse", "3:12", "invalid utf-8 sequence"},
     {"ControlCharacter", "A case", std::string_view("A \0ase", 6), "3:12", "control characters"},
     {"IntegerTooLarge", "refinement = 1", "refinement = 99999999999999999999", "35:34",
-     "not representable in 64 bits"},
-    {"FloatTooLarge", "= 0.49", "= 1e400", "12:22", "could not be interpreted as a value"},
+     "not representable in 64 bits", "; the whole number is outside the range of 64 bits"},
+    {"FloatTooLarge", "= 0.49", "= 1e400", "12:22", "could not be interpreted as a value",
+     "; the number is outside the range of double precision"},
+    {"UnquotedQuantityInAList", "\"4 mN\"", "-4e0 mN", "23:31", "saw 'm'", "write it in quotes"},
+    {"UnquotedQuantityWithoutABlank", "\"75 kA/m\"", "7_5kA/m", "19:20", "Error while parsing",
+     "write it in quotes"},
     {"DeepKey", "refinement",
      "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a", "35:1",
      "a dotted key of more than 32 parts"},
+    {"DeepKeyBehindAComment", "title = \"A case without a fault\"",
+     "x = 1 # don't\n  é.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a = 1",
+     "4:3", "a dotted key of more than 32 parts"},
+    {"DeepKeyBehindAText", "\"A case without a fault\"",
+     "\"\"\"it's\n\\\"\"\"\"\"\nx = "
+     "{a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a "
+     "= 1}",
+     "5:6", "a dotted key of more than 32 parts"},
 };
+
+TEST(BadCaseSyntax, NoAdviceIsGivenWhereNoneIsKnown) {
+  for (const char* value : {"5 = 6", "2020-13-01", "[1 2]", "05", "\"a, 3 mm", "1 # 3 mm\n3 mm"}) {
+    const std::string faults = faults_of(replaced(good_case, "0.49", value));
+    EXPECT_THAT(faults, StartsWith("bad.toml:1"));
+    EXPECT_THAT(faults, testing::Not(HasSubstr("; "))) << value;
+  }
+}
 
 const BadCase keys[]{
     {"UnknownKeyInSegment", "length =", "lenght =", "10:1",

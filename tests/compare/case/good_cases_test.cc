@@ -107,6 +107,26 @@ TEST(GoodCase, IsReadAsTheFileStatesIt) {
   EXPECT_THAT(c.fields, ElementsAre("dipole", "line", "volume", "mesh"));
 }
 
+TEST(GoodCase, DotsInCommentsAndTextsAreNoDottedKeys) {
+  const std::string dots = [] {
+    std::string text;
+    for (int i = 0; i < 40; ++i) text += " .";
+    return text;
+  }();
+  const Case reference = read(good_case);
+  expect_same(read("# don't" + dots + "\n" + std::string(good_case)), reference);
+  expect_same(read(replaced(good_case, "\"3 mm\"\n", "\"3 mm\" # see \"" + dots + "\n")),
+              reference);
+  const auto titled = [](const std::string& title) {
+    return read(replaced(good_case, "\"A case without a fault\"", title)).title;
+  };
+  EXPECT_EQ(titled("\"" + dots + "\""), dots);
+  EXPECT_EQ(titled("\"\\\"" + dots + "\""), "\"" + dots);
+  EXPECT_EQ(titled("'\\' #" + dots), "\\");
+  EXPECT_EQ(titled("\"\"\"\\\n  it's\"\"" + dots + "\"\"\"\"\"" + " #" + dots),
+            "it's\"\"" + dots + "\"\"");
+}
+
 TEST(GoodCase, LeavesTheModelsTheirDefaults) {
   const Case c = read(replaced(good_case, "[models.solid]\nrefinement = 1\n", ""));
   for (const Knob& knob : knobs())

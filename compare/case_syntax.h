@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <string_view>
+
+namespace ciliaval::compare {
+
+/// The TOML text as a table. Throws InputError `file:line:column: what is wrong` at the first fault
+/// of its syntax, with an advice where the text tells what was meant; a dotted key of more than 32
+/// parts is refused too.
+toml::table parse_toml(std::string_view text, std::string_view file);
+
+}  // namespace ciliaval::compare
