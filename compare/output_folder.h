@@ -2,18 +2,27 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace ciliaval::compare {
 
+/// The first file (in alphabetical order) in the folder of a case's results that is not one of
+/// those that a run writes (docs/results.md): it is the user's. Every file is, if there is no
+/// summary.json of a run of this case. None in an empty folder.
+std::optional<std::filesystem::path> foreign_file(const std::filesystem::path& folder,
+                                                  const std::string& case_name);
+
 /// The results of one case, never half-written: everything goes into the temporary folder
 /// DIR/.NAME.PID.tmp, which commit() exchanges with DIR/NAME in one step. Whenever the program
-/// ends, DIR/NAME holds either the old results or the new ones, complete.
+/// ends, DIR/NAME holds either the old results or the new ones, complete. What the user has put
+/// there is never deleted.
 class OutputFolder {
  public:
   /// Makes DIR and the temporary folder, and removes temporary folders of the same name that
   /// processes which are no longer alive have left. Throws FileError with the path and the reason
-  /// if they cannot be made and written.
+  /// if they cannot be made and written, or if DIR/NAME is a file, a link or a folder that holds
+  /// anything but former results of this case.
   OutputFolder(const std::filesystem::path& directory, const std::string& name);
   /// Removes the temporary folder unless it was committed.
   ~OutputFolder();
@@ -27,11 +36,13 @@ class OutputFolder {
   /// DIR/NAME, where the results will be.
   const std::filesystem::path& target() const { return target_; }
 
-  /// Puts the new results in the place of the old ones. Throws FileError if that cannot be done;
-  /// the old ones are then untouched.
+  /// Puts the new results in the place of the old ones. Throws FileError if that cannot be done:
+  /// the old ones are then untouched, and the new ones stay in a folder that the message names.
   void commit();
 
  private:
+  void replace();
+
   std::filesystem::path target_;
   std::filesystem::path temporary_;  ///< empty once committed
 };

@@ -173,6 +173,27 @@ TEST(CommandLine, RefusesTwoCasesOfOneNameBeforeAnythingRuns) {
   EXPECT_FALSE(fs::exists(folder.path() / "results"));
 }
 
+TEST(CommandLine, ReplacesItsOwnResultsButNotWhatTheUserPutBesideThem) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "quick", rods);
+  EXPECT_EQ(ciliaval(folder.path(), "run quick.toml").code, 0);
+  const Outcome again = ciliaval(folder.path(), "run quick.toml");
+  EXPECT_EQ(again.code, 0) << again.err;  // every kind of file that it wrote is known to it
+  const fs::path notes = folder.path() / "results" / "quick" / "notes.txt";
+  std::ofstream(notes) << "mine";
+  const Outcome refused = ciliaval(folder.path(), "run quick.toml");
+  EXPECT_EQ(refused.code, 4);
+  EXPECT_THAT(refused.err, HasSubstr("notes.txt"));
+  EXPECT_EQ(refused.out, "");
+  EXPECT_EQ(read_text(notes), "mine");
+  // The folder that one stands in holds the case file.
+  fs::create_directory(folder.path() / "here");
+  write_case(folder.path() / "here", "here", rods);
+  const Outcome here = ciliaval(folder.path() / "here", "run here.toml -o ..");
+  EXPECT_EQ(here.code, 4);
+  EXPECT_TRUE(fs::exists(folder.path() / "here" / "here.toml"));
+}
+
 TEST(CommandLine, AnOutputThatCannotBeWrittenIsExitCode4) {
   const TemporaryFolder folder;
   write_case(folder.path(), "quick", rods);

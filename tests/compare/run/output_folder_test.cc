@@ -33,9 +33,15 @@ std::size_t entries(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-void write_results_of(const fs::path& directory, const std::string& text) {
+/// What tells results apart below: a summary as a run writes it, with a title.
+std::string summary(const std::string& title, const std::string& name = "case") {
+  return R"({"schema": 1, "case": ")" + name + R"(", "title": ")" + title +
+         R"(", "sensors": [[0, 0, 0]], "steps": [{"case": "none"}], "comparisons": []})";
+}
+
+void write_results_of(const fs::path& directory, const std::string& title) {
   OutputFolder folder(directory, "case");
-  write_text(folder.path() / "summary.json", text);
+  write_text(folder.path() / "summary.json", summary(title));
   folder.commit();
 }
 
@@ -43,10 +49,10 @@ TEST(OutputFolder, PutsTheNewResultsInThePlaceOfTheOld) {
   const TemporaryFolder out;
   const fs::path directory = out.path() / "deep" / "results";
   write_results_of(directory, "old");
-  write_text(directory / "case" / "left_over.csv", "only in the old results");
+  write_text(directory / "case" / "beam_0007.csv", "only in the old results");
   write_results_of(directory, "new");
-  EXPECT_EQ(read_text(directory / "case" / "summary.json"), "new");
-  EXPECT_FALSE(fs::exists(directory / "case" / "left_over.csv"));
+  EXPECT_EQ(read_text(directory / "case" / "summary.json"), summary("new"));
+  EXPECT_FALSE(fs::exists(directory / "case" / "beam_0007.csv"));
   EXPECT_EQ(entries(directory), 1u);
 }
 
@@ -60,7 +66,7 @@ TEST(OutputFolder, LeavesTheOldResultsIfAnErrorEndsTheRun) {
         throw std::runtime_error("a failure midway");
       },
       std::runtime_error);
-  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), "old");
+  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("old"));
   EXPECT_EQ(entries(out.path()), 1u);
 }
 
@@ -74,10 +80,10 @@ TEST(OutputFolder, AKilledRunLeavesTheOldResultsAndTheNextOneCleansUp) {
     kill(getpid(), SIGKILL);
   }
   waitpid(child, nullptr, 0);
-  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), "old");
+  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("old"));
   EXPECT_EQ(entries(out.path()), 2u);  // and what the killed one has left
   write_results_of(out.path(), "new");
-  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), "new");
+  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("new"));
   EXPECT_EQ(entries(out.path()), 1u);
 }
 
@@ -97,9 +103,9 @@ TEST(OutputFolder, PutsOldResultsBackThatWereMovedAsideWhenTheProgramWasKilled) 
   const TemporaryFolder out;
   const fs::path aside = out.path() / (".case." + std::to_string(dead_process()) + ".old");
   fs::create_directory(aside);
-  write_text(aside / "summary.json", "old");
+  write_text(aside / "summary.json", summary("old"));
   { const OutputFolder folder(out.path(), "case"); }
-  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), "old");
+  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("old"));
   EXPECT_EQ(entries(out.path()), 1u);
 }
 
@@ -117,6 +123,95 @@ TEST(OutputFolder, SaysWhichFolderCannotBeWrittenAndWhy) {
   write_text(out.path() / "case", "a file where the folder should go");
   EXPECT_THROW(OutputFolder(out.path(), "case"), FileError);
   EXPECT_EQ(entries(out.path()), 2u);
+}
+
+/// Every kind of file that a run writes, as of three models and two steps.
+void write_all_kinds(const fs::path& folder) {
+  fs::create_directories(folder / "vtk");
+  write_text(folder / "summary.json", summary("old"));
+  for (const char* name :
+       {"errors.csv", "case.toml", "elastica_0000.csv", "solid_12345.csv", "vtk/open.py",
+        "vtk/body_solid.pvd", "vtk/body_solid_0001.vtu", "vtk/centreline_beam_0000.vtp",
+        "vtk/dipoles_elastica.pvd", "vtk/field_beam_volume_0001.vti", "vtk/sensors_0001.vtp"})
+    write_text(folder / name, "result");
+}
+
+std::string refusal(const fs::path& directory) {
+  try {
+    const OutputFolder folder(directory, "case");
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(OutputFolder, ReplacesAFormerResultOfTheCaseAndAnEmptyFolder) {
+  const TemporaryFolder out;
+  fs::create_directory(out.path() / "case");
+  EXPECT_EQ(refusal(out.path()), "accepted");
+  write_all_kinds(out.path() / "case");
+  EXPECT_EQ(refusal(out.path()), "accepted");
+}
+
+TEST(OutputFolder, RefusesToReplaceWhatItDidNotWrite) {
+  for (const char* name : {"notes.txt", "view.pvsm", "measured_0001.csv", "vtk/picture.png",
+                           "vtk/body_mine.pvd", ".hidden", "summary.json.bak", "vtk/old/open.py"}) {
+    const TemporaryFolder out;
+    write_all_kinds(out.path() / "case");
+    fs::create_directories((out.path() / "case" / name).parent_path());
+    write_text(out.path() / "case" / name, "precious");
+    const std::string first = name == std::string("vtk/old/open.py") ? "vtk/old" : name;
+    EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`" + first + "`"));
+    EXPECT_THAT(refusal(out.path()), testing::HasSubstr("-o DIR"));
+    EXPECT_EQ(read_text(out.path() / "case" / name), "precious");
+    EXPECT_EQ(entries(out.path()), 1u);
+  }
+}
+
+TEST(OutputFolder, RefusesAFolderWithoutASummaryOfTheCase) {
+  const TemporaryFolder out;
+  const fs::path file = out.path() / "case" / "summary.json";
+  write_all_kinds(out.path() / "case");
+  for (const std::string& text : {std::string("not JSON"), std::string("{}"), std::string("[1]"),
+                                  summary("old", "another")}) {
+    write_text(file, text);
+    EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`case.toml`")) << text;
+  }
+  fs::remove(file);
+  EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`case.toml`"));
+  EXPECT_TRUE(fs::exists(out.path() / "case" / "errors.csv"));
+}
+
+TEST(OutputFolder, RefusesALinkBeforeAnythingRuns) {
+  const TemporaryFolder out;
+  fs::create_directory(out.path() / "elsewhere");
+  fs::create_directory_symlink("elsewhere", out.path() / "case");
+  EXPECT_THAT(refusal(out.path()), testing::HasSubstr("link to `elsewhere`"));
+  fs::remove(out.path() / "elsewhere");  // now it leads nowhere
+  EXPECT_THAT(refusal(out.path()), testing::HasSubstr("link to `elsewhere`"));
+  EXPECT_EQ(entries(out.path()), 1u);
+}
+
+TEST(OutputFolder, KeepsTheNewResultsIfTheyCannotBePutInPlace) {
+  const TemporaryFolder out;
+  write_results_of(out.path(), "old");
+  std::string message;
+  {
+    OutputFolder folder(out.path(), "case");
+    write_text(folder.path() / "summary.json", summary("new"));
+    write_text(out.path() / "case" / "notes.txt", "written while the models ran");
+    try {
+      folder.commit();
+    } catch (const FileError& error) {
+      message = error.what();
+    }
+  }
+  EXPECT_THAT(message, testing::HasSubstr("notes.txt"));
+  const fs::path kept = out.path() / ("case." + std::to_string(getpid()) + ".new");
+  EXPECT_THAT(message, testing::HasSubstr(kept.string()));
+  EXPECT_EQ(read_text(kept / "summary.json"), summary("new"));
+  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("old"));
+  EXPECT_TRUE(fs::exists(out.path() / "case" / "notes.txt"));
 }
 
 }  // namespace
