@@ -5,10 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
+#include "compare/case_words.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -19,29 +19,6 @@ constexpr std::size_t most_faults = 50;  ///< that a report lists
 Place place(const toml::source_region& region) {
   if (region.begin.line == 0) return {};
   return {region.begin.line, region.begin.column};
-}
-
-char lower(char c) {
-  return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-}
-
-/// Optimal string alignment distance.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      const std::size_t replace = lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1;
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + replace});
-      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) &&
-          lower(a[i - 2]) == lower(b[j - 1]))
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[a.size()][b.size()];
 }
 
 template <typename Texts>
@@ -116,26 +93,6 @@ std::string Faults::report(std::string_view file) const {
   if (sorted.size() > most_faults)
     text += fmt::format("\n{}: {} more faults", file, sorted.size() - most_faults);
   return text;
-}
-
-std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
-  constexpr std::size_t longest = 40;  // no key is as long
-  if (word.empty() || word.size() > longest) return {};
-  std::string_view best;
-  std::size_t least = longest;
-  for (const std::string_view candidate : candidates) {
-    const std::size_t d = distance(word, candidate);
-    if (d < least && d <= std::max<std::size_t>(1, candidate.size() / 3)) {
-      least = d;
-      best = candidate;
-    }
-  }
-  return best;
-}
-
-std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
-  const std::string_view best = nearest(word, candidates);
-  return best.empty() ? std::string() : fmt::format("; did you mean '{}'?", best);
 }
 
 Section::Section(const toml::table* table, std::string name, std::string path, Place where,

@@ -39,14 +39,6 @@ class Faults {
   std::vector<Fault> faults_;
 };
 
-/// The candidate that is nearest to the word, by insertions, deletions, replacements and swaps of
-/// neighbours (optimal string alignment, case ignored), if it differs in one letter or no more than
-/// a third of them; otherwise empty.
-std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
-
-/// "; did you mean 'x'?" for the nearest candidate; empty if none is near.
-std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
-
 /// A table of a file that remembers which keys it was asked for, so that the others can be refused.
 class Section {
  public:

@@ -8,10 +8,16 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <span>
 #include <system_error>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "compare/case_words.h"
 #include "problem/error.h"
+#include "problem/field_model.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -41,9 +47,9 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// A letter of a unit's name; '%' and bytes of UTF-8 sequences (µ, Ω, °, ²) count as such.
+/// A letter of a unit's name; '_', '%' and bytes of UTF-8 sequences (µ, Ω, °, ²) count as such.
 bool is_letter(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' ||
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%' ||
          static_cast<unsigned char>(c) >= 0x80;
 }
 
@@ -51,6 +57,39 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// A character beyond ASCII and what is read in its place.
+struct Spelling {
+  std::string_view written;
+  std::string_view read;
+};
+constexpr Spelling spellings[]{{"\u00A0", " "}, {"\u2009", " "}, {"\u202F", " "}, {"\u2212", "-"}};
+constexpr Spelling superscripts[]{{"⁺", "+"}, {"⁻", "-"}, {"⁰", "0"}, {"¹", "1"},
+                                  {"²", "2"}, {"³", "3"}, {"⁴", "4"}, {"⁵", "5"},
+                                  {"⁶", "6"}, {"⁷", "7"}, {"⁸", "8"}, {"⁹", "9"}};
+
+/// The spelling that the text starts with, or null.
+const Spelling* at_start(std::string_view text, std::span<const Spelling> all) {
+  for (const Spelling& spelling : all)
+    if (text.starts_with(spelling.written)) return &spelling;
+  return nullptr;
+}
+
+/// The text with the blanks of typesetters and the minus sign as those of ASCII, and exponents in
+/// superscript as ^-2.
+std::string in_ascii(std::string_view text) {
+  std::string result;
+  for (bool raised = false; !text.empty();) {
+    const Spelling* const superscript = at_start(text, superscripts);
+    const Spelling* const other = at_start(text, spellings);
+    if (superscript != nullptr && !raised) result += '^';
+    raised = superscript != nullptr;
+    const Spelling* const spelling = superscript != nullptr ? superscript : other;
+    result += spelling != nullptr ? spelling->read : text.substr(0, 1);
+    text.remove_prefix(spelling != nullptr ? spelling->written.size() : 1);
+  }
+  return result;
 }
 
 std::string wanted(const Quantity& expected) {
@@ -75,6 +114,7 @@ struct UnitReader {
   }
   std::string_view take_name() {
     const std::string_view before = rest;
+    if (next() == '_') return {};  // the rest of a number such as 1_000
     return before.substr(0, take_all(is_letter));
   }
   /// Nothing, "2", "-2", "^2", "^-2" or "**-2". Returns whether that is so.
@@ -175,21 +215,65 @@ ut_status visit_galilean(const ut_unit* /*unit*/, double factor, const ut_unit* 
   return ut_accept_visitor(underlying, &scale_visitor, scale);
 }
 
-/// The factor from the unit to the SI unit of `expected`. ut_get_converter() would also turn 1/m
-/// into m, and takes radians for plain numbers: so the quotient of the two units is looked at.
-double factor_to_si(std::string_view unit, const Quantity& expected) {
-  ut_system* const system = unit_system();
-  const Unit given(ut_parse(system, with_degrees(unit).c_str(), UT_UTF8));
-  if (!given)
-    throw InputError(fmt::format("unknown unit {}: {}", in_quotes(unit), wanted(expected)));
-  const Unit si(ut_parse(system, std::string(expected.unit).c_str(), UT_UTF8));
-  const Unit quotient(ut_divide(given.get(), si.get()));
+/// Units that a person may mean to write, for advice.
+std::span<const std::string_view> usual_units(const Quantity& expected) {
+  using Names = std::vector<std::string_view>;
+  static const std::vector<std::pair<std::string_view, Names>> all{
+      {"m",
+       {"m", "mm", "cm", "um", "nm", "km", "meter", "millimeter", "centimeter", "micrometer",
+        "nanometer", "metre", "millimetre", "centimetre", "micrometre", "nanometre", "inch"}},
+      {"Pa",
+       {"Pa", "MPa", "kPa", "GPa", "pascal", "kilopascal", "megapascal", "gigapascal", "N/m^2",
+        "N/mm^2", "bar", "psi"}},
+      {"A/m", {"A/m", "kA/m", "MA/m", "A/mm", "oersted"}},
+      {"N", {"N", "mN", "uN", "kN", "newton", "millinewton", "micronewton", "lbf", "kgf"}},
+      {"N/m", {"N/m", "mN/m", "uN/m", "kN/m", "N/mm", "mN/mm"}},
+      {"m/s", {"m/s", "mm/s", "cm/s", "km/h"}},
+      {"kg/m^3", {"kg/m^3", "kg/m3", "g/cm^3", "g/cm3"}},
+      {"rad", {"deg", "degree", "degrees", "rad", "radian", "turn"}}};
+  for (const auto& [unit, names] : all)
+    if (unit == expected.unit) return names;
+  return {};
+}
+
+/// "; did you mean 'mN'?" for a unit that differs from a usual one by its case or, if it is a
+/// longer word, by a few letters; otherwise empty.
+std::string did_you_mean_unit(std::string_view unit, const Quantity& expected) {
+  constexpr std::size_t longest_symbol = 3;
+  for (const std::string_view usual : usual_units(expected))
+    if (equal_but_case(unit, usual)) return fmt::format("; did you mean '{}'?", usual);
+  return unit.size() > longest_symbol ? did_you_mean(unit, usual_units(expected)) : "";
+}
+
+/// The factor from one unit to another; none if they do not have the same dimension.
+/// ut_get_converter() would also turn 1/m into m, and takes radians for plain numbers: so the
+/// quotient of the two units is looked at.
+std::optional<double> factor_between(const ut_unit* from, std::string_view to) {
+  const Unit target(ut_parse(unit_system(), std::string(to).c_str(), UT_UTF8));
+  const Unit quotient(ut_divide(from, target.get()));
   Scale scale;
   if (!quotient || ut_accept_visitor(quotient.get(), &scale_visitor, &scale) != UT_SUCCESS ||
       !scale.pure)
-    throw InputError(fmt::format("{} is not a unit of {} {}: {}", in_quotes(unit), expected.article,
-                                 expected.name, wanted(expected)));
+    return std::nullopt;
   return scale.factor;
+}
+
+/// The factor from the unit of a value to the SI unit of `expected`.
+double factor_to_si(double value, std::string_view unit, const Quantity& expected) {
+  const Unit given(ut_parse(unit_system(), with_degrees(unit).c_str(), UT_UTF8));
+  if (!given)
+    throw InputError(fmt::format("unknown unit {}: {}{}", in_quotes(unit), wanted(expected),
+                                 did_you_mean_unit(unit, expected)));
+  if (const auto factor = factor_between(given.get(), expected.unit)) return *factor;
+  std::string what =
+      fmt::format("{} is not a unit of {} {}: ", in_quotes(unit), expected.article, expected.name);
+  const std::optional<double> tesla = factor_between(given.get(), "T");
+  if (tesla && expected.unit == quantity::magnetization.unit)
+    what += fmt::format("divide B_r by mu_0 (magnetization = B_r/mu_0), here \"{:.4g} kA/m\"",
+                        value * *tesla / vacuum_permeability / 1000);
+  else
+    what += wanted(expected) + did_you_mean_unit(unit, expected);
+  throw InputError(what);
 }
 
 /// The number at the start of the text, which is cut off from it.
@@ -217,7 +301,8 @@ double take_number(std::string_view& text, const Quantity& expected) {
 }  // namespace
 
 double parse_quantity(std::string_view text, const Quantity& expected) {
-  std::string_view rest = trimmed(text);
+  const std::string plain = in_ascii(text);
+  std::string_view rest = trimmed(plain);
   if (rest.empty()) throw InputError(fmt::format("the text is empty: {}", wanted(expected)));
   const double value = take_number(rest, expected);
   if (rest.starts_with(','))
@@ -237,7 +322,7 @@ double parse_quantity(std::string_view text, const Quantity& expected) {
                     "s^-2\": write the number first, then the unit alone, such as \"{}\"",
                     in_quotes(unit), expected.example));
 
-  const double factor = factor_to_si(unit, expected);
+  const double factor = factor_to_si(value, unit, expected);
   // Factors such as 1000 and 1/1000 come from UDUNITS with a rounding error.
   constexpr double rounding = 1e-14;
   const double divisor = std::round(1 / factor);

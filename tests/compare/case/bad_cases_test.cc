@@ -85,6 +85,10 @@ const BadCase keys[]{
      "unknown key 'lenght' in [[cilium.segment]] (valid: name, length, young_modulus, "
      "poisson_ratio, magnetization)",
      "; did you mean 'length'?"},
+    {"StartOfAKey", "poisson_ratio", "poisson", "12:1",
+     "unknown key 'poisson' in [[cilium.segment]]", "did you mean 'poisson_ratio'?"},
+    {"StartOfAKnob", "refinement = 1", "kernel = \"0.5 mm\"", "35:1", "unknown key 'kernel'",
+     "did you mean 'kernel_width'?"},
     {"UnknownKeyInCase", "title", "titel", "3:1", "unknown key 'titel' in [case]",
      "did you mean 'title'?"},
     {"UnknownKeyInLoad", "azimuth", "azimut", "25:1",

@@ -75,6 +75,28 @@ TEST(Units, UnitsOutsideTheSiKeepTheirDefinition) {
   EXPECT_NEAR(parse_quantity("1 Oe", quantity::magnetization), 1000 / (4 * std::numbers::pi), 1e-5);
 }
 
+TEST(Units, UnderscoresBelongToNames) {
+  // 1 kgf = 9.80665 N (CGPM 1901), 1 at = 1 kgf/cm², 1 mmHg = 133.322 Pa.
+  EXPECT_NEAR(parse_quantity("1 gram_force", quantity::force), 9.80665e-3, 1e-16);
+  EXPECT_NEAR(parse_quantity("1 kilogram_force", quantity::force), 9.80665, 1e-13);
+  EXPECT_NEAR(parse_quantity("1 technical_atmosphere", quantity::pressure), 98066.5, 1e-9);
+  EXPECT_NEAR(parse_quantity("1 international_inch", quantity::length), 0.0254, 1e-17);
+  EXPECT_NEAR(parse_quantity("180 arc_degree", quantity::angle), std::numbers::pi, 1e-15);
+  EXPECT_NEAR(parse_quantity("1 mm_Hg", quantity::pressure), 133.322, 1e-3);
+}
+
+TEST(Units, TypesettersBlanksMinusAndSuperscriptsAreRead) {
+  EXPECT_EQ(parse_quantity("3\u00A0mm", quantity::length), 0.003);
+  EXPECT_EQ(parse_quantity("3\u202Fmm", quantity::length), 0.003);
+  EXPECT_EQ(parse_quantity("\u00A03\u2009mm\u00A0", quantity::length), 0.003);
+  EXPECT_EQ(parse_quantity("\u22123 mm", quantity::length), -0.003);
+  EXPECT_EQ(parse_quantity("2 kg m s⁻²", quantity::force), 2.0);
+  EXPECT_EQ(parse_quantity("2 kg·m·s\u22122", quantity::force), 2.0);
+  EXPECT_EQ(parse_quantity("2 kg\u202Fm⁻³", quantity::density), 2.0);
+  EXPECT_EQ(parse_quantity("2e6 N (m⁻¹)²", quantity::pressure), 2e6);
+  EXPECT_EQ(parse_quantity("2 m⁺¹", quantity::length), 2.0);
+}
+
 struct BadText {
   std::string_view text;
   Quantity expected;
@@ -143,6 +165,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"5 /m", quantity::length, no_product},
         BadText{"5 m rad", quantity::length, "'m rad' is not a unit of a length"},
         BadText{"5 rad rad", quantity::angle, "'rad rad' is not a unit of an angle"},
+        BadText{"3 milimeter", quantity::length, "did you mean 'millimeter'?"},
+        BadText{"3 Centimetrs", quantity::length, "did you mean 'centimetre'?"},
+        BadText{"3 MM", quantity::length,
+                "unknown unit 'MM': write a length, such as \"3 mm\"; did "
+                "you mean 'mm'?"},
+        BadText{"3 mn", quantity::force, "did you mean 'mN'?"},
+        BadText{"3 Deg", quantity::angle, "did you mean 'deg'?"},
+        BadText{"3 mpA", quantity::pressure, "did you mean 'MPa'?"},
+        BadText{"3 KA/m", quantity::magnetization, "did you mean 'kA/m'?"},
+        BadText{"1_00 mm", quantity::length, no_product},
+        BadText{"10⁻³ m", quantity::length, no_product},
+        BadText{"3 m^²", quantity::length, no_product},
+        BadText{"3 m⁻", quantity::length, no_product},
+        BadText{"\u2212\u22123 m", quantity::length, no_number},
+        // M = B_r/μ0: 0.1 T / (4π·1e-7 N/A²) = 79577.5 A/m; 1 G = 1e-4 T.
+        BadText{"0.1 T", quantity::magnetization,
+                "divide B_r by mu_0 (magnetization = B_r/mu_0), here \"79.58 kA/m\""},
+        BadText{"-1000 gauss", quantity::magnetization, "here \"-79.58 kA/m\""},
         BadText{"5 %", quantity::angle, "'%' is not a unit of an angle"},
         BadText{"0.1 T", quantity::magnetization, "'T' is not a unit of a magnetization"},
         BadText{"1 N m", quantity::force, "'N m' is not a unit of a force"},
@@ -157,6 +197,17 @@ TEST(Units, NothingIsWrittenToTheErrorStreamByUdunits) {
   EXPECT_THROW(parse_quantity("3 degC", quantity::length), InputError);
   EXPECT_THROW(parse_quantity("3 ((", quantity::length), InputError);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Units, NoUnitIsProposedWhereNoneIsNear) {
+  for (const char* text : {"3 mmm", "3 nonsense", "3 N", "3 x"}) {
+    try {
+      parse_quantity(text, quantity::length);
+      FAIL() << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("did you mean"))) << text;
+    }
+  }
 }
 
 TEST(Units, WhatIsWrittenReadsBackAsTheSameDouble) {
