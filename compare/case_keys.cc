@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <numbers>
 #include <type_traits>
 
 namespace ciliaval::compare {
@@ -235,11 +236,14 @@ std::string row(const Knob& knob) {
 }  // namespace
 
 std::string describe(const Range& range, const Quantity& quantity) {
-  const std::string unit = quantity.unit.empty() ? "" : fmt::format(" {}", quantity.unit);
-  if (range.excludes_ends)
-    return fmt::format("between {:g}{} and {:g}{}, both excluded", range.lower, unit, range.upper,
-                       unit);
-  return fmt::format("from {:g}{} to {:g}{}", range.lower, unit, range.upper, unit);
+  const bool is_angle = quantity.unit == quantity::angle.unit;
+  const std::string_view name = is_angle ? "deg" : quantity.unit;
+  const double factor = is_angle ? 180 / std::numbers::pi : 1;
+  const std::string unit = name.empty() ? "" : fmt::format(" {}", name);
+  const std::string lower = fmt::format("{:g}{}", range.lower * factor, unit);
+  const std::string upper = fmt::format("{:g}{}", range.upper * factor, unit);
+  if (range.excludes_ends) return fmt::format("between {} and {}, both excluded", lower, upper);
+  return fmt::format("from {} to {}", lower, upper);
 }
 
 const std::vector<Knob>& knobs() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <numbers>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,7 +27,7 @@ struct Range {
   }
 };
 
-/// "from 1e-09 m to 100 m" or "between -1 and 0.5, both excluded".
+/// "from 1e-09 m to 100 m" or "between -1 and 0.5, both excluded"; angles in deg.
 std::string describe(const Range& range, const Quantity& quantity);
 
 /// A quantity or number that a case file states: the one place that says where it stands, what it
@@ -123,10 +124,14 @@ inline constexpr QuantityKey force_per_length{"load",
                                               {0, 1e9, false, turn_round},
                                               "",
                                               "`dead`: the force per reference length."};
+inline constexpr double two_turns = 4 * std::numbers::pi * (1 + 1e-12);  ///< rad, 720 deg included
 inline constexpr QuantityKey azimuth{
-    "load",          "azimuth",
-    quantity::angle, {-12.6, 12.6, false, "that is two turns (did you mean deg?)"},
-    "0 deg",         "Direction of the load in the plane, from +x towards +y."};
+    "load",
+    "azimuth",
+    quantity::angle,
+    {-two_turns, two_turns, false, "more than two turns is taken for a slip in the unit"},
+    "0 deg",
+    "Direction of the load in the plane, from +x towards +y."};
 /// Each coordinate of a sensor point.
 inline constexpr QuantityKey position{
     "sensor",

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <string>
 
 #include "compare/case_sections.h"
 
@@ -79,6 +81,17 @@ Values PathReader::read(const QuantityKey& k, const toml::node& node) {
     if (const auto value = read_value(element, k.name, k.quantity, k.range, faults))
       values.value.push_back(*value);
   return values;
+}
+
+/// Reads the table of a load whose type is missing or unknown: which keys it should have cannot be
+/// told, but those that some type has must be right by themselves.
+void read_any_type(Section& table) {
+  PathReader reader(table);
+  for (const QuantityKey* k :
+       {&key::load_force, &key::height, &key::force_per_height, &key::velocity, &key::density,
+        &key::drag_coefficient, &key::arclength, &key::force_per_length, &key::azimuth})
+    reader.read(*k, 0);
+  table.finish();
 }
 
 /// The steps, each made by the function from its index.
@@ -163,13 +176,13 @@ bool read_load(Section& root, Case& c) {
     if (root.find("load") == nullptr) faults.add({}, "the table [load] is missing");
     return false;
   }
-  const toml::node* node = table.find("type");
-  if (node == nullptr) {  // which other keys are right is not known
-    faults.add(table.where(), "[load] needs 'type'");
+  const toml::node* node = table.require("type");
+  std::optional<std::string> type;
+  if (node != nullptr) type = read_choice(*node, "type", load_types, later_types, faults);
+  if (!type) {
+    read_any_type(table);
     return false;
   }
-  const auto type = read_choice(*node, "type", load_types, later_types, faults);
-  if (!type) return false;
 
   Section typed(table.table(), fmt::format("[load] of type '{}'", *type), "load", table.where(),
                 faults);

@@ -116,6 +116,25 @@ const BadCase keys[]{
      "[models.line]\n", "32:10", "'fields' need a place: add [sensor] with 'position'"},
 };
 
+// Oracle: the lines and columns of the faults as counted in case_texts.h.
+TEST(BadLoad, OfAnUnknownTypeHasItsOtherFaultsReported) {
+  const std::string broken =
+      replaced(replaced(replaced(good_case, "\"2 mN\"", "\"2 mm\""), "height = \"16 mm\"",
+                        "height = [\"16\", \"-1 mm\"]"),
+               "azimuth", "azimut");
+  for (const std::string& type : {std::string("type = \"contct\""), std::string("type = 3"),
+                                  std::string("type = \"probe\""), std::string("typ = \"dead\"")}) {
+    const auto faults = lines(faults_of(replaced(broken, "type = \"contact\"", type)));
+    ASSERT_EQ(faults.size(), 6U) << type;
+    EXPECT_THAT(faults[0], StartsWith("bad.toml:22:")) << type;
+    EXPECT_THAT(faults[1], StartsWith("bad.toml:23:18: 'force': 'mm' is not a unit of a force"));
+    EXPECT_THAT(faults[2], StartsWith("bad.toml:24:10: 'height' lists 2 values"));
+    EXPECT_THAT(faults[3], StartsWith("bad.toml:24:11: 'height': '16' has no unit"));
+    EXPECT_THAT(faults[4], StartsWith("bad.toml:24:17: 'height' is -0.001 m"));
+    EXPECT_THAT(faults[5], StartsWith("bad.toml:25:1: unknown key 'azimut' in [load]"));
+  }
+}
+
 const BadCase values[]{
     {"NumberWithoutUnit", "diameter = \"3 mm\"", "diameter = 3", "6:12",
      "'diameter': the number 3 has no unit: write a length, such as \"3 mm\""},
@@ -129,7 +148,10 @@ const BadCase values[]{
     {"ReciprocalUnit", "\"16 mm\"", "\"16 mm-1\"", "24:10", "'mm-1' is not a unit of a length"},
     {"AngleWithoutUnit", "\"30 deg\"", "\"30\"", "25:11",
      "'30' has no unit: write an angle, such as \"30 deg\""},
-    {"AngleInRadiansByMistake", "\"30 deg\"", "\"30 rad\"", "25:11", "did you mean deg?"},
+    {"AngleInRadiansByMistake", "\"30 deg\"", "\"30 rad\"", "25:11",
+     "'azimuth' is 30 rad ('30 rad'), but must be from -720 deg to 720 deg: more than two turns"},
+    {"ThreeTurns", "\"30 deg\"", "\"999 deg\"", "25:11",
+     "('999 deg'), but must be from -720 deg to 720 deg: more than two turns is taken for a slip"},
     {"NotANumber", "\"16 mm\"", "\"nan mm\"", "24:10", "does not start with a finite number"},
     {"NotANumberInToml", "= 0.49", "= nan", "12:17", "'poisson_ratio': the number must be finite"},
     {"InfiniteInToml", "= 0.49", "= -inf", "12:17", "the number must be finite"},

@@ -127,6 +127,12 @@ TEST(GoodCase, DotsInCommentsAndTextsAreNoDottedKeys) {
             "it's\"\"" + dots + "\"\"");
 }
 
+TEST(GoodCase, AzimuthMayBeTwoTurns) {
+  for (const char* turns : {"720 deg", "-720 deg", "2 turn"})
+    EXPECT_NEAR(std::abs(azimuth(read(replaced(good_case, "30 deg", turns)).load_path[0])),
+                4 * std::numbers::pi, 1e-14);
+}
+
 TEST(GoodCase, LeavesTheModelsTheirDefaults) {
   const Case c = read(replaced(good_case, "[models.solid]\nrefinement = 1\n", ""));
   for (const Knob& knob : knobs())
