@@ -10,6 +10,8 @@ namespace ciliaval::compare {
 namespace {
 
 constexpr double longest_cilium = 100;  ///< m
+constexpr std::size_t most_rows =
+    200000;  ///< of results; a row takes about 3 kB of memory in a run
 
 bool asks_for(const std::vector<std::string>& ids, std::string_view id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
@@ -107,6 +109,28 @@ void check_fields(const toml::table& root, const Case& c, bool cilium_is_right, 
                "'mechanics'");
 }
 
+std::size_t pairs(std::size_t n) {
+  return n * (n - 1) / 2;  // none of 0
+}
+
+/// The figures of a run: B and ΔB of each field run at each sensor, straight and at each step, and
+/// the comparisons of each pair of runs (compare/errors.h): of mechanics five a step, of fields six
+/// components at each sensor a step and over the path.
+void check_size(const toml::table& root, const Case& c, Faults& faults) {
+  const std::size_t steps = c.load_path.size();
+  const std::size_t sensors = c.sensors.size();
+  const std::size_t mesh_runs = asks_for(c.fields, "mesh") ? 1 : 0;
+  const std::size_t runs = (c.fields.size() - mesh_runs) * c.mechanics.size() + mesh_runs;
+  const std::size_t rows =
+      5 * pairs(c.mechanics.size()) * steps + (runs + 6 * pairs(runs)) * sensors * (steps + 1);
+  if (rows > most_rows)
+    faults.add(place_of(root, "sensor.position"),
+               fmt::format("{} sensor points, {} steps and {} pairs of mechanics and field model "
+                           "with {} comparisons among them make {} rows of results, more than {}: "
+                           "list fewer points, steps or models",
+                           sensors, steps, runs, pairs(runs), rows, most_rows));
+}
+
 }  // namespace
 
 void check_together(const toml::table& root, const Case& c, const RightTables& right,
@@ -120,6 +144,7 @@ void check_together(const toml::table& root, const Case& c, const RightTables& r
   if (right.cilium && right.load) check_section(root, c, faults);
   if (right.load && right.models) check_elastica_form(root, c, faults);
   if (right.models) check_fields(root, c, right.cilium, faults);
+  if (right.load && right.models) check_size(root, c, faults);
 }
 
 }  // namespace ciliaval::compare

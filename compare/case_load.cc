@@ -14,7 +14,7 @@
 namespace ciliaval::compare {
 namespace {
 
-constexpr std::size_t most_steps = 10000;
+constexpr std::size_t most_steps = 1000;  ///< each one writes files of every model, 1 MB and more
 
 constexpr std::array<std::string_view, 4> load_types{ContactLoad::type, FlowLoad::type,
                                                      SectionLoad::type, DeadLoad::type};

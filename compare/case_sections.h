@@ -24,7 +24,8 @@ struct RightTables {
 };
 
 /// Faults between tables of which each is right by itself: a contact height or section beyond the
-/// tip, a contact kernel that does not fit, fields without a sensor or a magnet, …
+/// tip, a contact kernel that does not fit, fields without a sensor or a magnet, more results than
+/// a machine can hold, …
 void check_together(const toml::table& root, const Case& c, const RightTables& right,
                     Faults& faults);
 

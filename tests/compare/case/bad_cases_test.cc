@@ -221,7 +221,7 @@ const BadCase lists[]{
     {"FieldTwice", "\"line\"", "\"dipole\"", "32:21", "'fields' lists 'dipole' twice"},
     {"NumberAmongIds", "\"beam\"", "1", "31:26", "'mechanics' must be a text in quotes"},
     {"EmptyLoadPath", "[\"1 mN\", \"2 mN\", \"4 mN\"]", "[]", "23:9",
-     "'force' lists 0 values: a load path has 1 to 10000 steps"},
+     "'force' lists 0 values: a load path has 1 to 1000 steps"},
     {"NestedLoadPath", "\"2 mN\"", "[\"2 mN\"]", "23:18", "such as \"1 mN\", found a list"},
     {"ListsOfDifferentLength", "\"16 mm\"", "[\"16 mm\", \"15 mm\"]", "24:10",
      "'height' lists 2 values, but 'force' lists 3: all lists of a load path have the same length"},
@@ -291,6 +291,54 @@ const BadCase contradictions[]{
     {"TooLongTogether", "length = \"3 mm\"", "length = \"100 m\"", "8:1",
      "the segments are 100.017 m long together"},
 };
+
+std::string repeated(std::string_view part, int count) {
+  std::string list = "[";
+  for (int i = 0; i < count; ++i) list.append(part).append(", ");
+  return list + "]";
+}
+
+// Oracle: the rows counted by hand. Three mechanics models are 3 pairs with 5 rows a step; with
+// dipole, line and volume on each and mesh on the solid there are 10 field runs, 45 pairs with 6
+// components: at 3 steps and over the path 4 (10 + 270) = 1120 rows for each sensor, and 3·3·5
+// = 45.
+TEST(BadCaseSize, MoreResultsThanAMachineHoldsAreRefused) {
+  constexpr std::string_view point = "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]";
+  const auto with_sensors = [&](int count) {
+    return replaced(good_case, point, repeated(point, count));
+  };
+  EXPECT_EQ(faults_of(with_sensors(178)), "");  // 199405 rows
+  EXPECT_THAT(faults_of(with_sensors(179)),
+              StartsWith("bad.toml:28:12: 179 sensor points, 3 steps and 10 pairs of mechanics and "
+                         "field model with 45 comparisons among them make 200525 rows of results, "
+                         "more than 200000: list fewer points, steps or models"));
+}
+
+TEST(BadCaseSize, OneFieldModelIsBoundedToo) {
+  // One run of one field model has no comparison: 400 steps make 401 rows for each sensor.
+  const auto text = [](int sensors) {
+    return "[case]\nname = \"c\"\n[cilium]\ndiameter = \"3 mm\"\n[[cilium.segment]]\nname = \"a\"\n"
+           "length = \"9 mm\"\nyoung_modulus = \"1 MPa\"\npoisson_ratio = 0\n"
+           "magnetization = \"1 kA/m\"\n[load]\ntype = \"dead\"\nforce_per_length = " +
+           repeated("\"0 N/m\"", 400) +
+           "\n[sensor]\nposition = " + repeated("[\"0 m\", \"0 m\", \"1 m\"]", sensors) +
+           "\n[models]\nmechanics = [\"beam\"]\nfields = [\"line\"]\n";
+  };
+  EXPECT_EQ(faults_of(text(498)), "");  // 199698 rows
+  EXPECT_THAT(faults_of(text(499)), HasSubstr("make 200099 rows of results, more than 200000"));
+}
+
+TEST(BadCaseSize, ALoadPathHasAThousandStepsAtMost) {
+  const auto with_steps = [](int count) {
+    return replaced(
+        replaced(good_case, "[\"1 mN\", \"2 mN\", \"4 mN\"]", repeated("\"1 mN\"", count)),
+        "fields = [\"dipole\", \"line\", \"volume\", \"mesh\"]", "");
+  };
+  EXPECT_EQ(faults_of(with_steps(1000)), "");
+  EXPECT_THAT(
+      faults_of(with_steps(1001)),
+      StartsWith("bad.toml:23:9: 'force' lists 1001 values: a load path has 1 to 1000 steps"));
+}
 
 const BadCase later[]{
     {"Probe", "\"contact\"", "\"probe\"", "22:8",
