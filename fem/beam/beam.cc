@@ -19,7 +19,7 @@ void require_valid(const BeamOptions& options) {
   if (options.degree < 1 || options.degree > 20)
     throw InputError("beam: the degree must lie between 1 and 20");
   if (options.refinement > 12) throw InputError("beam: the refinement must not exceed 12");
-  if (!(options.tolerance > 0 && options.tolerance < 1e-3))
+  if (!(options.tolerance > 0 && options.tolerance <= 1e-3))
     throw InputError("beam: the tolerance must lie between 0 and 1e-3");
   if (options.max_iterations < 1) throw InputError("beam: max_iterations must be at least 1");
 }
