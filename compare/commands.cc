@@ -99,7 +99,7 @@ ExitCode run_one(const Case& problem, OutputFolder& folder, const std::string& c
   const Progress progress = line.callback();
   const CaseResult result = run(problem, mechanics_models(), field_models(), progress);
   const std::vector<Comparison> comparisons = compare_models(result);
-  const auto grid = sample_field(result, field_models(), progress);
+  const auto grid = field_grid(result, field_models(), progress);
   const Provenance origin = provenance(command);
   write_text(folder.path() / "case.toml", to_toml(problem));
   write_results(result, comparisons, origin, folder.path());

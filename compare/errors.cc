@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ciliaval::compare {
@@ -13,6 +14,8 @@ namespace {
 constexpr double vanishing_deflection = 1e-9;
 /// A field this small against the scale of its quantity is rounding error: no scale.
 constexpr double vanishing_field = 1e-9;
+/// Two computations of the same deformation differ by rounding: B by so much of itself.
+constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
 const std::array<std::string, 3> axis_names{"x", "y", "z"};
 
@@ -119,18 +122,23 @@ struct FieldPath {
     Vector3 value;                         ///< T
     std::optional<Vector3> numerical;      ///< uncertainty of the field model, T
     std::optional<double> from_mechanics;  ///< uncertainty that the deformation carries into it, T
+    double rounding;                       ///< what the deformation's rounding may make of it, T
   };
   std::vector<std::vector<std::optional<Value>>> at;  ///< [sensor][step]
   std::vector<double> largest;                        ///< max |value| over the path, each sensor, T
 };
 
 /// First-order estimate of what the tip's discretisation error does to the field: |ΔB|·u/|tip
-/// displacement|, as if ΔB grew in proportion to the deformation.
-std::optional<double> carried_over(const std::optional<Shape>& shape, const Vector3& dB) {
-  if (!shape || !shape->tip_uncertainty) return std::nullopt;
+/// displacement|, as if ΔB grew in proportion to the deformation. Zero where nothing has moved and
+/// nothing has changed (no load).
+std::optional<double> carried_over(const std::optional<Shape>& shape, const Vector3& B,
+                                   const std::optional<Vector3>& dB) {
+  if (!shape || !shape->tip_uncertainty || !dB) return std::nullopt;
   if (*shape->tip_uncertainty == 0) return 0;
-  if (shape->tip_displacement <= vanishing_deflection * shape->curve.length()) return std::nullopt;
-  return dB.norm() * *shape->tip_uncertainty / shape->tip_displacement;
+  if (shape->tip_displacement > vanishing_deflection * shape->curve.length())
+    return dB->norm() * *shape->tip_uncertainty / shape->tip_displacement;
+  if (dB->norm() <= vanishing_field * B.norm()) return 0;
+  return std::nullopt;
 }
 
 FieldPath field_path(const FieldRun& run, const MechanicsRun& mechanics, bool change,
@@ -139,15 +147,19 @@ FieldPath field_path(const FieldRun& run, const MechanicsRun& mechanics, bool ch
   path.largest.assign(sensors, 0);
   path.at.assign(sensors, std::vector<std::optional<FieldPath::Value>>(run.steps.size()));
   for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    if (!run.steps[i] || !run.steps[i]->failure.empty()) continue;
+    if (!run.steps[i]) continue;
     const FieldStep& step = *run.steps[i];
-    const auto& values = change ? step.dB : step.field.B;
-    const auto& uncertainty = change ? step.dB_uncertainty : step.field.uncertainty;
+    const auto& values = change ? step.dB : step.B;
+    const auto& uncertainty = change ? step.dB_uncertainty : step.uncertainty;
     const std::optional<Shape> shape = shape_of(mechanics, i);
     for (std::size_t s = 0; s < sensors; ++s) {
-      FieldPath::Value value{values[s], std::nullopt, carried_over(shape, step.dB[s])};
-      if (!uncertainty.empty()) value.numerical = uncertainty[s].cwiseAbs();
-      path.largest[s] = std::max(path.largest[s], values[s].norm());
+      if (!values[s]) continue;
+      const Vector3& B = *step.B[s];  // where ΔB is, B is
+      FieldPath::Value value{*values[s], std::nullopt, carried_over(shape, B, step.dB[s]),
+                             rounding * B.norm()};
+      if (step.dB[s]) value.rounding += rounding * (B - *step.dB[s]).norm();
+      if (uncertainty[s]) value.numerical = uncertainty[s]->cwiseAbs();
+      path.largest[s] = std::max(path.largest[s], values[s]->norm());
       path.at[s][i] = value;
     }
   }
@@ -159,7 +171,7 @@ std::optional<double> combined_uncertainty(const FieldPath::Value& a, const Fiel
   if (!a.numerical || !b.numerical) return std::nullopt;
   const double numerical = (*a.numerical)[axis] + (*b.numerical)[axis];
   if (same_mechanics) return numerical;
-  return sum(numerical, sum(a.from_mechanics, b.from_mechanics));
+  return sum(numerical + a.rounding + b.rounding, sum(a.from_mechanics, b.from_mechanics));
 }
 
 /// Sums over the load path of one component at one sensor.

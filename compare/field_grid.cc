@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "compare/results.h"
 #include "problem/error.h"
@@ -31,11 +32,15 @@ ModelOptions with_closed_forms(ModelOptions options) {
 
 void lay_out(FieldGrid& grid, const CaseResult& result, const MechanicsRun& run) {
   Eigen::AlignedBox3d box;
-  for (const Vector3& sensor : result.problem.sensors) box.extend(sensor);
   for (const MechanicsStep& step : run.result.steps)
     if (step.deformation)
       for (const double S : output_points(step.deformation->centreline))
         box.extend(step.deformation->centreline.at(S).position);
+  // A sensor far away would leave no grid points at the cilium.
+  const double reach = 2 * result.problem.cilium.length();
+  const Eigen::AlignedBox3d cilium = box;
+  for (const Vector3& sensor : result.problem.sensors)
+    if (cilium.exteriorDistance(sensor) <= reach) box.extend(sensor);
   const Vector3 margin = Vector3::Constant(2 * result.problem.cilium.diameter);
   grid.origin = box.min() - margin;
   const Vector3 size = box.max() + margin - grid.origin;
@@ -80,11 +85,11 @@ FieldGrid::Step sample_grid(const FieldGrid& grid, const FieldModel& model, cons
 
 }  // namespace
 
-std::optional<FieldGrid> sample_field(const CaseResult& result, std::span<const FieldEntry> fields,
-                                      const Progress& progress) {
+std::optional<FieldGrid> field_grid(const CaseResult& result, std::span<const FieldEntry> fields,
+                                    const Progress& progress) {
   const MechanicsRun* run = mechanics_to_draw(result);
   const std::vector<std::string>& asked = result.problem.fields;
-  std::unique_ptr<FieldModel> model;
+  std::shared_ptr<const FieldModel> model;
   FieldGrid grid;
   for (const FieldEntry& entry : fields) {
     if (std::find(asked.begin(), asked.end(), entry.id) == asked.end()) continue;
@@ -96,12 +101,13 @@ std::optional<FieldGrid> sample_field(const CaseResult& result, std::span<const 
   if (run == nullptr || !model) return std::nullopt;
   grid.mechanics = run->model;
   lay_out(grid, result, *run);
-  for (const MechanicsStep& step : run->result.steps) {
-    grid.steps.emplace_back();
-    if (!step.deformation) continue;
-    if (progress) progress("field grid: step " + std::to_string(grid.steps.size()));
-    grid.steps.back() = sample_grid(grid, *model, result.problem.cilium, *step.deformation);
-  }
+  grid.sample = [layout = grid, run, model, progress, &cilium = result.problem.cilium](
+                    std::size_t step) -> std::optional<FieldGrid::Step> {
+    const MechanicsStep& mechanics = run->result.steps.at(step);
+    if (!mechanics.deformation) return std::nullopt;
+    if (progress) progress("field grid: step " + std::to_string(step + 1));
+    return sample_grid(layout, *model, cilium, *mechanics.deformation);
+  };
   return grid;
 }
 

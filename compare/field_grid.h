@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,17 +23,20 @@ struct FieldGrid {
   };
   std::string mechanics;
   std::string field;
-  Vector3 origin = Vector3::Zero();        ///< lowest corner, m
-  Vector3 spacing = Vector3::Zero();       ///< m
-  std::array<int, 3> points{33, 33, 49};   ///< along x, y, z
-  std::vector<std::optional<Step>> steps;  ///< none where the mechanics did not converge
+  Vector3 origin = Vector3::Zero();       ///< lowest corner, m
+  Vector3 spacing = Vector3::Zero();      ///< m
+  std::array<int, 3> points{33, 33, 49};  ///< along x, y, z
+  /// B at a step, computed when it is asked for (a long path would not fit into memory); none where
+  /// the mechanics did not converge.
+  std::function<std::optional<Step>(std::size_t)> sample;
 };
 
 /// The most detailed field model that needs no body (it reads the centreline), on the most detailed
-/// mechanics model, sampled in a box that holds the sensors and the cilium at every step, two
-/// diameters wider. Closed forms are used whatever the case asks: the picture
-/// checks no quadrature. None if no such pair converged at any step.
-std::optional<FieldGrid> sample_field(const CaseResult& result, std::span<const FieldEntry> fields,
-                                      const Progress& progress = {});
+/// mechanics model, to be sampled in a box that holds the cilium at every step and the sensors no
+/// farther than two lengths from it, two diameters wider. Closed forms are used whatever the case
+/// asks: the picture checks no quadrature. None if no such pair converged at any step. The result
+/// refers to `result` and calls `progress`.
+std::optional<FieldGrid> field_grid(const CaseResult& result, std::span<const FieldEntry> fields,
+                                    const Progress& progress = {});
 
 }  // namespace ciliaval::compare

@@ -28,15 +28,27 @@ Json text_or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
+/// −0.0 → 0.0: the sign of a zero means nothing to a reader.
+void unsign_zeros(Json& json) {
+  if (json.is_structured())
+    for (Json& element : json) unsign_zeros(element);
+  else if (json.is_number_float() && json.get<double>() == 0)
+    json = 0.0;
+}
+
 Json vector(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Json rows(const std::vector<Vector3>& vectors) {
-  if (vectors.empty()) return nullptr;
+/// A row for each sensor, null where there is none; null if there is none at all.
+Json rows(const AtSensors& vectors) {
   Json result = Json::array();
-  for (const Vector3& v : vectors) result.push_back(vector(v));
-  return result;
+  bool any = false;
+  for (const std::optional<Vector3>& v : vectors) {
+    result.push_back(v ? vector(*v) : Json(nullptr));
+    any = any || v;
+  }
+  return any ? result : Json(nullptr);
 }
 
 Json load_json(const Load& load) {
@@ -83,9 +95,9 @@ Json mechanics_json(const MechanicsRun& run, std::size_t index) {
 Json field_json(const FieldStep& step) {
   return {{"status", step.failure.empty() ? "computed" : "failed"},
           {"message", step.failure},
-          {"B", rows(step.field.B)},
+          {"B", rows(step.B)},
           {"dB", rows(step.dB)},
-          {"uncertainty", rows(step.field.uncertainty)},
+          {"uncertainty", rows(step.uncertainty)},
           {"dB_uncertainty", rows(step.dB_uncertainty)},
           {"seconds", step.seconds}};
 }
@@ -135,7 +147,7 @@ std::string quoted(const std::string& text) {
 
 template <class T>
 std::string csv(const std::optional<T>& value) {
-  return value ? fmt::format("{}", *value) : std::string();
+  return value ? fmt::format("{}", *value + T{}) : std::string();  // −0.0 + 0.0 = 0.0
 }
 
 }  // namespace
@@ -176,7 +188,8 @@ std::string summary_json(const CaseResult& result, const std::vector<Comparison>
                         {"libraries", provenance.libraries},
                         {"command", provenance.command},
                         {"date", provenance.date}};
-  json["sensors"] = rows(result.problem.sensors);
+  json["sensors"] = Json::array();
+  for (const Vector3& sensor : result.problem.sensors) json["sensors"].push_back(vector(sensor));
   json["undeformed"] = {{"fields", Json::object()}};
   for (const FieldRun& run : result.fields)
     json["undeformed"]["fields"][run.name()] = field_json(run.undeformed);
@@ -185,6 +198,7 @@ std::string summary_json(const CaseResult& result, const std::vector<Comparison>
     json["steps"].push_back(step_json(result, i));
   json["comparisons"] = Json::array();
   for (const Comparison& c : comparisons) json["comparisons"].push_back(comparison_json(c));
+  unsign_zeros(json);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
@@ -205,8 +219,9 @@ std::string centreline_csv(const Centreline& centreline) {
   std::string text = "# units: S m, x m, y m, z m, theta rad, kappa 1/m\nS,x,y,z,theta,kappa\n";
   for (const double S : output_points(centreline)) {
     const CentrelinePoint p = centreline.at(S);
-    text += fmt::format("{},{},{},{},{},{}\n", S, p.position.x(), p.position.y(), p.position.z(),
-                        p.theta(), p.bending_curvature());
+    const Vector3 r = p.position.array() + 0.0;  // −0.0 + 0.0 = 0.0
+    text += fmt::format("{},{},{},{},{},{}\n", S, r.x(), r.y(), r.z(), p.theta() + 0.0,
+                        p.bending_curvature() + 0.0);
   }
   return text;
 }

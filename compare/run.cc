@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/run.h"
 
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -75,42 +79,90 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, c
   return run;
 }
 
+/// B and its uncertainty at some of the sensors; throws if they are not as many or not finite.
+Field checked_field(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
+                    std::span<const Vector3> points) {
+  Field field = model.field(cilium, deformation, points);
+  if (field.B.size() != points.size() ||
+      (!field.uncertainty.empty() && field.uncertainty.size() != points.size()))
+    throw SolverError("the model gave fields at another number of points than asked");
+  for (const Vector3& B : field.B)
+    if (!B.allFinite()) throw SolverError("the field is not finite");
+  return field;
+}
+
+/// Evaluates B at all the points and appends it to `step`. If the model refuses them, halves the
+/// set until the points at which it gives no B stand alone; each message is kept with the sensors.
+void append_field(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
+                  std::span<const Vector3> points, FieldStep& step,
+                  std::vector<std::pair<std::size_t, std::string>>& failures) {
+  try {
+    const Field field = checked_field(model, cilium, deformation, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      step.B.emplace_back(field.B[i]);
+      step.uncertainty.push_back(field.uncertainty.empty() ? std::nullopt
+                                                           : std::optional(field.uncertainty[i]));
+    }
+  } catch (const std::exception& error) {
+    if (points.size() <= 1) {
+      failures.emplace_back(step.B.size(), error.what());
+      step.B.resize(step.B.size() + points.size());
+      step.uncertainty.resize(step.B.size());
+      return;
+    }
+    const std::size_t half = points.size() / 2;
+    append_field(model, cilium, deformation, points.first(half), step, failures);
+    append_field(model, cilium, deformation, points.subspan(half), step, failures);
+  }
+}
+
+/// "sensor 1: …; sensors 2, 4: …", or the message alone if it is that of every sensor.
+std::string describe(const std::vector<std::pair<std::size_t, std::string>>& failures,
+                     std::size_t sensors) {
+  std::map<std::string, std::vector<std::size_t>> sensors_of;
+  std::vector<std::string> messages;  // in the order in which they came
+  for (const auto& [sensor, message] : failures) {
+    if (sensors_of[message].empty()) messages.push_back(message);
+    sensors_of[message].push_back(sensor);
+  }
+  if (messages.size() == 1 && failures.size() >= sensors) return messages.front();
+  std::vector<std::string> parts;
+  for (const std::string& message : messages) {
+    const std::vector<std::size_t>& where = sensors_of[message];
+    parts.push_back(fmt::format("sensor{} {}: {}", where.size() > 1 ? "s" : "",
+                                fmt::join(where, ", "), message));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
 /// The field at the sensors. What the model throws becomes `failure`.
 FieldStep field_at_sensors(const FieldModel& model, const Case& problem,
                            const Deformation& deformation) {
   FieldStep step;
   const auto start = std::chrono::steady_clock::now();
-  const auto finite = [](const Vector3& v) { return v.allFinite(); };
-  try {
-    Field field = model.field(problem.cilium, deformation, problem.sensors);
-    if (field.B.size() != problem.sensors.size() ||
-        (!field.uncertainty.empty() && field.uncertainty.size() != problem.sensors.size()))
-      step.failure = "the model gave fields at another number of points than asked";
-    else if (!std::all_of(field.B.begin(), field.B.end(), finite))
-      step.failure = "the field is not finite";
-    else
-      step.field = std::move(field);
-  } catch (const std::exception& error) {
-    step.failure = error.what();
-  }
+  std::vector<std::pair<std::size_t, std::string>> failures;
+  append_field(model, problem.cilium, deformation, problem.sensors, step, failures);
+  step.failure = describe(failures, problem.sensors.size());
   step.seconds = seconds_since(start);
   return step;
 }
 
 /// Sets ΔB = B − B(undeformed) and the sum of the uncertainties.
 void subtract(FieldStep& step, const FieldStep& undeformed) {
-  if (!step.failure.empty()) return;
-  if (!undeformed.failure.empty()) {
-    step = {{}, {}, {}, step.seconds, "undeformed cilium: " + undeformed.failure};
-    return;
+  bool offset_missing = false;
+  for (std::size_t i = 0; i < step.B.size(); ++i) {
+    step.dB.emplace_back();
+    step.dB_uncertainty.emplace_back();
+    offset_missing = offset_missing || (step.B[i] && !undeformed.B[i]);
+    if (!step.B[i] || !undeformed.B[i]) continue;
+    step.dB[i] = *step.B[i] - *undeformed.B[i];
+    if (step.uncertainty[i] && undeformed.uncertainty[i])
+      step.dB_uncertainty[i] =
+          step.uncertainty[i]->cwiseAbs() + undeformed.uncertainty[i]->cwiseAbs();
   }
-  const bool known = !step.field.uncertainty.empty() && !undeformed.field.uncertainty.empty();
-  for (std::size_t i = 0; i < step.field.B.size(); ++i) {
-    step.dB.emplace_back(step.field.B[i] - undeformed.field.B[i]);
-    if (known)
-      step.dB_uncertainty.emplace_back(step.field.uncertainty[i].cwiseAbs() +
-                                       undeformed.field.uncertainty[i].cwiseAbs());
-  }
+  if (offset_missing)
+    step.failure += fmt::format("{}undeformed cilium: {}", step.failure.empty() ? "" : "; ",
+                                undeformed.failure);
 }
 
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
@@ -120,8 +172,8 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
   run.field = id;
   if (progress) progress(run.name() + ": undeformed cilium");
   run.undeformed = field_at_sensors(model, problem, mechanics.result.undeformed);
-  if (run.undeformed.failure.empty())
-    run.undeformed.dB.assign(problem.sensors.size(), Vector3::Zero());
+  for (const std::optional<Vector3>& B : run.undeformed.B)
+    run.undeformed.dB.push_back(B ? std::optional<Vector3>(Vector3::Zero()) : std::nullopt);
   for (std::size_t i = 0; i < mechanics.result.steps.size(); ++i) {
     const MechanicsStep& step = mechanics.result.steps[i];
     run.steps.emplace_back();
@@ -136,6 +188,11 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
 }
 
 }  // namespace
+
+bool FieldStep::any() const {
+  return std::any_of(B.begin(), B.end(),
+                     [](const std::optional<Vector3>& value) { return value.has_value(); });
+}
 
 CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress) {

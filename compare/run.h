@@ -20,13 +20,20 @@ struct MechanicsRun {
                            ///< its message
 };
 
+/// A vector at each sensor, T; none where it is undefined or unknown.
+using AtSensors = std::vector<std::optional<Vector3>>;
+
 /// B of one pair of models at one step.
 struct FieldStep {
-  Field field;                          ///< B at the sensors, T; empty if it failed
-  std::vector<Vector3> dB;              ///< ΔB = B − B(undeformed), T
-  std::vector<Vector3> dB_uncertainty;  ///< sum of the two uncertainties, T; empty if unknown
-  double seconds = 0;                   ///< wall time
-  std::string failure;                  ///< why there is no field; empty if there is one
+  AtSensors B;               ///< flux density
+  AtSensors uncertainty;     ///< the field model's estimate of the numerical error of B
+  AtSensors dB;              ///< ΔB = B − B(undeformed): none where one of the two is missing
+  AtSensors dB_uncertainty;  ///< sum of the two uncertainties
+  double seconds = 0;        ///< wall time
+  std::string failure;       ///< why a value of B or ΔB is missing, at which sensors; else empty
+
+  /// Whether there is B at any sensor.
+  bool any() const;
 };
 
 /// What one field model made of the deformations of one mechanics model.
@@ -50,8 +57,8 @@ struct CaseResult {
 /// Runs the models that the case asks for: each mechanics model along the load path, then each
 /// field model on the undeformed cilium and on every converged step (a model that needs a body only
 /// where there is one). What one model throws, or a result that is not finite, is recorded as its
-/// failure and does not stop the others. Throws InputError if the case names a model that is not
-/// among the entries.
+/// failure and does not stop the others; where B diverges at one sensor, the rest are computed.
+/// Throws InputError if the case names a model that is not among the entries.
 CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress = {});
 

@@ -16,16 +16,19 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// A number in a unit, or a dash for what is undefined.
+/// A number in a unit, or a dash for what is undefined. What rounds to zero has no sign.
 std::string cell(std::optional<double> value, double unit, std::string_view format) {
-  return value ? fmt::format(fmt::runtime(format), *value / unit) : "-";
+  if (!value) return "-";
+  const std::string text = fmt::format(fmt::runtime(format), *value / unit);
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  return is_zero && text.starts_with('-') ? text.substr(1) : text;
 }
 
 /// The relative error in percent: two decimals, or the order of magnitude of a smaller one.
 std::string percent(const Comparison* c) {
   if (c == nullptr || !c->relative) return "-";
   const double value = *c->relative * 100;
-  return std::abs(value) >= 0.01 || value == 0 ? fmt::format("{:.2f}", value)
+  return std::abs(value) >= 0.01 || value == 0 ? cell(value, 1, "{:.2f}")
                                                : fmt::format("{:.0e}", value);
 }
 
@@ -113,23 +116,32 @@ std::string mechanics_errors(const CaseResult& result, const std::vector<Compari
 
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 
+std::optional<double> component(const std::optional<Vector3>& v, Eigen::Index axis) {
+  return v ? std::optional((*v)[axis]) : std::nullopt;
+}
+
+/// Whether a pair has B at the sensor that is shown.
+bool has_field(const FieldRun& run, std::size_t step) {
+  return run.steps[step] && run.steps[step]->B.front();
+}
+
 std::string fields_table(const CaseResult& result, const std::vector<Comparison>& comparisons,
                          std::size_t step) {
   std::string rows;
   std::string failures;
   const FieldRun* reference = nullptr;  // the most detailed pair that has a field here
   for (const FieldRun& run : result.fields)
-    if (run.steps[step] && run.steps[step]->failure.empty()) reference = &run;
+    if (has_field(run, step)) reference = &run;
   for (const FieldRun& run : result.fields) {
     if (!run.steps[step]) continue;
     const FieldStep& field = *run.steps[step];
-    if (!field.failure.empty()) {
-      failures += fmt::format("  {}: {}\n", run.name(), field.failure);
-      continue;
-    }
+    if (!field.failure.empty()) failures += fmt::format("  {}: {}\n", run.name(), field.failure);
+    if (!has_field(run, step)) continue;
     rows += fmt::format("  {:<18}", run.name());
-    for (const double B : field.field.B.front()) rows += fmt::format("{:>10.4f}", B * 1e3);
-    for (const double dB : field.dB.front()) rows += fmt::format("{:>10.2f}", dB * 1e6);
+    for (Eigen::Index i = 0; i < 3; ++i)
+      rows += fmt::format("{:>10}", cell(component(field.B.front(), i), 1e-3, "{:.4f}"));
+    for (Eigen::Index i = 0; i < 3; ++i)
+      rows += fmt::format("{:>10}", cell(component(field.dB.front(), i), 1e-6, "{:.2f}"));
     for (const char* axis : axis_names)
       rows += fmt::format("{:>9}", &run == reference
                                        ? "ref."
@@ -144,13 +156,17 @@ std::string fields_table(const CaseResult& result, const std::vector<Comparison>
          rows + failures;
 }
 
-/// Every pair against the most detailed one.
+/// Every pair against the most detailed one that has a field at any step.
 std::string path_errors(const CaseResult& result, const std::vector<Comparison>& comparisons) {
-  if (result.fields.size() < 2) return {};
-  const std::string reference = result.fields.back().name();
+  const FieldRun* last = nullptr;
+  for (const FieldRun& run : result.fields)
+    for (std::size_t step = 0; step < run.steps.size(); ++step)
+      if (has_field(run, step)) last = &run;
+  if (last == nullptr) return {};
+  const std::string reference = last->name();
   std::string rows;
   for (const FieldRun& run : result.fields) {
-    if (&run == &result.fields.back()) break;
+    if (&run == last) break;
     std::string row = fmt::format("  {:<18}", run.name());
     bool any = false;
     for (const char* quantity : {"B", "dB"})
@@ -201,7 +217,9 @@ std::string table(const CaseResult& result, const std::vector<Comparison>& compa
   text += '\n';
   if (pairs) text += mechanics_legend;
   if (!result.fields.empty() && !problem.sensors.empty()) text += fields_legend;
-  if (problem.sensors.size() > 1)
+  if (problem.sensors.size() == 2)
+    text += "The other sensor is in summary.json and errors.csv.\n";
+  else if (problem.sensors.size() > 2)
     text += fmt::format("The other {} sensors are in summary.json and errors.csv.\n",
                         problem.sensors.size() - 1);
   return text;

@@ -14,6 +14,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "compare/results.h"
@@ -64,6 +65,24 @@ vtkNew<vtkPoints> double_points() {
 
 void add_point(vtkPoints& points, const Vector3& x) {
   points.InsertNextPoint(x.x(), x.y(), x.z());
+}
+
+vtkNew<vtkUnsignedCharArray> mask(const std::string& name) {
+  vtkNew<vtkUnsignedCharArray> array;
+  array->SetName(name.c_str());
+  return array;
+}
+
+/// A field (T) and its mask: 0 where there is no value, which is then written as zero.
+void attach_masked(vtkDataSet& data, const std::string& name, const AtSensors& values) {
+  Column column(name, 3, "T");
+  const vtkNew<vtkUnsignedCharArray> valid = mask("valid_" + name);
+  for (const std::optional<Vector3>& value : values) {
+    column.add(value.value_or(Vector3::Zero()));
+    valid->InsertNextValue(value ? 1 : 0);
+  }
+  column.attach(data);
+  data.GetPointData()->AddArray(valid);
 }
 
 /// Points with one vertex cell each.
@@ -218,14 +237,10 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
 vtkSmartPointer<vtkPolyData> sensors(const CaseResult& result, std::size_t step) {
   auto data = vertices(result.problem.sensors);
   for (const FieldRun& run : result.fields) {
-    if (!run.steps[step] || !run.steps[step]->failure.empty()) continue;
+    if (!run.steps[step] || !run.steps[step]->any()) continue;
     const std::string pair = run.mechanics + "_" + run.field;
-    Column B("B_" + pair, 3, "T");
-    Column dB("dB_" + pair, 3, "T");
-    for (const Vector3& value : run.steps[step]->field.B) B.add(value);
-    for (const Vector3& value : run.steps[step]->dB) dB.add(value);
-    B.attach(*data);
-    dB.attach(*data);
+    attach_masked(*data, "B_" + pair, run.steps[step]->B);
+    attach_masked(*data, "dB_" + pair, run.steps[step]->dB);
   }
   return data;
 }
@@ -238,8 +253,7 @@ vtkSmartPointer<vtkImageData> field_image(const FieldGrid& grid, const FieldGrid
   Column B("B", 3, "T");
   for (const Vector3& value : step.B) B.add(value);
   B.attach(*image);
-  const vtkNew<vtkUnsignedCharArray> valid;
-  valid->SetName("valid");
+  const vtkNew<vtkUnsignedCharArray> valid = mask("valid");
   for (const std::uint8_t flag : step.valid) valid->InsertNextValue(flag);
   image->GetPointData()->AddArray(valid);
   return image;

@@ -32,7 +32,7 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
                                      analytic::PushForward push_forward);
 
 /// The sensors as vertices with `B` and `dB` of every pair of models at a step, named
-/// `B_elastica_line`.
+/// `B_elastica_line`, and a mask `valid_B_elastica_line` that is 0 where there is no value.
 vtkSmartPointer<vtkPolyData> sensors(const CaseResult& result, std::size_t step);
 
 /// B on a grid, with the mask `valid`.

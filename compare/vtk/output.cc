@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/vtk/output.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <system_error>
@@ -44,6 +45,13 @@ class Output {
   std::map<std::string, std::string> series_;
 };
 
+/// Whether any pair of models has B at any sensor.
+bool any_field(const CaseResult& result, std::size_t step) {
+  return std::any_of(result.fields.begin(), result.fields.end(), [&](const FieldRun& run) {
+    return run.steps[step] && run.steps[step]->any();
+  });
+}
+
 }  // namespace
 
 void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
@@ -61,10 +69,10 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
           *dipoles(problem.cilium, deformation->centreline, problem.options.line.push_forward));
       if (deformation->body) output.add("body_" + run.model, step, *solid_grid(*deformation->body));
     }
-    if (grid && grid->steps[step])
-      output.add("field_" + grid->mechanics + "_" + grid->field, step,
-                 *field_image(*grid, *grid->steps[step]));
-    if (!problem.sensors.empty()) output.add("sensors", step, *sensors(result, step));
+    if (grid)
+      if (const auto B = grid->sample(step))
+        output.add("field_" + grid->mechanics + "_" + grid->field, step, *field_image(*grid, *B));
+    if (any_field(result, step)) output.add("sensors", step, *sensors(result, step));
   }
   output.finish();
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "problem/error.h"
 #include "synthetic.h"
@@ -263,8 +264,69 @@ TEST(Comparisons, CarryTheMechanicsUncertaintyIntoTheFieldOfDifferentMechanicsOn
   const auto carried = [](double theta, double tip) {
     return L * std::sin(theta) * tip / (2 * L * std::sin(theta / 2));
   };
+  // Rounding of the deformation: 16 ε of each B and of each B(undeformed) = e_z.
+  const double rounding = 16 * std::numeric_limits<double>::epsilon() *
+                          (std::hypot(1, L * std::sin(0.1)) + std::hypot(1, L * std::sin(0.2)) + 2);
   EXPECT_NEAR(uncertainty("rough/one", "fine/one"),
-              4 * u.y() + carried(0.1, 1e-5) + carried(0.2, 3e-5), 1e-16);
+              4 * u.y() + carried(0.1, 1e-5) + carried(0.2, 3e-5) + rounding, 1e-18);
+}
+
+// Without a load nothing moves and nothing changes: the deformation carries no error into the field
+// there, and the path has a verdict. Oracle: RMS over the two steps of the figures above.
+TEST(Comparisons, AStepWithoutALoadLeavesThePathItsVerdict) {
+  const auto all = compare_models(run_tilts(1e-6, 2e-6, Vector3(0, 0, 0), {0.0, 0.1}));
+  const Comparison& unloaded = find(all, 0, "dB", "x", "value", "rough/tip");
+  EXPECT_EQ(*unloaded.difference, 0);
+  EXPECT_NEAR(*unloaded.uncertainty, 4 * 16 * std::numeric_limits<double>::epsilon(), 1e-17);
+  EXPECT_EQ(unloaded.verdict, Verdict::below_uncertainty);
+  const auto carried = [](double theta, double tip) {
+    return L * std::sin(theta) * tip / (2 * L * std::sin(theta / 2));
+  };
+  const Comparison& path = find(all, std::nullopt, "dB", "x", "rrmse", "rough/tip");
+  EXPECT_NEAR(*path.uncertainty, (carried(0.1, 1e-6) + carried(0.2, 2e-6)) / std::sqrt(2.0), 1e-13);
+  EXPECT_EQ(path.verdict, Verdict::resolved);
+}
+
+// Two mechanics that agree to the last digits and claim to be exact: B ≈ 1 T differs by one ε.
+TEST(Comparisons, RoundingIsNeverResolved) {
+  Case c = paper_case({0.1});
+  c.mechanics = {"one", "other"};
+  c.fields = {"tip"};
+  const double nudge = 1 + 4 * std::numeric_limits<double>::epsilon();
+  const std::vector<MechanicsEntry> mechanics{tilt("one", 1, 0), tilt("other", nudge, 0)};
+  const std::vector<FieldEntry> fields{field_entry(
+      "tip",
+      [](const Deformation& d, const Vector3&) -> Vector3 {
+        return {d.centreline.at(L).position.x() / L, 0, 1};
+      },
+      Vector3(0, 0, 0))};
+  const auto all = compare_models(run(c, mechanics, fields));
+  const Comparison& dBx = find(all, 0, "dB", "x", "value", "one/tip");
+  EXPECT_NE(*dBx.difference, 0);
+  EXPECT_EQ(dBx.verdict, Verdict::below_uncertainty);
+}
+
+// Oracle: B = tip + x of every computable sensor, so ΔBx is the tip's x = L sin θ at each.
+TEST(Comparisons, ASensorWhereTheFieldDivergesLeavesTheOthersCompared) {
+  Case c = paper_case({0.1, 0.2});
+  c.sensors = {Vector3(3, 0, 0), Vector3(1, 0, 0)};
+  c.mechanics = {"rough", "fine"};
+  c.fields = {"tip"};
+  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1, 1e-9), tilt("fine", 2, 1e-9)};
+  const std::vector<FieldEntry> fields{
+      field_entry("tip", [](const Deformation& d, const Vector3& x) -> Vector3 {
+        if (x.x() == 3) throw InputError("B diverges");
+        return d.centreline.at(L).position;
+      })};
+  std::size_t compared = 0;
+  for (const Comparison& x : compare_models(run(c, mechanics, fields))) {
+    if (!x.sensor) continue;
+    EXPECT_EQ(*x.sensor, 1u);
+    if (x.quantity != "dB" || x.component != "x" || x.step != 0) continue;
+    EXPECT_NEAR(*x.difference, L * (std::sin(0.1) - std::sin(0.2)), 1e-15);
+    ++compared;
+  }
+  EXPECT_EQ(compared, 1u);
 }
 
 // Every pair once, the reference later in the registry, mechanics before fields.

@@ -44,11 +44,12 @@ TEST(FieldGrid, IsTheMostDetailedMechanicsAndFieldThatNeedsNoBody) {
                     return {9, 9, 9};
                   }),
       field_entry("volume", linear), field_entry("mesh", linear, {}, true)};
-  const auto grid = sample_field(run(c, mechanics, fields), fields);
+  const CaseResult result = run(c, mechanics, fields);
+  const auto grid = field_grid(result, fields);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->mechanics, "solid");
   EXPECT_EQ(grid->field, "volume");
-  const auto& step = *grid->steps.at(0);
+  const FieldGrid::Step step = *grid->sample(0);
   ASSERT_EQ(step.B.size(), 33u * 33 * 49);
   const std::size_t i = 5 + 33 * (7 + 33 * 11);
   const Vector3 x = grid->origin + grid->spacing.cwiseProduct(Vector3(5, 7, 11));
@@ -72,9 +73,10 @@ TEST(FieldGrid, MasksThePointsAtWhichTheModelHasNoField) {
         if (x.z() > 10e-3 && x.x() > 0) throw InputError("B diverges here");
         return {1, 1, 1};
       })};
-  const auto grid = sample_field(run(c, mechanics, fields), fields);
+  const CaseResult result = run(c, mechanics, fields);
+  const auto grid = field_grid(result, fields);
   ASSERT_TRUE(grid);
-  const auto& step = *grid->steps.at(0);
+  const FieldGrid::Step step = *grid->sample(0);
   std::size_t point = 0;
   std::size_t masked = 0;
   for (int k = 0; k < 49; ++k)
@@ -87,6 +89,53 @@ TEST(FieldGrid, MasksThePointsAtWhichTheModelHasNoField) {
         masked += diverges ? 1 : 0;
       }
   EXPECT_GT(masked, 100u);
+}
+
+// A sensor two metres away, as one that measures the earth's field, would leave the cilium of 20 mm
+// between two planes of the grid; one of 50 mm away (2.5 lengths) is left out too, one of 39 mm
+// not.
+TEST(FieldGrid, StaysAroundTheCiliumWhateverTheSensors) {
+  for (const double far : {2.0, 50e-3, 39e-3}) {
+    Case c = paper_case({1e-3});
+    c.sensors = {Vector3(0, 0, -1.55e-3), Vector3(0, -far, 0)};
+    c.mechanics = {"rod"};
+    c.fields = {"volume"};
+    const std::vector<MechanicsEntry> mechanics{bend("rod", false)};
+    const std::vector<FieldEntry> fields{field_entry("volume", linear)};
+    const CaseResult result = run(c, mechanics, fields);
+    const auto grid = field_grid(result, fields);
+    ASSERT_TRUE(grid);
+    EXPECT_LT(grid->spacing.maxCoeff(), 3e-3);  // a diameter
+    EXPECT_EQ(grid->origin.y() < -far, far < 40e-3) << far;
+    EXPECT_LT(grid->origin.z(), -1.55e-3);
+  }
+}
+
+// A path of any length needs the memory of one step: nothing is sampled before it is asked for.
+TEST(FieldGrid, IsSampledStepByStep) {
+  Case c = paper_case({1e-3, 2e-3, 3e-3});
+  c.mechanics = {"rod"};
+  c.fields = {"volume"};
+  const std::vector<MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
+    MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 1e4 * magnitude(load)));
+    if (magnitude(load) > 2.5e-3) {
+      step.status = Status::failed;
+      step.deformation.reset();
+    }
+    return step;
+  })};
+  const std::vector<FieldEntry> fields{field_entry(
+      "volume",
+      [](const Deformation& d, const Vector3&) -> Vector3 { return d.centreline.at(L).position; })};
+  const CaseResult result = run(c, mechanics, fields);
+  std::vector<std::string> sampled;
+  const auto grid = field_grid(result, fields, [&](const std::string& s) { sampled.push_back(s); });
+  ASSERT_TRUE(grid);
+  EXPECT_TRUE(sampled.empty());
+  const Vector3 tip = result.mechanics[0].result.steps[1].deformation->centreline.at(L).position;
+  EXPECT_EQ(grid->sample(1)->B.at(0), tip);
+  EXPECT_EQ(sampled, std::vector<std::string>{"field grid: step 2"});
+  EXPECT_FALSE(grid->sample(2));
 }
 
 }  // namespace

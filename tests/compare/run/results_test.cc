@@ -101,7 +101,7 @@ TEST(Summary, GivesEveryDoubleBackToTheLastBit) {
     EXPECT_EQ(step["mechanics"]["one"]["tip"][i].get<double>(), tip.position[k]);
     EXPECT_EQ(step["fields"]["one/tip"]["B"][0][i].get<double>(), tip.position[k] / 3);
     EXPECT_EQ(step["fields"]["one/tip"]["dB"][0][i].get<double>(),
-              result.fields[0].steps[1]->dB[0][k]);
+              result.fields[0].steps[1]->dB[0].value()[k]);
   }
   EXPECT_EQ(step["mechanics"]["one"]["tip_angle"].get<double>(), tip.theta());
   EXPECT_EQ(step["mechanics"]["one"]["tip_uncertainty"].get<double>(), 1.0 / 3 * 1e-6);
@@ -130,6 +130,36 @@ TEST(Summary, WritesWhatIsUndefinedAsNull) {
   c.difference = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(
       json::parse(summary_json(result, {c}, origin))["comparisons"][0]["difference"].is_null());
+}
+
+TEST(Summary, HasANullRowForASensorWithoutAField) {
+  Case c = paper_case({1e-3});
+  c.sensors = {Vector3(3, 0, 0), Vector3(1, 0, 0)};
+  c.mechanics = {"one"};
+  c.fields = {"tip"};
+  const std::vector<MechanicsEntry> mechanics{mechanics_entry(
+      "one", [](const Load& load) { return converged(load, arc(L, 3e-3, Vector3::UnitX(), 20)); })};
+  const std::vector<FieldEntry> fields{
+      field_entry("tip", [](const Deformation&, const Vector3& x) -> Vector3 {
+        if (x.x() == 3) throw InputError("B diverges");
+        return {1, -0.0, 2};
+      })};
+  const CaseResult result = run(c, mechanics, fields);
+  const std::string text = summary_json(result, {}, origin);
+  const json field = json::parse(text)["steps"][0]["fields"]["one/tip"];
+  EXPECT_EQ(field["B"], json::parse("[null, [1.0, 0.0, 2.0]]"));
+  EXPECT_EQ(field["dB"], json::parse("[null, [0.0, 0.0, 0.0]]"));
+  EXPECT_EQ(field["status"], "failed");
+  EXPECT_EQ(field["message"], "sensor 0: B diverges");
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("-0.0")));
+}
+
+TEST(Summary, HasAnEmptyListWithoutSensors) {
+  CaseResult result = two_models();
+  result.problem.sensors.clear();
+  result.fields.clear();
+  const json summary = json::parse(summary_json(result, {}, origin));
+  EXPECT_EQ(summary["sensors"], json::array());
 }
 
 std::vector<std::vector<std::string>> parse_csv(const std::string& text) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "problem/error.h"
 #include "synthetic.h"
 
 namespace ciliaval::compare {
@@ -65,6 +66,51 @@ TEST(Table, SaysWhyAModelHasNoResult) {
   const CaseResult result = run(c, mechanics, {});
   const std::string text = table(result, compare_models(result));
   EXPECT_THAT(text, HasSubstr("slips off above 5.862 mN"));
+}
+
+// The last pair gives nothing at any step: the others are set against the last that does, at each
+// step and over the path. Oracle: 1 − 1/2 of each component.
+TEST(Table, TakesTheLastPairWithAFieldForTheReferenceOfThePathToo) {
+  Case c = paper_case({1e-3});
+  c.sensors = {Vector3(0, 0, 0), Vector3(0, 0, 1)};
+  c.mechanics = {"rough"};
+  c.fields = {"half", "full", "broken"};
+  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1)};
+  const auto times = [](double factor) {
+    return [=](const Deformation& d, const Vector3&) -> Vector3 {
+      return factor * d.centreline.at(L).position;
+    };
+  };
+  const std::vector<FieldEntry> fields{
+      field_entry("half", times(0.5)), field_entry("full", times(1)),
+      field_entry("broken", [](const Deformation&, const Vector3&) -> Vector3 {
+        throw SolverError("no convergence");
+      })};
+  const CaseResult result = run(c, mechanics, fields);
+  const std::string text = table(result, compare_models(result));
+  EXPECT_THAT(text, HasSubstr("RRMSE (3) against rough/full"));
+  EXPECT_THAT(text, ContainsRegex("rough/half +50.00 +- +50.00 +50.00 +- +50.00"));
+  EXPECT_THAT(text, HasSubstr("rough/broken: no convergence"));
+  EXPECT_THAT(text, HasSubstr("The other sensor is in"));
+}
+
+// At sensor 0 the field of the straight cilium diverges: B stands, ΔB is a dash.
+TEST(Table, ShowsBWhereOnlyItsChangeIsUndefined) {
+  Case c = paper_case({1e-3});
+  c.mechanics = {"rough"};
+  c.fields = {"tip"};
+  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1)};
+  const std::vector<FieldEntry> fields{
+      field_entry("tip", [](const Deformation& d, const Vector3&) -> Vector3 {
+        const double x = d.centreline.at(L).position.x();
+        if (x == 0) throw InputError("B diverges");
+        return {0.1 * x, -1e-12, 0};
+      })};
+  const CaseResult result = run(c, mechanics, fields);
+  const std::string text = table(result, compare_models(result));
+  EXPECT_THAT(text, ContainsRegex("rough/tip +0.1997 +0.0000 +0.0000 +- +- +- "));
+  EXPECT_THAT(text, Not(HasSubstr("-0.0000")));
+  EXPECT_THAT(text, HasSubstr("rough/tip: undeformed cilium: B diverges"));
 }
 
 }  // namespace

@@ -267,9 +267,11 @@ TEST(WriteVtk, MakesASeriesOfEachKindFromWhatExists) {
   grid.field = "line";
   grid.points = {2, 2, 2};
   grid.spacing = Vector3(1, 1, 1);
-  grid.steps = {
-      FieldGrid::Step{std::vector<Vector3>(8, Vector3::Ones()), std::vector<std::uint8_t>(8, 1)},
-      std::nullopt};
+  grid.sample = [](std::size_t step) -> std::optional<FieldGrid::Step> {
+    if (step == 1) return std::nullopt;
+    return FieldGrid::Step{std::vector<Vector3>(8, Vector3::Ones()),
+                           std::vector<std::uint8_t>(8, 1)};
+  };
   write_vtk(result, grid, origin, folder.path() / "vtk");
 
   std::map<std::string, std::vector<std::string>> listed;
@@ -295,12 +297,49 @@ TEST(WriteVtk, MakesASeriesOfEachKindFromWhatExists) {
 
   const auto reader = read_back<vtkXMLPolyDataReader>(folder.path() / "vtk" / "sensors_0000.vtp");
   vtkPolyData* sensors = reader->GetOutput();
-  EXPECT_EQ(tuple(sensors, "B_rod_line", 0), result.fields[0].steps[0]->field.B[0]);
+  EXPECT_EQ(tuple(sensors, "B_rod_line", 0), result.fields[0].steps[0]->B[0]);
   EXPECT_EQ(tuple(sensors, "dB_solid_line", 0), result.fields[1].steps[0]->dB[0]);
   EXPECT_EQ(sensors->GetFieldData()->GetArray("load")->GetTuple1(0), 1e-3);
   EXPECT_THAT(strings(sensors, "load_unit"), testing::ElementsAre("N"));
   EXPECT_THAT(strings(sensors, "units"), testing::Contains("dB_solid_line: T"));
   EXPECT_THAT(strings(sensors, "provenance"), testing::Contains("git: abc"));
+}
+
+// Sensors: the first has both, the second B alone, the third nothing; at the second step no model
+// converged, and a file without any array would only confuse.
+TEST(WriteVtk, WritesSensorsWhereThereIsAFieldAndMasksThoseWithoutOne) {
+  const TemporaryFolder folder;
+  Case c = test::paper_case({1e-3, 2e-3});
+  c.sensors = {Vector3(1, 0, 0), Vector3(2, 0, 0), Vector3(3, 0, 0)};
+  c.mechanics = {"rod"};
+  c.fields = {"line"};
+  const std::vector<MechanicsEntry> mechanics{test::mechanics_entry("rod", [](const Load& load) {
+    if (magnitude(load) < 1.5e-3)
+      return test::converged(load, test::arc(L, 3e-3, Vector3::UnitX(), 20));
+    MechanicsStep step;
+    step.load = load;
+    step.status = Status::slipped_off;
+    return step;
+  })};
+  const std::vector<FieldEntry> fields{
+      test::field_entry("line", [](const Deformation& d, const Vector3& x) -> Vector3 {
+        const bool straight = d.centreline.at(L).position.x() == 0;
+        if (x.x() > 2.5 || (straight && x.x() > 1.5)) throw InputError("B diverges here");
+        return d.centreline.at(L).position + x;
+      })};
+  const CaseResult result = run(c, mechanics, fields);
+  write_vtk(result, std::nullopt, origin, folder.path() / "vtk");
+  EXPECT_FALSE(fs::exists(folder.path() / "vtk" / "sensors_0001.vtp"));
+  const auto reader = read_back<vtkXMLPolyDataReader>(folder.path() / "vtk" / "sensors_0000.vtp");
+  vtkPolyData* sensors = reader->GetOutput();
+  const auto valid = [&](const char* name) {
+    vtkDataArray* mask = sensors->GetPointData()->GetArray(name);
+    return std::vector<double>{mask->GetTuple1(0), mask->GetTuple1(1), mask->GetTuple1(2)};
+  };
+  EXPECT_EQ(valid("valid_B_rod_line"), (std::vector<double>{1, 1, 0}));
+  EXPECT_EQ(valid("valid_dB_rod_line"), (std::vector<double>{1, 0, 0}));
+  EXPECT_EQ(tuple(sensors, "B_rod_line", 1), *result.fields[0].steps[0]->B[1]);
+  EXPECT_EQ(tuple(sensors, "B_rod_line", 2), Vector3(0, 0, 0));
 }
 
 }  // namespace
