@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "fem/beam/cilium_beam.h"
 
@@ -14,15 +13,17 @@ namespace ciliaval::fem::beam {
 struct BeamStep {
   Status status = Status::failed;
   std::string message;
-  std::optional<double> slip_off_force;     ///< N
+  std::optional<double> slip_off_force;     ///< N, if it slipped off
   std::optional<double> contact_arclength;  ///< m
   int iterations = 0;
 };
 
 /// Horizontal force that stays at height h while the cilium slides under it. The point of contact
 /// is a vertex that moves along the cilium: its height is h, and its arc length s_c is the unknown
-/// that goes with that equation in Newton's method. The segment that holds s_c follows from the
-/// forces at which the segments' upper ends are at h; that of the tip is the slip-off force.
+/// that goes with that equation in Newton's method. The vertex starts in the segment that holds h.
+/// Where it comes to the end of its segment, the force with which that end is at h is found, and
+/// the same equilibrium goes on with the vertex at the lower end of the next segment. Of the last
+/// segment that is the slip-off force.
 class ContactSolver {
  public:
   ContactSolver(Cilium cilium, BeamOptions options)
@@ -36,24 +37,30 @@ class ContactSolver {
   const Loads& applied() const { return applied_; }
 
  private:
-  /// Forces (N) with which the upper end of each segment is at height h; 0 if it starts below h.
-  const std::vector<double>& limit_forces(double height, int& iterations);
-  PathReport follow(const ContactLoad& load, std::size_t host, const std::vector<double>& limits,
-                    const PathProgress& progress);
+  enum class Leg { load_reached, end_reached, failed };
+
+  /// The unloaded cilium with the vertex at S = h.
+  void stand_straight(const ContactLoad& load);
+  /// Raises or lowers the force to that of `load` or to that at the segment's end.
+  Leg follow(const ContactLoad& load, BeamStep& step, const PathProgress& progress);
+  /// Newton's method with s_c for the unknown; false if it fails.
+  bool find_arclength(State& state, double force, BeamStep& step, const PathProgress& progress);
+  /// Newton's method with the force for the unknown and s_c given by state.shift. The force is the
+  /// first guess and the result; false if it fails.
+  bool find_force(State& state, double& force, BeamStep& step);
+  /// From the upper end of the segment to the lower end of the next, the same point.
+  void enter_next_segment();
+  double host_length() const { return cilium_.segments[host_].length; }
 
   Cilium cilium_;
   BeamOptions options_;
-  std::map<double, std::vector<double>> limits_;
+  std::map<double, double> slip_off_forces_;  ///< by height
   std::optional<CiliumBeam> beam_;
   State state_;
   Loads applied_;
   std::optional<ContactLoad> last_;  ///< that state_ is in equilibrium with
-  std::size_t host_ = 0;
+  std::size_t host_ = 0;             ///< segment of the vertex
+  double entry_force_ = 0;           ///< with which s_c is at the lower end of the host, N
 };
-
-/// Force (N) along +x on the loaded vertex with which this vertex sinks to height h (m). Throws
-/// SolverError if it is not found.
-double force_to_sink(CiliumBeam& beam, double height, const NewtonOptions& options,
-                     int& iterations);
 
 }  // namespace ciliaval::fem::beam

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "problem/error.h"
@@ -59,7 +60,8 @@ bool neighbours_agree(const State& state) {
 /// Newton increment of the bordered system: the beam's unknowns and the one scalar.
 struct Increment {
   Eigen::VectorXd beam;
-  double scalar = 0;  ///< of s/L or of the load factor
+  double scalar = 0;    ///< of s/L or of the load factor
+  double rounding = 0;  ///< of the scalar, by the rounding of z
 };
 
 Increment increment(System& system, const State& state, const Loads& loads,
@@ -75,6 +77,8 @@ Increment increment(System& system, const State& state, const Loads& loads,
   const auto z = static_cast<Index>(system.node_unknown(node, 2));
   const double gap = (condition->height - state.position[node][2]) / system.length_scale();
   result.scalar = (gap - result.beam[z]) / response[z];
+  result.rounding = 4 * std::numeric_limits<double>::epsilon() * condition->height /
+                    (system.length_scale() * std::abs(response[z]));
   result.beam += result.scalar * response;
   return result;
 }
@@ -105,6 +109,7 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
   State trial = state;
   system.prescribe(trial, loads);
   double last_increment = INFINITY;
+  const double increment_tolerance = options.increment_tolerance.value_or(options.tolerance);
   for (unsigned int iteration = 0; iteration <= options.max_iterations; ++iteration) {
     const Eigen::VectorXd residual = system.residual(trial, loads);
     // The level's floor decides only about an unloaded beam, whose residual is rounding error.
@@ -116,7 +121,7 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
       return report;
     }
     if (r.nodal <= options.tolerance * level && r.section <= options.tolerance &&
-        last_increment <= options.tolerance) {
+        last_increment <= increment_tolerance) {
       report.converged = true;
       state = std::move(trial);
       return report;
@@ -130,9 +135,11 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
       return report;
     }
     const Norms d = norms(system, trial, step.beam);
-    last_increment = std::max({d.nodal, d.section / std::max(level, 1.0), std::abs(step.scalar)});
-    report.increments.push_back(last_increment);
-    if (!std::isfinite(last_increment) || d.spin > max_spin) {
+    last_increment = std::max(d.nodal, d.section / std::max(level, 1.0));
+    report.increments.push_back(std::max(last_increment, std::abs(step.scalar)));
+    if (std::abs(step.scalar) > step.rounding)
+      last_increment = std::max(last_increment, std::abs(step.scalar));
+    if (!std::isfinite(last_increment + step.scalar) || d.spin > max_spin) {
       report.reason = "a section would turn by more than 2 rad in one iteration";
       return report;
     }

@@ -14,6 +14,8 @@ struct NewtonOptions {
   double tolerance = 1e-12;  ///< of the dimensionless residual and of the dimensionless increment
   unsigned int max_iterations = 30;
   unsigned int max_cutbacks = 8;  ///< halvings of one load increment
+  /// Of the increment, if not the same: the state's error is of the order of its square.
+  std::optional<double> increment_tolerance = {};
 };
 
 /// One more equation, z = height at a vertex, with one more unknown: the shift of a moving mesh
@@ -35,7 +37,8 @@ struct NewtonReport {
 
 /// Newton's method with the consistent tangent from the given state. Converged: the strain
 /// equations hold to tolerance × L, the equilibrium equations to tolerance × the section forces,
-/// and the last increment is below tolerance × L, tolerance rad and tolerance × the section forces.
+/// and the last increment is below tolerance × L, tolerance rad and tolerance × the section forces;
+/// that of the condition's unknown may also be what the rounding of z leaves open.
 /// The state is left as it was unless that is reached.
 NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,
                     const std::optional<HeightCondition>& condition = {});

@@ -164,6 +164,71 @@ TEST(BeamContact, UnloadedStandsStraight) {
   EXPECT_LT((tip(result.steps[0]).position - L * Vector3::UnitZ()).norm(), 1e-17);
 }
 
+Cilium equal_segments(std::size_t n) {
+  return {3e-3, std::vector<Segment>(n, {"rod", L / static_cast<double>(n), 1e6, 0.49, 0})};
+}
+
+TEST(BeamContact, CutsInOneMaterialDoNotMatter) {
+  // Oracle: the same rod in one piece. Heights between, on and a rounding error or a nanometre
+  // beside an interface; the last force slides the contact over an interface. Measured: 2e-11,
+  // the discretisation of the one piece.
+  const Cilium one = equal_segments(1);
+  const Cilium twenty = equal_segments(20);
+  for (const double height : {15.5e-3, h, h * (1 - 2e-16), h - 1e-9}) {
+    const LoadPath path{ContactLoad{0, height, 0}, ContactLoad{1e-6, height, 0},
+                        ContactLoad{1e-3, height, 0}, ContactLoad{20e-3, height, 0}};
+    const auto whole = fem::Beam().solve(one, path);
+    const auto cut = fem::Beam().solve(twenty, path);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      ASSERT_EQ(whole.steps[i].status, Status::converged) << whole.steps[i].message;
+      ASSERT_EQ(cut.steps[i].status, Status::converged) << cut.steps[i].message;
+      const Vector3 gap = tip(whole.steps[i]).position - tip(cut.steps[i]).position;
+      EXPECT_LT(measured("tip", gap.norm() / L), 1e-10);
+      EXPECT_LT(measured("arclength", std::abs(*whole.steps[i].contact_arclength -
+                                               *cut.steps[i].contact_arclength) /
+                                          L),
+                1e-10);
+    }
+    EXPECT_GT(*cut.steps[3].contact_arclength, height + 1e-3);  // an interface further
+  }
+}
+
+TEST(BeamContact, ManySegmentsCostNoMoreIterations) {
+  // A contact that stays in its segment needs Newton's method once, measured 4 iterations; each
+  // interface it slides over needs it twice, measured 10.
+  const auto result =
+      fem::Beam().solve(equal_segments(50),
+                        {ContactLoad{0, h, 0}, ContactLoad{1e-3, h, 0}, ContactLoad{10e-3, h, 0}});
+  for (const MechanicsStep& step : result.steps)
+    ASSERT_EQ(step.status, Status::converged) << step.message;
+  EXPECT_LE(result.steps[0].iterations, 1);
+  EXPECT_LE(result.steps[1].iterations, 8);
+  const double crossed = std::floor((*result.steps[2].contact_arclength - h) / (L / 50));
+  EXPECT_GE(crossed, 1);
+  EXPECT_LE(result.steps[2].iterations, 8 + 15 * static_cast<int>(crossed));
+}
+
+TEST(BeamContact, AForceFarBeyondTheSlipOffForceSlipsOff) {
+  // Oracle: the closed form's slip-off force.
+  const Cilium cilium = equal_segments(5);
+  const auto result = fem::Beam().solve(cilium, {ContactLoad{1e3, h, 0}});
+  ASSERT_EQ(result.steps[0].status, Status::slipped_off) << result.steps[0].message;
+  const double exact = oracle::slip_off_force(stretches(cilium, false), h);
+  EXPECT_LT(measured("force", std::abs(*result.steps[0].slip_off_force / exact - 1)), 1e-10);
+}
+
+TEST(BeamContact, NextToTheClampConvergesOrFailsSoon) {
+  // Oracle: s_c = h and no bending: a millinewton a nanometre above the clamp. No force is known
+  // that shears the clamp off; one of 1e10 N is given up.
+  const auto result = fem::Beam().solve(equal_segments(1),
+                                        {ContactLoad{1e-3, 1e-9, 0}, ContactLoad{1e10, 1e-9, 0}});
+  ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
+  EXPECT_NEAR(*result.steps[0].contact_arclength, 1e-9, 1e-17);
+  EXPECT_LE(result.steps[0].iterations, 8);
+  EXPECT_NE(result.steps[1].status, Status::converged);
+  EXPECT_LE(result.steps[1].iterations, 200);
+}
+
 TEST(BeamFlow, MatchesTheElasticaOfThePaper) {
   // Oracle: EI d(sin θ) = ½q(z₂ − z)² dz by quadrature (oracles.h), shear-rigid limit.
   const Cilium cilium = paper_cilium();
