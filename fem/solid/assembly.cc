@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "problem/error.h"
+
 namespace ciliaval::fem {
 namespace {
 
@@ -38,7 +40,7 @@ double pressure_at(const SolidElement& element, const PressureVector& pressure, 
   return element.pressure_values.col(q).dot(pressure);
 }
 
-ForceShare element_forces(const SolidElement& element, const SolidState& state, std::size_t index) {
+ForceShare force_share(const SolidElement& element, const SolidState& state, std::size_t index) {
   ForceShare share;
   share.index = index;
   const auto u = nodal_displacements(element, state.displacement);
@@ -100,6 +102,13 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
 
 }  // namespace
 
+Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& element,
+                                                       const SolidState& state, std::size_t index) {
+  const ForceShare share = force_share(element, state, index);
+  if (!share.admissible) throw SolverError("det F of the solid is not positive");
+  return share.forces.reshaped<Eigen::ColMajor>(element_nodes, 3);
+}
+
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state) {
   const auto& elements = space.elements();
   InternalForces result{dealii::Vector<double>(space.unknowns()),
@@ -108,7 +117,7 @@ std::optional<InternalForces> internal_forces(const SolidSpace& space, const Sol
   bool admissible = true;
   using Iterator = std::vector<SolidElement>::const_iterator;
   const auto worker = [&](const Iterator& element, NoScratch&, ForceShare& share) {
-    share = element_forces(*element, state, static_cast<std::size_t>(element - elements.begin()));
+    share = force_share(*element, state, static_cast<std::size_t>(element - elements.begin()));
   };
   const auto copier = [&](const ForceShare& share) {
     admissible = admissible && share.admissible;

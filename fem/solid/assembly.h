@@ -30,6 +30,10 @@ struct InternalForces {
   std::vector<PressureEquation> pressure;
 };
 
+/// The element's share ∫ P : ∇N_a dV in the internal forces of node a: row a, N.
+Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& element,
+                                                       const SolidState& state, std::size_t index);
+
 /// Internal forces of the state; empty if det F ≤ 0 or not a number at a Gauss point.
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state);
 

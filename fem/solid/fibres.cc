@@ -37,10 +37,12 @@ void append_roots(const Eigen::Vector3d& z, double level, std::vector<double>& r
     if (root > 0 && root < 1) roots.push_back(root);
 }
 
-/// Calls integrate(ζ, weight) for a Gauss rule on each part of the fibre inside the support.
+/// Calls integrate(ζ, weight) for a Gauss rule on each part of the fibre, from ≤ ζ ≤ to, inside the
+/// support.
 template <typename Integrate>
 void integrate_along(const Eigen::Vector3d& z, const HeightDensity& density,
-                     const QuadratureRule& rule, const Integrate& integrate) {
+                     const QuadratureRule& rule, const Integrate& integrate, double from = 0,
+                     double to = 1) {
   std::vector<double> ends{0, 1};
   if (density.support) {
     const auto [low, high] = *density.support;
@@ -51,6 +53,7 @@ void integrate_along(const Eigen::Vector3d& z, const HeightDensity& density,
     append_roots(z, high, ends);
     std::sort(ends.begin(), ends.end());
   }
+  for (double& end : ends) end = std::clamp(end, from, to);
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double width = ends[i + 1] - ends[i];
     if (!(width > 0)) continue;
@@ -191,6 +194,34 @@ HeightDensity flow_density(double force_per_height, double area) {
   return {[=](double) { return force_per_height / area; }, [](double) { return 0.0; }, {}};
 }
 
+void integrate_load(const SpreadLoad& load, const Eigen::Vector3d& z, double length, double from,
+                    double to, const std::function<void(double zeta, double force)>& add) {
+  static const QuadratureRule rule = gauss_legendre(10, 0, 1);
+  if (load.per_volume != 0)
+    for (std::size_t m = 0; m < rule.nodes.size(); ++m)
+      add(from + (to - from) * rule.nodes[m],
+          (to - from) * rule.weights[m] * load.per_volume * length);
+  if (!load.per_height) return;
+  integrate_along(
+      z, *load.per_height, rule,
+      [&](double zeta, double weight) {
+        add(zeta, weight * load.per_height->value(quadratic_basis(zeta).dot(z)) *
+                      quadratic_derivative(zeta).dot(z));
+      },
+      from, to);
+}
+
+std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,
+                                                 const HeightDensity& density) {
+  std::optional<std::array<double, 2>> part;
+  static const QuadratureRule ends{{0, 1}, {0.5, 0.5}};
+  integrate_along(z, density, ends, [&part](double zeta, double) {
+    if (!part) part = {zeta, zeta};
+    part = {std::min((*part)[0], zeta), std::max((*part)[1], zeta)};
+  });
+  return part;
+}
+
 void add_fibre_forces(const SolidSpace& space, const Fibres& fibres, const HeightDensity& density,
                       const Vector3& direction, const dealii::Vector<double>& displacement,
                       dealii::Vector<double>& forces,
@@ -232,17 +263,6 @@ dealii::Vector<double> section_force(const SolidSpace& space, const Fibres& fibr
   if (std::abs(area - fibres.area()) > 1e-9 * fibres.area())
     throw InputError("the solid's mesh has no plane at the loaded section");
   return forces;
-}
-
-double lowest_tip_point(const SolidSpace& space, const Fibres& fibres,
-                        const dealii::Vector<double>& displacement) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
-    if (fibres.cells()[e].top < fibres.height() * (1 - 1e-9)) continue;
-    const auto u_z = vertical_displacements(space.elements()[e], displacement);
-    lowest = std::min(lowest, fibres.height() + u_z.col(2).minCoeff());
-  }
-  return lowest;
 }
 
 }  // namespace ciliaval::fem

@@ -74,6 +74,23 @@ HeightDensity contact_density(double force, double area, double height, double h
 /// q/A everywhere.
 HeightDensity flow_density(double force_per_height, double area);
 
+/// A load spread over the solid: b = (per_volume + g(z) F_zz) e per reference volume.
+struct SpreadLoad {
+  std::optional<HeightDensity> per_height;
+  double per_volume = 0;  ///< N/m³
+  Vector3 direction = Vector3::UnitX();
+};
+
+/// Calls add(ζ, f) at quadrature points of the part from ≤ ζ ≤ to of a fibre, f the force per
+/// reference area there (Pa), along e, weight included. `z` holds the current heights of the fibre
+/// at ζ = 0, ½, 1, `length` its reference length.
+void integrate_load(const SpreadLoad& load, const Eigen::Vector3d& z, double length, double from,
+                    double to, const std::function<void(double zeta, double force)>& add);
+
+/// From the first to the last ζ of the fibre inside the support; empty if none of it is.
+std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,
+                                                 const HeightDensity& density);
+
 /// Adds the nodal forces of g(z) F_zz e to `forces` and, where `matrix` is not null, minus their
 /// derivative:
 ///   ∂f_a/∂u_z,b = ∫ dA ∫ [g'(z) z_ζ N_b + g(z) ∂N_b/∂ζ] N_a dζ e,
@@ -89,10 +106,5 @@ void add_fibre_forces(const SolidSpace& space, const Fibres& fibres, const Heigh
 /// plane there.
 dealii::Vector<double> section_force(const SolidSpace& space, const Fibres& fibres, double force,
                                      double arclength, const Vector3& direction);
-
-/// Smallest current height of the uppermost plane's points, m: where it comes down to the upper end
-/// of the contact kernel, the cilium begins to slip off.
-double lowest_tip_point(const SolidSpace& space, const Fibres& fibres,
-                        const dealii::Vector<double>& displacement);
 
 }  // namespace ciliaval::fem

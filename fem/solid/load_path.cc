@@ -12,6 +12,10 @@
 namespace ciliaval::fem {
 namespace {
 
+/// Cutbacks of a load path's step that turn the material inside out in one iteration: the load is
+/// too large by far, each takes a single factorisation, and they do not count as max_cutbacks.
+constexpr unsigned int max_overshoots = 20;
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
@@ -34,42 +38,43 @@ bool same_place(const Load& a, const Load& b) {
   return true;
 }
 
-/// Whether the path from a to b passes through loads that the mesh can bear: a section load only
-/// finds planes at the arc lengths of the path itself.
-bool can_interpolate(const Load& a, const Load& b) {
-  if (type(a) != type(b)) return false;
-  const auto* section = std::get_if<SectionLoad>(&a);
-  return section == nullptr || section->arclength == std::get<SectionLoad>(b).arclength;
-}
-
 }  // namespace
+
+SpreadLoad spread_load(const Load& load, double area, double kernel_width) {
+  SpreadLoad result;
+  result.direction = direction(load);
+  if (const auto* contact = std::get_if<ContactLoad>(&load))
+    result.per_height = contact_density(contact->force, area, contact->height, kernel_width);
+  if (const auto* flow = std::get_if<FlowLoad>(&load))
+    result.per_height = flow_density(flow->force_per_height, area);
+  if (const auto* dead = std::get_if<DeadLoad>(&load))
+    result.per_volume = dead->force_per_length / area;
+  return result;
+}
 
 ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, const Load& load,
                                double kernel_width) {
-  const Vector3 e = direction(load);
+  const SpreadLoad spread = spread_load(load, fibres.area(), kernel_width);
   if (const auto* section = std::get_if<SectionLoad>(&load))
-    return dead_forces(section_force(space, fibres, section->force, section->arclength, e));
-  if (const auto* dead = std::get_if<DeadLoad>(&load)) {
-    const Vector3 b = dead->force_per_length / fibres.area() * e;
+    return dead_forces(
+        section_force(space, fibres, section->force, section->arclength, spread.direction));
+  if (!spread.per_height) {
+    const Vector3 b = spread.per_volume * spread.direction;
     return dead_forces(body_force(space, [&b](const Vector3&) -> Vector3 { return b; }));
   }
-  HeightDensity density;
-  if (const auto* contact = std::get_if<ContactLoad>(&load)) {
-    density = contact_density(contact->force, fibres.area(), contact->height, kernel_width);
-  } else {
-    density = flow_density(std::get<FlowLoad>(load).force_per_height, fibres.area());
-  }
-  return [&space, &fibres, density, e](const dealii::Vector<double>& displacement,
-                                       dealii::Vector<double>& forces,
-                                       const dealii::AffineConstraints<double>& constraints,
-                                       dealii::SparseMatrix<double>* matrix) {
-    add_fibre_forces(space, fibres, density, e, displacement, forces, constraints, matrix);
+  return [&space, &fibres, spread](const dealii::Vector<double>& displacement,
+                                   dealii::Vector<double>& forces,
+                                   const dealii::AffineConstraints<double>& constraints,
+                                   dealii::SparseMatrix<double>* matrix) {
+    add_fibre_forces(space, fibres, *spread.per_height, spread.direction, displacement, forces,
+                     constraints, matrix);
   };
 }
 
 struct LoadPathSolver::Attempt {
   bool converged = false;
   bool applied = false;  ///< the whole force was applied
+  bool overshot = false;
   std::string trouble;
   Equilibrium equilibrium;
 };
@@ -85,12 +90,12 @@ LoadPathSolver::LoadPathSolver(const SolidSpace& space, const Fibres& fibres, Ne
 void LoadPathSolver::restart(const Load& load) {
   current_ = {with_magnitude(load, 0), space_.undeformed(), 0};
   previous_.reset();
+  slipped_.reset();
 }
 
 SolidState LoadPathSolver::predicted(const Load& load) const {
   SolidState state = current_.state;
-  if (!previous_ || !same_place(previous_->load, load) || !same_place(current_.load, load))
-    return state;
+  if (!previous_) return state;
   const double last = magnitude(current_.load) - magnitude(previous_->load);
   if (last == 0) return state;
   const double factor = std::clamp((magnitude(load) - magnitude(current_.load)) / last, -1.0, 1.5);
@@ -116,6 +121,7 @@ LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, LoadPathOutcom
       newton_.solve(external_forces(space_, fibres_, load, options_.kernel_width),
                     attempt.equilibrium.state, newton, report);
   outcome.iterations += result.iterations();
+  attempt.overshot = result.overshot;
   attempt.converged = result.converged;
   if (!result.converged) {
     attempt.trouble = result.reason + " (relative residuals " + history(result.residuals) + ")";
@@ -136,55 +142,79 @@ void LoadPathSolver::accept(Attempt&& attempt) {
 
 LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress) {
   LoadPathOutcome outcome;
-  if (slipped_ && same_place(*slipped_, target) && same_place(current_.load, target) &&
-      magnitude(target) >= magnitude(*slipped_))
-    return slip_off(*slipped_, outcome, progress);
-  if (!can_interpolate(current_.load, target)) restart(target);
+  if (!same_place(current_.load, target)) restart(target);
+  if (slipped_ && magnitude(target) >= magnitude(*slipped_)) return slip_off(outcome, progress);
   const Load start = current_.load;
-  double t = 0;
+  double reached = 0;
   double step = 1;
-  unsigned int cutbacks = 0;
-  while (t < 1) {
-    const double next = std::min(1.0, t + step);
-    const Load load = next == 1 ? target : interpolate(start, target, next);
+  unsigned int halvings = 0;
+  unsigned int overshoots = 0;
+  while (reached < 1) {
+    const double aim = std::min(1.0, reached + step);
+    const Load load = aim == 1 ? target : interpolate(start, target, aim);
     Attempt result = attempt(load, outcome, progress);
-    if (result.converged && !result.applied) return slip_off(load, outcome, progress);
+    if (result.converged && !result.applied && magnitude(load) <= magnitude(current_.load)) {
+      result.converged = false;
+      result.trouble = "Newton's method went to a cilium that has slipped off under a smaller load";
+    }
+    if (result.converged && !result.applied) {
+      slipped_ = load;
+      return slip_off(outcome, progress);
+    }
     if (result.converged) {
       accept(std::move(result));
-      t = next;
+      reached = aim;
+      step *= 2;
+      halvings = halvings > 0 ? halvings - 1 : 0;
       continue;
     }
-    if (cutbacks == options_.max_cutbacks) {
+    const bool far_off = result.overshot && overshoots < max_overshoots;
+    if (far_off) ++overshoots;
+    if (!far_off && ++halvings > options_.max_cutbacks) {
       outcome.message = "no equilibrium found at load " + number(magnitude(load)) + ": " +
                         result.trouble + "; the last load that converged is " +
                         number(magnitude(current_.load));
       return outcome;
     }
-    ++cutbacks;
-    step /= 2;
+    step = (aim - reached) / 2;
   }
   outcome.status = Status::converged;
   return outcome;
 }
 
-LoadPathOutcome LoadPathSolver::slip_off(const Load& slipped, LoadPathOutcome outcome,
-                                         const Progress& progress) {
-  slipped_ = slipped;
-  while (same_place(current_.load, *slipped_) &&
-         magnitude(*slipped_) - magnitude(current_.load) >
-             options_.slip_off_bracket * magnitude(*slipped_)) {
-    const Load middle = interpolate(current_.load, *slipped_, 0.5);
-    Attempt result = attempt(middle, outcome, progress);
-    if (result.converged && result.applied) {
-      accept(std::move(result));
-    } else {
-      slipped_ = middle;
-    }
-  }
+LoadPathOutcome LoadPathSolver::slip_off(LoadPathOutcome outcome, const Progress& progress) {
   outcome.status = Status::slipped_off;
+  std::string trouble;
+  double fraction = 0.5;
+  unsigned int halvings = 0;
+  while (magnitude(*slipped_) - magnitude(current_.load) >
+         options_.slip_off_bracket * magnitude(*slipped_)) {
+    const Load load = interpolate(current_.load, *slipped_, fraction);
+    Attempt result = attempt(load, outcome, progress);
+    if (result.converged) {
+      if (result.applied) {
+        accept(std::move(result));
+      } else {
+        slipped_ = load;
+      }
+      fraction = 0.5;
+      halvings = 0;
+      continue;
+    }
+    // A load without a solution tells nothing about the slip-off: try nearer to the last one borne.
+    if (++halvings > options_.max_cutbacks) {
+      trouble = "; the bracket stays this wide because no equilibrium was found at " +
+                number(magnitude(load)) + " N: " + result.trouble;
+      break;
+    }
+    fraction /= 2;
+  }
   outcome.slip_off_force = magnitude(current_.load);
   outcome.message = "the cilium slips off: a contact force of " + number(magnitude(current_.load)) +
-                    " N was borne in full, " + number(magnitude(*slipped_)) + " N was not";
+                    " N was borne in full, " + number(magnitude(*slipped_)) +
+                    " N was not (a solid begins to slip off where the lowest point of its tip face "
+                    "comes down to the upper end of the contact kernel)" +
+                    trouble;
   return outcome;
 }
 

@@ -13,6 +13,9 @@
 
 namespace ciliaval::fem {
 
+/// The load as far as it is spread over the solid (all but a section load); e in any case.
+SpreadLoad spread_load(const Load& load, double area, double kernel_width);
+
 /// The load's nodal forces as a function of the displacement (docs/solid.md).
 ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, const Load& load,
                                double kernel_width);
@@ -26,7 +29,7 @@ struct Equilibrium {
 
 struct LoadPathOptions {
   NewtonOptions newton;
-  unsigned int max_cutbacks = 5;
+  unsigned int max_cutbacks = 5;   ///< halvings of a step in a row
   double kernel_width = 0.5e-3;    ///< half-width of the contact kernel, m
   double force_shortfall = 1e-6;   ///< relative; a contact force that falls short by more slips off
   double slip_off_bracket = 0.01;  ///< relative width at which the search for the slip-off ends
@@ -39,8 +42,12 @@ struct LoadPathOutcome {
   int iterations = 0;
 };
 
-/// Follows a load path from equilibrium to equilibrium: each step is taken at once from a linear
-/// extrapolation of the last two, and halved where Newton's method fails.
+/// Follows a load path from equilibrium to equilibrium. A load at the place (height, azimuth,
+/// section) of the last one is reached from it, at once from a linear extrapolation of the last two
+/// equilibria or, where Newton's method fails, in steps that are halved and grow again after each
+/// success; steps that overshoot at once (det F ≤ 0 after one iteration) may be halved 20 times
+/// more. At a new place it starts from the straight solid: on the way from one place to another the
+/// cilium might slip off under loads that nobody asked for.
 class LoadPathSolver {
  public:
   /// Starts from the straight solid under no load of the path's type. The space, fibres and Newton
@@ -59,7 +66,8 @@ class LoadPathSolver {
   Attempt attempt(const Load& load, LoadPathOutcome& outcome, const Progress& progress);
   SolidState predicted(const Load& load) const;
   void accept(Attempt&& attempt);
-  LoadPathOutcome slip_off(const Load& slipped, LoadPathOutcome outcome, const Progress& progress);
+  /// Narrows the bracket between the current load and `slipped_`.
+  LoadPathOutcome slip_off(LoadPathOutcome outcome, const Progress& progress);
   void restart(const Load& load);
 
   const SolidSpace& space_;
@@ -68,7 +76,8 @@ class LoadPathSolver {
   LoadPathOptions options_;
   Equilibrium current_;
   std::optional<Equilibrium> previous_;
-  std::optional<Load> slipped_;  ///< the smallest load known to slip off
+  /// The smallest load at this place with an equilibrium in which it is not applied in full.
+  std::optional<Load> slipped_;
 };
 
 }  // namespace ciliaval::fem

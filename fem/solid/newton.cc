@@ -68,6 +68,7 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
   };
   for (int iteration = 0;; ++iteration) {
     const auto internal = internal_forces(space_, state);
+    result.overshot = !internal && iteration == 1;
     if (!internal) return fail("det F is not positive at a quadrature point");
     result.external.reinit(space_.unknowns());
     external(state.displacement, result.external, constraints_, nullptr);

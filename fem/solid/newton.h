@@ -31,6 +31,7 @@ struct NewtonOptions {
 struct NewtonResult {
   bool converged = false;
   std::string reason;                ///< why not
+  bool overshot = false;             ///< det F was not positive after the very first iteration
   std::vector<double> residuals;     ///< relative, before each iteration and at the end
   std::vector<double> increments;    ///< ‖Δu‖_max of each iteration, m
   dealii::Vector<double> reactions;  ///< internal − external forces at the end, all rows, N

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/section.h"
 
-#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/quadrature.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "fem/solid/assembly.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
 
@@ -18,105 +20,143 @@ namespace ciliaval::fem {
 namespace {
 
 constexpr std::size_t stations = 4;
-constexpr std::size_t gauss_planes = 2;
+/// Stations of a piece from 0 to 1: Gauss–Lobatto points.
+const std::array<double, stations> station_points{0, (1 - 1 / std::sqrt(5.0)) / 2,
+                                                  (1 + 1 / std::sqrt(5.0)) / 2, 1};
 
-/// ζ of the stations: Gauss–Lobatto points.
-const std::array<double, stations> station_zeta{0, (1 - 1 / std::sqrt(5.0)) / 2,
-                                                (1 + 1 / std::sqrt(5.0)) / 2, 1};
-const std::array<double, gauss_planes> gauss_zeta{(1 - 1 / std::sqrt(3.0)) / 2,
-                                                  (1 + 1 / std::sqrt(3.0)) / 2};
+/// A force and its moment about the origin.
+struct Wrench {
+  Vector3 force = Vector3::Zero();
+  Vector3 moment = Vector3::Zero();
+  void add(const Vector3& at, const Vector3& f) {
+    force += f;
+    moment += at.cross(f);
+  }
+};
 
-/// Integrals over the section in one plane.
-struct PlaneIntegrals {
+/// The cells between two planes of the mesh: indices of the elements.
+struct Layer {
+  double top = 0;
+  std::vector<std::size_t> cells;
+};
+
+/// Section integrals in one plane, and the load between it and the top of its layer.
+struct Station {
+  double area = 0;                                                       ///< ∫ dA
+  Eigen::Vector2d XY = Eigen::Vector2d::Zero();                          ///< ∫ (X, Y) dA
   Vector3 x = Vector3::Zero();                                           ///< ∫ x dA
   Eigen::Matrix<double, 3, 2> xX = Eigen::Matrix<double, 3, 2>::Zero();  ///< ∫ x (X, Y) dA
-  Vector3 traction = Vector3::Zero();                                    ///< ∫ P e_z dA
-  Vector3 moment = Vector3::Zero();                                      ///< ∫ x × P e_z dA
+  Wrench load;
 };
 
-struct LayerIntegrals {
-  double top = 0;
-  double area = 0;                               ///< ∫ dA
-  Eigen::Vector2d XY = Eigen::Vector2d::Zero();  ///< ∫ (X, Y) dA
-  std::array<PlaneIntegrals, stations> station;
-  std::array<PlaneIntegrals, gauss_planes> gauss;
-};
-
-/// x at section point q and height ζ.
-Vector3 position(const Fibres& fibres, const FibreCell& cell,
-                 const Eigen::Matrix<double, element_nodes, 3>& u, int q, double zeta) {
+/// x of a fibre at ζ = 0, ½, 1: columns.
+Matrix3 fibre_positions(const Fibres& fibres, const FibreCell& cell,
+                        const Eigen::Matrix<double, element_nodes, 3>& u, int q) {
   const auto i = static_cast<std::size_t>(q);
-  const Eigen::Vector3d N = quadratic_basis(zeta);
-  Vector3 x(cell.X[i], cell.Y[i], cell.bottom + zeta * (cell.top - cell.bottom));
+  Matrix3 x;
   for (int k = 0; k < 3; ++k)
-    x += N[k] * u.middleRows<9>(Eigen::Index{9} * k).transpose() * fibres.section_values().col(q);
+    x.col(k) = Vector3(cell.X[i], cell.Y[i], cell.bottom + 0.5 * k * (cell.top - cell.bottom)) +
+               u.middleRows<9>(Eigen::Index{9} * k).transpose() * fibres.section_values().col(q);
   return x;
 }
 
-void add_positions(const Fibres& fibres, const FibreCell& cell,
-                   const Eigen::Matrix<double, element_nodes, 3>& u, LayerIntegrals& layer) {
-  for (int q = 0; q < section_points; ++q) {
+/// What the centreline is made from.
+struct Extraction {
+  const SolidSpace& space;
+  const Fibres& fibres;
+  const SolidState& state;
+  const SpreadLoad& load;
+
+  /// Calls visit(cell, x at ζ = 0, ½, 1, section point) for each fibre of the layer.
+  template <typename Visit>
+  void for_each_fibre(const Layer& layer, const Visit& visit) const {
+    for (const std::size_t e : layer.cells) {
+      const FibreCell& cell = fibres.cells()[e];
+      const auto u = nodal_displacements(space.elements()[e], state.displacement);
+      for (int q = 0; q < section_points; ++q) visit(cell, fibre_positions(fibres, cell, u, q), q);
+    }
+  }
+
+  Station station(const Layer& layer, double zeta) const;
+  Wrench top_wrench(const Layer& layer) const;
+  std::vector<double> breaks(const Layer& layer) const;
+};
+
+Station Extraction::station(const Layer& layer, double zeta) const {
+  Station result;
+  for_each_fibre(layer, [&](const FibreCell& cell, const Matrix3& x, int q) {
     const auto i = static_cast<std::size_t>(q);
+    const double dA = cell.area[i];
     const Eigen::Vector2d XY(cell.X[i], cell.Y[i]);
-    layer.area += cell.area[i];
-    layer.XY += cell.area[i] * XY;
-    for (std::size_t s = 0; s < stations; ++s) {
-      const Vector3 x = position(fibres, cell, u, q, station_zeta[s]);
-      layer.station[s].x += cell.area[i] * x;
-      layer.station[s].xX += cell.area[i] * x * XY.transpose();
-    }
-  }
+    const Vector3 here = x * quadratic_basis(zeta);
+    result.area += dA;
+    result.XY += dA * XY;
+    result.x += dA * here;
+    result.xX += dA * here * XY.transpose();
+    integrate_load(load, x.row(2).transpose(), cell.top - cell.bottom, zeta, 1,
+                   [&](double at, double force) {
+                     result.load.add(x * quadratic_basis(at), dA * force * load.direction);
+                   });
+  });
+  return result;
 }
 
-/// `values` must be initialised on the element, its points (section point, Gauss plane), the plane
-/// fastest.
-void add_forces(const SolidSpace& space, const Fibres& fibres, const SolidElement& element,
-                const FibreCell& cell, const Eigen::Matrix<double, element_nodes, 3>& u,
-                const PressureVector& pressure, const dealii::FEValues<3>& values,
-                LayerIntegrals& layer) {
-  for (int q = 0; q < section_points; ++q) {
-    for (std::size_t s = 0; s < gauss_planes; ++s) {
-      const auto point = static_cast<unsigned int>(gauss_planes * static_cast<std::size_t>(q) + s);
-      Matrix3 F = Matrix3::Identity();
-      for (unsigned int a = 0; a < element_nodes; ++a) {
-        const auto gradient = values.shape_grad(a, point);
-        F += u.row(static_cast<Eigen::Index>(space.lexicographic()[a])).transpose() *
-             Vector3(gradient[0], gradient[1], gradient[2]).transpose();
-      }
-      const dealii::Point<3>& X = values.quadrature_point(point);
-      const double p = pressure.dot(element.pressure_basis(Vector3(X[0], X[1], X[2])));
-      const double dA = cell.area[static_cast<std::size_t>(q)];
-      const Vector3 force = dA * first_piola_stress(element.material, F, p).col(2);
-      const Vector3 x = position(fibres, cell, u, q, gauss_zeta[s]);
-      layer.gauss[s].x += dA * x;
-      layer.gauss[s].traction += force;
-      layer.gauss[s].moment += x.cross(force);
-    }
-  }
-}
-
-/// The integrals of all layers, keyed by the Z of their lower planes.
-std::map<double, LayerIntegrals> integrate_layers(const SolidSpace& space, const Fibres& fibres,
-                                                  const SolidState& state) {
-  std::vector<dealii::Point<3>> points;
-  for (int q = 0; q < section_points; ++q)
-    for (const double zeta : gauss_zeta)
-      points.emplace_back(fibres.section_coordinates()(q, 0), fibres.section_coordinates()(q, 1),
-                          zeta);
-  dealii::FEValues<3> values(space.mapping(), space.scalar_element(), dealii::Quadrature<3>(points),
-                             dealii::update_gradients | dealii::update_quadrature_points);
-  std::map<double, LayerIntegrals> layers;
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+/// What the part above the layer exerts on it: at the nodes a of its upper plane, Σ (f_a − ∫ N_a b
+/// dV) over the layer's own cells. In equilibrium forces and moments balance to the solver's
+/// tolerance, since rigid motions are in the element's space.
+Wrench Extraction::top_wrench(const Layer& layer) const {
+  Wrench result;
+  std::vector<dealii::Point<3>> nodes;
+  for (const double eta : {0.0, 0.5, 1.0})
+    for (const double xi : {0.0, 0.5, 1.0}) nodes.emplace_back(xi, eta, 1);
+  dealii::FEValues<3> values(space.mapping(), space.scalar_element(), dealii::Quadrature<3>(nodes),
+                             dealii::update_quadrature_points);
+  for (const std::size_t e : layer.cells) {
     const SolidElement& element = space.elements()[e];
-    const FibreCell& cell = fibres.cells()[e];
-    LayerIntegrals& layer = layers[cell.bottom];
-    layer.top = cell.top;
+    const auto f = element_forces(element, state, e);
     const auto u = nodal_displacements(element, state.displacement);
     values.reinit(element.cell);
-    add_positions(fibres, cell, u, layer);
-    add_forces(space, fibres, element, cell, u, state.pressure[e], values, layer);
+    for (unsigned int a = 0; a < nodes.size(); ++a) {
+      const auto& X = values.quadrature_point(a);
+      const auto row = Eigen::Index{18} + a;
+      result.add(Vector3(X[0], X[1], X[2]) + u.row(row).transpose(), f.row(row).transpose());
+    }
   }
-  return layers;
+  for_each_fibre(layer, [&](const FibreCell& cell, const Matrix3& x, int q) {
+    integrate_load(load, x.row(2).transpose(), cell.top - cell.bottom, 0, 1,
+                   [&](double at, double force) {
+                     result.add(x.col(2), -cell.area[static_cast<std::size_t>(q)] * force *
+                                              quadratic_basis(at)[2] * load.direction);
+                   });
+  });
+  return result;
+}
+
+/// ζ of the ends of the layer's pieces. The part where a contact kernel meets a fibre is divided
+/// into pieces of at most half its height; below and above it n is constant.
+std::vector<double> Extraction::breaks(const Layer& layer) const {
+  std::vector<double> result{0, 1};
+  if (!load.per_height || !load.per_height->support) return result;
+  double low = 1;
+  double high = 0;
+  double length = 0;
+  for_each_fibre(layer, [&](const FibreCell& cell, const Matrix3& x, int) {
+    length = cell.top - cell.bottom;
+    if (const auto part = loaded_part(x.row(2).transpose(), *load.per_height)) {
+      low = std::min(low, (*part)[0]);
+      high = std::max(high, (*part)[1]);
+    }
+  });
+  if (!(low < high)) return result;
+  constexpr double shortest = 1e-3;  // a piece shorter than that belongs to the kernel's
+  if (low < shortest) low = 0;
+  if (high > 1 - shortest) high = 1;
+  const auto [lower, upper] = *load.per_height->support;
+  const double count = std::ceil((high - low) * length / ((upper - lower) / 2));
+  for (double i = 0; i <= count; ++i) result.push_back(low + (high - low) * i / count);
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
 }
 
 /// κ = 2 vec(q′ q̄) at the stations, from the interpolation of their quaternions.
@@ -137,27 +177,21 @@ void differentiate_rotation(const std::vector<double>& S, std::vector<SectionSta
   }
 }
 
-Centreline::Piece piece(double bottom, const LayerIntegrals& layer) {
-  const double height = layer.top - bottom;
+Centreline::Piece piece(const Extraction& extraction, double bottom, const Layer& layer,
+                        const Wrench& top, double from, double to) {
   Centreline::Piece piece;
-  std::array<SectionForces, gauss_planes> forces;
-  for (std::size_t g = 0; g < gauss_planes; ++g) {
-    forces[g].force = layer.gauss[g].traction;
-    forces[g].moment =
-        layer.gauss[g].moment - (layer.gauss[g].x / layer.area).cross(forces[g].force);
-  }
-  for (std::size_t s = 0; s < stations; ++s) {
+  for (const double t : station_points) {
+    const double zeta = t == 1 ? to : from + t * (to - from);
+    const Station station = extraction.station(layer, zeta);
     SectionState state;
-    state.position = layer.station[s].x / layer.area;
-    state.rotation = section_rotation(layer.station[s].xX - state.position * layer.XY.transpose());
-    const double t = (station_zeta[s] - gauss_zeta[0]) / (gauss_zeta[1] - gauss_zeta[0]);
-    state.forces.force = (1 - t) * forces[0].force + t * forces[1].force;
-    state.forces.moment = (1 - t) * forces[0].moment + t * forces[1].moment;
-    piece.S.push_back(bottom + station_zeta[s] * height);
+    state.position = station.x / station.area;
+    state.rotation = section_rotation(station.xX - state.position * station.XY.transpose());
+    state.forces.force = top.force + station.load.force;
+    state.forces.moment =
+        top.moment + station.load.moment - state.position.cross(state.forces.force);
+    piece.S.push_back(zeta == 1 ? layer.top : bottom + zeta * (layer.top - bottom));
     piece.states.push_back(state);
   }
-  piece.S.front() = bottom;
-  piece.S.back() = layer.top;
   differentiate_rotation(piece.S, piece.states);
   return piece;
 }
@@ -174,10 +208,22 @@ Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B) {
   return Quaternion(rotation).normalized();
 }
 
-Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state) {
+Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
+                      const SpreadLoad& load) {
+  std::map<double, Layer> layers;  // by the Z of their lower planes
+  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+    Layer& layer = layers[fibres.cells()[e].bottom];
+    layer.top = fibres.cells()[e].top;
+    layer.cells.push_back(e);
+  }
+  const Extraction extraction{space, fibres, state, load};
   std::vector<Centreline::Piece> pieces;
-  for (const auto& [bottom, layer] : integrate_layers(space, fibres, state))
-    pieces.push_back(piece(bottom, layer));
+  for (const auto& [bottom, layer] : layers) {
+    const Wrench top = extraction.top_wrench(layer);
+    const std::vector<double> breaks = extraction.breaks(layer);
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+      pieces.push_back(piece(extraction, bottom, layer, top, breaks[i], breaks[i + 1]));
+  }
   // Both sides of a break integrate the same plane in another order: make them equal to the bit.
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     pieces[i].S.front() = pieces[i - 1].S.back();

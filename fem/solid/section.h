@@ -7,20 +7,25 @@
 
 namespace ciliaval::fem {
 
-/// Centreline of an extruded solid: one piece for each layer of cells, four Gauss–Lobatto stations
-/// on each. At a station,
+/// Centreline of an extruded solid: one piece or more for each layer of cells, four Gauss–Lobatto
+/// stations on each. At a station,
 ///
 ///   r = 1/A ∫ x dA,
 ///   Λ: d₁, d₂ = the two columns of B (BᵀB)^(−1/2), B = [∫ (x − r) X dA, ∫ (x − r) Y dA], d₃ = d₁ ×
 ///   d₂
 ///      (the rotation that fits the section best, orthogonal Procrustes),
 ///   κ = 2 vec(q′ q̄), q the quaternion of Λ, by its interpolation on the layer,
-///   n = ∫ P e_z dA,  m = ∫ (x − r) × P e_z dA,
+///   n, m = force and moment about r that the part above exerts on the part below.
 ///
-/// n and m are integrated at the two Gauss planes of the layer, where the stresses of quadratic
-/// elements are most accurate, and continued linearly to the stations. r is the element's own
-/// quadratic, so that it is exact and continuous from layer to layer.
-Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state);
+/// At the upper plane of a layer n and m are those of the internal nodal forces of its own cells,
+/// less their share of the spread load; below it the load between is added, integrated along the
+/// fibres. So n and m balance the load to the solver's tolerance on every mesh, next to a clamped
+/// edge too, where stresses would not. r is the element's own quadratic, so that it is exact and
+/// continuous from layer to layer. Where a contact kernel lies in a layer, the layer is divided:
+/// one piece below it, pieces of at most half its height inside, one above. `load` is the load of
+/// the state; the default is none, or a section load. Throws SolverError if det F ≤ 0 in the state.
+Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
+                      const SpreadLoad& load = {});
 
 /// The rotation that fits the columns b₁, b₂ of a section best (see centreline()). Throws
 /// SolverError if they are parallel or not finite.

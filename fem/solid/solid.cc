@@ -58,10 +58,11 @@ struct Discretisation {
 };
 
 Deformation deformation(const Discretisation& discretisation, const Cilium& cilium,
-                        const SolidState& state) {
+                        const SolidState& state, const SpreadLoad& load = {}) {
   const auto& [space, fibres] = std::tie(*discretisation.space, *discretisation.fibres);
-  return {centreline(space, fibres, state), std::make_shared<const SolidBody>(solid_body(
-                                                space, fibres, cilium, state, element_degree))};
+  return {
+      centreline(space, fibres, state, load),
+      std::make_shared<const SolidBody>(solid_body(space, fibres, cilium, state, element_degree))};
 }
 
 /// S of the centreline's lowest point at z = h; empty if there is none.
@@ -97,8 +98,8 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
     if (type(load) != type(path.front()))
       throw InputError("a load path cannot change from one load type to another");
     const auto* contact = std::get_if<ContactLoad>(&load);
-    if (contact != nullptr && !(contact->height >= options.kernel_width &&
-                                contact->height + options.kernel_width <= cilium.length()))
+    if (contact != nullptr && !(contact->height > options.kernel_width &&
+                                contact->height + options.kernel_width < cilium.length()))
       throw InputError(
           "the solid spreads the contact force over h - kernel_width < z < h + kernel_width, which "
           "must lie between the base and the tip: choose a smaller kernel_width");
@@ -175,7 +176,9 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
     step.iterations = outcome.iterations;
     step.unknowns = space.unknowns();
     if (outcome.status == Status::converged) {
-      step.deformation = deformation(discretisation, cilium, solver.current().state);
+      step.deformation =
+          deformation(discretisation, cilium, solver.current().state,
+                      spread_load(path[i], discretisation.fibres->area(), options_.kernel_width));
       step.applied_force = solver.current().applied_force;
       if (const auto* contact = std::get_if<ContactLoad>(&path[i]))
         step.contact_arclength = contact_arclength(step.deformation->centreline, contact->height);
