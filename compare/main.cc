@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iostream>
+#include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compare/commands.h"
@@ -29,11 +34,49 @@ A case file states the cilium, its load, the sensors and the models, each quanti
 Exit codes: 0 done, 2 wrong usage or case file, 3 a model did not converge (the results of the
 others are written), 4 a file could not be read or written.)";
 
-/// The command line as it was typed, but for the folder of the program.
+/// A word as a POSIX shell reads it back: in single quotes if it holds anything special.
+std::string shell_word(std::string_view word) {
+  constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos)
+    return std::string(word);
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// The command line, to be pasted into a shell; without the folder of the program.
 std::string command_line(int argc, char** argv) {
   std::string text = "ciliaval";
-  for (int i = 1; i < argc; ++i) text += std::string(" ") + argv[i];
+  for (int i = 1; i < argc; ++i) text += fmt::format(" {}", shell_word(argv[i]));
   return text;
+}
+
+/// Throws InputError if the first word is not a command; CLI11 would only say that one is missing.
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
+  throw ciliaval::InputError(
+      fmt::format("there is no command `{}`; the commands are {}; "
+                  "`ciliaval --help` explains them",
+                  argv[1], fmt::join(names, ", ")));
+}
+
+/// Help, version or a fault of the command line, as CLI11 words it.
+ExitCode print_parse_result(const CLI::App& app, const CLI::ParseError& error) {
+  const int code = app.exit(error);
+  std::cout.flush();
+  if (!std::cout)
+    throw ciliaval::FileError("cannot write to the standard output; is the disk full?");
+  return code == 0 ? ExitCode::pass : ExitCode::usage;
+}
+
+/// Whether a message starts with `file:line:column: `, which editors jump to.
+bool is_located(const std::string& message) {
+  static const std::regex located("^[^\n]+:[0-9]+:[0-9]+: ");
+  return std::regex_search(message, located, std::regex_constants::match_continuous);
 }
 
 ExitCode execute(int argc, char** argv) {
@@ -56,10 +99,11 @@ ExitCode execute(int argc, char** argv) {
   validate->add_option("CASE", files, "Case files (TOML)")->required()->check(CLI::ExistingFile);
   const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
 
+  check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? ExitCode::pass : ExitCode::usage;
+    return print_parse_result(app, error);
   }
   if (list->parsed())
     ciliaval::compare::list();
@@ -91,6 +135,7 @@ int main(int argc, char** argv) {
     code = ExitCode::solver;
     message = error.what();
   }
-  if (!message.empty()) fmt::print(stderr, "ciliaval: {}\n", message);
+  if (!message.empty())
+    fmt::print(stderr, "{}{}\n", is_located(message) ? "" : "ciliaval: ", message);
   return static_cast<int>(code);
 }

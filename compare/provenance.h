@@ -11,7 +11,7 @@ struct Provenance {
   std::string version;                           ///< of CiliaVal
   std::string git;                               ///< `git describe` of the sources, or "unknown"
   std::map<std::string, std::string> libraries;  ///< name → version
-  std::string command;                           ///< as it was called
+  std::string command;                           ///< as it was called, quoted for a shell
   std::string date;                              ///< ISO 8601, UTC
 };
 

@@ -173,6 +173,40 @@ TEST(CommandLine, RefusesTwoCasesOfOneNameBeforeAnythingRuns) {
   EXPECT_FALSE(fs::exists(folder.path() / "results"));
 }
 
+TEST(CommandLine, AMistypedCommandIsNamedWithTheValidOnes) {
+  const TemporaryFolder folder;
+  const Outcome outcome = ciliaval(folder.path(), "rum case.toml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("`rum`"));
+  EXPECT_THAT(outcome.err, HasSubstr("run, validate, list"));
+}
+
+TEST(CommandLine, AMessageWithAPlaceStartsWithIt) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "bad", "mechanics = [\"elastika\"]\n");
+  const Outcome located = ciliaval(folder.path(), "validate bad.toml");
+  EXPECT_THAT(located.err, testing::ContainsRegex("^bad.toml:[0-9]+:[0-9]+: "));
+  EXPECT_THAT(located.err, testing::Not(HasSubstr("ciliaval: bad.toml")));
+  const Outcome other = ciliaval(folder.path(), "rum");
+  EXPECT_THAT(other.err, testing::StartsWith("ciliaval: "));
+}
+
+// The shell reads back what the summary says.
+TEST(CommandLine, TheRecordedCommandCanBePastedIntoAShell) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "quick", "mechanics = [\"elastica\"]\n");
+  fs::rename(folder.path() / "quick.toml", folder.path() / "it's a $case.toml");
+  const Outcome run = ciliaval(folder.path(), R"("it's a \$case.toml" -o out)");
+  EXPECT_EQ(run.code, 2);  // no command
+  EXPECT_EQ(ciliaval(folder.path(), R"(run "it's a \$case.toml" -o out)").code, 0);
+  const fs::path file = folder.path() / "out" / "quick" / "summary.json";
+  const std::string command = nlohmann::json::parse(read_text(file))["provenance"]["command"];
+  EXPECT_EQ(command, R"(ciliaval run 'it'\''s a $case.toml' -o out)");
+  fs::remove_all(folder.path() / "out");
+  EXPECT_EQ(ciliaval(folder.path(), command.substr(std::string("ciliaval ").size())).code, 0);
+  EXPECT_TRUE(fs::exists(file));
+}
+
 TEST(CommandLine, ReplacesItsOwnResultsButNotWhatTheUserPutBesideThem) {
   const TemporaryFolder folder;
   write_case(folder.path(), "quick", rods);
@@ -200,11 +234,13 @@ TEST(CommandLine, AnOutputThatCannotBeWrittenIsExitCode4) {
   const Outcome run = ciliaval(folder.path(), "run quick.toml -o quick.toml/results");
   EXPECT_EQ(run.code, 4);
   EXPECT_THAT(run.err, HasSubstr("quick.toml/results"));
-  const std::string full =
-      "cd '" + folder.path().string() + "' && '" CILIAVAL_PROGRAM "' list >/dev/full 2>stderr.txt";
-  const int status = std::system(full.c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 4);
-  EXPECT_THAT(read_text(folder.path() / "stderr.txt"), HasSubstr("standard output"));
+  for (const std::string arguments : {"list", "--help", "run --help", "--version"}) {
+    const std::string full = "cd '" + folder.path().string() + "' && '" CILIAVAL_PROGRAM "' " +
+                             arguments + " >/dev/full 2>stderr.txt";
+    const int status = std::system(full.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 4) << arguments;
+    EXPECT_THAT(read_text(folder.path() / "stderr.txt"), HasSubstr("standard output"));
+  }
 }
 
 }  // namespace
