@@ -53,7 +53,8 @@ TEST(Solid, CentrelineIsStraightAndItsFrameTheIdentityWhenUndeformed) {
 
 // Oracle: equilibrium. At every section up to the kernel the force is F along e, and its moment is
 // F (h − z) (the kernel is symmetric about h); above the kernel there is none. Sections are tilted
-// by up to 12°: the kernel meets fibres within 0.5 mm + R sin 12° of h. Measured: 3e-13, 1e-12.
+// by up to 12°: the kernel meets fibres within 0.5 mm + R sin 12° of h. Measured: n 3e-13, m below
+// 1e-8.
 TEST(Solid, SectionForcesBalanceTheLoadInEveryLayer) {
   const MechanicsStep& step = converged(bent());
   const Vector3 e = direction(step.load);
@@ -337,8 +338,9 @@ TEST(Solid, RejectsBadInput) {
   EXPECT_THROW(coarse().solve({3e-3, {}}, {}), InputError);
 }
 
-// Oracle: the fine mesh. The default mesh's tip must lie within 0.2 % of the fine mesh's (measured:
-// see docs/solid.md), at ν = 0.49 and nearly incompressible: no locking.
+// Oracle: the fine mesh, at ν = 0.3, 0.49 and nearly incompressible: no locking. Measured (tip
+// deflection): the default mesh is below the fine one by 0.02, 0.11 and 0.12 %, the coarse one by
+// 0.06, 0.23 and 0.25 %.
 TEST(SolidSlow, TipOfTheDefaultMeshAgreesWithTheFineMesh) {
   for (const double nu : {0.3, 0.49, 0.4999}) {
     Cilium cilium = stub_and_magnet();
@@ -348,7 +350,7 @@ TEST(SolidSlow, TipOfTheDefaultMeshAgreesWithTheFineMesh) {
     const Vector3 standard = tip(converged(Solid({.refinement = 1}).solve(cilium, path)));
     const Vector3 crude = tip(converged(coarse().solve(cilium, path)));
     EXPECT_NEAR(standard.x() / fine.x(), 1, 2e-3) << "nu " << nu;
-    EXPECT_NEAR(crude.x() / fine.x(), 1, 1e-2) << "nu " << nu;
+    EXPECT_NEAR(crude.x() / fine.x(), 1, 5e-3) << "nu " << nu;
   }
 }
 
