@@ -22,6 +22,9 @@ constexpr double force_tolerance = 1e-8;
 /// Iterations without any progress after which a load is given up.
 constexpr int patience = 150;
 
+/// Iterations after which the search for the force that sinks the tip is given up.
+constexpr int search_limit = 250;
+
 /// a + w (b − a); the rotations along the chord, which is the arc to second order in their angle.
 State blend(const State& a, const State& b, double w) {
   State result = a;
@@ -50,6 +53,65 @@ std::string slipped_off(double height, double limit, double force) {
   text << "the tip sinks to the contact height of " << height << " m under " << limit
        << " N; no equilibrium bears " << force << " N";
   return text.str();
+}
+
+Loads force_at_vertex(const CiliumBeam& beam, double force) {
+  Loads loads;
+  loads.points.push_back({beam.loaded, force * Vector3::UnitX(), Vector3::Zero()});
+  return loads;
+}
+
+/// A force and the equilibrium under it.
+struct Loaded {
+  double force = 0;
+  State state;
+};
+
+std::optional<Loaded> loaded(CiliumBeam& beam, const Loaded& from, double force,
+                             const NewtonOptions& options, int& iterations) {
+  Loaded to{force, from.state};
+  const PathReport report = advance(beam.system, to.state, force_at_vertex(beam, from.force),
+                                    force_at_vertex(beam, force), options);
+  iterations += report.iterations;
+  return report.converged ? std::optional(std::move(to)) : std::nullopt;
+}
+
+/// The dead force at the tip that brings it down to a height: bracketed and bisected until Newton's
+/// method with the force for the unknown converges inside the bracket. It takes many iterations,
+/// but never meets the contact point that runs away where θ comes near 90°. None if a dead force
+/// does not converge.
+std::optional<double> force_that_sinks_the_tip(const Cilium& cilium, const BeamOptions& options,
+                                               double height, int& iterations) {
+  CiliumBeam beam = cilium_beam(cilium, options, cilium.length());
+  const NewtonOptions newton_options{
+      options.tolerance, options.max_iterations, options.max_cutbacks, {}};
+  const int last = iterations + search_limit;
+  const std::size_t node = beam.system.vertex_node(beam.loaded);
+  const auto above = [&](const Loaded& l) { return l.state.position[node][2] > height; };
+  Loaded low{0, beam.system.reference_state()};
+  std::optional<Loaded> high =
+      loaded(beam, low, beam.system.force_scale(), newton_options, iterations);
+  // The height falls as sqrt(2EI/F) at worst: four times the force for half the height.
+  while (high && above(*high)) {
+    if (iterations > last) return std::nullopt;
+    low = *std::move(high);
+    high = loaded(beam, low, 2 * low.force, newton_options, iterations);
+  }
+  const HeightCondition condition{beam.loaded, height, HeightCondition::Unknown::load_factor};
+  while (high && iterations <= last) {
+    State state = high->state;
+    const NewtonReport report =
+        newton(beam.system, state, force_at_vertex(beam, high->force), newton_options, condition);
+    iterations += static_cast<int>(report.increments.size());
+    const double force = state.load_factor * high->force;
+    // At the bracket's upper end itself, rounding error may put the force just outside.
+    if (report.converged && force >= low.force && force <= high->force * (1 + 1e-9)) return force;
+    std::optional<Loaded> middle =
+        loaded(beam, low, (low.force + high->force) / 2, newton_options, iterations);
+    if (!middle) return std::nullopt;
+    (above(*middle) ? low : *high) = *std::move(middle);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -184,6 +246,12 @@ BeamStep ContactSolver::solve(const ContactLoad& load, const PathProgress& progr
     leg = follow(load, step, progress);
   }
   if (leg == Leg::failed) {
+    const auto limit = force_that_sinks_the_tip(cilium_, options_, load.height, step.iterations);
+    if (limit && load.force > *limit) {
+      last_.reset();
+      slip_off_forces_[load.height] = *limit;
+      return slip(*limit);
+    }
     std::ostringstream text;
     text << "no equilibrium found under " << load.force << " N: " << step.message
          << "; last converged under " << last_->force
