@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -82,13 +83,14 @@ std::optional<double> contact_arclength(const Centreline& centreline, double hei
   return std::nullopt;
 }
 
-/// Force scale under which a residual is rounding error: internal forces are rounded to about ε E
-/// d².
+/// Force scale under which a residual is rounding error: J − 1 carries a few ε, which the bulk
+/// modulus turns into forces of some ε K A on a section; Newton's method asks for 1e-6 of the
+/// scale.
 double least_force(const Cilium& cilium) {
   double stiffest = 0;
   for (const Segment& segment : cilium.segments)
-    stiffest = std::max(stiffest, segment.young_modulus);
-  return 1e-8 * stiffest * cilium.area();
+    stiffest = std::max(stiffest, segment.bulk_modulus());
+  return 4e6 * std::numeric_limits<double>::epsilon() * stiffest * cilium.area();
 }
 
 void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
