@@ -134,7 +134,7 @@ bool ContactSolver::find_arclength(State& state, double force, BeamStep& step,
       newton(beam_->system, state, loads(with_magnitude(*last_, force), *beam_),
              {options_.tolerance, options_.max_iterations, 0, {}}, condition);
   step.iterations += static_cast<int>(report.increments.size());
-  step.message = report.reason;
+  if (!report.converged) step.message = describe(report);
   if (progress) progress(force, report);
   return report.converged;
 }
@@ -149,7 +149,7 @@ bool ContactSolver::find_force(State& state, double& force, BeamStep& step) {
               std::max(options_.tolerance, force_tolerance)},
              condition);
   step.iterations += static_cast<int>(report.increments.size());
-  if (!report.converged) step.message = report.reason;
+  if (!report.converged) step.message = describe(report);
   force *= std::exchange(state.load_factor, 1);
   return report.converged;
 }

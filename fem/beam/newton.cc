@@ -103,6 +103,10 @@ std::string history(const std::vector<double>& values) {
 
 }  // namespace
 
+std::string describe(const NewtonReport& report) {
+  return report.reason + " (residuals " + history(report.residuals) + ")";
+}
+
 NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,
                     const std::optional<HeightCondition>& condition) {
   NewtonReport report;
@@ -175,9 +179,9 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
     if (++halvings > options.max_cutbacks) {
       std::ostringstream text;
       text << "no equilibrium found at the fraction " << aim
-           << " of the load increment: " << report.last.reason << " (residuals "
-           << history(report.last.residuals) << "); last converged at the fraction "
-           << report.reached << "; more cutbacks, elements or smaller load steps may help";
+           << " of the load increment: " << describe(report.last)
+           << "; last converged at the fraction " << report.reached
+           << "; more cutbacks, elements or smaller load steps may help";
       report.message = text.str();
       return report;
     }

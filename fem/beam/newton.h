@@ -35,6 +35,9 @@ struct NewtonReport {
   std::string reason;              ///< why it did not converge
 };
 
+/// Why Newton's method failed, with the history of its residuals.
+std::string describe(const NewtonReport& report);
+
 /// Newton's method with the consistent tangent from the given state. Converged: the strain
 /// equations hold to tolerance × L, the equilibrium equations to tolerance × the section forces,
 /// and the last increment is below tolerance × L, tolerance rad and tolerance × the section forces;
