@@ -6,11 +6,13 @@
 #include <cstdio>
 
 int main() {
-  const ciliaval::Cilium cilium{3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
+  const ciliaval::Cilium cilium{3e-3,
+                                {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
   const ciliaval::LoadPath path{ciliaval::ContactLoad{1e-3, 16e-3, 0.0}};
   const auto elastica = ciliaval::analytic::Elastica().solve(cilium, path);
   const auto beam = ciliaval::fem::Beam().solve(cilium, path);
-  const double tip_elastica = elastica.steps[0].deformation->centreline.at(cilium.length()).position.x();
+  const double tip_elastica =
+      elastica.steps[0].deformation->centreline.at(cilium.length()).position.x();
   const double tip_beam = beam.steps[0].deformation->centreline.at(cilium.length()).position.x();
   std::printf("tip deflection: elastica %.6e m, beam %.6e m\n", tip_elastica, tip_beam);
   return tip_elastica > 1e-3 && tip_beam > tip_elastica && tip_beam < 1.2 * tip_elastica ? 0 : 1;
