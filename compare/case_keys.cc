@@ -14,12 +14,11 @@ namespace {
 constexpr std::array<std::string_view, 3> known_mechanics{"elastica", "beam", "solid"};
 constexpr std::array<std::string_view, 4> known_fields{"dipole", "line", "volume", "mesh"};
 
-constexpr std::array<LaterKey, 6> known_later{{
+constexpr std::array<LaterKey, 5> known_later{{
     {"environment", "gravity, buoyancy and uniform fields"},
     {"cilium.segment.density", "weight (it goes with [environment])"},
     {"load.displacement", "displacement control (load type 'probe')"},
     {"models.potential", "the field model 'potential'"},
-    {"models.solid.symmetry", "symmetry of the solid"},
     {"models.solid.initial_guess", "the choice of the solid's initial guess"},
 }};
 
@@ -151,6 +150,10 @@ void append_solid(std::vector<Knob>& all) {
                             quantity::number,
                             {0, 2, false, "the solid has the levels coarse, default and fine"},
                             "Mesh: 0 coarse, 1 default, 2 fine."));
+  all.push_back(number_knob(solid, &SolidOptions::symmetry, "solid", "symmetry", quantity::number,
+                            any_bool,
+                            "Solve one side of the bending plane; the other is its mirror "
+                            "image."));
   all.push_back(number_knob(solid, &SolidOptions::kernel_width, "solid", "kernel_width",
                             quantity::length, key::length_range,
                             "Half-width w of the contact kernel; `contact` needs 0 < h-w and h+w "

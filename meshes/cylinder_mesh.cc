@@ -3,6 +3,7 @@
 
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
 #include <algorithm>
@@ -77,7 +78,7 @@ double node_radius(double radius, const CylinderMeshOptions& options) {
   return radius * std::sqrt(beta / (std::sin(beta) * (1 + (1 - std::cos(beta)) / 3)));
 }
 
-/// The o-grid of the section of radius R.
+/// The o-grid of the section of radius R, or its upper half.
 void make_section(double radius, const CylinderMeshOptions& options, Triangulation<2>& section) {
   const unsigned int n = options.square_cells;
   std::vector<Point<2>> vertices;
@@ -121,6 +122,16 @@ void make_section(double radius, const CylinderMeshOptions& options, Triangulati
       add(inner[k], outer[k], inner[next], outer[next]);
     }
     inner = outer;
+  }
+  if (options.half) {
+    const auto below = [&vertices](const dealii::CellData<2>& cell) {
+      double y = 0;
+      for (const unsigned int vertex : cell.vertices) y += vertices[vertex][1];
+      return y < 0;
+    };
+    std::erase_if(cells, below);
+    dealii::SubCellData none;
+    dealii::GridTools::delete_unused_vertices(vertices, cells, none);
   }
   section.create_triangulation(vertices, cells, {});
 }
@@ -191,6 +202,8 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
         face->set_boundary_id(base_id);
       } else if (face->center()[2] > cilium.length() - tolerance) {
         face->set_boundary_id(tip_id);
+      } else if (options.half && std::abs(face->center()[1]) < tolerance) {
+        face->set_boundary_id(symmetry_id);
       } else {
         face->set_boundary_id(mantle_id);
         face->set_all_manifold_ids(mantle_manifold);

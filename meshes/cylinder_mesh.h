@@ -12,9 +12,10 @@
 namespace ciliaval::meshes {
 
 /// Boundary ids of the cylinder.
-inline constexpr dealii::types::boundary_id base_id = 0;    ///< Z = 0
-inline constexpr dealii::types::boundary_id mantle_id = 1;  ///< X² + Y² = R²
-inline constexpr dealii::types::boundary_id tip_id = 2;     ///< Z = L
+inline constexpr dealii::types::boundary_id base_id = 0;      ///< Z = 0
+inline constexpr dealii::types::boundary_id mantle_id = 1;    ///< X² + Y² = R²
+inline constexpr dealii::types::boundary_id tip_id = 2;       ///< Z = L
+inline constexpr dealii::types::boundary_id symmetry_id = 3;  ///< Y = 0 of the half cylinder
 
 /// How finely the cylinder is meshed. Lengths are in diameters, so that one set of options suits
 /// every cilium.
@@ -29,6 +30,7 @@ struct CylinderMeshOptions {
   double coarsest_layer = 0.4;  ///< largest thickness of a layer
   double growth = 0.25;         ///< growth of the thickness with the distance from the nearest of
                                 ///< those planes; 0: all layers as thin as the finest
+  bool half = false;            ///< only Y ≥ 0, cut along mesh lines: the half of the whole mesh
   std::vector<double> planes;   ///< further reference arc lengths S where mesh planes must lie, m
 };
 

@@ -15,4 +15,9 @@ struct Deformation {
   std::shared_ptr<const SolidBody> body;  ///< null for rods
 };
 
+/// The deformation turned as a whole, reference and current configuration, by the angle (rad) about
+/// the z axis: that of a cilium whose load and mesh are turned by it. Section rotations become
+/// Q Λ Qᵀ, stresses Q σ Qᵀ.
+Deformation turned(const Deformation& deformation, double angle);
+
 }  // namespace ciliaval

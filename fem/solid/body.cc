@@ -54,6 +54,46 @@ ChargedFace face(const SolidCell& cell, std::size_t n, bool top, double jump) {
   return result;
 }
 
+Vector3 mirrored(const Vector3& x) {
+  return {x.x(), -x.y(), x.z()};
+}
+
+Matrix3 mirrored(const Matrix3& stress) {
+  const Vector3 mirror(1, -1, 1);
+  return mirror.asDiagonal() * stress * mirror.asDiagonal();
+}
+
+/// The nodal values of the image in y = 0, each row of n nodes reversed: its first local coordinate
+/// runs the other way, so that the cell stays right-handed and the face's normal outward.
+template <typename Value, typename Mirror>
+std::vector<Value> image(const std::vector<Value>& values, std::size_t n, const Mirror& mirror) {
+  std::vector<Value> result;
+  for (std::size_t row = 0; row < values.size(); row += n)
+    for (std::size_t i = n; i-- > 0;) result.push_back(mirror(values[row + i]));
+  return result;
+}
+
+/// Appends the image of a half body in y = 0.
+void add_mirror_image(SolidBody& body) {
+  const std::size_t n = body.nodes.size();
+  const auto vector = [](const Vector3& x) { return mirrored(x); };
+  const auto stress = [](const Matrix3& sigma) { return mirrored(sigma); };
+  const auto scalar = [](double value) { return value; };
+  const std::size_t cells = body.cells.size();
+  for (std::size_t i = 0; i < cells; ++i) {
+    const SolidCell& cell = body.cells[i];
+    body.cells.push_back({cell.segment, cell.magnetization, image(cell.reference, n, vector),
+                          image(cell.current, n, vector), image(cell.jacobian, n, scalar),
+                          image(cell.cauchy_stress, n, stress)});
+  }
+  const std::size_t faces = body.charged_faces.size();
+  for (std::size_t i = 0; i < faces; ++i) {
+    const ChargedFace& face = body.charged_faces[i];
+    body.charged_faces.push_back({face.magnetization_jump, image(face.reference, n, vector),
+                                  image(face.current, n, vector)});
+  }
+}
+
 }  // namespace
 
 SolidBody solid_body(const SolidSpace& space, const Fibres& fibres, const Cilium& cilium,
@@ -89,6 +129,7 @@ SolidBody solid_body(const SolidSpace& space, const Fibres& fibres, const Cilium
     const double outside = last ? 0.0 : cilium.segments[cell.segment + 1].magnetization;
     if (inside != outside) body.charged_faces.push_back(face(cell, n, true, inside - outside));
   }
+  if (fibres.extent() == Extent::half) add_mirror_image(body);
   return body;
 }
 

@@ -136,7 +136,7 @@ Eigen::Vector3d quadratic_basis(double zeta) {
   return {(1 - zeta) * (1 - 2 * zeta), 4 * zeta * (1 - zeta), zeta * (2 * zeta - 1)};
 }
 
-Fibres::Fibres(const SolidSpace& space) {
+Fibres::Fibres(const SolidSpace& space, Extent extent) : extent_(extent) {
   const dealii::QGauss<1> gauss(section_points_1d);
   const dealii::QGauss<2> section(section_points_1d);
   std::vector<dealii::Point<3>> points;
@@ -178,7 +178,12 @@ Fibres::Fibres(const SolidSpace& space) {
     height_ = std::max(height_, cell.top);
     cells_.push_back(cell);
   }
-  area_ = volume / (height_ - lowest);
+  area_ = volume / (height_ - lowest) * (extent == Extent::half ? 2 : 1);
+}
+
+Vector3 whole_force(const Fibres& fibres, const Vector3& force_on_mesh) {
+  if (fibres.extent() == Extent::whole) return force_on_mesh;
+  return {2 * force_on_mesh.x(), 0, 2 * force_on_mesh.z()};
 }
 
 HeightDensity contact_density(double force, double area, double height, double half_width) {
@@ -260,6 +265,7 @@ dealii::Vector<double> section_force(const SolidSpace& space, const Fibres& fibr
               fibres.section_values()(static_cast<Eigen::Index>(a), q);
     }
   }
+  if (fibres.extent() == Extent::half) area *= 2;
   if (std::abs(area - fibres.area()) > 1e-9 * fibres.area())
     throw InputError("the solid's mesh has no plane at the loaded section");
   return forces;

@@ -38,14 +38,19 @@ struct FibreCell {
 /// Quadratic Lagrange polynomials on 0, ½, 1: the element's along a fibre.
 Eigen::Vector3d quadratic_basis(double zeta);
 
+/// Whether the mesh is the whole body or the half Y ≥ 0 of one that its plane Y = 0 mirrors.
+enum class Extent { whole, half };
+
 /// The fibres of all cells of an extruded mesh.
 class Fibres {
  public:
   /// Throws InputError if a cell's ζ-lines are not parallel to Z to 1e-9 of its size.
-  explicit Fibres(const SolidSpace& space);
+  explicit Fibres(const SolidSpace& space, Extent extent = Extent::whole);
 
   const std::vector<FibreCell>& cells() const { return cells_; }
-  double area() const { return area_; }      ///< A of the section by the mesh's own quadrature, m²
+  Extent extent() const { return extent_; }
+  /// A of the body's whole section by the mesh's own quadrature, m².
+  double area() const { return area_; }
   double height() const { return height_; }  ///< Z of the uppermost plane, m
   /// N_a(ξ, η) at section point q in the plane of the nodes a = 0…8: row a, column q.
   const Eigen::Matrix<double, 9, section_points>& section_values() const { return values_; }
@@ -56,6 +61,7 @@ class Fibres {
   std::vector<FibreCell> cells_;
   Eigen::Matrix<double, 9, section_points> values_;
   Eigen::Matrix<double, section_points, 2> points_;
+  Extent extent_;
   double area_ = 0;
   double height_ = 0;
 };
@@ -101,6 +107,10 @@ void add_fibre_forces(const SolidSpace& space, const Fibres& fibres, const Heigh
                       dealii::Vector<double>& forces,
                       const dealii::AffineConstraints<double>& constraints,
                       dealii::SparseMatrix<double>* matrix);
+
+/// Force on the whole body, N, from the resultant on the mesh: on a half the mirror image adds as
+/// much, and y cancels.
+Vector3 whole_force(const Fibres& fibres, const Vector3& force_on_mesh);
 
 /// Nodal forces of (F/A) e, dead, evenly over the plane Z = S. Throws InputError if the mesh has no
 /// plane there.

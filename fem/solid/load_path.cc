@@ -127,7 +127,8 @@ LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, LoadPathOutcom
     attempt.trouble = result.reason + " (relative residuals " + history(result.residuals) + ")";
     return attempt;
   }
-  attempt.equilibrium.applied_force = resultant(space_, result.external).dot(direction(load));
+  attempt.equilibrium.applied_force =
+      whole_force(fibres_, resultant(space_, result.external)).dot(direction(load));
   attempt.applied = true;
   if (const auto* contact = std::get_if<ContactLoad>(&load))
     attempt.applied =

@@ -24,7 +24,7 @@ ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, co
 struct Equilibrium {
   Load load;
   SolidState state;
-  double applied_force = 0;  ///< resultant of the external forces along e, N
+  double applied_force = 0;  ///< on the whole body along e, N
 };
 
 struct LoadPathOptions {

@@ -32,6 +32,11 @@ struct Wrench {
     force += f;
     moment += at.cross(f);
   }
+  /// Adds the image in the plane y = 0; the moment is an axial vector.
+  void add_mirror_image() {
+    force = Vector3(2 * force.x(), 0, 2 * force.z());
+    moment = Vector3(0, 2 * moment.y(), 0);
+  }
 };
 
 /// The cells between two planes of the mesh: indices of the elements.
@@ -47,6 +52,14 @@ struct Station {
   Vector3 x = Vector3::Zero();                                           ///< ∫ x dA
   Eigen::Matrix<double, 3, 2> xX = Eigen::Matrix<double, 3, 2>::Zero();  ///< ∫ x (X, Y) dA
   Wrench load;
+  /// Adds the image in the plane y = 0.
+  void add_mirror_image() {
+    area *= 2;
+    XY = Eigen::Vector2d(2 * XY.x(), 0);
+    x = Vector3(2 * x.x(), 0, 2 * x.z());
+    xX = 2 * Eigen::Matrix<double, 3, 2>{{xX(0, 0), 0}, {0, xX(1, 1)}, {xX(2, 0), 0}};
+    load.add_mirror_image();
+  }
 };
 
 /// x of a fibre at ζ = 0, ½, 1: columns.
@@ -98,6 +111,7 @@ Station Extraction::station(const Layer& layer, double zeta) const {
                      result.load.add(x * quadratic_basis(at), dA * force * load.direction);
                    });
   });
+  if (fibres.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
 
@@ -129,6 +143,7 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
                                               quadratic_basis(at)[2] * load.direction);
                    });
   });
+  if (fibres.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
 

@@ -22,8 +22,9 @@ namespace ciliaval::fem {
 /// fibres. So n and m balance the load to the solver's tolerance on every mesh, next to a clamped
 /// edge too, where stresses would not. r is the element's own quadratic, so that it is exact and
 /// continuous from layer to layer. Where a contact kernel lies in a layer, the layer is divided:
-/// one piece below it, pieces of at most half its height inside, one above. `load` is the load of
-/// the state; the default is none, or a section load. Throws SolverError if det F ≤ 0 in the state.
+/// one piece below it, pieces of at most half its height inside, one above. Of a half body the
+/// image in y = 0 is added to all integrals. `load` is the load of the state; the default is none,
+/// or a section load. Throws SolverError if det F ≤ 0 in the state.
 Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
                       const SpreadLoad& load = {});
 

@@ -26,6 +26,7 @@ namespace {
 
 meshes::CylinderMeshOptions mesh_options(const SolidOptions& options, const LoadPath& path) {
   meshes::CylinderMeshOptions mesh = cylinder_mesh_options(options.refinement);
+  mesh.half = options.symmetry;
   for (const Load& load : path)
     if (const auto* section = std::get_if<SectionLoad>(&load))
       mesh.planes.push_back(section->arclength);
@@ -39,8 +40,18 @@ std::vector<NeoHooke> materials(const Cilium& cilium) {
   return result;
 }
 
-std::vector<DirichletCondition> clamped_base() {
-  return {{.boundary = meshes::base_id}};
+/// A clamped base; on the plane of symmetry, where there is one, no displacement across it.
+std::vector<DirichletCondition> supports(Extent extent) {
+  std::vector<DirichletCondition> conditions{{.boundary = meshes::base_id}};
+  if (extent == Extent::half)
+    conditions.push_back({.boundary = meshes::symmetry_id, .components = {false, true, false}});
+  return conditions;
+}
+
+/// The load in the frame of the mesh, whose x axis is the load's direction.
+Load in_bending_frame(Load load) {
+  std::visit([](auto& l) { l.azimuth = 0; }, load);
+  return load;
 }
 
 /// The discretised cilium. Its members refer to one another: it stays where it is made.
@@ -54,16 +65,18 @@ struct Discretisation {
     meshes::make_cylinder(cilium, options, triangulation);
     mapping = meshes::cylinder_mapping(triangulation, element_degree);
     space = std::make_unique<SolidSpace>(triangulation, *mapping, materials(cilium));
-    fibres = std::make_unique<Fibres>(*space);
+    fibres = std::make_unique<Fibres>(*space, options.half ? Extent::half : Extent::whole);
   }
 };
 
+/// `azimuth` turns the frame of the mesh into that of the cilium.
 Deformation deformation(const Discretisation& discretisation, const Cilium& cilium,
-                        const SolidState& state, const SpreadLoad& load = {}) {
+                        const SolidState& state, double azimuth, const SpreadLoad& load = {}) {
   const auto& [space, fibres] = std::tie(*discretisation.space, *discretisation.fibres);
-  return {
-      centreline(space, fibres, state, load),
-      std::make_shared<const SolidBody>(solid_body(space, fibres, cilium, state, element_degree))};
+  return turned(
+      {centreline(space, fibres, state, load),
+       std::make_shared<const SolidBody>(solid_body(space, fibres, cilium, state, element_degree))},
+      azimuth);
 }
 
 /// S of the centreline's lowest point at z = h; empty if there is none.
@@ -155,21 +168,25 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
   require_valid(cilium, path, options_);
   const Discretisation discretisation(cilium, mesh_options(options_, path));
   const SolidSpace& space = *discretisation.space;
-  MechanicsResult result{deformation(discretisation, cilium, space.undeformed()), {}};
+  MechanicsResult result{deformation(discretisation, cilium, space.undeformed(),
+                                     path.empty() ? 0 : azimuth(path.front())),
+                         {}};
   if (path.empty()) return result;
 
-  Newton newton(space, increment_constraints(space, clamped_base()));
+  const Fibres& fibres = *discretisation.fibres;
+  Newton newton(space, increment_constraints(space, supports(fibres.extent())));
   LoadPathOptions options{{options_.tolerance, options_.max_iterations, least_force(cilium)},
                           options_.max_cutbacks,
                           options_.kernel_width};
-  LoadPathSolver solver(space, *discretisation.fibres, newton, path.front(), options);
+  LoadPathSolver solver(space, fibres, newton, in_bending_frame(path.front()), options);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     const std::string label =
         "step " + std::to_string(i + 1) + "/" + std::to_string(path.size()) + ", ";
     const Progress report =
         progress ? Progress([&](const std::string& text) { progress(label + text); }) : Progress();
-    const LoadPathOutcome outcome = solver.advance(path[i], report);
+    const Load load = in_bending_frame(path[i]);
+    const LoadPathOutcome outcome = solver.advance(load, report);
     MechanicsStep step;
     step.load = path[i];
     step.status = outcome.status;
@@ -179,8 +196,8 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
     step.unknowns = space.unknowns();
     if (outcome.status == Status::converged) {
       step.deformation =
-          deformation(discretisation, cilium, solver.current().state,
-                      spread_load(path[i], discretisation.fibres->area(), options_.kernel_width));
+          deformation(discretisation, cilium, solver.current().state, azimuth(path[i]),
+                      spread_load(load, fibres.area(), options_.kernel_width));
       step.applied_force = solver.current().applied_force;
       if (const auto* contact = std::get_if<ContactLoad>(&path[i]))
         step.contact_arclength = contact_arclength(step.deformation->centreline, contact->height);

@@ -10,7 +10,8 @@ struct CylinderMeshOptions;
 namespace ciliaval::fem {
 
 struct SolidOptions {
-  unsigned int refinement = 1;   ///< mesh: 0 coarse, 1 default, 2 fine (cylinder_mesh_options())
+  unsigned int refinement = 1;  ///< mesh: 0 coarse, 1 default, 2 fine (cylinder_mesh_options())
+  bool symmetry = true;  ///< mesh only one side of the bending plane, which mirrors the other
   double kernel_width = 0.5e-3;  ///< half-width of the contact kernel k(z−h), m
   double tolerance =
       1e-9;  ///< of the residual, relative to the applied force, and of the increment
@@ -22,7 +23,8 @@ struct SolidOptions {
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement);
 
 /// 3D finite-strain near-incompressible neo-Hooke solid of the two-material cilium: Q2
-/// displacement, discontinuous linear pressure, full cylinder, clamped base (docs/solid.md).
+/// displacement, discontinuous linear pressure, clamped base (docs/solid.md). The mesh turns with
+/// the load's azimuth, so that the bending plane is always one of its planes of symmetry.
 class Solid : public MechanicsModel {
  public:
   /// Throws InputError if an option is out of range.

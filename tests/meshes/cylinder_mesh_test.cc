@@ -173,6 +173,40 @@ TEST(CylinderMesh, HasStraightLinesAlongTheAxis) {
   }
 }
 
+// Oracle: the whole mesh. Its cells with Y > 0, their nodes and ids, and no others; the cut is the
+// symmetry boundary and nothing else is.
+TEST(CylinderMesh, HalfIsTheHalfOfTheWholeMesh) {
+  for (const unsigned int n : {2U, 4U}) {
+    CylinderMeshOptions options;
+    options.square_cells = n;
+    dealii::Triangulation<3> whole;
+    make_cylinder(stub_and_magnet(), options, whole);
+    options.half = true;
+    dealii::Triangulation<3> half;
+    make_cylinder(stub_and_magnet(), options, half);
+    EXPECT_EQ(2 * half.n_active_cells(), whole.n_active_cells());
+    const auto whole_mapping = cylinder_mapping(whole);
+    const auto half_mapping = cylinder_mapping(half);
+    const dealii::Point<3> inside(0.2, 0.7, 0.4);
+    for (const auto& cell : half.active_cell_iterators()) {
+      double distance = std::numeric_limits<double>::infinity();
+      const auto point = half_mapping->transform_unit_to_real_cell(cell, inside);
+      EXPECT_GT(point[1], 0);
+      for (const auto& other : whole.active_cell_iterators())
+        if (other->center().distance(cell->center()) < 1e-12) {
+          EXPECT_EQ(other->material_id(), cell->material_id());
+          distance = whole_mapping->transform_unit_to_real_cell(other, inside).distance(point);
+        }
+      EXPECT_LT(distance, 1e-15);
+      for (const auto& face : cell->face_iterators()) {
+        if (!face->at_boundary()) continue;
+        const bool on_cut = std::abs(face->center()[1]) < 1e-9;
+        EXPECT_EQ(face->boundary_id() == symmetry_id, on_cut);
+      }
+    }
+  }
+}
+
 TEST(CylinderMesh, RejectsWhatItCannotMesh) {
   dealii::Triangulation<3> triangulation;
   const auto rejects = [&](const CylinderMeshOptions& options) {

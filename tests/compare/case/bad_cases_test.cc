@@ -357,8 +357,10 @@ const BadCase later[]{
      "'material' = 'mooney-rivlin' is not available in this version (valid: neo-hooke)"},
     {"UnknownMaterial", "refinement = 1", "material = \"neo-hook\"", "35:12",
      "'material' cannot be 'neo-hook'", "did you mean 'neo-hooke'?"},
-    {"Symmetry", "refinement = 1", "symmetry = true", "35:1",
-     "'models.solid.symmetry' is not available in this version"},
+    {"InitialGuess", "refinement = 1", "initial_guess = true", "35:1",
+     "'models.solid.initial_guess' is not available in this version"},
+    {"Symmetry", "refinement = 1", "symmetry = \"half\"", "35:12",
+     "'symmetry' must be true or false"},
 };
 
 std::string name_of(const testing::TestParamInfo<BadCase>& info) {

@@ -243,6 +243,7 @@ max_cutbacks = 3
 [models.solid]
 material = "neo-hooke"
 refinement = 2
+symmetry = false
 kernel_width = "0.25 mm"
 tolerance = 1e-7
 max_iterations = 12
@@ -277,6 +278,7 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.beam.max_iterations, 11U);
   EXPECT_EQ(o.beam.max_cutbacks, 3U);
   EXPECT_EQ(o.solid.refinement, 2U);
+  EXPECT_FALSE(o.solid.symmetry);
   EXPECT_EQ(o.solid.kernel_width, 0.00025);
   EXPECT_EQ(o.solid.tolerance, 1e-7);
   EXPECT_EQ(o.solid.max_iterations, 12U);

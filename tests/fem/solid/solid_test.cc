@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -194,14 +195,84 @@ TEST(Solid, ChargedFacesOfAMagnetOnTheBasePointDownThere) {
   EXPECT_TRUE(found);
 }
 
-// Oracle: symmetry. The o-grid maps onto itself under 90°, so that a load turned by 90° must give
-// the turned result to the solver's tolerance.
+// Oracle: isotropy. The same load in another direction gives the turned result; the mesh turns with
+// it, so that only rounding is left, in the body as in the centreline.
 TEST(Solid, TurnsWithTheAzimuth) {
-  const Load turned = ContactLoad{2e-3, 16e-3, 0.4 + std::numbers::pi / 2};
-  const MechanicsResult result = coarse().solve(stub_and_magnet(), {turned});
-  const Vector3 a = tip(converged(bent()));
-  const Vector3 b = tip(converged(result));
-  EXPECT_NEAR((Vector3(-a.y(), a.x(), a.z()) - b).norm() / a.norm(), 0, 1e-8);
+  const MechanicsResult straight = coarse().solve(stub_and_magnet(), {ContactLoad{2e-3, 16e-3, 0}});
+  const Deformation& plane = *converged(straight).deformation;
+  const Deformation& bent_to = *converged(bent()).deformation;
+  const Eigen::AngleAxisd turn(0.4, Vector3::UnitZ());
+  for (const double S : {1e-3, 3e-3, 15e-3, 20e-3}) {
+    const CentrelinePoint a = plane.centreline.at(S);
+    const CentrelinePoint b = bent_to.centreline.at(S);
+    EXPECT_NEAR((turn * a.position - b.position).norm(), 0, 1e-12);
+    EXPECT_NEAR((turn * a.normal() - b.normal()).norm(), 0, 1e-10);
+    EXPECT_NEAR((turn * a.curvature - b.curvature).norm(), 0, 1e-9 * a.curvature.norm());
+    EXPECT_NEAR((turn * a.forces.moment - b.forces.moment).norm(), 0, 1e-14);
+  }
+  ASSERT_EQ(plane.body->cells.size(), bent_to.body->cells.size());
+  for (std::size_t i = 0; i < plane.body->cells.size(); ++i) {
+    const SolidCell& a = plane.body->cells[i];
+    const SolidCell& b = bent_to.body->cells[i];
+    EXPECT_NEAR((turn * a.reference[5] - b.reference[5]).norm(), 0, 1e-12);
+    EXPECT_NEAR((turn * a.current[5] - b.current[5]).norm(), 0, 1e-12);
+    const Matrix3 stress = turn * a.cauchy_stress[5] * turn.inverse();
+    EXPECT_NEAR((stress - b.cauchy_stress[5]).norm(), 0, 1e-7 * stress.norm());
+  }
+}
+
+// Oracle: the whole cylinder, solved without the symmetry; its mesh is the half's with its image.
+// Every load type; a section force and moment of the half are those of the whole.
+TEST(Solid, HalfAnswersAsTheWholeCylinder) {
+  const Cilium cilium{3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 7e-3, 3e6, 0.49, 75e3}}};
+  const Solid whole({.refinement = 0, .symmetry = false});
+  const LoadPath loads{ContactLoad{2e-3, 8e-3, 0.3}, FlowLoad{0.3, 0.3},
+                       SectionLoad{2e-3, 8e-3, 0.3}, DeadLoad{0.3, 0.3}};
+  for (const Load& load : loads) {
+    const MechanicsResult halves = coarse().solve(cilium, {load});
+    const MechanicsResult wholes = whole.solve(cilium, {load});
+    const MechanicsStep& half = converged(halves);
+    const MechanicsStep& full = converged(wholes);
+    EXPECT_LT(half.unknowns, 0.6 * static_cast<double>(full.unknowns));
+    EXPECT_NEAR(half.applied_force / full.applied_force, 1, 1e-9) << type(load);
+    const double w = tip(full).head<2>().norm();
+    for (const double S : {0.7e-3, 3e-3, 7.9e-3, 10e-3}) {
+      const CentrelinePoint a = half.deformation->centreline.at(S);
+      const CentrelinePoint b = full.deformation->centreline.at(S);
+      EXPECT_NEAR((a.position - b.position).norm() / w, 0, 1e-8) << type(load) << S;
+      EXPECT_NEAR((a.forces.force - b.forces.force).norm(), 0, 1e-8 * full.applied_force);
+      EXPECT_NEAR((a.forces.moment - b.forces.moment).norm(), 0, 1e-8 * full.applied_force * 8e-3);
+      EXPECT_NEAR(a.rotation.angularDistance(b.rotation), 0, 1e-7);
+    }
+  }
+}
+
+// Oracle: the whole cylinder's patches, found by their reference nodes: the image of a half has the
+// same displacement and stress there.
+TEST(Solid, MirrorImageCompletesTheBody) {
+  const Cilium cilium{3e-3, {{"magnet", 5e-3, 1e5, 0.49, 75e3}}};
+  const LoadPath load{SectionLoad{1e-3, 5e-3, 0}};
+  const MechanicsResult halves = coarse().solve(cilium, load);
+  const MechanicsResult wholes = Solid({.refinement = 0, .symmetry = false}).solve(cilium, load);
+  const SolidBody& half = *converged(halves).deformation->body;
+  const SolidBody& full = *converged(wholes).deformation->body;
+  ASSERT_EQ(half.cells.size(), full.cells.size());
+  ASSERT_EQ(half.charged_faces.size(), full.charged_faces.size());
+  const auto middle = [](const SolidCell& cell) { return cell.reference[13]; };
+  int below = 0;
+  for (const SolidCell& a : half.cells) {
+    const auto b = std::min_element(
+        full.cells.begin(), full.cells.end(), [&](const SolidCell& p, const SolidCell& q) {
+          return (middle(p) - middle(a)).norm() < (middle(q) - middle(a)).norm();
+        });
+    EXPECT_NEAR((middle(a) - middle(*b)).norm(), 0, 1e-12);
+    EXPECT_NEAR((a.current[13] - b->current[13]).norm(), 0, 1e-11);
+    EXPECT_NEAR((a.cauchy_stress[13] - b->cauchy_stress[13]).norm(), 0,
+                1e-6 * b->cauchy_stress[13].norm());
+    EXPECT_GT(evaluate(half.nodes, a, Vector3::Constant(0.3)).reference_gradient.determinant(), 0);
+    below += middle(a).y() < 0;
+  }
+  EXPECT_EQ(2 * static_cast<std::size_t>(below), half.cells.size());
 }
 
 // Oracle: Timoshenko's cantilever under a dead end force, w = FL³/(3EI) + FL/(kGA) with
