@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compare/case_sections.h"
+#include "fem/solid/material.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -113,6 +114,18 @@ std::size_t pairs(std::size_t n) {
   return n * (n - 1) / 2;  // none of 0
 }
 
+void check_material(const toml::table& root, const Case& c, Faults& faults) {
+  const auto [ratio_2, ratio_3] = c.options.solid.yeoh_ratios;
+  if (fem::yeoh_is_stable(ratio_2, ratio_3)) return;
+  faults.add(place_of(root, "models.solid.yeoh_ratios"),
+             fmt::format("a Yeoh solid with C20/C10 = {:g} and C30/C10 = {:g} is unstable: from "
+                         "some shear on its shear stress falls; {}",
+                         ratio_2, ratio_3,
+                         ratio_3 < 0 ? "C30/C10 must not be negative"
+                                     : fmt::format("C30/C10 must be above 3/5 (C20/C10)² = {:g}",
+                                                   0.6 * ratio_2 * ratio_2)));
+}
+
 /// The figures of a run: B and ΔB of each field run at each sensor, straight and at each step, and
 /// the comparisons of each pair of runs (compare/errors.h): of mechanics five a step, of fields six
 /// components at each sensor a step and over the path.
@@ -143,6 +156,7 @@ void check_together(const toml::table& root, const Case& c, const RightTables& r
   if (right.cilium && right.load && right.models) check_contact(root, c, faults);
   if (right.cilium && right.load) check_section(root, c, faults);
   if (right.load && right.models) check_elastica_form(root, c, faults);
+  if (right.models) check_material(root, c, faults);
   if (right.models) check_fields(root, c, right.cilium, faults);
   if (right.load && right.models) check_size(root, c, faults);
 }

@@ -43,18 +43,17 @@ const std::array<const QuantityKey*, 15> quantity_keys{
     &key::velocity,         &key::density,        &key::drag_coefficient, &key::arclength,
     &key::force_per_length, &key::azimuth,        &key::position};
 
-/// A knob that is a double, an unsigned int or a bool of the options of one model.
+/// A knob that is a double, an unsigned int, a bool or two doubles of the options of one model.
 template <typename Options, typename T>
 Knob number_knob(Options ModelOptions::*model, T Options::*member, std::string_view id,
                  std::string_view name, const Quantity& quantity, const Range& range,
                  std::string_view doc) {
   static_assert(std::is_same_v<T, double> || std::is_same_v<T, unsigned int> ||
-                std::is_same_v<T, bool>);
+                std::is_same_v<T, bool> || std::is_same_v<T, std::array<double, 2>>);
   return {id,
           name,
           quantity,
           range,
-          {},
           {},
           doc,
           [=](const ModelOptions& o) { return KnobValue((o.*model).*member); },
@@ -74,7 +73,6 @@ Knob choice_knob(Options ModelOptions::*model, T Options::*member, std::string_v
           quantity::number,
           {},
           choices,
-          {},
           doc,
           [=](const ModelOptions& o) {
             for (const auto& [text, value] : values)
@@ -85,20 +83,6 @@ Knob choice_knob(Options ModelOptions::*model, T Options::*member, std::string_v
             for (const auto& [text, value] : values)
               if (std::get<std::string>(v) == text) (o.*model).*member = value;
           }};
-}
-
-/// A choice that has one value in this version.
-Knob single_choice_knob(std::string_view id, std::string_view name, std::string_view value,
-                        std::vector<std::string_view> not_yet, std::string_view doc) {
-  return {id,
-          name,
-          quantity::number,
-          {},
-          {value},
-          std::move(not_yet),
-          doc,
-          [=](const ModelOptions&) { return KnobValue(std::string(value)); },
-          [](ModelOptions&, const KnobValue&) {}};
 }
 
 constexpr Range any_bool{};
@@ -141,11 +125,45 @@ void append_beam(std::vector<Knob>& all) {
                             "Halvings of a load increment that does not converge."));
 }
 
+/// The solid's energies. The defaults of the ratios are the orders of magnitude of rubbers, none
+/// measured on the paper's: C₀₁/C₁₀ = 1/4 is what is taken where only a hardness is known, and
+/// Yeoh (Rubber Chem. Technol. 66, 754, 1993) finds a C₂₀ of −0.1 to −0.01 C₁₀, which makes rubber
+/// softer in moderate shear, and a C₃₀ of some +0.01 C₁₀, which makes it stiff again.
+void append_material(std::vector<Knob>& all) {
+  using fem::SolidOptions;
+  using Material = SolidOptions::Material;
+  constexpr auto solid = &ModelOptions::solid;
+  all.push_back(choice_knob(solid, &SolidOptions::material, "solid", "material",
+                            {{"neo-hooke", Material::neo_hooke},
+                             {"mooney-rivlin", Material::mooney_rivlin},
+                             {"yeoh", Material::yeoh}},
+                            "Energy W + K/2 (J-1)²: `neo-hooke` W = μ/2 (Ī₁-3), `mooney-rivlin` "
+                            "C10 (Ī₁-3) + C01 (Ī₂-3), `yeoh` C10 (Ī₁-3) + C20 (Ī₁-3)² + C30 "
+                            "(Ī₁-3)³; E and ν of the segment give μ = 2 (C10 + C01) and K."));
+  Knob mooney =
+      number_knob(solid, &SolidOptions::mooney_ratio, "solid", "mooney_ratio", quantity::number,
+                  {0, 10, false,
+                   "with a negative C01 the solid is unstable, and rubber has a C01 "
+                   "below C10"},
+                  "`mooney-rivlin`: C01/C10. The default is a round figure for rubber.");
+  mooney.goes_with = "material = \"mooney-rivlin\"";
+  mooney.belongs = [](const ModelOptions& o) {
+    return o.solid.material == Material::mooney_rivlin;
+  };
+  all.push_back(std::move(mooney));
+  Knob yeoh = number_knob(solid, &SolidOptions::yeoh_ratios, "solid", "yeoh_ratios",
+                          quantity::number, {-10, 10, false, "rubber has ratios well below 1"},
+                          "`yeoh`: C20/C10 and C30/C10. Neither negative, or (C20/C10)² < 5/3 "
+                          "C30/C10. The defaults are round figures for rubber.");
+  yeoh.goes_with = "material = \"yeoh\"";
+  yeoh.belongs = [](const ModelOptions& o) { return o.solid.material == Material::yeoh; };
+  all.push_back(std::move(yeoh));
+}
+
 void append_solid(std::vector<Knob>& all) {
   using fem::SolidOptions;
   constexpr auto solid = &ModelOptions::solid;
-  all.push_back(single_choice_knob("solid", "material", "neo-hooke", {"mooney-rivlin", "yeoh"},
-                                   "Energy: μ/2 (Ī₁-3) + K/2 (J-1)²."));
+  append_material(all);
   all.push_back(number_knob(solid, &SolidOptions::refinement, "solid", "refinement",
                             quantity::number,
                             {0, 2, false, "the solid has the levels coarse, default and fine"},
@@ -230,6 +248,7 @@ std::string row(const Knob& knob) {
   } else if (!std::holds_alternative<bool>(fallback)) {
     const bool whole = std::holds_alternative<unsigned int>(fallback);
     value = whole ? "whole number" : knob.quantity.name;
+    if (std::holds_alternative<std::array<double, 2>>(fallback)) value = "two plain numbers";
     range = describe(knob.range, knob.quantity);
   }
   return row(fmt::format("models.{}", knob.model), knob.name, value, range,
@@ -261,6 +280,10 @@ const std::vector<Knob>& knobs() {
   return all;
 }
 
+bool belongs(const Knob& knob, const ModelOptions& options) {
+  return !knob.belongs || knob.belongs(options);
+}
+
 std::span<const std::string_view> mechanics_ids() {
   return known_mechanics;
 }
@@ -280,6 +303,8 @@ std::string to_toml(const Knob& knob, const KnobValue& value) {
         if constexpr (std::is_same_v<T, std::string>) return fmt::format("\"{}\"", v);
         if constexpr (std::is_same_v<T, bool>) return v ? "true" : "false";
         if constexpr (std::is_same_v<T, unsigned int>) return fmt::format("{}", v);
+        if constexpr (std::is_same_v<T, std::array<double, 2>>)
+          return fmt::format("[{}, {}]", format_number(v[0]), format_number(v[1]));
         if constexpr (std::is_same_v<T, double>)
           return knob.quantity.unit.empty()
                      ? format_number(v)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <functional>
 #include <numbers>
 #include <span>
@@ -153,7 +154,7 @@ struct TextKey {
 };
 
 /// The value of a model's knob.
-using KnobValue = std::variant<bool, unsigned int, double, std::string>;
+using KnobValue = std::variant<bool, unsigned int, double, std::string, std::array<double, 2>>;
 
 /// A setting of one model, [models.<model>] name = …: the one declaration from which it is read,
 /// written back and documented. Its default is that of the model's options.
@@ -161,16 +162,22 @@ struct Knob {
   std::string_view model;
   std::string_view name;
   Quantity quantity;                      ///< of a double
-  Range range;                            ///< of a number
+  Range range;                            ///< of a number or of each number of a pair
   std::vector<std::string_view> choices;  ///< of a text
-  std::vector<std::string_view> not_yet;  ///< choices of later versions
   std::string_view doc;                   ///< one sentence
   std::function<KnobValue(const ModelOptions&)> get;
   std::function<void(ModelOptions&, const KnobValue&)> set;
+  /// Whether the knob means anything with the other options; empty: it always does. A file that
+  /// states it where it does not is refused, and it is not written back.
+  std::function<bool(const ModelOptions&)> belongs{};
+  std::string_view goes_with{};  ///< what makes it belong, as the file would state it
 };
 
 /// Every knob of every model, the models in the order of the registry.
 const std::vector<Knob>& knobs();
+
+/// Whether a case with these options may state the knob.
+bool belongs(const Knob& knob, const ModelOptions& options);
 
 /// The ids that a case file may name, as in the registry (compare/registry.h), which is not used
 /// here so that reading a case needs none of the models.

@@ -140,10 +140,27 @@ std::vector<std::string> read_ids(const toml::node& node, std::string_view name,
   return result;
 }
 
+std::optional<std::array<double, 2>> read_pair(const toml::node& node, const Knob& knob,
+                                               Faults& faults) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 2) {
+    faults.add(
+        place(node),
+        fmt::format("'{}' must be a list of two numbers, such as {}, found {}", knob.name,
+                    to_toml(knob, knob.get(ModelOptions{})),
+                    list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
+    return std::nullopt;
+  }
+  const auto first = read_value((*list)[0], knob.name, knob.quantity, knob.range, faults);
+  const auto second = read_value((*list)[1], knob.name, knob.quantity, knob.range, faults);
+  if (!first || !second) return std::nullopt;
+  return std::array{*first, *second};
+}
+
 void read_knob(const Knob& knob, const toml::node& node, ModelOptions& options, Faults& faults) {
   const KnobValue fallback = knob.get(options);
   if (!knob.choices.empty()) {
-    if (auto text = read_choice(node, knob.name, knob.choices, knob.not_yet, faults))
+    if (auto text = read_choice(node, knob.name, knob.choices, {}, faults))
       knob.set(options, *text);
   } else if (std::holds_alternative<bool>(fallback)) {
     if (const auto* flag = node.as_boolean())
@@ -154,6 +171,8 @@ void read_knob(const Knob& knob, const toml::node& node, ModelOptions& options, 
   } else if (std::holds_alternative<unsigned int>(fallback)) {
     if (const auto number = read_whole_number(node, knob.name, knob.range, faults))
       knob.set(options, *number);
+  } else if (std::holds_alternative<std::array<double, 2>>(fallback)) {
+    if (const auto pair = read_pair(node, knob, faults)) knob.set(options, *pair);
   } else if (const auto value = read_value(node, knob.name, knob.quantity, knob.range, faults)) {
     knob.set(options, *value);
   }
@@ -166,6 +185,12 @@ void read_knobs(Section& models, ModelOptions& options) {
       if (knob.model != id) continue;
       if (const toml::node* node = table.find(knob.name))
         read_knob(knob, *node, options, table.faults());
+    }
+    for (const Knob& knob : knobs()) {
+      if (knob.model != id || belongs(knob, options)) continue;
+      if (const toml::node* node = table.find(knob.name))
+        table.faults().add(place(*node),
+                           fmt::format("'{}' goes with {} only", knob.name, knob.goes_with));
     }
     table.finish();
   };

@@ -125,6 +125,7 @@ std::string models(const Case& c) {
   for (const Knob& knob : knobs()) {
     if (knob.model != model) text += fmt::format("\n[models.{}]\n", knob.model);
     model = knob.model;
+    if (!belongs(knob, c.options)) continue;
     text += fmt::format("{} = {}\n", knob.name, to_toml(knob, knob.get(c.options)));
   }
   return text;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
@@ -37,9 +38,15 @@ Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& eleme
 /// Internal forces of the state; empty if det F ≤ 0 or not a number at a Gauss point.
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state);
 
-/// Adds the condensed stiffness K_uu + Gᵀ C⁻¹ G to the matrix.
+/// The element's condensed stiffness K_uu + Gᵀ C⁻¹ G, symmetric, N/m, in the order of
+/// SolidElement::dofs. The matrix must be element_dofs × element_dofs; it is overwritten.
 ///   K_uu = ∫ ∇N : ∂P/∂F|_p : ∇N dV
-/// Cells in parallel.
+void element_stiffness(const SolidElement& element, const SolidState& state, std::size_t index,
+                       const PressureEquation& equation, dealii::FullMatrix<double>& matrix);
+
+/// Adds element_stiffness() of all cells to the matrix. The cells are computed in parallel and
+/// added in their order, so that the result does not depend on the number of threads; the same
+/// holds for internal_forces().
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
                    const dealii::AffineConstraints<double>& constraints,
                    dealii::SparseMatrix<double>& matrix);

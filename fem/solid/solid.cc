@@ -33,10 +33,22 @@ meshes::CylinderMeshOptions mesh_options(const SolidOptions& options, const Load
   return mesh;
 }
 
-std::vector<NeoHooke> materials(const Cilium& cilium) {
-  std::vector<NeoHooke> result;
-  for (const Segment& segment : cilium.segments)
-    result.push_back({segment.shear_modulus(), segment.bulk_modulus()});
+Hyperelastic material(const Segment& segment, const SolidOptions& options) {
+  const double mu = segment.shear_modulus();
+  const double K = segment.bulk_modulus();
+  switch (options.material) {
+    case SolidOptions::Material::mooney_rivlin:
+      return Hyperelastic::mooney_rivlin(mu, K, options.mooney_ratio);
+    case SolidOptions::Material::yeoh:
+      return Hyperelastic::yeoh(mu, K, options.yeoh_ratios[0], options.yeoh_ratios[1]);
+    default:
+      return Hyperelastic::neo_hooke(mu, K);
+  }
+}
+
+std::vector<Hyperelastic> materials(const Cilium& cilium, const SolidOptions& options) {
+  std::vector<Hyperelastic> result;
+  for (const Segment& segment : cilium.segments) result.push_back(material(segment, options));
   return result;
 }
 
@@ -61,11 +73,12 @@ struct Discretisation {
   std::unique_ptr<SolidSpace> space;
   std::unique_ptr<Fibres> fibres;
 
-  Discretisation(const Cilium& cilium, const meshes::CylinderMeshOptions& options) {
-    meshes::make_cylinder(cilium, options, triangulation);
+  Discretisation(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
+                 const SolidOptions& options) {
+    meshes::make_cylinder(cilium, mesh, triangulation);
     mapping = meshes::cylinder_mapping(triangulation, element_degree);
-    space = std::make_unique<SolidSpace>(triangulation, *mapping, materials(cilium));
-    fibres = std::make_unique<Fibres>(*space, options.half ? Extent::half : Extent::whole);
+    space = std::make_unique<SolidSpace>(triangulation, *mapping, materials(cilium, options));
+    fibres = std::make_unique<Fibres>(*space, mesh.half ? Extent::half : Extent::whole);
   }
 };
 
@@ -161,12 +174,19 @@ Solid::Solid(SolidOptions options) : options_(options) {
   if (!(options_.tolerance > 0 && options_.tolerance < 1))
     throw InputError("the solid's tolerance must lie between 0 and 1");
   if (options_.max_iterations == 0) throw InputError("the solid needs max_iterations of 1 or more");
+  if (!(std::isfinite(options_.mooney_ratio) && options_.mooney_ratio >= 0))
+    throw InputError("the solid's mooney_ratio C01/C10 must be finite and not negative");
+  const auto [ratio_2, ratio_3] = options_.yeoh_ratios;
+  if (!(std::isfinite(ratio_2) && std::isfinite(ratio_3) && yeoh_is_stable(ratio_2, ratio_3)))
+    throw InputError(
+        "with the solid's yeoh_ratios C20/C10 and C30/C10 the shear stress falls from some shear "
+        "on: give ratios that are not negative, or a C20/C10 whose square is below 5/3 C30/C10");
 }
 
 MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
                              const Progress& progress) const {
   require_valid(cilium, path, options_);
-  const Discretisation discretisation(cilium, mesh_options(options_, path));
+  const Discretisation discretisation(cilium, mesh_options(options_, path), options_);
   const SolidSpace& space = *discretisation.space;
   MechanicsResult result{deformation(discretisation, cilium, space.undeformed(),
                                      path.empty() ? 0 : azimuth(path.front())),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
+
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::meshes {
@@ -10,6 +12,12 @@ struct CylinderMeshOptions;
 namespace ciliaval::fem {
 
 struct SolidOptions {
+  /// Energy of all segments (fem/solid/material.h). Their E and ν fix the initial shear modulus and
+  /// the bulk modulus; the ratios say the rest.
+  enum class Material { neo_hooke, mooney_rivlin, yeoh };
+  Material material = Material::neo_hooke;
+  double mooney_ratio = 0.25;                     ///< C₀₁/C₁₀ of Mooney–Rivlin
+  std::array<double, 2> yeoh_ratios{-0.1, 0.01};  ///< C₂₀/C₁₀ and C₃₀/C₁₀ of Yeoh
   unsigned int refinement = 1;  ///< mesh: 0 coarse, 1 default, 2 fine (cylinder_mesh_options())
   bool symmetry = true;  ///< mesh only one side of the bending plane, which mirrors the other
   double kernel_width = 0.5e-3;  ///< half-width of the contact kernel k(z−h), m
@@ -22,7 +30,7 @@ struct SolidOptions {
 /// The mesh of a refinement level. Throws InputError if there is none of that number.
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement);
 
-/// 3D finite-strain near-incompressible neo-Hooke solid of the two-material cilium: Q2
+/// 3D finite-strain near-incompressible hyperelastic solid of the two-material cilium: Q2
 /// displacement, discontinuous linear pressure, clamped base (docs/solid.md). The mesh turns with
 /// the load's azimuth, so that the bending plane is always one of its planes of symmetry.
 class Solid : public MechanicsModel {

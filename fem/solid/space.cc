@@ -59,7 +59,7 @@ PressureVector SolidElement::pressure_basis(const Vector3& X) const {
 }
 
 SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
-                       const dealii::Mapping<3>& mapping, std::span<const NeoHooke> materials)
+                       const dealii::Mapping<3>& mapping, std::span<const Hyperelastic> materials)
     : mapping_(mapping),
       scalar_element_(element_degree),
       element_(scalar_element_, 3),
@@ -107,7 +107,7 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
   }
 }
 
-void SolidSpace::initialize(SolidElement& element, std::span<const NeoHooke> materials) const {
+void SolidSpace::initialize(SolidElement& element, std::span<const Hyperelastic> materials) const {
   const auto id = element.cell->material_id();
   if (id >= materials.size())
     throw InputError("the mesh has cells of material " + std::to_string(id) + ", but only " +

@@ -36,7 +36,7 @@ using PressureMatrix = Eigen::Matrix<double, element_pressures, element_pressure
 struct SolidElement {
   dealii::Triangulation<3>::active_cell_iterator cell;
   std::array<dealii::types::global_dof_index, element_dofs> dofs;
-  NeoHooke material;
+  Hyperelastic material;
   Vector3 centre;             ///< origin of the pressure's linear basis, m
   double size = 1;            ///< its unit of length, m
   Eigen::MatrixXd gradients;  ///< ∂N_a/∂X_J at Gauss point q: row a, column 3q + J, 1/m
@@ -60,7 +60,7 @@ class SolidSpace {
  public:
   /// `materials[i]` is that of the cells with material id i. Throws InputError if one is missing.
   SolidSpace(const dealii::Triangulation<3>& triangulation, const dealii::Mapping<3>& mapping,
-             std::span<const NeoHooke> materials);
+             std::span<const Hyperelastic> materials);
 
   const dealii::DoFHandler<3>& dof_handler() const { return dof_handler_; }
   const dealii::Mapping<3>& mapping() const { return mapping_; }
@@ -76,7 +76,7 @@ class SolidSpace {
   SolidState undeformed() const;
 
  private:
-  void initialize(SolidElement& element, std::span<const NeoHooke> materials) const;
+  void initialize(SolidElement& element, std::span<const Hyperelastic> materials) const;
 
   const dealii::Mapping<3>& mapping_;
   dealii::FE_Q<3> scalar_element_;

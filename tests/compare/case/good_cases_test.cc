@@ -241,7 +241,8 @@ tolerance = 1e-8
 max_iterations = 11
 max_cutbacks = 3
 [models.solid]
-material = "neo-hooke"
+material = "yeoh"
+yeoh_ratios = [-0.2, 0.03]
 refinement = 2
 symmetry = false
 kernel_width = "0.25 mm"
@@ -267,6 +268,11 @@ std::string with_all_knobs() {
   return replaced(good_case, "[models.solid]\nrefinement = 1\n", all_knobs);
 }
 
+/// The other material, and its knob.
+std::string with_mooney_rivlin() {
+  return replaced(good_case, "refinement = 1", "mooney_ratio = 0.1\nmaterial = \"mooney-rivlin\"");
+}
+
 TEST(Knobs, ReachTheOptionsOfTheirModel) {
   const ModelOptions o = read(with_all_knobs()).options;
   EXPECT_EQ(o.elastica.form, analytic::ElasticaOptions::Form::height);
@@ -277,6 +283,11 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.beam.tolerance, 1e-8);
   EXPECT_EQ(o.beam.max_iterations, 11U);
   EXPECT_EQ(o.beam.max_cutbacks, 3U);
+  EXPECT_EQ(o.solid.material, fem::SolidOptions::Material::yeoh);
+  EXPECT_EQ(o.solid.yeoh_ratios, (std::array{-0.2, 0.03}));
+  const ModelOptions mooney = read(with_mooney_rivlin()).options;
+  EXPECT_EQ(mooney.solid.material, fem::SolidOptions::Material::mooney_rivlin);
+  EXPECT_EQ(mooney.solid.mooney_ratio, 0.1);
   EXPECT_EQ(o.solid.refinement, 2U);
   EXPECT_FALSE(o.solid.symmetry);
   EXPECT_EQ(o.solid.kernel_width, 0.00025);
@@ -297,9 +308,10 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
 TEST(Knobs, AreAllInTheListAbove) {
   // So that the test of the options and of the round trip covers a knob added later.
   const ModelOptions set = read(with_all_knobs()).options;
+  const ModelOptions mooney = read(with_mooney_rivlin()).options;
   for (const Knob& knob : knobs()) {
-    if (knob.choices.size() == 1) continue;  // nothing else to choose yet
-    EXPECT_NE(knob.get(set), knob.get(ModelOptions{})) << knob.model << '.' << knob.name;
+    EXPECT_NE(knob.get(belongs(knob, set) ? set : mooney), knob.get(ModelOptions{}))
+        << knob.model << '.' << knob.name;
   }
 }
 
@@ -322,6 +334,7 @@ TEST(WrittenCase, ReadsBackAsTheSameCaseBitForBit) {
   const std::vector<std::string> texts{
       std::string(good_case),
       with_all_knobs(),
+      with_mooney_rivlin(),
       replaced(good_case, "\"A case without a fault\"", R"("µ \"quoted\" \\ 'back'")"),
       with_load("type = \"contact\"\nforce = [\"1 mN\", \"1 mN\"]\nheight = \"3.1 mm\""),
       with_load("type = \"contact\"\nforce = [\"1 mN\"]\nheight = \"0.3 inch\""),
@@ -343,8 +356,13 @@ TEST(WrittenCase, ReadsBackAsTheSameCaseBitForBit) {
 }
 
 TEST(WrittenCase, StatesEveryKnobWithItsValue) {
-  const std::string written = to_toml(read(good_case));
+  const Case c = read(good_case);
+  const std::string written = to_toml(c);
   for (const Knob& knob : knobs()) {
+    if (!belongs(knob, c.options)) {
+      EXPECT_THAT(written, Not(testing::HasSubstr(std::string(knob.name)))) << knob.model;
+      continue;
+    }
     std::string line = "\n";
     line += knob.name;
     line += " = " + to_toml(knob, knob.get(ModelOptions{})) + "\n";
@@ -352,6 +370,14 @@ TEST(WrittenCase, StatesEveryKnobWithItsValue) {
   }
   EXPECT_THAT(written, testing::HasSubstr("kernel_width = \"0.0005 m\""));
   EXPECT_THAT(written, testing::HasSubstr("diameter = \"0.003 m\""));
+}
+
+TEST(WrittenCase, StatesTheDefaultsOfTheChosenMaterial) {
+  const auto written = [](const std::string& material) {
+    return to_toml(read(replaced(good_case, "refinement = 1", "material = \"" + material + "\"")));
+  };
+  EXPECT_THAT(written("mooney-rivlin"), testing::HasSubstr("\nmooney_ratio = 0.25\n"));
+  EXPECT_THAT(written("yeoh"), testing::HasSubstr("\nyeoh_ratios = [-0.1, 0.01]\n"));
 }
 
 TEST(ShippedCases, AreReadAndWrittenBack) {

@@ -58,7 +58,7 @@ TEST(KnobRanges, BothEndsAreTakenByTheMechanicsModel) {
         ++count;
       }
     }
-  EXPECT_GE(count, 2 * (1 + 5 + 5));  // the numeric knobs of elastica, beam and solid
+  EXPECT_GE(count, 2 * (1 + 5 + 6));  // the numeric knobs of elastica, beam and solid
 }
 
 TEST(KnobRanges, BothEndsAreTakenByTheFieldModel) {

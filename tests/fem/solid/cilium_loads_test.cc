@@ -23,7 +23,8 @@ namespace {
 struct BentCilium {
   dealii::Triangulation<3> triangulation;
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
-  std::vector<NeoHooke> materials{neo_hooke(1e5, 0.49), neo_hooke(3e5, 0.49)};
+  std::vector<Hyperelastic> materials{Hyperelastic::mooney_rivlin(3.4e4, 1.7e6, 0.25),
+                                      Hyperelastic::yeoh(1e5, 5e6, -0.1, 0.01)};
   std::unique_ptr<SolidSpace> space;
   std::unique_ptr<Fibres> fibres;
   SolidState state;

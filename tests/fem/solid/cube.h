@@ -22,9 +22,9 @@ namespace ciliaval::fem {
 struct Block {
   dealii::Triangulation<3> triangulation;
   dealii::MappingQ<3> mapping{element_degree};
-  std::vector<NeoHooke> materials;
+  std::vector<Hyperelastic> materials;
 
-  Block(const NeoHooke& material, const std::vector<unsigned int>& cells,
+  Block(const Hyperelastic& material, const std::vector<unsigned int>& cells,
         const Vector3& size = Vector3::Ones(), double distortion = 0)
       : materials{material} {
     dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, cells, dealii::Point<3>(),
@@ -35,8 +35,9 @@ struct Block {
   }
 };
 
-inline NeoHooke neo_hooke(double young_modulus, double poisson_ratio) {
-  return {young_modulus / (2 * (1 + poisson_ratio)), young_modulus / (3 * (1 - 2 * poisson_ratio))};
+inline Hyperelastic neo_hooke(double young_modulus, double poisson_ratio) {
+  return Hyperelastic::neo_hooke(young_modulus / (2 * (1 + poisson_ratio)),
+                                 young_modulus / (3 * (1 - 2 * poisson_ratio)));
 }
 
 /// Calls visit(X, element, a) for every node of every element, a lexicographic.

@@ -310,6 +310,40 @@ TEST(Solid, AllLoadTypesHaveTheirBeamLimit) {
   EXPECT_NEAR(w(DeadLoad{q, 0}) / spread, 1, 0.015);
 }
 
+/// Tip of the paper's cilium under a force on its end face, by its material.
+Vector3 tip_of(SolidOptions options, double force) {
+  options.refinement = 0;
+  const Load load = SectionLoad{force, 20e-3, 0};
+  return tip(converged(Solid(options).solve(stub_and_magnet(), {load})));
+}
+constexpr SolidOptions mooney_rivlin{.material = SolidOptions::Material::mooney_rivlin};
+constexpr SolidOptions yeoh{.material = SolidOptions::Material::yeoh};
+
+// Oracle: linear elasticity, in which E and ν alone count. At strains of some 1e-4 the tips differ
+// by the square of the strain.
+TEST(Solid, MaterialsHaveTheSameStiffnessAtASmallLoad) {
+  const double F = 1e-6;
+  const double w = tip_of({}, F).x();
+  EXPECT_NEAR(tip_of(mooney_rivlin, F).x() / w, 1, 1e-6);
+  EXPECT_NEAR(tip_of(yeoh, F).x() / w, 1, 1e-6);
+}
+
+// Oracle: the energies. Yeoh's with C₂₀ < 0 is below neo-Hooke's wherever the strain is moderate
+// (Ī₁ − 3 < 10), so that the cilium bends farther; without C₀₁, C₂₀ and C₃₀ the others are
+// neo-Hooke's.
+TEST(Solid, MaterialsDifferAtALargeLoad) {
+  const double F = 1.5e-3;
+  const double w = tip_of({}, F).x();
+  EXPECT_GT(tip_of(yeoh, F).x() / w, 1.001);
+  EXPECT_GT(std::abs(tip_of(mooney_rivlin, F).x() / w - 1), 1e-4);
+  SolidOptions plain = mooney_rivlin;
+  plain.mooney_ratio = 0;
+  EXPECT_NEAR(tip_of(plain, F).x() / w, 1, 1e-9);
+  plain = yeoh;
+  plain.yeoh_ratios = {0, 0};
+  EXPECT_NEAR(tip_of(plain, F).x() / w, 1, 1e-9);
+}
+
 // Past the largest contact force the step is marked, the bracket's lower end is a force that the
 // model does bear, and a smaller force after it is solved.
 TEST(Solid, FindsTheSlipOffForceAndGoesOn) {
@@ -397,6 +431,9 @@ TEST(Solid, RejectsBadInput) {
   EXPECT_THROW(Solid({.kernel_width = 0}), InputError);
   EXPECT_THROW(Solid({.tolerance = std::numeric_limits<double>::quiet_NaN()}), InputError);
   EXPECT_THROW(Solid({.max_iterations = 0}), InputError);
+  EXPECT_THROW(Solid({.mooney_ratio = -0.1}), InputError);
+  EXPECT_THROW(Solid({.yeoh_ratios = {-0.1, 0.005}}), InputError);
+  EXPECT_THROW(Solid({.yeoh_ratios = {std::numeric_limits<double>::infinity(), 0}}), InputError);
   const Cilium cilium = stub_and_magnet();
   const auto rejects = [&](const LoadPath& path) {
     EXPECT_THROW(coarse().solve(cilium, path), InputError);
