@@ -100,7 +100,7 @@ const BadCase keys[]{
     {"UnknownKnob", "refinement", "refinment", "35:1", "unknown key 'refinment' in [models.solid]",
      "did you mean 'refinement'?"},
     {"UnknownKeyWithoutANeighbour", "refinement", "colour", "35:1",
-     "unknown key 'colour' in [models.solid] (valid: material, refinement"},
+     "unknown key 'colour' in [models.solid] (valid: material, mooney_ratio"},
     {"CaseOfAKeyMatters", "title", "Title", "3:1", "unknown key 'Title'", "did you mean 'title'?"},
     {"MissingDiameter", "diameter = \"3 mm\"", "", "5:1", "[cilium] needs 'diameter'"},
     {"MissingLength", "length = \"3 mm\"", "", "8:1", "[[cilium.segment]] needs 'length'"},
