@@ -8,6 +8,9 @@ find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 # Only these: every further component drags in VTK's own HDF5, beside the one of deal.II.
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+# The library that deal.II itself is linked to: it costs no start-up time.
+find_path(GMSH_INCLUDE_DIR gmsh.h REQUIRED)
+find_library(GMSH_LIBRARY gmsh REQUIRED)
 find_path(UDUNITS2_INCLUDE_DIR udunits2.h PATH_SUFFIXES udunits2 REQUIRED)
 find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
 
@@ -28,4 +31,10 @@ if(NOT TARGET CiliaVal::udunits)
   add_library(CiliaVal::udunits INTERFACE IMPORTED)
   target_include_directories(CiliaVal::udunits SYSTEM INTERFACE ${UDUNITS2_INCLUDE_DIR})
   target_link_libraries(CiliaVal::udunits INTERFACE ${UDUNITS2_LIBRARY})
+endif()
+
+if(NOT TARGET CiliaVal::gmsh)
+  add_library(CiliaVal::gmsh INTERFACE IMPORTED)
+  target_include_directories(CiliaVal::gmsh SYSTEM INTERFACE ${GMSH_INCLUDE_DIR})
+  target_link_libraries(CiliaVal::gmsh INTERFACE ${GMSH_LIBRARY})
 endif()

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "compare/case_words.h"
 #include "problem/error.h"
+#include "problem/words.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "compare/case_words.h"
 #include "problem/error.h"
 #include "problem/field_model.h"
+#include "problem/words.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace ciliaval::compare {
+namespace ciliaval {
 
 /// Whether two words are the same but for the case of ASCII letters.
 bool equal_but_case(std::string_view a, std::string_view b);
@@ -19,4 +19,4 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 /// "; did you mean 'x'?" for the nearest candidate; empty if none is near.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/case_words.h"
-
-#include <fmt/format.h>
+#include "problem/words.h"
 
 #include <algorithm>
 #include <cctype>
 #include <vector>
 
-namespace ciliaval::compare {
+namespace ciliaval {
 namespace {
 
 char lower(char c) {
@@ -63,7 +61,7 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
   const std::string_view best = nearest(word, candidates);
-  return best.empty() ? std::string() : fmt::format("; did you mean '{}'?", best);
+  return best.empty() ? std::string() : "; did you mean '" + std::string(best) + "'?";
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval

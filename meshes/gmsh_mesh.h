@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/fe/mapping_q_cache.h>
+#include <deal.II/grid/tria.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "meshes/mesh_file.h"
+#include "problem/cilium.h"
+
+namespace ciliaval::meshes {
+
+/// What comes with the triangulation of a user's mesh.
+struct GmshMesh {
+  std::unique_ptr<dealii::MappingQCache<3>> mapping;  ///< quadratic, of the curved cells
+  std::vector<std::string> remarks;  ///< what is odd or poor but can be used, a sentence each
+};
+
+/// Reads a Gmsh mesh of the cilium (docs/meshes.md): hexahedra extruded along Z from Z = 0 to L, a
+/// physical volume for each segment, of its name, and the physical surfaces `base`, `mantle` and
+/// `tip`. Ids and vertical mesh lines are as of make_cylinder(), the cells in the order of the
+/// file's; ones that are turned, upside down or mirrored are renumbered. Nodes within 1e-5 d of an
+/// exact extrusion and of the segments' ends are moved there. Second-order nodes are honoured; the
+/// mantle of a first-order mesh becomes a cylinder whose section has the area πR². The
+/// triangulation must be empty, and outlive the mapping. Throws FileError if the file cannot be
+/// read as a mesh, and InputError with the place, the reason and what to do if the mesh does not
+/// suit the cilium.
+GmshMesh read_gmsh(const MeshFile& source, const Cilium& cilium,
+                   dealii::Triangulation<3>& triangulation);
+
+}  // namespace ciliaval::meshes

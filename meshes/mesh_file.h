@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+
+namespace ciliaval::meshes {
+
+/// A mesh that a user brings (docs/meshes.md): a Gmsh file, and what its coordinates are in, for
+/// Gmsh files have no units.
+struct MeshFile {
+  std::filesystem::path path;
+  double unit = 1;  ///< length of the file's unit, m: 1e-3 for a file in mm
+};
+
+}  // namespace ciliaval::meshes
