@@ -8,6 +8,7 @@
 #include <string>
 
 #include "meshes/cylinder_mesh.h"
+#include "meshes/gmsh_mesh.h"
 
 namespace ciliaval::meshes {
 namespace {

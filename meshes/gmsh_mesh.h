@@ -13,6 +13,9 @@
 
 namespace ciliaval::meshes {
 
+/// "base", "mantle", "tip" by boundary id: the names of the physical surfaces.
+const std::vector<std::string>& boundary_names();
+
 /// What comes with the triangulation of a user's mesh.
 struct GmshMesh {
   std::unique_ptr<dealii::MappingQCache<3>> mapping;  ///< quadratic, of the curved cells

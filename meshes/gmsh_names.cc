@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "meshes/gmsh_mesh.h"
 #include "problem/error.h"
 #include "problem/words.h"
 

@@ -44,7 +44,4 @@ void find_segments(UserMesh& mesh);
 /// Surfaces of other names get a remark.
 std::map<int, unsigned int> find_boundaries(UserMesh& mesh);
 
-/// "base", "mantle", "tip" by boundary id.
-const std::vector<std::string>& boundary_names();
-
 }  // namespace ciliaval::meshes

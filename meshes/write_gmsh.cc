@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "meshes/gmsh_file.h"
-#include "meshes/gmsh_names.h"
+#include "meshes/gmsh_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::meshes {

@@ -145,7 +145,8 @@ std::vector<Fault> topology_faults() {
          tear(m, 3e-3, [](auto& x) {
            const double c = std::cos(0.2);
            const double s = std::sin(0.2);
-           x = {c * x[0] - s * x[1], s * x[0] + c * x[1], x[2]};
+           x = {c * x[0] - s * x[1] + (std::hypot(x[0], x[1]) < 1e-6 ? 1e-4 : 0),
+                s * x[0] + c * x[1], x[2]};  // the node on the axis moves too
          });
        },
        {"no neighbour across the plane Z = 0.003", "do not conform"}},
@@ -290,7 +291,7 @@ TEST_P(PlantedFault, IsToldWithItsPlaceAndRemedy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gmsh, PlantedFault, testing::ValuesIn(all_faults()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& instance) { return instance.param.name; });
 
 TEST(GmshFileFaults, AreFileErrors) {
   const test::Folder folder;
@@ -325,7 +326,7 @@ TEST(GmshFileFaults, ATruncatedFileIsNeverRead) {
   const Cilium cilium = test::stub_and_magnet();
   const std::string good = test::built_in(cilium).text();
   std::vector<std::size_t> cuts{good.find("$Nodes"), good.find("$Elements"),
-                                good.find("$PhysicalNames"), good.size() - 14};
+                                good.find("$PhysicalNames"), good.size() - 20};
   for (std::size_t i = 1; i < 20; ++i) cuts.push_back(good.size() * i / 20);
   for (const std::size_t cut : cuts) {
     for (const char* end : {"", "\n$EndElements\n"}) {

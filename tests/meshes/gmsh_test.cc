@@ -63,30 +63,37 @@ Integrals integrals(const Mesh& mesh) {
   return result;
 }
 
-/// The points of a list sorted, so that lists can be compared whatever their order. Coordinates
-/// are rounded to 1e-11 m for that, far below a cell's size, far above a file's rounding.
-using Sorted = std::multimap<std::array<long long, 3>, Point<3>>;
+/// A key for points that are the same but for rounding: 1e-8 m, far below the size of a cell, and
+/// shifted, so that the rounding of 0 does not decide.
 std::array<long long, 3> key(const Point<3>& x) {
-  // Off a half, so that rounding of a coordinate 0 does not decide.
   return {std::llround(x[0] * 1e8 + 0.123), std::llround(x[1] * 1e8 + 0.123),
           std::llround(x[2] * 1e8 + 0.123)};
 }
 
 /// Every cell of one mesh is, by its nodes and its material, at the same place in the other, every
-/// boundary face with its id too.
-void expect_same(const Mesh& a, const Mesh& b, double tolerance) {
+/// boundary face with its id too. Returns the largest distance of a node.
+double expect_same(const Mesh& a, const Mesh& b) {
   const MeshNodes first = mesh_nodes(a.triangulation, *a.mapping);
   const MeshNodes second = mesh_nodes(b.triangulation, *b.mapping);
-  ASSERT_EQ(first.nodes.size(), second.nodes.size());
-  ASSERT_EQ(first.cells.size(), second.cells.size());
-  ASSERT_EQ(first.faces.size(), second.faces.size());
-  for (std::size_t e = 0; e < first.cells.size(); ++e) {
-    EXPECT_EQ(first.cells[e].material, second.cells[e].material);
-    for (const std::size_t node : first.cells[e].nodes) {
+  EXPECT_EQ(first.nodes.size(), second.nodes.size());
+  EXPECT_EQ(first.cells.size(), second.cells.size());
+  EXPECT_EQ(first.faces.size(), second.faces.size());
+  std::map<std::array<long long, 3>, std::size_t> cell_at;
+  for (std::size_t e = 0; e < second.cells.size(); ++e)
+    cell_at[key(second.nodes[second.cells[e].nodes[13]])] = e;
+  double largest = 0;
+  for (const MeshNodes::Cell& cell : first.cells) {
+    const auto other = cell_at.find(key(first.nodes[cell.nodes[13]]));
+    if (other == cell_at.end()) {
+      ADD_FAILURE() << "no cell at " << first.nodes[cell.nodes[13]];
+      return 1;
+    }
+    EXPECT_EQ(cell.material, second.cells[other->second].material);
+    for (const std::size_t node : cell.nodes) {
       double nearest = 1;
-      for (const std::size_t other : second.cells[e].nodes)
-        nearest = std::min(nearest, first.nodes[node].distance(second.nodes[other]));
-      ASSERT_LT(nearest, tolerance);
+      for (const std::size_t twin : second.cells[other->second].nodes)
+        nearest = std::min(nearest, first.nodes[node].distance(second.nodes[twin]));
+      largest = std::max(largest, nearest);
     }
   }
   const auto faces = [](const MeshNodes& mesh) {
@@ -96,6 +103,7 @@ void expect_same(const Mesh& a, const Mesh& b, double tolerance) {
     return ids;
   };
   EXPECT_EQ(faces(first), faces(second));
+  return largest;
 }
 
 CylinderMeshOptions small() {
@@ -107,8 +115,10 @@ CylinderMeshOptions small() {
   return options;
 }
 
-// Oracle: the mesh before it was written. Text has 16 digits: 1e-17 m of the coordinates here,
-// 3e-15 of the volume measured; binary is exact.
+// Oracle: the mesh before it was written. deal.II finds the curved nodes of the built-in mesh by an
+// iteration, so that they lie above one another to some 1e-12 of a cell only, where the reader puts
+// them exactly: nodes within 2.6e-14 m, volume 2e-12, ∫ x² dV 2.4e-12 measured (text and binary). A
+// mesh that was read comes back as it is to rounding.
 TEST(GmshRoundTrip, KeepsCellsMaterialsBoundariesAndVolume) {
   const test::Folder folder;
   const Cilium cilium = test::stub_and_magnet();
@@ -123,12 +133,19 @@ TEST(GmshRoundTrip, KeepsCellsMaterialsBoundariesAndVolume) {
                    {version, binary, unit});
         Mesh back;
         back.read(file, cilium);
-        expect_same(made, back, 1e-15);
+        EXPECT_LT(expect_same(made, back), 1e-13);
         EXPECT_THAT(back.remarks, testing::IsEmpty());
         const Integrals after = integrals(back);
-        EXPECT_NEAR(after.volume / before.volume, 1, 1e-13);
-        EXPECT_NEAR(after.second_moment / before.second_moment, 1, 1e-13);
+        EXPECT_NEAR(after.volume / before.volume, 1, 1e-11);
+        EXPECT_NEAR(after.second_moment / before.second_moment, 1, 1e-11);
         EXPECT_GT(after.least_jacobian, 0);
+
+        write_gmsh(mesh_nodes(back.triangulation, *back.mapping), cilium, file.path,
+                   {version, binary, unit});
+        Mesh again;
+        again.read(file, cilium);
+        EXPECT_LT(expect_same(back, again), 1e-17);
+        EXPECT_NEAR(integrals(again).volume / after.volume, 1, 1e-14);
       }
     }
   }
@@ -146,7 +163,7 @@ TEST(GmshRoundTrip, CurvesAFirstOrderMeshAsTheBuiltInOne) {
              {.quadratic = false});
   Mesh back;
   back.read(file, cilium);
-  expect_same(made, back, 1e-14);
+  EXPECT_LT(expect_same(made, back), 1e-13);
   EXPECT_NEAR(integrals(back).volume / (cilium.area() * cilium.length()), 1, 1e-13);
 }
 
@@ -194,7 +211,7 @@ TEST(GmshMeshes, RepairTurnedAndMirroredCells) {
   EXPECT_THAT(straight.remarks, testing::IsEmpty());
   Mesh turned;
   turned.read({folder.path() / "turned.msh"}, cilium);
-  expect_same(straight, turned, 1e-15);
+  EXPECT_LT(expect_same(straight, turned), 1e-17);
   EXPECT_GT(integrals(turned).least_jacobian, 0);
   EXPECT_THAT(turned.remarks, testing::ElementsAre(testing::HasSubstr("inside out")));
 }
@@ -211,7 +228,7 @@ TEST(GmshMeshes, HonourSecondOrderNodesAndTellTheirArea) {
   write_gmsh(mesh_nodes(made.triangulation, *made.mapping), cilium, folder.path() / "on_R.msh");
   Mesh back;
   back.read({folder.path() / "on_R.msh"}, cilium);
-  expect_same(made, back, 1e-15);
+  EXPECT_LT(expect_same(made, back), 1e-13);
   EXPECT_NEAR(integrals(back).volume / (cilium.area() * cilium.length()), 1 - 7.8e-4, 1e-5);
   EXPECT_THAT(back.remarks, testing::ElementsAre(testing::HasSubstr("-0.078 % off")));
 }
@@ -242,11 +259,11 @@ TEST(GmshMeshes, ListUnusedSurfacesAndPoorCells) {
   extra.physical = extra.entity = 20;
   mesh.elements.push_back(extra);
   mesh.names.push_back({2, 20, "glue"});
-  // The inner square turned against the rim by 0.45 rad: its ring's cells get skew.
+  // The inner square turned against the rim by 0.35 rad: its ring's cells get skew.
   for (auto& x : mesh.nodes) {
     if (std::hypot(x[0], x[1]) > 1.2e-3) continue;
-    const double c = std::cos(0.45);
-    const double s = std::sin(0.45);
+    const double c = std::cos(0.35);
+    const double s = std::sin(0.35);
     x = {c * x[0] - s * x[1], s * x[0] + c * x[1], x[2]};
   }
   mesh.write(folder.path() / "poor.msh");
