@@ -14,12 +14,11 @@ namespace {
 constexpr std::array<std::string_view, 3> known_mechanics{"elastica", "beam", "solid"};
 constexpr std::array<std::string_view, 4> known_fields{"dipole", "line", "volume", "mesh"};
 
-constexpr std::array<LaterKey, 5> known_later{{
+constexpr std::array<LaterKey, 4> known_later{{
     {"environment", "gravity, buoyancy and uniform fields"},
     {"cilium.segment.density", "weight (it goes with [environment])"},
     {"load.displacement", "displacement control (load type 'probe')"},
     {"models.potential", "the field model 'potential'"},
-    {"models.solid.initial_guess", "the choice of the solid's initial guess"},
 }};
 
 const std::array<TextKey, 6> text_keys{{
@@ -165,9 +164,12 @@ void append_solid(std::vector<Knob>& all) {
   constexpr auto solid = &ModelOptions::solid;
   append_material(all);
   all.push_back(number_knob(solid, &SolidOptions::refinement, "solid", "refinement",
-                            quantity::number,
-                            {0, 2, false, "the solid has the levels coarse, default and fine"},
-                            "Mesh: 0 coarse, 1 default, 2 fine."));
+                            quantity::number, {0, 3, false, "the solid has the meshes 0 to 3"},
+                            "Mesh: 0 coarse, 1 default, 2 fine, 3 to certify these."));
+  all.push_back(choice_knob(solid, &SolidOptions::initial_guess, "solid", "initial_guess",
+                            {{"beam", fem::InitialGuess::beam}, {"none", fem::InitialGuess::none}},
+                            "What the coarsest mesh starts from: the beam's solution at the same "
+                            "load, or its own last ones."));
   all.push_back(number_knob(solid, &SolidOptions::symmetry, "solid", "symmetry", quantity::number,
                             any_bool,
                             "Solve one side of the bending plane; the other is its mirror "

@@ -67,6 +67,7 @@ void remove_stale(const fs::path& directory, const fs::path& target, const std::
 template <class Entry>
 std::string any_id(const std::vector<Entry>& entries) {
   std::vector<std::string> ids;
+  ids.reserve(entries.size());
   for (const Entry& entry : entries) ids.push_back(entry.id);
   return fmt::format("({})", fmt::join(ids, "|"));
 }

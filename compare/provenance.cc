@@ -17,7 +17,7 @@
 
 namespace ciliaval::compare {
 
-Provenance provenance(std::string command) {
+Provenance provenance(const std::string& command) {
   const auto now =
       std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
   return {
@@ -34,7 +34,7 @@ Provenance provenance(std::string command) {
        {"toml++", fmt::format("{}.{}.{}", TOML_LIB_MAJOR, TOML_LIB_MINOR, TOML_LIB_PATCH)},
        {"nlohmann-json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR,
                                      NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)}},
-      std::move(command),
+      command,
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
 }
 

@@ -16,6 +16,6 @@ struct Provenance {
 };
 
 /// This program's provenance, now. `command` is handed through.
-Provenance provenance(std::string command);
+Provenance provenance(const std::string& command);
 
 }  // namespace ciliaval::compare

@@ -144,9 +144,9 @@ void append_layers(double a, double b, const Size& size, std::vector<double>& pl
   std::vector<double> layers{0.0};
   for (std::size_t i = 0; i < samples; ++i)
     layers.push_back(layers.back() + step / size(a + (static_cast<double>(i) + 0.5) * step));
-  const double count = std::max(1.0, std::ceil(layers.back() - 0.25));
+  const auto count = static_cast<int>(std::max(1.0, std::ceil(layers.back() - 0.25)));
   std::size_t i = 0;
-  for (double layer = 1; layer < count; ++layer) {
+  for (int layer = 1; layer < count; ++layer) {
     const double target = layers.back() * layer / count;
     while (layers[i + 1] < target) ++i;
     const double fraction = (target - layers[i]) / (layers[i + 1] - layers[i]);

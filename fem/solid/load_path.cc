@@ -59,8 +59,10 @@ ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, co
     return dead_forces(
         section_force(space, fibres, section->force, section->arclength, spread.direction));
   if (!spread.per_height) {
-    const Vector3 b = spread.per_volume * spread.direction;
-    return dead_forces(body_force(space, [&b](const Vector3&) -> Vector3 { return b; }));
+    const auto b = [&spread](const Vector3&) -> Vector3 {
+      return spread.per_volume * spread.direction;
+    };
+    return dead_forces(body_force(space, b));
   }
   return [&space, &fibres, spread](const dealii::Vector<double>& displacement,
                                    dealii::Vector<double>& forces,
@@ -80,11 +82,12 @@ struct LoadPathSolver::Attempt {
 };
 
 LoadPathSolver::LoadPathSolver(const SolidSpace& space, const Fibres& fibres, Newton& newton,
-                               const Load& first, LoadPathOptions options)
+                               const Load& first, LoadPathOptions options, FirstGuess first_guess)
     : space_(space),
       fibres_(fibres),
       newton_(newton),
       options_(options),
+      first_guess_(std::move(first_guess)),
       current_{with_magnitude(first, 0), space.undeformed(), 0} {}
 
 void LoadPathSolver::restart(const Load& load) {
@@ -106,12 +109,22 @@ SolidState LoadPathSolver::predicted(const Load& load) const {
   return state;
 }
 
-LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, LoadPathOutcome& outcome,
+LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, Guess guess,
+                                                LoadPathOutcome& outcome,
                                                 const Progress& progress) {
+  if (guess.state) {
+    Attempt attempt = attempt_from(std::move(*guess.state), load, outcome, progress);
+    if (attempt.converged) return attempt;
+  }
+  return attempt_from(predicted(load), load, outcome, progress);
+}
+
+LoadPathSolver::Attempt LoadPathSolver::attempt_from(SolidState state, const Load& load,
+                                                     LoadPathOutcome& outcome,
+                                                     const Progress& progress) {
   Attempt attempt;
   attempt.equilibrium.load = load;
-  attempt.equilibrium.state = predicted(load);
-  NewtonOptions newton = options_.newton;
+  attempt.equilibrium.state = std::move(state);
   const auto report = [&](int iteration, double residual) {
     if (progress)
       progress("load " + number(magnitude(load)) + ", iteration " + std::to_string(iteration) +
@@ -119,7 +132,7 @@ LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, LoadPathOutcom
   };
   const NewtonResult result =
       newton_.solve(external_forces(space_, fibres_, load, options_.kernel_width),
-                    attempt.equilibrium.state, newton, report);
+                    attempt.equilibrium.state, options_.newton, report);
   outcome.iterations += result.iterations();
   attempt.overshot = result.overshot;
   attempt.converged = result.converged;
@@ -136,6 +149,19 @@ LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, LoadPathOutcom
   return attempt;
 }
 
+Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) const {
+  return first_guess_ ? first_guess_(load, progress) : Guess{};
+}
+
+std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const Load& load) const {
+  if (!guess.slip_off_force) return std::nullopt;
+  const double now = magnitude(current_.load);
+  const double borne = *guess.slip_off_force;
+  const double next = now < borne ? borne : borne * (1 + options_.slip_off_bracket);
+  if (now < next && next < magnitude(load)) return next;
+  return std::nullopt;
+}
+
 void LoadPathSolver::accept(Attempt&& attempt) {
   previous_ = std::move(current_);
   current_ = std::move(attempt.equilibrium);
@@ -144,6 +170,10 @@ void LoadPathSolver::accept(Attempt&& attempt) {
 LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress) {
   LoadPathOutcome outcome;
   if (!same_place(current_.load, target)) restart(target);
+  if (magnitude(current_.load) == magnitude(target)) {
+    outcome.status = Status::converged;
+    return outcome;
+  }
   if (slipped_ && magnitude(target) >= magnitude(*slipped_)) return slip_off(outcome, progress);
   const Load start = current_.load;
   double reached = 0;
@@ -151,9 +181,15 @@ LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& prog
   unsigned int halvings = 0;
   unsigned int overshoots = 0;
   while (reached < 1) {
-    const double aim = std::min(1.0, reached + step);
-    const Load load = aim == 1 ? target : interpolate(start, target, aim);
-    Attempt result = attempt(load, outcome, progress);
+    double aim = std::min(1.0, reached + step);
+    Load load = aim == 1 ? target : interpolate(start, target, aim);
+    Guess guess = guess_for(load, progress);
+    if (const auto nearer = toward_slip_off(guess, load)) {
+      aim = (*nearer - magnitude(start)) / (magnitude(target) - magnitude(start));
+      load = with_magnitude(load, *nearer);
+      guess = guess_for(load, progress);
+    }
+    Attempt result = attempt(load, std::move(guess), outcome, progress);
     if (result.converged && !result.applied && magnitude(load) <= magnitude(current_.load)) {
       result.converged = false;
       result.trouble = "Newton's method went to a cilium that has slipped off under a smaller load";
@@ -191,7 +227,7 @@ LoadPathOutcome LoadPathSolver::slip_off(LoadPathOutcome outcome, const Progress
   while (magnitude(*slipped_) - magnitude(current_.load) >
          options_.slip_off_bracket * magnitude(*slipped_)) {
     const Load load = interpolate(current_.load, *slipped_, fraction);
-    Attempt result = attempt(load, outcome, progress);
+    Attempt result = attempt(load, guess_for(load, progress), outcome, progress);
     if (result.converged) {
       if (result.applied) {
         accept(std::move(result));

@@ -27,6 +27,14 @@ struct Equilibrium {
   double applied_force = 0;  ///< on the whole body along e, N
 };
 
+/// What a cheaper model knows about a load: a state near the equilibrium, or the slip-off force
+/// that it found below the load. Empty if it knows neither.
+struct Guess {
+  std::optional<SolidState> state;
+  std::optional<double> slip_off_force;  ///< N
+};
+using FirstGuess = std::function<Guess(const Load&, const Progress&)>;
+
 struct LoadPathOptions {
   NewtonOptions newton;
   unsigned int max_cutbacks = 5;   ///< halvings of a step in a row
@@ -42,18 +50,19 @@ struct LoadPathOutcome {
   int iterations = 0;
 };
 
-/// Follows a load path from equilibrium to equilibrium. A load at the place (height, azimuth,
-/// section) of the last one is reached from it, at once from a linear extrapolation of the last two
-/// equilibria or, where Newton's method fails, in steps that are halved and grow again after each
-/// success; steps that overshoot at once (det F ≤ 0 after one iteration) may be halved 20 times
-/// more. At a new place it starts from the straight solid: on the way from one place to another the
-/// cilium might slip off under loads that nobody asked for.
+/// Follows a load path from equilibrium to equilibrium. A load is tried from the first guess, where
+/// there is one; else, or if Newton's method fails, a load at the place (height, section) of the
+/// last one is reached from it, at once from a linear extrapolation of the last two equilibria or
+/// in steps that are halved and grow again after each success; steps that overshoot at once (det F
+/// ≤ 0 after one iteration) may be halved 20 times more. At a new place it starts from the straight
+/// solid: on the way from one place to another the cilium might slip off under loads that nobody
+/// asked for.
 class LoadPathSolver {
  public:
   /// Starts from the straight solid under no load of the path's type. The space, fibres and Newton
   /// solver must outlive it.
   LoadPathSolver(const SolidSpace& space, const Fibres& fibres, Newton& newton, const Load& first,
-                 LoadPathOptions options);
+                 LoadPathOptions options, FirstGuess first_guess = {});
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
   /// a load fully applied.
@@ -63,8 +72,15 @@ class LoadPathSolver {
 
  private:
   struct Attempt;
-  Attempt attempt(const Load& load, LoadPathOutcome& outcome, const Progress& progress);
+  Attempt attempt(const Load& load, Guess guess, LoadPathOutcome& outcome,
+                  const Progress& progress);
+  Attempt attempt_from(SolidState state, const Load& load, LoadPathOutcome& outcome,
+                       const Progress& progress);
   SolidState predicted(const Load& load) const;
+  Guess guess_for(const Load& load, const Progress& progress) const;
+  /// The force to try before the load: the guessed slip-off force or, when that is borne, a little
+  /// more.
+  std::optional<double> toward_slip_off(const Guess& guess, const Load& load) const;
   void accept(Attempt&& attempt);
   /// Narrows the bracket between the current load and `slipped_`.
   LoadPathOutcome slip_off(LoadPathOutcome outcome, const Progress& progress);
@@ -74,6 +90,7 @@ class LoadPathSolver {
   const Fibres& fibres_;
   Newton& newton_;
   LoadPathOptions options_;
+  FirstGuess first_guess_;
   Equilibrium current_;
   std::optional<Equilibrium> previous_;
   /// The smallest load at this place with an equilibrium in which it is not applied in full.

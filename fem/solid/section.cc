@@ -162,13 +162,14 @@ std::vector<double> Extraction::breaks(const Layer& layer) const {
       high = std::max(high, (*part)[1]);
     }
   });
-  if (!(low < high)) return result;
-  constexpr double shortest = 1e-3;  // a piece shorter than that belongs to the kernel's
+  constexpr double shortest = 1e-3;  // a piece shorter than that is not worth its own
+  if (!(high - low > shortest)) return result;
   if (low < shortest) low = 0;
   if (high > 1 - shortest) high = 1;
   const auto [lower, upper] = *load.per_height->support;
-  const double count = std::ceil((high - low) * length / ((upper - lower) / 2));
-  for (double i = 0; i <= count; ++i) result.push_back(low + (high - low) * i / count);
+  const auto count = static_cast<int>(std::ceil((high - low) * length / ((upper - lower) / 2)));
+  for (int i = 0; i < count; ++i) result.push_back(low + (high - low) * i / count);
+  result.push_back(high);
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

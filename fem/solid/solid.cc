@@ -2,30 +2,66 @@
 #include "fem/solid/solid.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "fem/solid/body.h"
-#include "fem/solid/fibres.h"
+#include "fem/solid/level.h"
 #include "fem/solid/load_path.h"
-#include "fem/solid/newton.h"
-#include "fem/solid/section.h"
-#include "fem/solid/space.h"
 #include "meshes/cylinder_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {
 namespace {
 
-meshes::CylinderMeshOptions mesh_options(const SolidOptions& options, const LoadPath& path) {
-  meshes::CylinderMeshOptions mesh = cylinder_mesh_options(options.refinement);
+/// Meshes from coarse to fine. From one to the next the layers at the clamped end and at the
+/// interfaces and the cells under the mantle halve, and the others shrink as far as they matter.
+struct MeshLevel {
+  unsigned int square_cells;
+  unsigned int rings;
+  double ring_ratio;
+  double finest_layer;
+  double coarsest_layer;
+  double growth;
+};
+constexpr std::array<MeshLevel, 6> mesh_levels{{{2, 1, 1.0, 0.32, 1.2, 0.6},
+                                                {2, 2, 0.5, 0.16, 0.8, 0.45},
+                                                {2, 3, 0.5, 0.08, 0.5, 0.3},
+                                                {2, 4, 0.5, 0.04, 0.5, 0.3},
+                                                {4, 5, 0.5, 0.02, 0.4, 0.25},
+                                                {4, 6, 0.5, 0.01, 0.25, 0.2}}};
+/// The level of each refinement.
+constexpr std::array<unsigned int, 4> refinement_levels{1, 3, 4, 5};
+
+unsigned int levels_below(unsigned int refinement) {
+  if (refinement >= refinement_levels.size())
+    throw InputError("the solid has the refinements 0 to " +
+                     std::to_string(refinement_levels.size() - 1) + ", not " +
+                     std::to_string(refinement));
+  return refinement_levels[refinement];
+}
+
+meshes::CylinderMeshOptions level_mesh(unsigned int index) {
+  const MeshLevel& level = mesh_levels[index];
+  meshes::CylinderMeshOptions mesh;
+  mesh.square_cells = level.square_cells;
+  mesh.rings = level.rings;
+  mesh.ring_ratio = level.ring_ratio;
+  mesh.finest_layer = level.finest_layer;
+  mesh.coarsest_layer = level.coarsest_layer;
+  mesh.growth = level.growth;
+  return mesh;
+}
+
+meshes::CylinderMeshOptions mesh_options(unsigned int index, const SolidOptions& options,
+                                         const LoadPath& path) {
+  meshes::CylinderMeshOptions mesh = level_mesh(index);
   mesh.half = options.symmetry;
   for (const Load& load : path)
     if (const auto* section = std::get_if<SectionLoad>(&load))
@@ -52,44 +88,10 @@ std::vector<Hyperelastic> materials(const Cilium& cilium, const SolidOptions& op
   return result;
 }
 
-/// A clamped base; on the plane of symmetry, where there is one, no displacement across it.
-std::vector<DirichletCondition> supports(Extent extent) {
-  std::vector<DirichletCondition> conditions{{.boundary = meshes::base_id}};
-  if (extent == Extent::half)
-    conditions.push_back({.boundary = meshes::symmetry_id, .components = {false, true, false}});
-  return conditions;
-}
-
 /// The load in the frame of the mesh, whose x axis is the load's direction.
 Load in_bending_frame(Load load) {
   std::visit([](auto& l) { l.azimuth = 0; }, load);
   return load;
-}
-
-/// The discretised cilium. Its members refer to one another: it stays where it is made.
-struct Discretisation {
-  dealii::Triangulation<3> triangulation;
-  std::unique_ptr<dealii::MappingQCache<3>> mapping;
-  std::unique_ptr<SolidSpace> space;
-  std::unique_ptr<Fibres> fibres;
-
-  Discretisation(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
-                 const SolidOptions& options) {
-    meshes::make_cylinder(cilium, mesh, triangulation);
-    mapping = meshes::cylinder_mapping(triangulation, element_degree);
-    space = std::make_unique<SolidSpace>(triangulation, *mapping, materials(cilium, options));
-    fibres = std::make_unique<Fibres>(*space, mesh.half ? Extent::half : Extent::whole);
-  }
-};
-
-/// `azimuth` turns the frame of the mesh into that of the cilium.
-Deformation deformation(const Discretisation& discretisation, const Cilium& cilium,
-                        const SolidState& state, double azimuth, const SpreadLoad& load = {}) {
-  const auto& [space, fibres] = std::tie(*discretisation.space, *discretisation.fibres);
-  return turned(
-      {centreline(space, fibres, state, load),
-       std::make_shared<const SolidBody>(solid_body(space, fibres, cilium, state, element_degree))},
-      azimuth);
 }
 
 /// S of the centreline's lowest point at z = h; empty if there is none.
@@ -134,37 +136,26 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
   }
 }
 
+/// The meshes from the coarsest to that of the refinement asked for.
+std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const LoadPath& path,
+                                                const SolidOptions& options) {
+  const LoadPathOptions path_options{
+      {options.tolerance, options.max_iterations, least_force(cilium)},
+      options.max_cutbacks,
+      options.kernel_width};
+  std::vector<std::unique_ptr<Level>> levels;
+  for (unsigned int i = 0; i <= levels_below(options.refinement); ++i)
+    levels.push_back(std::make_unique<Level>(cilium, mesh_options(i, options, path),
+                                             materials(cilium, options), path_options,
+                                             levels.empty() ? nullptr : levels.back().get(),
+                                             options.initial_guess == InitialGuess::beam));
+  return levels;
+}
+
 }  // namespace
 
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
-  meshes::CylinderMeshOptions options;
-  switch (refinement) {
-    case 0:
-      options.square_cells = 2;
-      options.rings = 1;
-      options.finest_layer = 0.15;
-      options.coarsest_layer = 0.8;
-      return options;
-    case 1:
-      options.square_cells = 2;
-      options.rings = 3;
-      options.ring_ratio = 0.5;
-      options.finest_layer = 0.08;
-      options.coarsest_layer = 0.5;
-      options.growth = 0.3;
-      return options;
-    case 2:
-      options.square_cells = 4;
-      options.rings = 2;
-      options.ring_ratio = 0.5;
-      options.finest_layer = 0.05;
-      options.coarsest_layer = 0.5;
-      options.growth = 0.3;
-      return options;
-    default:
-      throw InputError("the solid has the refinement levels 0, 1 and 2, not " +
-                       std::to_string(refinement));
-  }
+  return level_mesh(levels_below(refinement));
 }
 
 Solid::Solid(SolidOptions options) : options_(options) {
@@ -186,39 +177,27 @@ Solid::Solid(SolidOptions options) : options_(options) {
 MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
                              const Progress& progress) const {
   require_valid(cilium, path, options_);
-  const Discretisation discretisation(cilium, mesh_options(options_, path), options_);
-  const SolidSpace& space = *discretisation.space;
-  MechanicsResult result{deformation(discretisation, cilium, space.undeformed(),
-                                     path.empty() ? 0 : azimuth(path.front())),
-                         {}};
-  if (path.empty()) return result;
-
-  const Fibres& fibres = *discretisation.fibres;
-  Newton newton(space, increment_constraints(space, supports(fibres.extent())));
-  LoadPathOptions options{{options_.tolerance, options_.max_iterations, least_force(cilium)},
-                          options_.max_cutbacks,
-                          options_.kernel_width};
-  LoadPathSolver solver(space, fibres, newton, in_bending_frame(path.front()), options);
+  const std::vector<std::unique_ptr<Level>> levels = make_levels(cilium, path, options_);
+  Level& finest = *levels.back();
+  MechanicsResult result{finest.undeformed(path.empty() ? 0 : azimuth(path.front())), {}};
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     const std::string label =
         "step " + std::to_string(i + 1) + "/" + std::to_string(path.size()) + ", ";
     const Progress report =
         progress ? Progress([&](const std::string& text) { progress(label + text); }) : Progress();
-    const Load load = in_bending_frame(path[i]);
-    const LoadPathOutcome outcome = solver.advance(load, report);
+    const LoadPathOutcome outcome = finest.advance(in_bending_frame(path[i]), report);
     MechanicsStep step;
     step.load = path[i];
     step.status = outcome.status;
     step.message = outcome.status == Status::failed ? label + outcome.message : outcome.message;
     step.slip_off_force = outcome.slip_off_force;
     step.iterations = outcome.iterations;
-    step.unknowns = space.unknowns();
+    step.unknowns = finest.unknowns();
     if (outcome.status == Status::converged) {
-      step.deformation =
-          deformation(discretisation, cilium, solver.current().state, azimuth(path[i]),
-                      spread_load(load, fibres.area(), options_.kernel_width));
-      step.applied_force = solver.current().applied_force;
+      step.deformation = finest.deformation(azimuth(path[i]));
+      step.applied_force = finest.applied_force();
+      step.tip_uncertainty = finest.tip_uncertainty();
       if (const auto* contact = std::get_if<ContactLoad>(&path[i]))
         step.contact_arclength = contact_arclength(step.deformation->centreline, contact->height);
     }

@@ -11,6 +11,12 @@ struct CylinderMeshOptions;
 
 namespace ciliaval::fem {
 
+/// What Newton's method starts from on the coarsest mesh.
+enum class InitialGuess {
+  beam,  ///< the beam's solution at the same load
+  none   ///< the last equilibria: the straight cilium at first
+};
+
 struct SolidOptions {
   /// Energy of all segments (fem/solid/material.h). Their E and ν fix the initial shear modulus and
   /// the bulk modulus; the ratios say the rest.
@@ -19,6 +25,7 @@ struct SolidOptions {
   double mooney_ratio = 0.25;                     ///< C₀₁/C₁₀ of Mooney–Rivlin
   std::array<double, 2> yeoh_ratios{-0.1, 0.01};  ///< C₂₀/C₁₀ and C₃₀/C₁₀ of Yeoh
   unsigned int refinement = 1;  ///< mesh: 0 coarse, 1 default, 2 fine (cylinder_mesh_options())
+  InitialGuess initial_guess = InitialGuess::beam;
   bool symmetry = true;  ///< mesh only one side of the bending plane, which mirrors the other
   double kernel_width = 0.5e-3;  ///< half-width of the contact kernel k(z−h), m
   double tolerance =
@@ -27,12 +34,14 @@ struct SolidOptions {
   unsigned int max_cutbacks = 5;
 };
 
-/// The mesh of a refinement level. Throws InputError if there is none of that number.
+/// The mesh of a refinement. Throws InputError if there is none of that number.
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement);
 
 /// 3D finite-strain near-incompressible hyperelastic solid of the two-material cilium: Q2
 /// displacement, discontinuous linear pressure, clamped base (docs/solid.md). The mesh turns with
-/// the load's azimuth, so that the bending plane is always one of its planes of symmetry.
+/// the load's azimuth, so that the bending plane is always one of its planes of symmetry. A
+/// sequence of coarser meshes is solved first: each gives the next one its first guess, and the
+/// last two the estimate of the tip's error.
 class Solid : public MechanicsModel {
  public:
   /// Throws InputError if an option is out of range.

@@ -62,7 +62,7 @@ PlanarPoint planar_point(const MechanicsStep& step, double S) {
   return {point.position.dot(e), point.position.z(), std::atan2(normal.dot(e), normal.z())};
 }
 
-PointForceElastica::PointForceElastica(Real lambda, Real p_squared)
+PointForceElastica::PointForceElastica(Real lambda, const Real& p_squared)
     : lambda_(std::move(lambda)), p_(sqrt(p_squared)), sine_(2 * p_squared - 1) {
   const Real psi0 = asin(sin(pi / 4) / p_);
   f0_ = boost::math::ellint_1(p_, psi0);

@@ -45,7 +45,7 @@ PlanarPoint planar_point(const MechanicsStep& step, double S);
 class PointForceElastica {
  public:
   /// `p_squared` = (1 + sin θ_c)/2.
-  PointForceElastica(Real lambda, Real p_squared);
+  PointForceElastica(Real lambda, const Real& p_squared);
   static PointForceElastica with_end_angle(const Real& lambda, const Real& sine);
   /// The one whose arc up to the point without moment has the length L.
   static PointForceElastica with_length(const Real& lambda, const Real& length);

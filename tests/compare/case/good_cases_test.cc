@@ -244,6 +244,7 @@ max_cutbacks = 3
 material = "yeoh"
 yeoh_ratios = [-0.2, 0.03]
 refinement = 2
+initial_guess = "none"
 symmetry = false
 kernel_width = "0.25 mm"
 tolerance = 1e-7
@@ -289,6 +290,7 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(mooney.solid.material, fem::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.solid.mooney_ratio, 0.1);
   EXPECT_EQ(o.solid.refinement, 2U);
+  EXPECT_EQ(o.solid.initial_guess, fem::InitialGuess::none);
   EXPECT_FALSE(o.solid.symmetry);
   EXPECT_EQ(o.solid.kernel_width, 0.00025);
   EXPECT_EQ(o.solid.tolerance, 1e-7);

@@ -12,6 +12,7 @@
 #include "fem/solid/fibres.h"
 #include "fem/solid/forces.h"
 #include "fem/solid/load_path.h"
+#include "fem/solid/section.h"
 #include "meshes/cylinder_mesh.h"
 #include "problem/error.h"
 #include "tests/fem/solid/cube.h"
@@ -193,6 +194,20 @@ TEST(CiliumLoads, ContactForceFallsShortWhereTheFibresEnd) {
   const double missing =
       0.5 - end / (2 * w) - std::sin(std::numbers::pi * end / w) / (2 * std::numbers::pi);
   EXPECT_NEAR(total.x() / 1e-3, 1 - missing, 1e-9);
+}
+
+// A kernel that reaches into a layer by a rounding error, or by a hair, does not make pieces of no
+// length there.
+TEST(CiliumLoads, KernelMayEndAtAPlaneOfTheMesh) {
+  const BentCilium cilium;
+  const SolidState straight = cilium.space->undeformed();
+  for (const double overlap : {0.0, 1e-19, 1e-15, 1e-9, 1e-7}) {
+    const Load load = ContactLoad{1e-3, 5e-3 + 0.5e-3 - overlap, 0};
+    const Centreline line = centreline(*cilium.space, *cilium.fibres, straight,
+                                       spread_load(load, cilium.fibres->area(), 0.5e-3));
+    EXPECT_EQ(line.length(), 8e-3);
+    EXPECT_NEAR(line.at(4.99e-3).position.z(), 4.99e-3, 1e-12);
+  }
 }
 
 TEST(CiliumLoads, RejectAMeshThatIsNotExtruded) {

@@ -427,7 +427,7 @@ TEST(Solid, ReportsItsProgress) {
 }
 
 TEST(Solid, RejectsBadInput) {
-  EXPECT_THROW(Solid({.refinement = 3}), InputError);
+  EXPECT_THROW(Solid({.refinement = 4}), InputError);
   EXPECT_THROW(Solid({.kernel_width = 0}), InputError);
   EXPECT_THROW(Solid({.tolerance = std::numeric_limits<double>::quiet_NaN()}), InputError);
   EXPECT_THROW(Solid({.max_iterations = 0}), InputError);

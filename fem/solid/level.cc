@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/level.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "fem/beam/beam.h"
+#include "fem/solid/body.h"
+#include "fem/solid/section.h"
+#include "fem/solid/transfer.h"
+
+namespace ciliaval::fem {
+namespace {
+
+/// Observed order of the tip in the thickness of the finest layer, to which rings and growth are
+/// tied (docs/solid.md): the singularities at the clamped rim and at the interfaces' rims govern.
+constexpr double tip_order = 1.5;
+
+/// A clamped base; on the plane of symmetry, where there is one, no displacement across it.
+std::vector<DirichletCondition> supports(Extent extent) {
+  std::vector<DirichletCondition> conditions{{.boundary = meshes::base_id}};
+  if (extent == Extent::half)
+    conditions.push_back({.boundary = meshes::symmetry_id, .components = {false, true, false}});
+  return conditions;
+}
+
+}  // namespace
+
+Level::Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
+             std::span<const Hyperelastic> materials, const LoadPathOptions& options,
+             Level* coarser, bool beam_guess)
+    : cilium_(cilium),
+      options_(options),
+      finest_layer_(mesh.finest_layer),
+      coarser_(coarser),
+      beam_guess_(beam_guess) {
+  meshes::make_cylinder(cilium, mesh, triangulation_);
+  mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
+  space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
+  fibres_ = std::make_unique<Fibres>(*space_, mesh.half ? Extent::half : Extent::whole);
+  newton_ = std::make_unique<Newton>(*space_,
+                                     increment_constraints(*space_, supports(fibres_->extent())));
+}
+
+LoadPathOutcome Level::advance(const Load& load, const Progress& progress) {
+  if (!solver_)
+    solver_ = std::make_unique<LoadPathSolver>(
+        *space_, *fibres_, *newton_, load, options_,
+        [this](const Load& target, const Progress& report) { return first_guess(target, report); });
+  return solver_->advance(load, progress);
+}
+
+Guess Level::first_guess(const Load& load, const Progress& progress) const {
+  Guess guess;
+  if (coarser_ != nullptr) {
+    const Progress report =
+        progress ? Progress([&](const std::string& text) { progress("coarser mesh, " + text); })
+                 : Progress();
+    const LoadPathOutcome outcome = coarser_->advance(load, report);
+    guess.slip_off_force = outcome.slip_off_force;
+    if (outcome.status == Status::converged)
+      guess.state = transferred(*coarser_->space_, *coarser_->fibres_,
+                                coarser_->solver().current().state, *space_);
+  } else if (beam_guess_) {
+    guess = beam_guess(load);
+  }
+  if (guess.state) prescribe(*space_, supports(fibres_->extent()), *guess.state);
+  return guess;
+}
+
+Guess Level::beam_guess(const Load& load) const {
+  const MechanicsResult beam = Beam().solve(cilium_, {load});
+  const MechanicsStep& step = beam.steps.front();
+  if (!step.deformation) return {};
+  return {lifted(step.deformation->centreline, cilium_, *space_), {}};
+}
+
+Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
+                               double azimuth) const {
+  return turned({centreline(*space_, *fibres_, state, load),
+                 std::make_shared<const SolidBody>(
+                     solid_body(*space_, *fibres_, cilium_, state, element_degree))},
+                azimuth);
+}
+
+Deformation Level::deformation(double azimuth) const {
+  const Equilibrium& current = solver().current();
+  return deformation(current.state,
+                     spread_load(current.load, fibres_->area(), options_.kernel_width), azimuth);
+}
+
+Deformation Level::undeformed(double azimuth) const {
+  return deformation(space_->undeformed(), {}, azimuth);
+}
+
+Vector3 Level::tip() const {
+  const Centreline line = centreline(*space_, *fibres_, solver().current().state);
+  return line.at(line.length()).position;
+}
+
+std::optional<double> Level::tip_uncertainty() const {
+  if (coarser_ == nullptr || !coarser_->solver_ || !solver_) return std::nullopt;
+  if (magnitude(coarser_->solver().current().load) != magnitude(solver().current().load))
+    return std::nullopt;
+  const double ratio = std::pow(coarser_->finest_layer_ / finest_layer_, tip_order);
+  return (tip() - coarser_->tip()).norm() / (ratio - 1);
+}
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/fe/mapping_q_cache.h>
+#include <deal.II/grid/tria.h>
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "fem/solid/fibres.h"
+#include "fem/solid/load_path.h"
+#include "fem/solid/material.h"
+#include "fem/solid/newton.h"
+#include "fem/solid/space.h"
+#include "meshes/cylinder_mesh.h"
+#include "problem/cilium.h"
+#include "problem/deformation.h"
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::fem {
+
+/// The discretised cilium on one mesh, in the frame of the bending plane (loads along x), with its
+/// solvers. Its members refer to one another: it stays where it is made.
+class Level {
+ public:
+  /// `coarser` gives the first guesses, and with its own tip the estimate of the error; without
+  /// it, the beam does if `beam_guess`. Both must outlive the level.
+  Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
+        std::span<const Hyperelastic> materials, const LoadPathOptions& options, Level* coarser,
+        bool beam_guess);
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+
+  /// Brings the level into equilibrium with the load, whose azimuth must be 0.
+  LoadPathOutcome advance(const Load& load, const Progress& progress);
+
+  /// The level's state in the frame of the cilium, turned by `azimuth`.
+  Deformation deformation(double azimuth) const;
+  Deformation undeformed(double azimuth) const;
+
+  /// Estimate of the distance of the tip from that of the exact solution, m: what separates it from
+  /// the coarser level's, by Richardson's rule for the order 1.5 of the finest layer's thickness
+  /// (docs/solid.md). Empty without a coarser level or if that is not at the same load.
+  std::optional<double> tip_uncertainty() const;
+
+  double applied_force() const { return solver().current().applied_force; }
+  std::size_t unknowns() const { return space_->unknowns(); }
+
+ private:
+  Guess first_guess(const Load& load, const Progress& progress) const;
+  Guess beam_guess(const Load& load) const;
+  const LoadPathSolver& solver() const { return *solver_; }
+  Deformation deformation(const SolidState& state, const SpreadLoad& load, double azimuth) const;
+  Vector3 tip() const;
+
+  const Cilium& cilium_;
+  LoadPathOptions options_;
+  double finest_layer_;
+  Level* coarser_;
+  bool beam_guess_;
+  dealii::Triangulation<3> triangulation_;
+  std::unique_ptr<dealii::MappingQCache<3>> mapping_;
+  std::unique_ptr<SolidSpace> space_;
+  std::unique_ptr<Fibres> fibres_;
+  std::unique_ptr<Newton> newton_;
+  std::unique_ptr<LoadPathSolver> solver_;
+};
+
+}  // namespace ciliaval::fem
