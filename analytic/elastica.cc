@@ -13,52 +13,120 @@
 #include "analytic/elastica_arclength.h"
 #include "analytic/elastica_height.h"
 #include "analytic/elastica_planar.h"
+#include "analytic/elastica_probe.h"
 #include "problem/error.h"
 
 namespace ciliaval::analytic {
 namespace {
 
-/// Slip-off force of the last contact height asked for: the same all along most load paths.
+/// Slip-off of the last contact height asked for: the same all along most load paths.
 struct SlipOff {
-  double height = -1;  ///< h, m
-  double force = 0;    ///< N
+  double height = -1;                  ///< h, m
+  double force = 0;                    ///< N
+  std::optional<double> displacement;  ///< m, for a probe
 };
 
-SlipOff slip_off(const Cilium& cilium, const ContactLoad& load, const ElasticaOptions& options,
+bool has_height_form(const ElasticaOptions& options) {
+  return options.form == ElasticaOptions::Form::height;
+}
+
+PlanarSolver solver(const ElasticaOptions& options) {
+  if (has_height_form(options)) return [](const PlanarProblem& p) { return solve_height(p); };
+  return [options](const PlanarProblem& p) { return solve_arclength(p, options.tolerance); };
+}
+
+/// Of a probe's displacement found by its force; the height form's quadrature holds 1e-9 near 90°.
+double probe_tolerance(const ElasticaOptions& options) {
+  return has_height_form(options) ? 1e-9 : 1e-12;
+}
+
+SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options,
                  const SlipOff& known) {
-  if (known.height == load.height) return known;
-  const Load unit = ContactLoad{1, load.height, load.azimuth};
-  const PlanarProblem problem = planar_problem(cilium, unit);
-  const double critical = options.form == ElasticaOptions::Form::height
-                              ? slip_off_height(problem)
-                              : slip_off_arclength(problem, options.tolerance);
-  return {load.height, critical / problem.load};
+  const double height = contact_height(load).value();
+  const bool probes = std::holds_alternative<ProbeLoad>(load);
+  if (known.height == height && (known.displacement || !probes)) return known;
+  PlanarProblem problem = planar_problem(cilium, ContactLoad{1, height, 0});
+  const double of_one_newton = problem.load;
+  problem.load = has_height_form(options) ? slip_off_height(problem)
+                                          : slip_off_arclength(problem, options.tolerance);
+  SlipOff result{height, problem.load / of_one_newton, {}};
+  if (!probes) return result;
+  const auto deflection = slip_off_deflection(problem, solver(options), !has_height_form(options),
+                                              probe_tolerance(options));
+  if (deflection) result.displacement = cilium.length() * *deflection;
+  return result;
+}
+
+/// The contact force (N) that a probe's displacement takes, and the shape under it.
+struct ProbeForce {
+  double force = 0;
+  std::optional<PlanarShape> shape;
+};
+
+ProbeForce probe_force(const Cilium& cilium, const ProbeLoad& load, double slip_off_force,
+                       const ElasticaOptions& options) {
+  PlanarProblem problem = planar_problem(cilium, load);
+  const double of_one_newton = problem.load;
+  if (load.displacement == 0) {
+    problem.load = 0;
+    return {0, solver(options)(problem)};
+  }
+  const double deflection = load.displacement / cilium.length();
+  const double limit = slip_off_force * of_one_newton;
+  auto probe = probe_by_load(problem, deflection, limit, solver(options), probe_tolerance(options));
+  if (!probe && has_height_form(options))
+    throw SolverError(
+        "elastica, height form: theta at the contact is so near to 90 deg that the last bits of "
+        "the force move the contact point by more than 1e-9; use form = \"arclength\"");
+  if (!probe) probe = probe_by_arclength(problem, deflection, limit, solver(options));
+  return {probe->load / of_one_newton, std::move(probe->shape)};
 }
 
 /// The horizontal force along e: F, q z_tip or q L.
-double applied_force(const Load& load, const Deformation& deformation) {
+double applied_force(const Load& load, const PlanarUnits& units, const Deformation& deformation) {
   const Centreline& centreline = deformation.centreline;
   if (const auto* flow = std::get_if<FlowLoad>(&load))
     return flow->force_per_height * centreline.at(centreline.length()).position.z();
   if (const auto* dead = std::get_if<DeadLoad>(&load))
     return dead->force_per_length * centreline.length();
-  return magnitude(load);
+  return units.force;
+}
+
+std::string slipped_off(const Load& load, double force, std::optional<double> displacement) {
+  std::ostringstream message;
+  message << std::setprecision(8) << "the contact slips off: ";
+  if (std::holds_alternative<ProbeLoad>(load))
+    message << "the largest displacement in an equilibrium, at which the tip sinks to the contact "
+               "height, is "
+            << 1e3 * displacement.value_or(0) << " mm, under " << 1e3 * force << " mN";
+  else
+    message << "the largest force an equilibrium bears, at which the tip sinks to the contact "
+               "height, is "
+            << 1e3 * force << " mN";
+  return message.str();
 }
 
 void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsStep& step) {
   const PlanarProblem problem = planar_problem(cilium, step.load);
-  const PlanarUnits units = planar_units(cilium, step.load);
-  const bool height_form = options.form == ElasticaOptions::Form::height;
-  const auto shape =
-      height_form ? solve_height(problem) : solve_arclength(problem, options.tolerance);
-  if (!shape || (step.slip_off_force && magnitude(step.load) > *step.slip_off_force)) {
+  PlanarUnits units = planar_units(cilium, step.load);
+  const bool height_form = has_height_form(options);
+  std::optional<PlanarShape> shape;
+  const std::optional<double> limit = std::holds_alternative<ProbeLoad>(step.load)
+                                          ? step.slip_off_displacement
+                                          : step.slip_off_force;
+  if (!limit || magnitude(step.load) <= *limit) {
+    if (const auto* probe = std::get_if<ProbeLoad>(&step.load)) {
+      ProbeForce found = probe_force(cilium, *probe, step.slip_off_force.value(), options);
+      units.force = found.force;
+      shape = std::move(found.shape);
+    } else {
+      shape = solver(options)(problem);
+    }
+  }
+  if (!shape) {
     step.status = Status::slipped_off;
-    std::ostringstream message;
-    message
-        << "the contact slips off: the largest force an equilibrium bears, at which the tip sinks "
-           "to the contact height, is "
-        << std::setprecision(8) << 1e3 * step.slip_off_force.value_or(0) << " mN";
-    step.message = message.str();
+    step.message =
+        slipped_off(step.load, step.slip_off_force.value_or(0), step.slip_off_displacement);
     return;
   }
   // Near 90° the height form has noise of some 1e-11, which finer pieces would resolve.
@@ -66,7 +134,7 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsS
   step.deformation =
       Deformation{planar_centreline(*shape, units, direction(step.load), resolution), nullptr};
   step.status = Status::converged;
-  step.applied_force = applied_force(step.load, *step.deformation);
+  step.applied_force = applied_force(step.load, units, *step.deformation);
   if (shape->contact) step.contact_arclength = *shape->contact * units.length;
   step.tip_uncertainty =
       units.length * std::max(shape->error, std::numeric_limits<double>::epsilon());
@@ -91,9 +159,11 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
     MechanicsStep step;
     step.load = load;
     try {
-      if (const auto* contact = std::get_if<ContactLoad>(&load)) {
-        known = slip_off(cilium, *contact, options_, known);
+      if (contact_height(load)) {
+        known = slip_off(cilium, load, options_, known);
         step.slip_off_force = known.force;
+        if (std::holds_alternative<ProbeLoad>(load))
+          step.slip_off_displacement = known.displacement;
       }
       solve_step(cilium, options_, step);
     } catch (const SolverError& error) {

@@ -8,7 +8,7 @@ namespace ciliaval::analytic {
 struct ElasticaOptions {
   enum class Form {
     arclength,  ///< dθ/dS = M/(EI), regular up to θ = 90°, all loads
-    height      ///< the paper's quadrature in z (Eq. 1–4), contact and flow only
+    height      ///< the paper's quadrature in z (Eq. 1–4), contact, flow and probe only
   };
   Form form = Form::arclength;
   double tolerance = 1e-12;  ///< relative, of position over length and of angle, in (0, 1e-3]
@@ -19,7 +19,8 @@ struct ElasticaOptions {
 ///     E I θ' = M,  w' = sin θ,  z' = cos θ,  M = F (h − z)₊, q (z_tip − z)²/2, …
 ///
 /// docs/elastica.md has the equations of all loads, the limits of both forms and the measured
-/// errors. A contact step above the slip-off force has the status slipped_off; one that misses the
+/// errors. A contact step above the slip-off force, or a probe beyond the displacement that goes
+/// with it, has the status slipped_off; one that misses the
 /// tolerance has the status failed. Both leave the other steps alone. solve() throws InputError if
 /// the cilium, a load or the tolerance is not valid, or if the height form is asked for a section
 /// or dead load.

@@ -97,7 +97,7 @@ std::optional<PlanarState> contact_tip(const PlanarProblem& problem, const Accur
                                        std::vector<TaylorStep>* steps) {
   auto [reached, state] = climb(problem, problem.load, accuracy, steps);
   if (reached != Reached::contact) return std::nullopt;
-  if (state.S < 1) {
+  if (1 - state.S >= shortest_piece) {  // else there is no break to take the jump of H
     state.force = 0;
     const TaylorStep tail = TaylorStep::straight(state, ForceLaw::constant, 1);
     if (steps != nullptr) steps->push_back(tail);

@@ -145,11 +145,15 @@ KindAndPoint kind_and_point(const SectionLoad& load) {
 KindAndPoint kind_and_point(const DeadLoad& /*load*/) {
   return {PlanarLoad::dead, 0};
 }
+KindAndPoint kind_and_point(const ProbeLoad& load) {
+  return {PlanarLoad::contact, load.height};
+}
 
 }  // namespace
 
 PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
   const double length = cilium.length();
+  if (std::holds_alternative<ProbeLoad>(load)) return {length, 1};
   const bool distributed =
       std::holds_alternative<FlowLoad>(load) || std::holds_alternative<DeadLoad>(load);
   return {length, distributed ? magnitude(load) * length : magnitude(load)};
@@ -178,10 +182,9 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
 }
 
 void add_break(std::vector<double>& breaks, double S) {
-  constexpr double room = 1e-13;
   const auto above = std::lower_bound(breaks.begin(), breaks.end(), S);
-  if (above != breaks.end() && *above - S < room) return;
-  if (above != breaks.begin() && S - *std::prev(above) < room) return;
+  if (above != breaks.end() && *above - S < shortest_piece) return;
+  if (above != breaks.begin() && S - *std::prev(above) < shortest_piece) return;
   breaks.insert(above, S);
 }
 

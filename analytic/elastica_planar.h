@@ -37,7 +37,8 @@ struct PlanarUnits {
   double force = 0;   ///< P, N
 };
 
-/// The problem of one load on a cilium. Throws InputError if PL²/EI is not representable.
+/// The problem of one load on a cilium. A probe's is a contact with a force of 1 N, which is yet to
+/// be found. Throws InputError if PL²/EI is not representable.
 PlanarProblem planar_problem(const Cilium& cilium, const Load& load);
 PlanarUnits planar_units(const Cilium& cilium, const Load& load);
 
@@ -63,7 +64,9 @@ struct PlanarShape {
   int iterations = 0;             ///< integrations along the whole cilium
 };
 
-/// Adds a break, unless one is already there within 1e-13 (a piece must have room for its nodes).
+/// Shortest piece: it must have room for its nodes.
+inline constexpr double shortest_piece = 1e-13;
+/// Adds a break, unless one is already there within shortest_piece.
 void add_break(std::vector<double>& breaks, double S);
 
 /// The shape as a Centreline in the plane of `direction` (e): Chebyshev pieces between the breaks,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "compare/case_sections.h"
 #include "fem/solid/material.h"
@@ -52,9 +53,9 @@ void check_contact(const toml::table& root, const Case& c, Faults& faults) {
   const double length = c.cilium.length();
   const double w = c.options.solid.kernel_width;
   for (std::size_t i = 0; i < c.load_path.size(); ++i) {
-    const auto* contact = std::get_if<ContactLoad>(&c.load_path[i]);
-    if (contact == nullptr || !is_told_first(root, key::height.name, i)) continue;
-    const double h = contact->height;
+    const std::optional<double> height = contact_height(c.load_path[i]);
+    if (!height || !is_told_first(root, key::height.name, i)) continue;
+    const double h = *height;
     const Place where = place_of_step(root, key::height.name, i);
     if (!(h > 0 && h < length)) {
       faults.add(where, fmt::format("the contact height {:g} m must lie between the base and the "
@@ -87,10 +88,10 @@ void check_elastica_form(const toml::table& root, const Case& c, Faults& faults)
       !asks_for(c.mechanics, "elastica") || c.load_path.empty())
     return;
   const std::string_view load = type(c.load_path.front());
-  if (load == ContactLoad::type || load == FlowLoad::type) return;
+  if (load == ContactLoad::type || load == FlowLoad::type || load == ProbeLoad::type) return;
   faults.add(place_of(root, "models.elastica.form"),
-             fmt::format("the elastica's form 'height' (Eq. 1-4) takes the load types 'contact' "
-                         "and 'flow', not '{}': use the form 'arclength'",
+             fmt::format("the elastica's form 'height' (Eq. 1-4) takes the load types "
+                         "'contact', 'flow' and 'probe', not '{}': use the form 'arclength'",
                          load));
 }
 

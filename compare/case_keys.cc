@@ -14,10 +14,9 @@ namespace {
 constexpr std::array<std::string_view, 3> known_mechanics{"elastica", "beam", "solid"};
 constexpr std::array<std::string_view, 4> known_fields{"dipole", "line", "volume", "mesh"};
 
-constexpr std::array<LaterKey, 4> known_later{{
+constexpr std::array<LaterKey, 3> known_later{{
     {"environment", "gravity, buoyancy and uniform fields"},
     {"cilium.segment.density", "weight (it goes with [environment])"},
-    {"load.displacement", "displacement control (load type 'probe')"},
     {"models.potential", "the field model 'potential'"},
 }};
 
@@ -27,7 +26,7 @@ const std::array<TextKey, 6> text_keys{{
      "at most 100."},
     {"case", "title", "text", "the name", "A line for people, at most 200 characters."},
     {"cilium.segment", "name", "text", "", "Name of the segment, different from the others'."},
-    {"load", "type", "`contact`, `flow`, `section` or `dead`", "",
+    {"load", "type", "`contact`, `flow`, `section`, `dead` or `probe`", "",
      "What the load is and does as the cilium bends."},
     {"models", "mechanics", "list of `elastica`, `beam`, `solid`", "",
      "The mechanics models to run, at least one."},
@@ -36,11 +35,11 @@ const std::array<TextKey, 6> text_keys{{
      "only."},
 }};
 
-const std::array<const QuantityKey*, 15> quantity_keys{
-    &key::diameter,         &key::segment_length, &key::young_modulus,    &key::poisson_ratio,
-    &key::magnetization,    &key::load_force,     &key::height,           &key::force_per_height,
-    &key::velocity,         &key::density,        &key::drag_coefficient, &key::arclength,
-    &key::force_per_length, &key::azimuth,        &key::position};
+const std::array<const QuantityKey*, 16> quantity_keys{
+    &key::diameter,         &key::segment_length,   &key::young_modulus, &key::poisson_ratio,
+    &key::magnetization,    &key::load_force,       &key::displacement,  &key::height,
+    &key::force_per_height, &key::velocity,         &key::density,       &key::drag_coefficient,
+    &key::arclength,        &key::force_per_length, &key::azimuth,       &key::position};
 
 /// A knob that is a double, an unsigned int, a bool or two doubles of the options of one model.
 template <typename Options, typename T>
@@ -96,7 +95,7 @@ void append_elastica(std::vector<Knob>& all) {
       &ModelOptions::elastica, &ElasticaOptions::form, "elastica", "form",
       {{"arclength", ElasticaOptions::Form::arclength}, {"height", ElasticaOptions::Form::height}},
       "`arclength`: dθ/dS = M/(EI), any load; `height`: the paper's "
-      "quadrature in z (Eq. 1-4), `contact` and `flow` only."));
+      "quadrature in z (Eq. 1-4), `contact`, `flow` and `probe` only."));
   all.push_back(number_knob(&ModelOptions::elastica, &ElasticaOptions::tolerance, "elastica",
                             "tolerance", quantity::number, tolerance_range,
                             "Relative, of position over length and of angle."));

@@ -79,13 +79,22 @@ inline constexpr QuantityKey load_force{"load",
                                         {0, 1e9, false, turn_round},
                                         "",
                                         "`contact`, `section`: the horizontal force."};
+inline constexpr QuantityKey displacement{
+    "load",
+    "displacement",
+    quantity::length,
+    {0, 100, false,
+     "a displacement is not negative (to turn it round, add 180 deg to the azimuth) and a larger "
+     "one is taken for a slip in the unit"},
+    "",
+    "`probe`: the deflection of the contact point; the force is a result."};
 inline constexpr QuantityKey height{
     "load",
     "height",
     quantity::length,
     length_range,
     "",
-    "`contact`: the height z at which the force stays; between the base and the tip."};
+    "`contact`, `probe`: the height z at which the force stays; between the base and the tip."};
 inline constexpr QuantityKey force_per_height{
     "load",
     "force_per_height",
@@ -184,8 +193,7 @@ bool belongs(const Knob& knob, const ModelOptions& options);
 std::span<const std::string_view> mechanics_ids();
 std::span<const std::string_view> field_ids();
 
-/// What a later version will read: a dotted key ("load.displacement", "environment") or a value,
-/// and what it is.
+/// What a later version will read: a dotted key ("environment") or a value, and what it is.
 struct LaterKey {
   std::string_view name;
   std::string_view doc;

@@ -16,9 +16,8 @@ namespace {
 
 constexpr std::size_t most_steps = 1000;  ///< each one writes files of every model, 1 MB and more
 
-constexpr std::array<std::string_view, 4> load_types{ContactLoad::type, FlowLoad::type,
-                                                     SectionLoad::type, DeadLoad::type};
-constexpr std::array<std::string_view, 1> later_types{"probe"};
+constexpr std::array<std::string_view, 5> load_types{
+    ContactLoad::type, FlowLoad::type, SectionLoad::type, DeadLoad::type, ProbeLoad::type};
 
 /// One key's values along the load path: one value stands for every step.
 struct Values {
@@ -89,7 +88,8 @@ void read_any_type(Section& table) {
   PathReader reader(table);
   for (const QuantityKey* k :
        {&key::load_force, &key::height, &key::force_per_height, &key::velocity, &key::density,
-        &key::drag_coefficient, &key::arclength, &key::force_per_length, &key::azimuth})
+        &key::drag_coefficient, &key::arclength, &key::force_per_length, &key::displacement,
+        &key::azimuth})
     reader.read(*k, 0);
   table.finish();
 }
@@ -124,6 +124,18 @@ StepMaker read_dead(PathReader& reader) {
   const Values force_per_length = reader.require(key::force_per_length);
   const Values azimuth = reader.read(key::azimuth, 0);
   return [=](std::size_t i) { return DeadLoad{force_per_length.at(i), azimuth.at(i)}; };
+}
+
+StepMaker read_probe(Section& table, PathReader& reader) {
+  // Only if it is there: find() would make it a valid key in the messages about others.
+  if (table.table()->contains(key::load_force.name))
+    table.faults().add(place(*table.find(key::load_force.name)),
+                       "'force' is a result of the load type 'probe', whose 'displacement' is "
+                       "given: leave it out or use the type 'contact'");
+  const Values displacement = reader.require(key::displacement);
+  const Values height = reader.require(key::height);
+  const Values azimuth = reader.read(key::azimuth, 0);
+  return [=](std::size_t i) { return ProbeLoad{displacement.at(i), height.at(i), azimuth.at(i)}; };
 }
 
 /// The contradictions among the keys of a flow.
@@ -178,7 +190,7 @@ bool read_load(Section& root, Case& c) {
   }
   const toml::node* node = table.require("type");
   std::optional<std::string> type;
-  if (node != nullptr) type = read_choice(*node, "type", load_types, later_types, faults);
+  if (node != nullptr) type = read_choice(*node, "type", load_types, {}, faults);
   if (!type) {
     read_any_type(table);
     return false;
@@ -192,6 +204,7 @@ bool read_load(Section& root, Case& c) {
   if (*type == ContactLoad::type) step = read_contact(reader);
   if (*type == SectionLoad::type) step = read_section(reader);
   if (*type == DeadLoad::type) step = read_dead(reader);
+  if (*type == ProbeLoad::type) step = read_probe(typed, reader);
   if (*type == FlowLoad::type) step = read_flow(typed, reader, c);
   typed.finish();
   if (faults.size() != before) return false;

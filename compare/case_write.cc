@@ -90,6 +90,12 @@ std::string parameters(const Case& c, const DeadLoad&) {
          line(key::azimuth, along(c.load_path, &DeadLoad::azimuth));
 }
 
+std::string parameters(const Case& c, const ProbeLoad&) {
+  return line(key::displacement, along(c.load_path, &ProbeLoad::displacement), Listed::always) +
+         line(key::height, along(c.load_path, &ProbeLoad::height)) +
+         line(key::azimuth, along(c.load_path, &ProbeLoad::azimuth));
+}
+
 std::string cilium(const Case& c) {
   std::string text = "\n[cilium]\n" + line(key::diameter, c.cilium.diameter);
   for (const Segment& s : c.cilium.segments) {

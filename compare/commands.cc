@@ -182,7 +182,9 @@ void list() {
       "  contact    horizontal force that stays at a height while the cilium slides under it\n"
       "  flow       horizontal force per unit of current height: drag\n"
       "  section    dead force on one material cross-section\n"
-      "  dead       dead force per unit of reference length\n\n";
+      "  dead       dead force per unit of reference length\n"
+      "  probe      displacement of the contact point at a height: the contact force is a result\n"
+      "\n";
   print(text + list_of_cases());
 }
 

@@ -63,6 +63,9 @@ Json load_json(const Load& load) {
     json["arclength"] = section->arclength;
   } else if (const auto* dead = std::get_if<DeadLoad>(&load)) {
     json["force_per_length"] = dead->force_per_length;
+  } else if (const auto* probe = std::get_if<ProbeLoad>(&load)) {
+    json["displacement"] = probe->displacement;
+    json["height"] = probe->height;
   }
   json["azimuth"] = azimuth(load);
   return json;
@@ -84,6 +87,8 @@ Json mechanics_json(const MechanicsRun& run, std::size_t index) {
     json["applied_force"] = step.applied_force;
   }
   json["slip_off_force"] = optional(step.slip_off_force);
+  if (std::holds_alternative<ProbeLoad>(step.load))
+    json["slip_off_displacement"] = optional(step.slip_off_displacement);
   json["contact_arclength"] = optional(step.contact_arclength);
   json["unknowns"] = step.unknowns;
   json["iterations"] = step.iterations;

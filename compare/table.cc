@@ -44,6 +44,9 @@ std::string describe(const Load& load) {
                         section->arclength * 1e3);
   else if (const auto* dead = std::get_if<DeadLoad>(&load))
     text += fmt::format(", {:g} N per metre of length", dead->force_per_length);
+  else if (const auto* probe = std::get_if<ProbeLoad>(&load))
+    text += fmt::format(", displacement {:g} mm at height {:g} mm", probe->displacement * 1e3,
+                        probe->height * 1e3);
   return text + fmt::format(", azimuth {:g} deg", azimuth(load) / degree);
 }
 
@@ -81,7 +84,11 @@ std::string mechanics_table(const CaseResult& result, std::size_t index) {
   for (const MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
     if (!step.message.empty()) text += fmt::format("  {}: {}\n", run.model, step.message);
-    if (step.slip_off_force && step.status == Status::slipped_off)
+    if (step.status != Status::slipped_off) continue;
+    if (step.slip_off_displacement)
+      text += fmt::format("  {}: slips off beyond {:.4g} mm\n", run.model,
+                          *step.slip_off_displacement * 1e3);
+    if (step.slip_off_force)
       text +=
           fmt::format("  {}: slips off above {:.4g} mN\n", run.model, *step.slip_off_force * 1e3);
   }

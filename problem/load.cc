@@ -21,6 +21,25 @@ double& magnitude_of(SectionLoad& load) {
 double& magnitude_of(DeadLoad& load) {
   return load.force_per_length;
 }
+double& magnitude_of(ProbeLoad& load) {
+  return load.displacement;
+}
+
+std::string_view unit_of(const ContactLoad& /*load*/) {
+  return "N";
+}
+std::string_view unit_of(const FlowLoad& /*load*/) {
+  return "N/m";
+}
+std::string_view unit_of(const SectionLoad& /*load*/) {
+  return "N";
+}
+std::string_view unit_of(const DeadLoad& /*load*/) {
+  return "N/m";
+}
+std::string_view unit_of(const ProbeLoad& /*load*/) {
+  return "m";
+}
 
 ContactLoad mix(const ContactLoad& a, const ContactLoad& b, double t) {
   return {std::lerp(a.force, b.force, t), std::lerp(a.height, b.height, t),
@@ -35,6 +54,10 @@ SectionLoad mix(const SectionLoad& a, const SectionLoad& b, double t) {
 }
 DeadLoad mix(const DeadLoad& a, const DeadLoad& b, double t) {
   return {std::lerp(a.force_per_length, b.force_per_length, t), std::lerp(a.azimuth, b.azimuth, t)};
+}
+ProbeLoad mix(const ProbeLoad& a, const ProbeLoad& b, double t) {
+  return {std::lerp(a.displacement, b.displacement, t), std::lerp(a.height, b.height, t),
+          std::lerp(a.azimuth, b.azimuth, t)};
 }
 
 }  // namespace
@@ -54,6 +77,16 @@ Vector3 direction(const Load& load) {
 
 double magnitude(const Load& load) {
   return std::visit([](auto l) { return magnitude_of(l); }, load);
+}
+
+std::string_view magnitude_unit(const Load& load) {
+  return std::visit([](const auto& l) { return unit_of(l); }, load);
+}
+
+std::optional<double> contact_height(const Load& load) {
+  if (const auto* contact = std::get_if<ContactLoad>(&load)) return contact->height;
+  if (const auto* probe = std::get_if<ProbeLoad>(&load)) return probe->height;
+  return std::nullopt;
 }
 
 Load with_magnitude(const Load& load, double magnitude) {
@@ -81,8 +114,8 @@ void require_valid(const Load& load, const Cilium& cilium) {
     throw InputError(
         "the load must be finite and not negative; to turn it round, add 180 deg to the azimuth");
   if (!std::isfinite(azimuth(load))) throw InputError("the azimuth must be finite");
-  if (const auto* contact = std::get_if<ContactLoad>(&load)) {
-    if (!(contact->height > 0 && contact->height < cilium.length()))
+  if (const auto height = contact_height(load)) {
+    if (!(*height > 0 && *height < cilium.length()))
       throw InputError("the contact height must lie between the base and the tip of the cilium");
   }
   if (const auto* section = std::get_if<SectionLoad>(&load)) {

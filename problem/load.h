@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -43,9 +44,22 @@ struct DeadLoad {
   double azimuth = 0;           ///< φ, rad
 };
 
-/// One step of a load path. A displacement-controlled `probe` takes its seat here as one more
-/// alternative.
-using Load = std::variant<ContactLoad, FlowLoad, SectionLoad, DeadLoad>;
+/// Displacement control of the contact point (the test bench): whatever point of the cilium is at
+/// the current height z = h is pushed aside to the deflection δ along e. The contact force is that
+/// of ContactLoad, horizontal and at z = h; its amount is a result (MechanicsStep::applied_force).
+///
+/// Any δ is valid. One that is larger than the cilium can reach is a slip-off, not an error of the
+/// input: a bench that drives its probe on sees the cilium let go, the δ where it does so is the
+/// model's to find (MechanicsStep::slip_off_displacement) and differs from model to model.
+struct ProbeLoad {
+  static constexpr std::string_view type = "probe";
+  double displacement = 0;  ///< δ, m
+  double height = 0;        ///< h, m
+  double azimuth = 0;       ///< φ, rad
+};
+
+/// One step of a load path.
+using Load = std::variant<ContactLoad, FlowLoad, SectionLoad, DeadLoad, ProbeLoad>;
 
 /// Loads that the cilium bears one after the other, all of one type.
 using LoadPath = std::vector<Load>;
@@ -54,8 +68,12 @@ std::string_view type(const Load& load);
 double azimuth(const Load& load);
 /// e = (cos φ, sin φ, 0), the direction of the load.
 Vector3 direction(const Load& load);
-/// The force F (N) or the force per length q (N/m), whichever the type has.
+/// The force F (N), the force per length q (N/m) or the displacement δ (m), whichever the type has.
 double magnitude(const Load& load);
+/// Unit of the magnitude: "N", "N/m" or "m".
+std::string_view magnitude_unit(const Load& load);
+/// h of a load that acts at a current height (contact, probe), m.
+std::optional<double> contact_height(const Load& load);
 /// The same load with another magnitude.
 Load with_magnitude(const Load& load, double magnitude);
 /// (1−t)·from + t·to in every parameter, for load stepping. Throws InputError if the types differ.

@@ -14,7 +14,8 @@ namespace ciliaval {
 
 enum class Status {
   converged,
-  slipped_off,  ///< the contact force is larger than any equilibrium bears: a result, not an error
+  slipped_off,  ///< the contact force (or the probe's displacement) is larger than in any
+                ///< equilibrium: a result, not an error
   failed        ///< the solver did not converge
 };
 
@@ -25,9 +26,11 @@ struct MechanicsStep {
   std::string message;                     ///< why, if not converged; otherwise empty or a remark
   std::optional<Deformation> deformation;  ///< there if converged
   double applied_force = 0;  ///< the horizontal force along e that the model really applied, N
-  std::optional<double> slip_off_force;  ///< contact: the largest force an equilibrium bears, N, if
-                                         ///< the model found it
-  std::optional<double> contact_arclength;  ///< contact: S of the material point at z = h, m
+  std::optional<double> slip_off_force;  ///< contact, probe: the largest force an equilibrium
+                                         ///< bears, N, if the model found it
+  std::optional<double> slip_off_displacement;  ///< probe: the largest displacement of the contact
+                                                ///< point, m, if the model found it
+  std::optional<double> contact_arclength;  ///< contact, probe: S of the material point at z = h, m
   std::optional<double> tip_uncertainty;  ///< estimate of the tip position's discretisation error,
                                           ///< m, if the model has one
   std::size_t unknowns = 0;               ///< of the largest system solved

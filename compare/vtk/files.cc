@@ -67,9 +67,7 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& 
   for (const auto& [library, version] : provenance.libraries)
     lines.push_back(fmt::format("{} {}", library, version));
   add_string(data, "provenance", lines);
-  const bool per_length =
-      std::holds_alternative<FlowLoad>(load) || std::holds_alternative<DeadLoad>(load);
-  add_string(data, "load_unit", {per_length ? "N/m" : "N"});
+  add_string(data, "load_unit", {std::string(magnitude_unit(load))});
   const vtkNew<vtkDoubleArray> value;
   value->SetName("load");
   value->InsertNextValue(magnitude(load));

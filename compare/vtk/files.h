@@ -15,8 +15,8 @@ namespace ciliaval::compare::vtk {
 /// `.vtu`, `.vtp` or `.vti` without the dot: the XML format of this kind of data set.
 std::string extension(const vtkDataSet& data);
 
-/// Adds where the data come from and the load (N or N/m) to the field data: `provenance`, `load`,
-/// `load_unit`.
+/// Adds where the data come from and the load (N, N/m or m) to the field data: `provenance`,
+/// `load`, `load_unit`.
 void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load);
 
 /// Writes a data set in the XML format of its kind, appended and compressed. Throws FileError with

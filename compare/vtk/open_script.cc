@@ -7,8 +7,8 @@ const char* const open_script =
     R"python(# Opens every series of this folder in ParaView (5.10 or later):
 #   paraview --script=open.py        to look at it
 #   pvpython open.py picture.png     to draw the last step into a file
-# Lengths are metres; the time of ParaView is the load in N or N/m (or the number of the step, if
-# the load does not increase from step to step).
+# Lengths are metres; the time of ParaView is the load in N, N/m or m (or the number of the step,
+# if the load does not increase from step to step).
 import glob
 import os
 import sys

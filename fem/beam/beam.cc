@@ -83,6 +83,7 @@ MechanicsStep solve_step(const Load& load, PathSolver& path, beam::ContactSolver
     step.status = outcome.status;
     step.message = outcome.message;
     step.slip_off_force = outcome.slip_off_force;
+    step.slip_off_displacement = outcome.slip_off_displacement;
     step.contact_arclength = outcome.contact_arclength;
     step.iterations = outcome.iterations;
     if (step.status != Status::converged) return step;
@@ -93,8 +94,7 @@ MechanicsStep solve_step(const Load& load, PathSolver& path, beam::ContactSolver
     step.deformation = Deformation{beam::centreline(system, solver.state()), nullptr};
     return step;
   };
-  if (const auto* contact_load = std::get_if<ContactLoad>(&load))
-    return record(contact, contact.solve(*contact_load, progress));
+  if (contact_height(load)) return record(contact, contact.solve(load, progress));
   return record(path, path.solve(load, progress));
 }
 

@@ -75,6 +75,8 @@ CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOption
 }
 
 Loads loads(const Load& load, const CiliumBeam& beam) {
+  if (std::holds_alternative<ProbeLoad>(load))
+    throw InputError("the force of a probe is a result, not a load");
   const Vector3 force = magnitude(load) * direction(load);
   Loads result;
   if (std::holds_alternative<FlowLoad>(load))

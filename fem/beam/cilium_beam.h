@@ -27,7 +27,8 @@ CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
                                           std::size_t host);
 
-/// The load as forces on the beam; a contact load is its point force on the loaded vertex.
+/// The load as forces on the beam; a contact load is its point force on the loaded vertex. Not for
+/// a probe, whose force is not known (throws InputError).
 Loads loads(const Load& load, const CiliumBeam& beam);
 
 }  // namespace ciliaval::fem::beam

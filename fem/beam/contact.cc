@@ -2,9 +2,11 @@
 #include "fem/beam/contact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "problem/error.h"
 
@@ -42,229 +44,281 @@ State blend(const State& a, const State& b, double w) {
   return result;
 }
 
-/// The contact slides by an amount that goes with the square of a small force.
-double force_at(double shift, double force_a, double shift_a, double force_b, double shift_b) {
+/// The contact slides by an amount that goes with the square of a small force or displacement.
+double magnitude_at(double shift, double a, double shift_a, double b, double shift_b) {
   const double w = (shift - shift_a) / (shift_b - shift_a);
-  return std::sqrt(std::lerp(force_a * force_a, force_b * force_b, w));
+  return std::sqrt(std::lerp(a * a, b * b, w));
 }
 
-std::string slipped_off(double height, double limit, double force) {
+std::string slipped_off(const Load& load, double force, double displacement) {
   std::ostringstream text;
-  text << "the tip sinks to the contact height of " << height << " m under " << limit
-       << " N; no equilibrium bears " << force << " N";
+  text << "the tip sinks to the contact height of " << contact_height(load).value() << " m ";
+  if (std::holds_alternative<ProbeLoad>(load))
+    text << "at a displacement of " << displacement << " m under " << force
+         << " N; no equilibrium has one of ";
+  else
+    text << "under " << force << " N; no equilibrium bears ";
+  text << magnitude(load) << ' ' << magnitude_unit(load);
   return text.str();
 }
 
-Loads force_at_vertex(const CiliumBeam& beam, double force) {
+Loads tip_force(const CiliumBeam& beam, double force) {
   Loads loads;
   loads.points.push_back({beam.loaded, force * Vector3::UnitX(), Vector3::Zero()});
   return loads;
 }
 
-/// A force and the equilibrium under it.
-struct Loaded {
+/// A dead force at the tip and the equilibrium under it.
+struct TipLoaded {
   double force = 0;
   State state;
 };
 
-std::optional<Loaded> loaded(CiliumBeam& beam, const Loaded& from, double force,
-                             const NewtonOptions& options, int& iterations) {
-  Loaded to{force, from.state};
-  const PathReport report = advance(beam.system, to.state, force_at_vertex(beam, from.force),
-                                    force_at_vertex(beam, force), options);
+std::optional<TipLoaded> tip_loaded(CiliumBeam& beam, const TipLoaded& from, double force,
+                                    const NewtonOptions& options, int& iterations) {
+  TipLoaded to{force, from.state};
+  const PathReport report =
+      advance(beam.system, to.state, tip_force(beam, from.force), tip_force(beam, force), options);
   iterations += report.iterations;
   return report.converged ? std::optional(std::move(to)) : std::nullopt;
 }
 
-/// The dead force at the tip that brings it down to a height: bracketed and bisected until Newton's
-/// method with the force for the unknown converges inside the bracket. It takes many iterations,
-/// but never meets the contact point that runs away where θ comes near 90°. None if a dead force
-/// does not converge.
-std::optional<double> force_that_sinks_the_tip(const Cilium& cilium, const BeamOptions& options,
-                                               double height, int& iterations) {
+/// The dead force at the tip that brings it down to a height, with its equilibrium: bracketed and
+/// bisected until Newton's method with the force for the unknown converges inside the bracket. It
+/// takes many iterations, but never meets the contact point that runs away where θ comes near 90°.
+/// None if a dead force does not converge.
+struct SunkTip {
+  double force = 0;       ///< N
+  double deflection = 0;  ///< m
+};
+std::optional<SunkTip> force_that_sinks_the_tip(const Cilium& cilium, const BeamOptions& options,
+                                                double height, int& iterations) {
   CiliumBeam beam = cilium_beam(cilium, options, cilium.length());
   const NewtonOptions newton_options{
       options.tolerance, options.max_iterations, options.max_cutbacks, {}};
   const int last = iterations + search_limit;
   const std::size_t node = beam.system.vertex_node(beam.loaded);
-  const auto above = [&](const Loaded& l) { return l.state.position[node][2] > height; };
-  Loaded low{0, beam.system.reference_state()};
-  std::optional<Loaded> high =
-      loaded(beam, low, beam.system.force_scale(), newton_options, iterations);
+  const auto above = [&](const TipLoaded& l) { return l.state.position[node][2] > height; };
+  TipLoaded low{0, beam.system.reference_state()};
+  std::optional<TipLoaded> high =
+      tip_loaded(beam, low, beam.system.force_scale(), newton_options, iterations);
   // The height falls as sqrt(2EI/F) at worst: four times the force for half the height.
   while (high && above(*high)) {
     if (iterations > last) return std::nullopt;
     low = *std::move(high);
-    high = loaded(beam, low, 2 * low.force, newton_options, iterations);
+    high = tip_loaded(beam, low, 2 * low.force, newton_options, iterations);
   }
-  const HeightCondition condition{beam.loaded, height, HeightCondition::Unknown::load_factor};
+  const std::array condition{at_height(beam.loaded, height, Condition::Unknown::load_factor)};
   while (high && iterations <= last) {
     State state = high->state;
     const NewtonReport report =
-        newton(beam.system, state, force_at_vertex(beam, high->force), newton_options, condition);
+        newton(beam.system, state, tip_force(beam, high->force), newton_options, condition);
     iterations += static_cast<int>(report.increments.size());
     const double force = state.load_factor * high->force;
     // At the bracket's upper end itself, rounding error may put the force just outside.
-    if (report.converged && force >= low.force && force <= high->force * (1 + 1e-9)) return force;
-    std::optional<Loaded> middle =
-        loaded(beam, low, (low.force + high->force) / 2, newton_options, iterations);
+    if (report.converged && force >= low.force && force <= high->force * (1 + 1e-9))
+      return SunkTip{force, state.position[node][0]};
+    std::optional<TipLoaded> middle =
+        tip_loaded(beam, low, (low.force + high->force) / 2, newton_options, iterations);
     if (!middle) return std::nullopt;
     (above(*middle) ? low : *high) = *std::move(middle);
   }
   return std::nullopt;
 }
 
+/// A force of the order of the one that pushes the point at h aside by δ: 3 EI δ/h³ of a uniform
+/// cilium of the softest material.
+double estimated_force(const System& system, double displacement, double height) {
+  const double slenderness = system.length_scale() / height;
+  return 3 * system.force_scale() * displacement / height * slenderness * slenderness;
+}
+
 }  // namespace
 
-void ContactSolver::stand_straight(const ContactLoad& load) {
+Loads ContactSolver::force_at_vertex(double force) const {
+  Loads loads;
+  loads.points.push_back({beam_->loaded, force * direction(*last_), Vector3::Zero()});
+  return loads;
+}
+
+double ContactSolver::displacement_of(const State& state) const {
+  return direction(*last_).dot(state.position[beam_->system.vertex_node(beam_->loaded)]);
+}
+
+double ContactSolver::magnitude_of(const Loaded& trial) const {
+  return std::holds_alternative<ProbeLoad>(*last_) ? displacement_of(trial.state) : trial.force;
+}
+
+void ContactSolver::stand_straight(const Load& load) {
+  const double height = contact_height(load).value();
   const std::vector<double> ends = cilium_.interfaces();
   const std::size_t last = cilium_.segments.size() - 1;
-  for (host_ = 0; host_ < last && ends[host_ + 1] <= load.height + at_end * ends.back();) ++host_;
+  for (host_ = 0; host_ < last && ends[host_ + 1] <= height + at_end * ends.back();) ++host_;
   beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_);
-  state_ = beam_->system.reference_state(std::max(load.height - ends[host_], 0.0));
-  last_ = load;
-  last_->force = 0;
-  entry_force_ = 0;
+  current_ = {beam_->system.reference_state(std::max(height - ends[host_], 0.0)), 0};
+  last_ = with_magnitude(load, 0);
+  entry_magnitude_ = 0;
 }
 
-bool ContactSolver::find_arclength(State& state, double force, BeamStep& step,
+bool ContactSolver::find_arclength(Loaded& trial, double magnitude, BeamStep& step,
                                    const PathProgress& progress) {
-  const HeightCondition condition{beam_->loaded, last_->height, HeightCondition::Unknown::shift};
+  const double height = contact_height(*last_).value();
+  std::vector<Condition> conditions{at_height(beam_->loaded, height, Condition::Unknown::shift)};
+  double unit = magnitude;  // the force is load_factor · unit
+  if (std::holds_alternative<ProbeLoad>(*last_)) {
+    conditions.push_back(
+        {beam_->loaded, direction(*last_), magnitude, Condition::Unknown::load_factor});
+    unit = trial.force > 0 ? trial.force : estimated_force(beam_->system, magnitude, height);
+    trial.state.load_factor = trial.force / unit;
+  }
   const NewtonReport report =
-      newton(beam_->system, state, loads(with_magnitude(*last_, force), *beam_),
-             {options_.tolerance, options_.max_iterations, 0, {}}, condition);
+      newton(beam_->system, trial.state, force_at_vertex(unit),
+             {options_.tolerance, options_.max_iterations, 0, {}}, conditions);
   step.iterations += static_cast<int>(report.increments.size());
   if (!report.converged) step.message = describe(report);
-  if (progress) progress(force, report);
+  if (progress) progress(magnitude, report);
+  trial.force = unit * std::exchange(trial.state.load_factor, 1);
   return report.converged;
 }
 
-bool ContactSolver::find_force(State& state, double& force, BeamStep& step) {
-  const HeightCondition condition{beam_->loaded, last_->height,
-                                  HeightCondition::Unknown::load_factor};
-  state.load_factor = 1;
-  const NewtonReport report =
-      newton(beam_->system, state, loads(with_magnitude(*last_, force), *beam_),
-             {options_.tolerance, options_.max_iterations, 0,
-              std::max(options_.tolerance, force_tolerance)},
-             condition);
+bool ContactSolver::find_force(Loaded& trial, BeamStep& step) {
+  const std::array condition{
+      at_height(beam_->loaded, contact_height(*last_).value(), Condition::Unknown::load_factor)};
+  trial.state.load_factor = 1;
+  const NewtonReport report = newton(beam_->system, trial.state, force_at_vertex(trial.force),
+                                     {options_.tolerance, options_.max_iterations, 0,
+                                      std::max(options_.tolerance, force_tolerance)},
+                                     condition);
   step.iterations += static_cast<int>(report.increments.size());
   if (!report.converged) step.message = describe(report);
-  force *= std::exchange(state.load_factor, 1);
+  trial.force *= std::exchange(trial.state.load_factor, 1);
   return report.converged;
 }
 
-ContactSolver::Leg ContactSolver::follow(const ContactLoad& load, BeamStep& step,
+double ContactSolver::first_increment() const {
+  const double height = contact_height(*last_).value();
+  if (std::holds_alternative<ProbeLoad>(*last_)) return height / 2;
+  // sin θ = F h²/(2EI) of a uniform cilium of the softest material: twice what it bears.
+  return 4 * beam_->system.force_scale() * std::pow(cilium_.length() / height, 2);
+}
+
+bool ContactSolver::go_to_end(Loaded crossing, double from, double aim, BeamStep& step) {
+  crossing.state.shift = host_length();
+  if (!(crossing.force > 0) || !find_force(crossing, step)) return false;
+  const double reached = magnitude_of(crossing);
+  if (!(reached >= from && reached <= aim * (1 + 1e-9))) return false;
+  current_ = std::move(crossing);
+  last_ = with_magnitude(*last_, reached);
+  return true;
+}
+
+ContactSolver::Leg ContactSolver::follow(const Load& load, BeamStep& step,
                                          const PathProgress& progress) {
   const double L = cilium_.length();
   const double end = host_length();
-  // sin θ = F h²/(2EI) of a uniform cilium of the softest material: twice what it bears.
-  const double natural = 4 * beam_->system.force_scale() * std::pow(L / load.height, 2);
-  double increment = std::max(natural, last_->force);
+  const double target = magnitude(load);
+  double increment = std::max(first_increment(), magnitude(*last_));
   unsigned int failures = 0;
   int progressed = step.iterations;
-  while (last_->force != load.force) {
-    const double from = last_->force;
-    const double aim = std::abs(load.force - from) <= increment
-                           ? load.force
-                           : from + std::copysign(increment, load.force - from);
-    State trial = state_;
+  while (magnitude(*last_) != target) {
+    const double from = magnitude(*last_);
+    const double aim = std::abs(target - from) <= increment
+                           ? target
+                           : from + std::copysign(increment, target - from);
+    Loaded trial = current_;
     const bool found = find_arclength(trial, aim, step, progress);
-    if (found && trial.shift <= end + at_end * L) {
-      state_ = std::move(trial);
-      last_->force = aim;
+    if (found && trial.state.shift <= end + at_end * L) {
+      current_ = std::move(trial);
+      last_ = with_magnitude(*last_, aim);
       increment = 2 * std::abs(aim - from);
       failures = failures > 0 ? failures - 1 : 0;
       progressed = step.iterations;
       continue;
     }
-    if (found && end - state_.shift <= at_end * L) return Leg::end_reached;
+    if (found && end - current_.state.shift <= at_end * L) return Leg::end_reached;
     if (found) {
       // s_c lies beyond the segment as if its material went on: the end is between the two.
-      double force = force_at(end, from, state_.shift, aim, trial.shift);
-      State crossing = blend(state_, trial, (force - from) / (aim - from));
-      crossing.shift = end;
-      if (find_force(crossing, force, step) && force >= from && force <= aim * (1 + 1e-9)) {
-        state_ = std::move(crossing);
-        last_->force = force;
-        return Leg::end_reached;
-      }
+      const double at_crossing =
+          magnitude_at(end, from, current_.state.shift, aim, trial.state.shift);
+      const double w = (at_crossing - from) / (aim - from);
+      Loaded crossing{blend(current_.state, trial.state, w),
+                      std::lerp(current_.force, trial.force, w)};
+      if (go_to_end(std::move(crossing), from, aim, step)) return Leg::end_reached;
     }
-    if (++failures > options_.max_cutbacks || step.iterations - progressed >= patience) {
+    if (++failures > options_.max_cutbacks || step.iterations - progressed >= patience)
       // Near 90 deg s_c runs away with the force; the force at a given s_c does not.
-      State crossing = state_;
-      crossing.shift = end;
-      double force = from;
-      if (from == 0 || !find_force(crossing, force, step) || force < from || force > aim)
-        return Leg::failed;
-      state_ = std::move(crossing);
-      last_->force = force;
-      return Leg::end_reached;
-    }
+      return go_to_end(current_, from, aim, step) ? Leg::end_reached : Leg::failed;
     increment = std::abs(aim - from) / 2;
   }
   return Leg::load_reached;
 }
 
 void ContactSolver::enter_next_segment() {
-  entry_force_ = last_->force;
+  entry_magnitude_ = magnitude(*last_);
   // The elements of no length above the vertex become those below it: same nodes, now loaded.
   const std::size_t p = options_.degree;
   const std::size_t contact = beam_->loaded * p;
   const std::size_t n = std::size_t{1} << options_.refinement;
   ++host_;
   beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_);
-  const Vector3 force = state_.rotation[contact].conjugate() * (last_->force * direction(*last_));
+  State& state = current_.state;
+  const Vector3 force = state.rotation[contact].conjugate() * (current_.force * direction(*last_));
   for (std::size_t k = contact; k < contact + n * p; ++k) {
-    state_.force[k] = force;
-    state_.moment[k].setZero();
+    state.force[k] = force;
+    state.moment[k].setZero();
   }
-  state_.shift = 0;
+  state.shift = 0;
 }
 
-BeamStep ContactSolver::solve(const ContactLoad& load, const PathProgress& progress) {
+bool ContactSolver::goes_on(const Load& load) const {
+  return last_ && type(*last_) == type(load) && contact_height(*last_) == contact_height(load) &&
+         azimuth(*last_) == azimuth(load) && magnitude(load) >= entry_magnitude_;
+}
+
+BeamStep ContactSolver::solve(const Load& load, const PathProgress& progress) {
   BeamStep step;
-  const auto slip = [&](double limit) {
+  const double height = contact_height(load).value();
+  const bool probes = std::holds_alternative<ProbeLoad>(load);
+  const auto is_beyond = [&](const SlipOff& limit) {
+    return magnitude(load) > (probes ? limit.displacement : limit.force);
+  };
+  const auto slip = [&](const SlipOff& limit) {
+    slip_offs_[height] = limit;
     step.status = Status::slipped_off;
-    step.slip_off_force = limit;
-    step.message = slipped_off(load.height, limit, load.force);
+    step.slip_off_force = limit.force;
+    if (probes) step.slip_off_displacement = limit.displacement;
+    step.message = slipped_off(load, limit.force, limit.displacement);
     return step;
   };
-  const auto known = slip_off_forces_.find(load.height);
-  if (known != slip_off_forces_.end() && load.force > known->second) return slip(known->second);
-  if (!last_ || last_->height != load.height || last_->azimuth != load.azimuth ||
-      load.force < entry_force_)
-    stand_straight(load);
+  const auto known = slip_offs_.find(height);
+  if (known != slip_offs_.end() && is_beyond(known->second)) return slip(known->second);
+  if (!goes_on(load)) stand_straight(load);
   Leg leg = follow(load, step, progress);
   while (leg == Leg::end_reached) {
-    if (host_ + 1 == cilium_.segments.size()) {
-      const double limit = last_->force;
-      slip_off_forces_[load.height] = limit;
-      return slip(limit);
-    }
+    if (host_ + 1 == cilium_.segments.size())
+      return slip({current_.force, displacement_of(current_.state)});
     enter_next_segment();
     leg = follow(load, step, progress);
   }
   if (leg == Leg::failed) {
-    const auto limit = force_that_sinks_the_tip(cilium_, options_, load.height, step.iterations);
-    if (limit && load.force > *limit) {
+    const auto sunk = force_that_sinks_the_tip(cilium_, options_, height, step.iterations);
+    if (sunk && is_beyond({sunk->force, sunk->deflection})) {
       last_.reset();
-      slip_off_forces_[load.height] = *limit;
-      return slip(*limit);
+      return slip({sunk->force, sunk->deflection});
     }
     std::ostringstream text;
-    text << "no equilibrium found under " << load.force << " N: " << step.message
-         << "; last converged under " << last_->force
-         << " N; more cutbacks, elements or smaller load steps may help";
+    text << "no equilibrium found under " << magnitude(load) << ' ' << magnitude_unit(load) << ": "
+         << step.message << "; last converged under " << magnitude(*last_)
+         << "; more cutbacks, elements or smaller load steps may help";
     step.message = text.str();
     last_.reset();
     return step;
   }
-  applied_ = loads(load, *beam_);
+  applied_ = force_at_vertex(current_.force);
   step.status = Status::converged;
   step.message.clear();
   const double begin = cilium_.interfaces()[host_];
-  step.contact_arclength = std::min(begin + state_.shift, cilium_.length());
+  step.contact_arclength = std::min(begin + current_.state.shift, cilium_.length());
   return step;
 }
 

@@ -13,54 +13,79 @@ namespace ciliaval::fem::beam {
 struct BeamStep {
   Status status = Status::failed;
   std::string message;
-  std::optional<double> slip_off_force;     ///< N, if it slipped off
-  std::optional<double> contact_arclength;  ///< m
+  std::optional<double> slip_off_force;         ///< N, if it slipped off
+  std::optional<double> slip_off_displacement;  ///< m, if a probe's point slipped off
+  std::optional<double> contact_arclength;      ///< m
   int iterations = 0;
 };
 
 /// Horizontal force that stays at height h while the cilium slides under it. The point of contact
 /// is a vertex that moves along the cilium: its height is h, and its arc length s_c is the unknown
-/// that goes with that equation in Newton's method. The vertex starts in the segment that holds h.
-/// Where it comes to the end of its segment, the force with which that end is at h is found, and
-/// the same equilibrium goes on with the vertex at the lower end of the next segment. Of the last
-/// segment that is the slip-off force.
+/// that goes with that equation in Newton's method. Of a contact load the force is given; of a
+/// probe the deflection δ of that vertex is, one equation more, and the force one unknown more. The
+/// vertex starts in the segment that holds h. Where it comes to the end of its segment, the force
+/// with which that end is at h is found, and the same equilibrium goes on with the vertex at the
+/// lower end of the next segment. Of the last segment that is the slip-off.
 class ContactSolver {
  public:
   ContactSolver(Cilium cilium, BeamOptions options)
       : cilium_(std::move(cilium)), options_(options) {}
 
-  BeamStep solve(const ContactLoad& load, const PathProgress& progress);
+  /// The load is a ContactLoad or a ProbeLoad.
+  BeamStep solve(const Load& load, const PathProgress& progress);
 
   /// The beam, its state and its loads after a converged step.
   const CiliumBeam& beam() const { return *beam_; }
-  const State& state() const { return state_; }
+  const State& state() const { return current_.state; }
   const Loads& applied() const { return applied_; }
 
  private:
   enum class Leg { load_reached, end_reached, failed };
+  /// Where the tip sinks to the contact height.
+  struct SlipOff {
+    double force = 0;         ///< N
+    double displacement = 0;  ///< m
+  };
+  /// An equilibrium: the state and the force that goes with it.
+  struct Loaded {
+    State state;
+    double force = 0;  ///< N
+  };
 
   /// The unloaded cilium with the vertex at S = h.
-  void stand_straight(const ContactLoad& load);
-  /// Raises or lowers the force to that of `load` or to that at the segment's end.
-  Leg follow(const ContactLoad& load, BeamStep& step, const PathProgress& progress);
-  /// Newton's method with s_c for the unknown; false if it fails.
-  bool find_arclength(State& state, double force, BeamStep& step, const PathProgress& progress);
-  /// Newton's method with the force for the unknown and s_c given by state.shift. The force is the
-  /// first guess and the result; false if it fails.
-  bool find_force(State& state, double& force, BeamStep& step);
+  void stand_straight(const Load& load);
+  /// Raises or lowers the magnitude to that of `load` or to that at the segment's end.
+  Leg follow(const Load& load, BeamStep& step, const PathProgress& progress);
+  /// Newton's method with s_c for the unknown, and of a probe the force; false if it fails.
+  bool find_arclength(Loaded& trial, double magnitude, BeamStep& step,
+                      const PathProgress& progress);
+  /// Newton's method with the force for the unknown and s_c given by the state's shift. The force
+  /// is the first guess and the result; false if it fails.
+  bool find_force(Loaded& trial, BeamStep& step);
+  /// The same from a state near the end of the host to that end; false if it fails or the magnitude
+  /// is not between `from` and `aim`.
+  bool go_to_end(Loaded crossing, double from, double aim, BeamStep& step);
+  /// Whether the equilibrium that is there can be followed to the load.
+  bool goes_on(const Load& load) const;
+  /// Of the magnitude, that Newton's method may take from the straight cilium.
+  double first_increment() const;
+  /// The force or the displacement of an equilibrium, whichever the load prescribes.
+  double magnitude_of(const Loaded& trial) const;
+  double displacement_of(const State& state) const;
+  Loads force_at_vertex(double force) const;
   /// From the upper end of the segment to the lower end of the next, the same point.
   void enter_next_segment();
   double host_length() const { return cilium_.segments[host_].length; }
 
   Cilium cilium_;
   BeamOptions options_;
-  std::map<double, double> slip_off_forces_;  ///< by height
+  std::map<double, SlipOff> slip_offs_;  ///< by height
   std::optional<CiliumBeam> beam_;
-  State state_;
+  Loaded current_;
   Loads applied_;
-  std::optional<ContactLoad> last_;  ///< that state_ is in equilibrium with
-  std::size_t host_ = 0;             ///< segment of the vertex
-  double entry_force_ = 0;           ///< with which s_c is at the lower end of the host, N
+  std::optional<Load> last_;    ///< that current_ is in equilibrium with
+  std::size_t host_ = 0;        ///< segment of the vertex
+  double entry_magnitude_ = 0;  ///< with which s_c is at the lower end of the host
 };
 
 }  // namespace ciliaval::fem::beam

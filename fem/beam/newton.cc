@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/beam/newton.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,40 +58,74 @@ bool neighbours_agree(const State& state) {
   return true;
 }
 
-/// Newton increment of the bordered system: the beam's unknowns and the one scalar.
+/// Newton increment of the bordered system: the beam's unknowns and one scalar for each condition.
 struct Increment {
   Eigen::VectorXd beam;
-  double scalar = 0;    ///< of s/L or of the load factor
-  double rounding = 0;  ///< of the scalar, by the rounding of z
+  Eigen::VectorXd scalars;   ///< of s/L or of the load factor
+  Eigen::VectorXd rounding;  ///< of the scalars, by the rounding of r
+
+  double largest_scalar() const {
+    return scalars.size() == 0 ? 0 : scalars.lpNorm<Eigen::Infinity>();
+  }
+  /// The largest scalar that is not rounding error.
+  double largest_resolved() const {
+    double largest = 0;
+    for (Index k = 0; k < scalars.size(); ++k)
+      if (std::abs(scalars[k]) > rounding[k]) largest = std::max(largest, std::abs(scalars[k]));
+    return largest;
+  }
 };
 
+/// Block elimination: with the responses X = −K⁻¹ ∂R/∂s the scalars solve
+/// n·(r + L (δ₀ + X s)) = value, δ₀ = −K⁻¹ R.
 Increment increment(System& system, const State& state, const Loads& loads,
-                    const Eigen::VectorXd& residual,
-                    const std::optional<HeightCondition>& condition) {
+                    const Eigen::VectorXd& residual, std::span<const Condition> conditions) {
   system.factorize(state, loads);
-  Increment result{-system.solve(residual), 0};
-  if (!condition) return result;
-  const bool shifts = condition->unknown == HeightCondition::Unknown::shift;
-  const Eigen::VectorXd response = -system.solve(shifts ? system.shift_derivative(state, loads)
-                                                        : system.point_load_derivative(loads));
-  const std::size_t node = system.vertex_node(condition->vertex);
-  const auto z = static_cast<Index>(system.node_unknown(node, 2));
-  const double gap = (condition->height - state.position[node][2]) / system.length_scale();
-  result.scalar = (gap - result.beam[z]) / response[z];
-  result.rounding = 4 * std::numeric_limits<double>::epsilon() * condition->height /
-                    (system.length_scale() * std::abs(response[z]));
-  result.beam += result.scalar * response;
+  const auto n = static_cast<Index>(conditions.size());
+  Increment result{-system.solve(residual), Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+  if (n == 0) return result;
+  Eigen::MatrixXd responses(result.beam.size(), n);
+  Eigen::MatrixXd border(n, n);
+  Eigen::VectorXd gap(n);
+  Eigen::VectorXd rounding(n);
+  for (Index k = 0; k < n; ++k) {
+    const bool shifts =
+        conditions[static_cast<std::size_t>(k)].unknown == Condition::Unknown::shift;
+    responses.col(k) = -system.solve(shifts ? system.shift_derivative(state, loads)
+                                            : system.point_load_derivative(loads));
+  }
+  for (Index i = 0; i < n; ++i) {
+    const Condition& condition = conditions[static_cast<std::size_t>(i)];
+    const std::size_t node = system.vertex_node(condition.vertex);
+    const Vector3& position = state.position[node];
+    gap[i] = (condition.value - condition.normal.dot(position)) / system.length_scale();
+    rounding[i] =
+        4 * std::numeric_limits<double>::epsilon() * position.norm() / system.length_scale();
+    border.row(i).setZero();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double component = condition.normal[static_cast<Index>(c)];
+      const auto unknown = static_cast<Index>(system.node_unknown(node, c));
+      gap[i] -= component * result.beam[unknown];
+      border.row(i) += component * responses.row(unknown);
+    }
+  }
+  const Eigen::MatrixXd inverse = border.inverse();
+  result.scalars = inverse * gap;
+  result.rounding = inverse.cwiseAbs() * rounding;
+  result.beam += responses * result.scalars;
   return result;
 }
 
 void apply(const System& system, State& state, const Increment& step,
-           const std::optional<HeightCondition>& condition) {
+           std::span<const Condition> conditions) {
   system.update(state, step.beam);
-  if (!condition) return;
-  if (condition->unknown == HeightCondition::Unknown::shift)
-    state.shift += step.scalar * system.length_scale();
-  else
-    state.load_factor += step.scalar;
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const double scalar = step.scalars[static_cast<Index>(k)];
+    if (conditions[k].unknown == Condition::Unknown::shift)
+      state.shift += scalar * system.length_scale();
+    else
+      state.load_factor += scalar;
+  }
 }
 
 std::string history(const std::vector<double>& values) {
@@ -107,8 +142,12 @@ std::string describe(const NewtonReport& report) {
   return report.reason + " (residuals " + history(report.residuals) + ")";
 }
 
+Condition at_height(std::size_t vertex, double height, Condition::Unknown unknown) {
+  return {vertex, Vector3::UnitZ(), height, unknown};
+}
+
 NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,
-                    const std::optional<HeightCondition>& condition) {
+                    std::span<const Condition> conditions) {
   NewtonReport report;
   State trial = state;
   system.prescribe(trial, loads);
@@ -133,21 +172,20 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
     if (iteration == options.max_iterations) break;
     Increment step;
     try {
-      step = increment(system, trial, loads, residual, condition);
+      step = increment(system, trial, loads, residual, conditions);
     } catch (const SolverError& error) {
       report.reason = error.what();
       return report;
     }
     const Norms d = norms(system, trial, step.beam);
     last_increment = std::max(d.nodal, d.section / std::max(level, 1.0));
-    report.increments.push_back(std::max(last_increment, std::abs(step.scalar)));
-    if (std::abs(step.scalar) > step.rounding)
-      last_increment = std::max(last_increment, std::abs(step.scalar));
-    if (!std::isfinite(last_increment + step.scalar) || d.spin > max_spin) {
+    report.increments.push_back(std::max(last_increment, step.largest_scalar()));
+    last_increment = std::max(last_increment, step.largest_resolved());
+    if (!std::isfinite(last_increment) || !step.scalars.allFinite() || d.spin > max_spin) {
       report.reason = "a section would turn by more than 2 rad in one iteration";
       return report;
     }
-    apply(system, trial, step, condition);
+    apply(system, trial, step, conditions);
     if (!neighbours_agree(trial)) {
       report.reason = "neighbouring sections are turned by more than 180 deg to each other";
       return report;
@@ -159,14 +197,14 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
 }
 
 PathReport advance(System& system, State& state, const Loads& from, const Loads& to,
-                   const NewtonOptions& options, const std::optional<HeightCondition>& condition,
+                   const NewtonOptions& options, std::span<const Condition> conditions,
                    const PathProgress& progress) {
   PathReport report;
   double step = 1;
   unsigned int halvings = 0;
   while (report.reached < 1) {
     const double aim = std::min(1.0, report.reached + step);
-    report.last = newton(system, state, combine(1 - aim, from, aim, to), options, condition);
+    report.last = newton(system, state, combine(1 - aim, from, aim, to), options, conditions);
     report.iterations += static_cast<int>(report.last.increments.size());
     if (progress) progress(aim, report.last);
     if (report.last.converged) {

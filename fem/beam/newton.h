@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,14 +19,17 @@ struct NewtonOptions {
   std::optional<double> increment_tolerance = {};
 };
 
-/// One more equation, z = height at a vertex, with one more unknown: the shift of a moving mesh
+/// One more equation, n·r = value at a vertex, with one more unknown: the shift of a moving mesh
 /// (State::shift) or the factor on the point loads (State::load_factor).
-struct HeightCondition {
+struct Condition {
   enum class Unknown { shift, load_factor };
   std::size_t vertex = 0;
-  double height = 0;  ///< h, m
+  Vector3 normal = Vector3::UnitZ();  ///< n
+  double value = 0;                   ///< m
   Unknown unknown = Unknown::shift;
 };
+/// z = height at a vertex.
+Condition at_height(std::size_t vertex, double height, Condition::Unknown unknown);
 
 /// What Newton's method did: dimensionless maximum norms, one for each iteration.
 struct NewtonReport {
@@ -41,10 +45,10 @@ std::string describe(const NewtonReport& report);
 /// Newton's method with the consistent tangent from the given state. Converged: the strain
 /// equations hold to tolerance × L, the equilibrium equations to tolerance × the section forces,
 /// and the last increment is below tolerance × L, tolerance rad and tolerance × the section forces;
-/// that of the condition's unknown may also be what the rounding of z leaves open.
-/// The state is left as it was unless that is reached.
+/// that of a condition's unknown may also be what the rounding of r leaves open. Each condition has
+/// an unknown of its own. The state is left as it was unless that is reached.
 NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,
-                    const std::optional<HeightCondition>& condition = {});
+                    std::span<const Condition> conditions = {});
 
 /// What a load path did.
 struct PathReport {
@@ -63,8 +67,7 @@ using PathProgress = std::function<void(double fraction, const NewtonReport& rep
 /// attempt is the whole path; an increment that fails is halved, one that converges is doubled. If
 /// it fails, the state is the last converged one.
 PathReport advance(System& system, State& state, const Loads& from, const Loads& to,
-                   const NewtonOptions& options,
-                   const std::optional<HeightCondition>& condition = {},
+                   const NewtonOptions& options, std::span<const Condition> conditions = {},
                    const PathProgress& progress = {});
 
 }  // namespace ciliaval::fem::beam

@@ -127,6 +127,10 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
     ciliaval::require_valid(load, cilium);
     if (type(load) != type(path.front()))
       throw InputError("a load path cannot change from one load type to another");
+    if (std::holds_alternative<ProbeLoad>(load))
+      throw InputError(
+          "the solid does not take the load 'probe' yet: use 'contact', whose force is given, or "
+          "another mechanics model");
     const auto* contact = std::get_if<ContactLoad>(&load);
     if (contact != nullptr && !(contact->height > options.kernel_width &&
                                 contact->height + options.kernel_width < cilium.length()))

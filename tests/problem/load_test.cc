@@ -34,6 +34,28 @@ TEST(Load, ChangesItsMagnitudeAlone) {
   EXPECT_EQ(section.azimuth, 0.4);
 }
 
+TEST(Load, AProbeHasItsDisplacementForMagnitude) {
+  const Load load = with_magnitude(ProbeLoad{1e-3, 16e-3, 0.4}, 3e-3);
+  EXPECT_EQ(type(load), "probe");
+  EXPECT_EQ(magnitude(load), 3e-3);
+  EXPECT_EQ(std::get<ProbeLoad>(load).displacement, 3e-3);
+  EXPECT_EQ(contact_height(load), 16e-3);
+  const Load half = interpolate(ProbeLoad{0, 10e-3, 0.2}, ProbeLoad{4e-3, 14e-3, 0.6}, 0.5);
+  EXPECT_DOUBLE_EQ(std::get<ProbeLoad>(half).displacement, 2e-3);
+  EXPECT_DOUBLE_EQ(std::get<ProbeLoad>(half).height, 12e-3);
+  EXPECT_DOUBLE_EQ(azimuth(half), 0.4);
+}
+
+TEST(Load, SaysTheUnitOfItsMagnitude) {
+  EXPECT_EQ(magnitude_unit(ContactLoad{}), "N");
+  EXPECT_EQ(magnitude_unit(FlowLoad{}), "N/m");
+  EXPECT_EQ(magnitude_unit(SectionLoad{}), "N");
+  EXPECT_EQ(magnitude_unit(DeadLoad{}), "N/m");
+  EXPECT_EQ(magnitude_unit(ProbeLoad{}), "m");
+  EXPECT_EQ(contact_height(ContactLoad{1, 2, 3}), 2);
+  EXPECT_FALSE(contact_height(FlowLoad{}));
+}
+
 TEST(Load, RefusesWhatTheCiliumCannotBear) {
   const Cilium cilium{1e-3, {{"all", 20e-3, 1e6, 0.3, 0}}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -45,6 +67,13 @@ TEST(Load, RefusesWhatTheCiliumCannotBear) {
   EXPECT_THROW(require_valid(ContactLoad{nan, 16e-3, 0}, cilium), InputError);
   EXPECT_THROW(require_valid(ContactLoad{1e-3, nan, 0}, cilium), InputError);
   EXPECT_THROW(require_valid(FlowLoad{1, nan}, cilium), InputError);
+  EXPECT_NO_THROW(require_valid(ProbeLoad{0, 16e-3, 0}, cilium));
+  EXPECT_NO_THROW(require_valid(ProbeLoad{1, 16e-3, 0}, cilium));  // it will slip off
+  EXPECT_THROW(require_valid(ProbeLoad{1e-3, 20e-3, 0}, cilium), InputError);
+  EXPECT_THROW(require_valid(ProbeLoad{1e-3, 0, 0}, cilium), InputError);
+  EXPECT_THROW(require_valid(ProbeLoad{-1e-3, 16e-3, 0}, cilium), InputError);
+  EXPECT_THROW(require_valid(ProbeLoad{nan, 16e-3, 0}, cilium), InputError);
+  EXPECT_THROW(require_valid(ProbeLoad{1e-3, 16e-3, nan}, cilium), InputError);
   EXPECT_THROW(require_valid(SectionLoad{1e-3, 20.001e-3, 0}, cilium), InputError);
   EXPECT_THROW(require_valid(DeadLoad{std::numeric_limits<double>::infinity(), 0}, cilium),
                InputError);

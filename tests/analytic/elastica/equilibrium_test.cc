@@ -66,6 +66,8 @@ std::vector<Case> cases() {
   return {{"ContactPaper", paper_cilium(), ContactLoad{4e-3, 16e-3, 0.5}},
           {"ContactNearSlipOff", paper_cilium(), ContactLoad{5.86e-3, 16e-3, 0.5}},
           {"ContactThree", three_segments(), ContactLoad{2e-4, 12e-3, -2}},
+          {"ProbePaper", paper_cilium(), ProbeLoad{8e-3, 16e-3, 0.5}},
+          {"ProbeNear90Degrees", uniform_cilium(), ProbeLoad{8e-3, 2e-3, 0.5}},
           {"FlowPaper", paper_cilium(), FlowLoad{1.0, 0.5}},
           {"FlowThreeStrong", three_segments(), FlowLoad{2.0, 4}},
           {"SectionPaper", paper_cilium(), SectionLoad{4e-3, 16e-3, 0.5}},
@@ -80,9 +82,12 @@ class ElasticaEquilibrium : public testing::TestWithParam<Case> {};
 // quadrature, which the solver does not use) gives the forces above the point; they must be the
 // section forces returned, and EI κ the moment. Measured 2e-15 of the base's; margin 50.
 TEST_P(ElasticaEquilibrium, HoldsAtEveryPointOfTheReturnedShape) {
-  const auto& [name, cilium, load] = GetParam();
-  const MechanicsStep step = solve(cilium, load);
+  const auto& [name, cilium, given] = GetParam();
+  const MechanicsStep step = solve(cilium, given);
   const Centreline& centreline = step.deformation->centreline;
+  Load load = given;
+  if (const auto* probe = std::get_if<ProbeLoad>(&given))
+    load = ContactLoad{step.applied_force, probe->height, probe->azimuth};
   const Vector3 e = direction(load);
   const Vector3 axis = Vector3::UnitZ().cross(e);
   const Balance base = balance(centreline, load, 0);

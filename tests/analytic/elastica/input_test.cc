@@ -16,7 +16,7 @@ namespace {
 
 std::vector<Load> all_loads(double azimuth) {
   return {ContactLoad{4e-3, 16e-3, azimuth}, FlowLoad{1, azimuth},
-          SectionLoad{4e-3, 16e-3, azimuth}, DeadLoad{1, azimuth}};
+          SectionLoad{4e-3, 16e-3, azimuth}, DeadLoad{1, azimuth}, ProbeLoad{8e-3, 16e-3, azimuth}};
 }
 
 // Claim: the azimuth turns the whole state about e_z, nothing else. Measured 4e-18 m.
@@ -134,9 +134,10 @@ TEST(ElasticaInput, RefusesWhatIsNotPhysical) {
   const Cilium cilium = paper_cilium();
   for (const Load& load :
        {Load(ContactLoad{-1e-3, 16e-3, 0}), Load(ContactLoad{1e-3, 20e-3, 0}),
-        Load(ContactLoad{1e-3, nan, 0}), Load(FlowLoad{nan, 0}), Load(FlowLoad{infinity, 0}),
-        Load(SectionLoad{1e-3, 21e-3, 0}), Load(SectionLoad{1e-3, 0, 0}),
-        Load(DeadLoad{1, infinity}), Load(DeadLoad{1e308, 0})})
+        Load(ContactLoad{1e-3, nan, 0}), Load(ProbeLoad{-1e-3, 16e-3, 0}),
+        Load(ProbeLoad{1e-3, 20e-3, 0}), Load(ProbeLoad{nan, 16e-3, 0}), Load(FlowLoad{nan, 0}),
+        Load(FlowLoad{infinity, 0}), Load(SectionLoad{1e-3, 21e-3, 0}),
+        Load(SectionLoad{1e-3, 0, 0}), Load(DeadLoad{1, infinity}), Load(DeadLoad{1e308, 0})})
     EXPECT_THROW(elastica.solve(cilium, {load}), InputError) << type(load);
   Cilium hollow = cilium;
   hollow.diameter = 0;

@@ -66,6 +66,19 @@ TEST(ElasticaSlipOff, SeparatesEquilibriumFromNone) {
   }
 }
 
+// Claim: the last rounding errors below the limit are solved too, in which the straight part above
+// the contact is shorter than a piece of the centreline may be.
+TEST(ElasticaSlipOff, IsReachedToTheLastDigits) {
+  const Cilium cilium = paper_cilium();
+  for (const double height : {3.5e-3, 16e-3}) {
+    const double limit = *solve(cilium, ContactLoad{0, height, 0}).slip_off_force;
+    for (const double below : {1e-13, 1e-14, 3e-15, 1e-15, 5e-16}) {
+      const MechanicsStep step = solve(cilium, ContactLoad{limit * (1 - below), height, 0});
+      EXPECT_NEAR(planar_point(step, cilium.length()).z, height, 1e-10 * height) << below;
+    }
+  }
+}
+
 TEST(ElasticaSlipOff, IsReportedAndThePathGoesOn) {
   const Cilium cilium = paper_cilium();
   const LoadPath path{ContactLoad{4e-3, 16e-3, 0}, ContactLoad{6e-3, 16e-3, 0},

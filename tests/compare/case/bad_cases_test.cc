@@ -123,7 +123,7 @@ TEST(BadLoad, OfAnUnknownTypeHasItsOtherFaultsReported) {
                         "height = [\"16\", \"-1 mm\"]"),
                "azimuth", "azimut");
   for (const std::string& type : {std::string("type = \"contct\""), std::string("type = 3"),
-                                  std::string("type = \"probe\""), std::string("typ = \"dead\"")}) {
+                                  std::string("type = \"prob\""), std::string("typ = \"dead\"")}) {
     const auto faults = lines(faults_of(replaced(broken, "type = \"contact\"", type)));
     ASSERT_EQ(faults.size(), 6U) << type;
     EXPECT_THAT(faults[0], StartsWith("bad.toml:22:")) << type;
@@ -259,7 +259,7 @@ const BadCase contradictions[]{
      "type = \"section\"\nforce = \"1 mN\"\narclength = \"20 mm\"\n[models.elastica]\nform = "
      "\"height\"\n",
      "26:8",
-     "the elastica's form 'height' (Eq. 1-4) takes the load types 'contact' and 'flow', "
+     "the elastica's form 'height' (Eq. 1-4) takes the load types 'contact', 'flow' and 'probe', "
      "not 'section'"},
     {"HeightFormWithADeadLoad",
      "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"\nazimuth = "
@@ -290,6 +290,46 @@ const BadCase contradictions[]{
     {"MeshWithoutSolid", ", \"solid\"]", "]", "32:39", "add 'solid' to 'mechanics'"},
     {"TooLongTogether", "length = \"3 mm\"", "length = \"100 m\"", "8:1",
      "the segments are 100.017 m long together"},
+};
+
+/// The load of good_case, lines 22 to 24, which each row replaces by a probe's.
+constexpr std::string_view contact_load =
+    "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"";
+
+const BadCase probe[]{
+    {"MissingDisplacement", contact_load, "type = \"probe\"\nheight = \"16 mm\"", "21:1",
+     "[load] of type 'probe' needs 'displacement'"},
+    {"MissingHeight", contact_load, "type = \"probe\"\ndisplacement = \"1 mm\"", "21:1",
+     "[load] of type 'probe' needs 'height'"},
+    {"Negative", contact_load,
+     "type = \"probe\"\ndisplacement = [\"1 mm\", \"-2 mm\"]\nheight = \"16 mm\"", "23:25",
+     "'displacement' is -0.002 m", "add 180 deg to the azimuth"},
+    {"UnitOfAForce", contact_load, "type = \"probe\"\ndisplacement = \"1 mN\"\nheight = \"16 mm\"",
+     "23:16", "'displacement': 'mN' is not a unit of a length: write a length"},
+    {"NoUnit", contact_load, "type = \"probe\"\ndisplacement = 1e-3\nheight = \"16 mm\"", "23:16",
+     "'displacement': the number 0.001 has no unit"},
+    {"Force", contact_load,
+     "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"16 mm\"\nforce = \"1 mN\"", "25:9",
+     "'force' is a result of the load type 'probe', whose 'displacement' is given",
+     "leave it out or use the type 'contact'"},
+    {"HeightAboveTheTip", contact_load,
+     "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"21 mm\"", "24:10",
+     "the contact height 0.021 m must lie between the base and the tip of the cilium"},
+    {"NotANumberInTheList", contact_load,
+     "type = \"probe\"\ndisplacement = [\"1 mm\", \"nan mm\"]\nheight = \"16 mm\"", "23:25",
+     "does not start with a finite number"},
+    {"InfiniteNumberInTheList", contact_load,
+     "type = \"probe\"\ndisplacement = [inf, \"1 mm\"]\nheight = \"16 mm\"", "23:17",
+     "'displacement'"},
+    {"DisplacementOfAContact", "azimuth = \"30 deg\"", "displacement = \"1 mm\"", "25:1",
+     "unknown key 'displacement' in [load] of type 'contact' (valid: type, force, height, "
+     "azimuth)"},
+    {"UnknownKey", contact_load,
+     "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"16 mm\"\nspeed = \"1 m/s\"", "25:1",
+     "unknown key 'speed' in [load] of type 'probe' (valid: type, displacement, height, azimuth)"},
+    {"KernelAboveTheTip", contact_load,
+     "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"19.6 mm\"", "24:10",
+     "the solid's contact kernel"},
 };
 
 std::string repeated(std::string_view part, int count) {
@@ -341,8 +381,6 @@ TEST(BadCaseSize, ALoadPathHasAThousandStepsAtMost) {
 }
 
 const BadCase later[]{
-    {"Probe", "\"contact\"", "\"probe\"", "22:8",
-     "'type' = 'probe' is not available in this version (valid: contact, flow, section, dead)"},
     {"UnknownLoad", "\"contact\"", "\"contract\"", "22:8", "'type' cannot be 'contract'",
      "did you mean 'contact'?"},
     {"Potential", "\"mesh\"", "\"potential\"", "32:39",
@@ -387,6 +425,7 @@ INSTANTIATE_TEST_SUITE_P(Keys, BadCaseFile, testing::ValuesIn(keys), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, BadCaseFile, testing::ValuesIn(values), name_of);
 INSTANTIATE_TEST_SUITE_P(Lists, BadCaseFile, testing::ValuesIn(lists), name_of);
 INSTANTIATE_TEST_SUITE_P(Contradictions, BadCaseFile, testing::ValuesIn(contradictions), name_of);
+INSTANTIATE_TEST_SUITE_P(Probe, BadCaseFile, testing::ValuesIn(probe), name_of);
 INSTANTIATE_TEST_SUITE_P(Later, BadCaseFile, testing::ValuesIn(later), name_of);
 
 }  // namespace

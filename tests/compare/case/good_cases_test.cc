@@ -51,7 +51,7 @@ void expect_same_cilium(const Cilium& a, const Cilium& b) {
 
 /// Where the load acts: height, arc length, or nothing.
 double station(const Load& load) {
-  if (const auto* contact = std::get_if<ContactLoad>(&load)) return contact->height;
+  if (const auto height = contact_height(load)) return *height;
   if (const auto* section = std::get_if<SectionLoad>(&load)) return section->arclength;
   return 0;
 }
@@ -179,6 +179,13 @@ TEST(GoodCase, OtherLoadsAreRead) {
       read(with_load("type = \"section\"\nforce = \"1 mN\"\narclength = \"5 mm\""));
   EXPECT_EQ(std::get<SectionLoad>(section.load_path[0]).force, 0.001);
   EXPECT_EQ(std::get<SectionLoad>(section.load_path[0]).arclength, 0.005);
+  // A displacement of more than the cilium's length is no fault: it slips off.
+  const Case probe = read(with_load(
+      "type = \"probe\"\ndisplacement = [\"0 mm\", \"2 mm\", \"1 m\"]\nheight = \"16 mm\""));
+  ASSERT_EQ(probe.load_path.size(), 3U);
+  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[1]).displacement, 0.002);
+  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[2]).displacement, 1.0);
+  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[1]).height, 0.016);
 }
 
 TEST(GoodCase, ASectionAtTheTipIsAtTheTipInSpiteOfRounding) {
@@ -345,6 +352,8 @@ TEST(WrittenCase, ReadsBackAsTheSameCaseBitForBit) {
       with_load("type = \"flow\"\nforce_per_height = [\"0.1 lbf/ft\", \"0 N/m\"]\nazimuth = "
                 "[\"77 deg\", \"-1 deg\"]"),
       with_load("type = \"section\"\nforce = [\"1 mN\", \"3 gf\"]\narclength = \"20 mm\""),
+      with_load("type = \"probe\"\ndisplacement = [\"1 mm\", \"0.3 inch\"]\nheight = [\"16 mm\", "
+                "\"0.5 inch\"]\nazimuth = \"77 deg\""),
       with_load("type = \"dead\"\nforce_per_length = \"0.7 N/m\"\nazimuth = \"33 deg\""),
       replaced(good_case, "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
                "[[\"1 um\", \"0.1 inch\", \"3 mm\"], [\"0 m\", \"-0 m\", \"-1 ft\"]]")};

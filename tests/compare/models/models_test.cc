@@ -66,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(Models, EveryLoad,
                          testing::Values(Load{ContactLoad{4e-3, contact_height, 0.5}},
                                          Load{FlowLoad{0.375, 2.0}},
                                          Load{SectionLoad{3e-3, 12e-3, -1.0}},
-                                         Load{DeadLoad{0.3, 0.0}}),
+                                         Load{DeadLoad{0.3, 0.0}},
+                                         Load{ProbeLoad{9e-3, contact_height, 0.5}}),
                          [](const auto& load) { return std::string(type(load.param)); });
 
 // Oracle: two different algorithms, and an independent calculation (5.862 mN). Measured: the same
@@ -79,6 +80,33 @@ TEST(Models, ElasticaAndShearRigidBeamSlipOffAtTheSameForce) {
   EXPECT_EQ(beam.status, Status::slipped_off);
   EXPECT_NEAR(elastica.slip_off_force.value(), 5.862e-3, 0.5e-6);
   EXPECT_NEAR(beam.slip_off_force.value(), elastica.slip_off_force.value(), 1e-13 * 5.862e-3);
+}
+
+// Oracle: two different algorithms: root finding on the contact elastica, and a bordered Newton
+// method. A path of displacements and beyond the slip-off.
+TEST(Models, ElasticaAndShearRigidBeamFindTheSameForceForADisplacement) {
+  for (const double height : {contact_height}) {
+    LoadPath path;
+    for (const double part : {0.01, 0.3, 0.6, 0.8})
+      path.push_back(ProbeLoad{part * 11e-3, height, 1});
+    path.push_back(ProbeLoad{20e-3, height, 1});
+    const MechanicsResult elastica = analytic::Elastica().solve(paper(), path);
+    const MechanicsResult beam = shear_rigid_beam().solve(paper(), path);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const MechanicsStep& a = elastica.steps[i];
+      const MechanicsStep& b = beam.steps[i];
+      ASSERT_EQ(a.status, b.status) << height << ' ' << i << ' ' << b.message;
+      if (a.status == Status::converged) {
+        EXPECT_NEAR(b.applied_force, a.applied_force, 1e-9 * a.applied_force) << height << ' ' << i;
+        EXPECT_NEAR(*b.contact_arclength, *a.contact_arclength, 1e-9 * 20e-3);
+      } else {
+        EXPECT_NEAR(*b.slip_off_force, *a.slip_off_force, 1e-9 * *a.slip_off_force);
+        EXPECT_NEAR(*b.slip_off_displacement, *a.slip_off_displacement,
+                    1e-9 * *a.slip_off_displacement);
+      }
+    }
+    EXPECT_EQ(elastica.steps.back().status, Status::slipped_off);
+  }
 }
 
 // Oracle: issue's acceptance figure. For one slender material all three theories agree to 0.5 % of

@@ -94,7 +94,7 @@ TEST(CommandLine, ListsModelsLoadsAndShippedCases) {
   const Outcome list = ciliaval(folder.path(), "list");
   EXPECT_EQ(list.code, 0);
   for (const char* word : {"elastica", "beam", "solid", "dipole", "line", "volume", "mesh",
-                           "contact", "flow", "paper/fig3b.toml"})
+                           "contact", "flow", "probe", "paper/fig3b.toml"})
     EXPECT_THAT(list.out, HasSubstr(word));
 }
 

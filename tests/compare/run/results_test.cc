@@ -90,6 +90,30 @@ TEST(Summary, HasTheKeysOfTheContract) {
                                "difference", "relative", "unit", "uncertainty", "verdict"}));
 }
 
+TEST(Summary, StatesAProbesDisplacementForceAndSlipOff) {
+  Case c = paper_case({});
+  c.load_path = {ProbeLoad{1e-3, 16e-3, 0.5}, ProbeLoad{20e-3, 16e-3, 0.5}};
+  c.mechanics = {"rod"};
+  const std::vector<MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
+    MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
+    step.applied_force = 7e-4;
+    if (magnitude(load) < 11e-3) return step;
+    step.deformation.reset();
+    step.status = Status::slipped_off;
+    step.slip_off_force = 5.9e-3;
+    step.slip_off_displacement = 11.7e-3;
+    return step;
+  })};
+  const CaseResult result = run(c, mechanics, {});
+  const json steps = json::parse(summary_json(result, {}, origin))["steps"];
+  EXPECT_EQ(steps[0]["load"],
+            json({{"type", "probe"}, {"displacement", 1e-3}, {"height", 16e-3}, {"azimuth", 0.5}}));
+  EXPECT_EQ(steps[0]["mechanics"]["rod"]["applied_force"], 7e-4);
+  EXPECT_TRUE(steps[0]["mechanics"]["rod"]["slip_off_displacement"].is_null());
+  EXPECT_EQ(steps[1]["mechanics"]["rod"]["slip_off_displacement"], 11.7e-3);
+  EXPECT_EQ(steps[1]["mechanics"]["rod"]["slip_off_force"], 5.9e-3);
+}
+
 TEST(Summary, GivesEveryDoubleBackToTheLastBit) {
   const CaseResult result = two_models();
   const json summary = json::parse(summary_json(result, compare_models(result), origin));

@@ -68,6 +68,28 @@ TEST(Table, SaysWhyAModelHasNoResult) {
   EXPECT_THAT(text, HasSubstr("slips off above 5.862 mN"));
 }
 
+TEST(Table, ShowsTheForceThatAProbesDisplacementTakes) {
+  Case c = paper_case({});
+  c.load_path = {ProbeLoad{2e-3, 16e-3, 0}, ProbeLoad{12e-3, 16e-3, 0}};
+  c.mechanics = {"rod"};
+  const std::vector<MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
+    MechanicsStep step = test::converged(load, test::tilted(L, 3e-3, Vector3::UnitX(), 0.1));
+    step.applied_force = 1.2345e-3;
+    if (magnitude(load) < 10e-3) return step;
+    step.deformation.reset();
+    step.status = Status::slipped_off;
+    step.slip_off_force = 5.862e-3;
+    step.slip_off_displacement = 11.66e-3;
+    return step;
+  })};
+  const CaseResult result = run(c, mechanics, {});
+  const std::string text = table(result, compare_models(result));
+  EXPECT_THAT(text, HasSubstr("probe, displacement 2 mm at height 16 mm, azimuth 0 deg"));
+  EXPECT_THAT(text, ContainsRegex("rod +converged .* 1.2345 "));
+  EXPECT_THAT(text, HasSubstr("slips off beyond 11.66 mm"));
+  EXPECT_THAT(text, HasSubstr("slips off above 5.862 mN"));
+}
+
 // The last pair gives nothing at any step: the others are set against the last that does, at each
 // step and over the path. Oracle: 1 − 1/2 of each component.
 TEST(Table, TakesTheLastPairWithAFieldForTheReferenceOfThePathToo) {

@@ -257,6 +257,15 @@ TEST(SeriesTimes, AreTheLoadsIfTheyIncreaseElseTheSteps) {
             (std::vector<double>{0, 1, 2}));
 }
 
+TEST(SeriesTimes, OfAProbeAreItsDisplacements) {
+  const LoadPath path{ProbeLoad{1e-3, 16e-3, 0}, ProbeLoad{2e-3, 16e-3, 0}};
+  EXPECT_EQ(series_times(path), (std::vector<double>{1e-3, 2e-3}));
+  const auto grid = solid_grid(BentBricks::body());
+  add_provenance(*grid, {}, path[1]);
+  EXPECT_EQ(grid->GetFieldData()->GetArray("load")->GetTuple1(0), 2e-3);
+  EXPECT_THAT(strings(grid, "load_unit"), testing::ElementsAre("m"));
+}
+
 // Every series lists the files that exist, with the load as its time; all of them carry the load
 // and where they come from.
 TEST(WriteVtk, MakesASeriesOfEachKindFromWhatExists) {

@@ -159,10 +159,17 @@ TEST(BeamNewton, ConvergesQuadratically) {
   moving.velocities = {0, 0, 0, 1, 0};
   System contact(straight_curve, moving, {{0}});
   state = contact.reference_state();
-  const NewtonReport border = newton(contact, state, end_load(3, {0.5, 0, 0}, Vector3::Zero()), {},
-                                     HeightCondition{3, 1.45, HeightCondition::Unknown::shift});
+  const Loads push = end_load(3, {0.5, 0, 0}, Vector3::Zero());
+  const Condition height_of_contact = at_height(3, 1.45, Condition::Unknown::shift);
+  const NewtonReport border = newton(contact, state, push, {}, std::array{height_of_contact});
   ASSERT_TRUE(border.converged) << border.reason;
   EXPECT_GT(measured("contact", exponent(border)), 1.7);
+
+  state = contact.reference_state();
+  const Condition aside{3, Vector3::UnitX(), 0.5, Condition::Unknown::load_factor};
+  const NewtonReport probe = newton(contact, state, push, {}, std::array{height_of_contact, aside});
+  ASSERT_TRUE(probe.converged) << probe.reason;
+  EXPECT_GT(measured("probe", exponent(probe)), 1.7);
 }
 
 TEST(BeamNewton, CutsTheLoadStepBackAndGoesOn) {
