@@ -187,6 +187,12 @@ void append_solid(std::vector<Knob>& all) {
   all.push_back(number_knob(solid, &SolidOptions::max_cutbacks, "solid", "max_cutbacks",
                             quantity::number, cutbacks_range,
                             "Halvings of a load increment that does not converge."));
+  all.push_back(choice_knob(solid, &SolidOptions::solver, "solid", "solver",
+                            {{"auto", fem::SolverKind::automatic},
+                             {"direct", fem::SolverKind::direct},
+                             {"iterative", fem::SolverKind::iterative}},
+                            "Linear systems: sparse LU, or GMRES with multigrid; `auto` takes what "
+                            "is faster."));
 }
 
 void append_fields(std::vector<Knob>& all) {

@@ -23,6 +23,7 @@
 #include "compare/run.h"
 #include "compare/table.h"
 #include "compare/vtk/output.h"
+#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -109,6 +110,13 @@ ExitCode run_one(const Case& problem, OutputFolder& folder, const std::string& c
   return all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
 
+/// The part of the ranks beyond the first in a case: the solid, which shares its work with them.
+void take_part(Case problem) {
+  std::erase_if(problem.mechanics, [](const std::string& id) { return id != "solid"; });
+  problem.fields.clear();
+  run(problem, mechanics_models(), field_models(), {});
+}
+
 /// The folder of the shipped cases: installed beside the program, or the build tree's sources.
 std::optional<fs::path> shipped_cases() {
   std::error_code error;
@@ -147,6 +155,10 @@ std::string list_of_cases() {
 ExitCode run_cases(const std::vector<fs::path>& files, const fs::path& directory,
                    const std::string& command) {
   const std::vector<Case> cases = read_cases(files);
+  if (fem::rank() > 0) {
+    for (const Case& problem : cases) take_part(problem);
+    return ExitCode::pass;  // rank 0 knows
+  }
   std::vector<OutputFolder> folders;
   folders.reserve(cases.size());
   for (const Case& problem : cases) folders.emplace_back(directory, problem.name);

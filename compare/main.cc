@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "compare/commands.h"
+#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace {
@@ -114,6 +115,15 @@ ExitCode execute(int argc, char** argv) {
   return ExitCode::pass;
 }
 
+/// Under mpirun: rank 0 alone reads, writes and prints.
+void start_ranks() {
+  ciliaval::fem::start_mpi();
+  if (ciliaval::fem::rank() == 0) return;
+  for (std::FILE* stream : {stdout, stderr})
+    if (std::freopen("/dev/null", "w", stream) == nullptr)
+      throw ciliaval::FileError("cannot open /dev/null");
+}
+
 }  // namespace
 
 /// The one place where errors become exit codes.
@@ -121,6 +131,7 @@ int main(int argc, char** argv) {
   ExitCode code = ExitCode::pass;
   std::string message;
   try {
+    if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
     code = execute(argc, argv);
   } catch (const ciliaval::InputError& error) {
     code = ExitCode::usage;
@@ -137,5 +148,7 @@ int main(int argc, char** argv) {
   }
   if (!message.empty())
     fmt::print(stderr, "{}{}\n", is_located(message) ? "" : "ciliaval: ", message);
-  return static_cast<int>(code);
+  // A message stands for a failure of this rank alone, or of all.
+  if (!message.empty()) ciliaval::fem::abort_all_ranks(static_cast<int>(code));
+  return ciliaval::fem::from_first_rank(static_cast<int>(code));
 }

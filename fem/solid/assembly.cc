@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "problem/error.h"
 
@@ -173,18 +174,23 @@ std::optional<InternalForces> internal_forces(const SolidSpace& space, const Sol
 
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
                    const dealii::AffineConstraints<double>& constraints,
-                   dealii::SparseMatrix<double>& matrix) {
+                   dealii::SparseMatrix<double>& matrix, std::span<const std::size_t> cells) {
   const auto& elements = space.elements();
-  using Iterator = std::vector<SolidElement>::const_iterator;
-  const auto worker = [&](const Iterator& element, NoScratch&, StiffnessShare& share) {
-    const auto index = static_cast<std::size_t>(element - elements.begin());
-    element_stiffness(*element, state, index, internal.pressure[index], share.matrix);
-    std::copy(element->dofs.begin(), element->dofs.end(), share.dofs.begin());
+  std::vector<std::size_t> indices(cells.begin(), cells.end());
+  if (indices.empty()) {
+    indices.resize(elements.size());
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+  }
+  using Iterator = std::vector<std::size_t>::const_iterator;
+  const auto worker = [&](const Iterator& cell, NoScratch&, StiffnessShare& share) {
+    const SolidElement& element = elements[*cell];
+    element_stiffness(element, state, *cell, internal.pressure[*cell], share.matrix);
+    std::copy(element.dofs.begin(), element.dofs.end(), share.dofs.begin());
   };
   const auto copier = [&](const StiffnessShare& share) {
     constraints.distribute_local_to_global(share.matrix, share.dofs, matrix);
   };
-  dealii::WorkStream::run(elements.begin(), elements.end(), worker, copier, NoScratch(),
+  dealii::WorkStream::run(indices.cbegin(), indices.cend(), worker, copier, NoScratch(),
                           StiffnessShare());
 }
 

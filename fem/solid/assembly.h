@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fem/solid/space.h"
@@ -44,12 +45,12 @@ std::optional<InternalForces> internal_forces(const SolidSpace& space, const Sol
 void element_stiffness(const SolidElement& element, const SolidState& state, std::size_t index,
                        const PressureEquation& equation, dealii::FullMatrix<double>& matrix);
 
-/// Adds element_stiffness() of all cells to the matrix. The cells are computed in parallel and
-/// added in their order, so that the result does not depend on the number of threads; the same
-/// holds for internal_forces().
+/// Adds element_stiffness() of the given cells (indices of space.elements()) to the matrix, of all
+/// if none are given. The cells are computed in parallel and added in their order, so that the
+/// result does not depend on the number of threads; the same holds for internal_forces().
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
                    const dealii::AffineConstraints<double>& constraints,
-                   dealii::SparseMatrix<double>& matrix);
+                   dealii::SparseMatrix<double>& matrix, std::span<const std::size_t> cells = {});
 
 /// u += Δu, p += C⁻¹ (R_p + G Δu), with the pressure equations of the state before.
 void advance(const SolidSpace& space, const InternalForces& internal,

@@ -28,25 +28,20 @@ std::vector<DirichletCondition> supports(Extent extent) {
 }  // namespace
 
 Level::Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
-             std::span<const Hyperelastic> materials, const LoadPathOptions& options,
-             Level* coarser, bool beam_guess)
-    : cilium_(cilium),
-      options_(options),
-      finest_layer_(mesh.finest_layer),
-      coarser_(coarser),
-      beam_guess_(beam_guess) {
+             std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser)
+    : cilium_(cilium), options_(options), finest_layer_(mesh.finest_layer), coarser_(coarser) {
   meshes::make_cylinder(cilium, mesh, triangulation_);
   mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
   space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
   fibres_ = std::make_unique<Fibres>(*space_, mesh.half ? Extent::half : Extent::whole);
-  newton_ = std::make_unique<Newton>(*space_,
-                                     increment_constraints(*space_, supports(fibres_->extent())));
+  newton_ = std::make_unique<Newton>(
+      *space_, increment_constraints(*space_, supports(fibres_->extent())), options.solver);
 }
 
 LoadPathOutcome Level::advance(const Load& load, const Progress& progress) {
   if (!solver_)
     solver_ = std::make_unique<LoadPathSolver>(
-        *space_, *fibres_, *newton_, load, options_,
+        *space_, *fibres_, *newton_, load, options_.path,
         [this](const Load& target, const Progress& report) { return first_guess(target, report); });
   return solver_->advance(load, progress);
 }
@@ -62,7 +57,7 @@ Guess Level::first_guess(const Load& load, const Progress& progress) const {
     if (outcome.status == Status::converged)
       guess.state = transferred(*coarser_->space_, *coarser_->fibres_,
                                 coarser_->solver().current().state, *space_);
-  } else if (beam_guess_) {
+  } else if (options_.beam_guess) {
     guess = beam_guess(load);
   }
   if (guess.state) prescribe(*space_, supports(fibres_->extent()), *guess.state);
@@ -87,7 +82,8 @@ Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
 Deformation Level::deformation(double azimuth) const {
   const Equilibrium& current = solver().current();
   return deformation(current.state,
-                     spread_load(current.load, fibres_->area(), options_.kernel_width), azimuth);
+                     spread_load(current.load, fibres_->area(), options_.path.kernel_width),
+                     azimuth);
 }
 
 Deformation Level::undeformed(double azimuth) const {

@@ -20,15 +20,21 @@
 
 namespace ciliaval::fem {
 
+struct LevelOptions {
+  LoadPathOptions path;
+  SolverKind solver = SolverKind::automatic;
+  bool beam_guess = true;  ///< start the coarsest level from the beam's solution
+};
+
 /// The discretised cilium on one mesh, in the frame of the bending plane (loads along x), with its
 /// solvers. Its members refer to one another: it stays where it is made.
 class Level {
  public:
   /// `coarser` gives the first guesses, and with its own tip the estimate of the error; without
-  /// it, the beam does if `beam_guess`. Both must outlive the level.
+  /// it, the beam gives them if options.beam_guess. Cilium and coarser level must outlive the
+  /// level.
   Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
-        std::span<const Hyperelastic> materials, const LoadPathOptions& options, Level* coarser,
-        bool beam_guess);
+        std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser);
   Level(const Level&) = delete;
   Level& operator=(const Level&) = delete;
 
@@ -55,10 +61,9 @@ class Level {
   Vector3 tip() const;
 
   const Cilium& cilium_;
-  LoadPathOptions options_;
+  LevelOptions options_;
   double finest_layer_;
   Level* coarser_;
-  bool beam_guess_;
   dealii::Triangulation<3> triangulation_;
   std::unique_ptr<dealii::MappingQCache<3>> mapping_;
   std::unique_ptr<SolidSpace> space_;

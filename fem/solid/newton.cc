@@ -44,9 +44,17 @@ double relative_residual(const InternalForces& internal, const Vector<double>& e
   return norm > 0 ? norm / scale : 0;
 }
 
+/// Relative residual of the linear systems: two iterations of Newton's method, which squares the
+/// error, are then hardly distinguishable from those with a direct solver, and the third is below
+/// the tolerance.
+constexpr double step_reduction = 1e-6;
+/// … where only the size of the solution is asked for.
+constexpr double estimate_reduction = 1e-2;
+
 }  // namespace
 
-Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints)
+Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints,
+               SolverKind solver)
     : space_(space),
       constraints_(std::move(constraints)),
       size_(dealii::GridTools::diameter(space.dof_handler().get_triangulation())) {
@@ -54,6 +62,13 @@ Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constr
   dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), pattern, constraints_, true);
   sparsity_.copy_from(pattern);
   matrix_.reinit(sparsity_);
+  solver_ = std::make_unique<LinearSolver>(space, constraints_, sparsity_, solver);
+  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+    const auto& dofs = space.elements()[e].dofs;
+    if (std::any_of(dofs.begin(), dofs.end(),
+                    [this](auto dof) { return solver_->rows().contains(dof); }))
+      cells_.push_back(e);
+  }
 }
 
 NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
@@ -61,7 +76,6 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
   NewtonResult result;
   Vector<double> residual;
   Vector<double> increment;
-  dealii::SparseDirectUMFPACK factorisation;
   const auto fail = [&result](const std::string& reason) {
     result.reason = reason;
     return result;
@@ -78,9 +92,12 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
     if (progress) progress(iteration, norm);
     if (!std::isfinite(norm) || norm > divergence) return fail("the residual grows without bound");
     if (iteration > 0 && norm <= std::max(options.tolerance, rounding_level)) {
-      // The last factorisation is good enough to tell the size of the step that is left.
-      increment = residual;
-      factorisation.solve(increment);
+      // The last tangent is good enough to tell the size of the step that is left.
+      try {
+        solver_->solve(residual, increment, estimate_reduction);
+      } catch (const SolverError& error) {
+        return fail(error.what());
+      }
       constraints_.distribute(increment);
       const double scale = std::max(state.displacement.linfty_norm(), 1e-6 * size_);
       if (increment.linfty_norm() <= options.tolerance * scale) {
@@ -96,18 +113,16 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
       return fail("no convergence in " + std::to_string(iteration) + " iterations");
 
     matrix_ = 0;
-    add_stiffness(space_, state, *internal, constraints_, matrix_);
+    add_stiffness(space_, state, *internal, constraints_, matrix_, cells_);
     Vector<double> unused(space_.unknowns());
     external(state.displacement, unused, constraints_, &matrix_);
     try {
-      factorisation.initialize(matrix_);
-    } catch (const dealii::ExceptionBase&) {
-      return fail("the stiffness matrix is singular");
+      solver_->prepare(matrix_);
+      result.linear_iterations.push_back(solver_->solve(residual, increment, step_reduction));
+    } catch (const SolverError& error) {
+      return fail(error.what());
     }
-    increment = residual;
-    factorisation.solve(increment);
     constraints_.distribute(increment);
-    if (!std::isfinite(increment.l2_norm())) return fail("the stiffness matrix is singular");
     result.increments.push_back(increment.linfty_norm());
     advance(space_, *internal, increment, state);
   }

@@ -2,15 +2,16 @@
 #pragma once
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/sparse_direct.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
 #include <deal.II/lac/vector.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "fem/solid/linear_solver.h"
 #include "fem/solid/space.h"
 
 namespace ciliaval::fem {
@@ -24,35 +25,40 @@ struct NewtonOptions {
   double tolerance = 1e-9;  ///< of the remaining increment, relative to the displacement,
                             ///< and of the residual, relative to the force scale, as far as
                             ///< rounding errors let it fall
-  unsigned int max_iterations = 25;  ///< linear systems factorised
+  unsigned int max_iterations = 25;  ///< tangents assembled
   double least_force = 0;            ///< lower bound of the force scale, N
 };
 
 struct NewtonResult {
   bool converged = false;
-  std::string reason;                ///< why not
-  bool overshot = false;             ///< det F was not positive after the very first iteration
-  std::vector<double> residuals;     ///< relative, before each iteration and at the end
-  std::vector<double> increments;    ///< ‖Δu‖_max of each iteration, m
-  dealii::Vector<double> reactions;  ///< internal − external forces at the end, all rows, N
-  dealii::Vector<double> external;   ///< external forces at the end, N
+  std::string reason;                  ///< why not
+  bool overshot = false;               ///< det F was not positive after the very first iteration
+  std::vector<double> residuals;       ///< relative, before each iteration and at the end
+  std::vector<double> increments;      ///< ‖Δu‖_max of each iteration, m
+  dealii::Vector<double> reactions;    ///< internal − external forces at the end, all rows, N
+  dealii::Vector<double> external;     ///< external forces at the end, N
+  std::vector<int> linear_iterations;  ///< of GMRES in each iteration; 1: solved directly
   int iterations() const { return static_cast<int>(increments.size()); }
 };
 
 /// Called after each evaluation of the residual: iteration, relative residual.
 using NewtonProgress = std::function<void(int, double)>;
 
-/// Newton's method for internal(u, p) = external(u), p condensed, by sparse LU (UMFPACK) of the
-/// unsymmetric tangent. It holds the matrix and its sparsity from one solution to the next.
+/// Newton's method for internal(u, p) = external(u), p condensed, with a LinearSolver for the
+/// unsymmetric tangent. It holds the matrix and its sparsity from one solution to the next. On
+/// several ranks all functions are collective, and all ranks hold the same states, bit by bit.
 ///
 /// The force scale of the residual is the l₂ norm of the nodal external forces or, if they vanish,
 /// of the reactions at the constrained degrees of freedom. Once the residual is below the
 /// tolerance, or below 1e-6, where rounding errors may keep it, the increment that the last
-/// factorisation gives for it estimates the error of the displacement that is left; that must be
+/// tangent gives for it estimates the error of the displacement that is left; that must be
 /// below the tolerance.
 class Newton {
  public:
-  Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints);
+  Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints,
+         SolverKind solver = SolverKind::automatic);
+  Newton(const Newton&) = delete;
+  Newton& operator=(const Newton&) = delete;
 
   /// Solves from the given state, which must satisfy the Dirichlet conditions; it holds the last
   /// iterate at the end, converged or not.
@@ -64,7 +70,9 @@ class Newton {
   dealii::AffineConstraints<double> constraints_;
   dealii::SparsityPattern sparsity_;
   dealii::SparseMatrix<double> matrix_;
-  double size_;  ///< diameter of the body, m
+  std::unique_ptr<LinearSolver> solver_;
+  std::vector<std::size_t> cells_;  ///< those that this rank assembles
+  double size_;                     ///< diameter of the body, m
 };
 
 }  // namespace ciliaval::fem

@@ -143,16 +143,17 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
 /// The meshes from the coarsest to that of the refinement asked for.
 std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const LoadPath& path,
                                                 const SolidOptions& options) {
-  const LoadPathOptions path_options{
-      {options.tolerance, options.max_iterations, least_force(cilium)},
-      options.max_cutbacks,
-      options.kernel_width};
+  const LevelOptions level_options{
+      {{options.tolerance, options.max_iterations, least_force(cilium)},
+       options.max_cutbacks,
+       options.kernel_width},
+      options.solver,
+      options.initial_guess == InitialGuess::beam};
   std::vector<std::unique_ptr<Level>> levels;
   for (unsigned int i = 0; i <= levels_below(options.refinement); ++i)
     levels.push_back(std::make_unique<Level>(cilium, mesh_options(i, options, path),
-                                             materials(cilium, options), path_options,
-                                             levels.empty() ? nullptr : levels.back().get(),
-                                             options.initial_guess == InitialGuess::beam));
+                                             materials(cilium, options), level_options,
+                                             levels.empty() ? nullptr : levels.back().get()));
   return levels;
 }
 

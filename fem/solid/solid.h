@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "fem/solid/solver_kind.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::meshes {
@@ -32,6 +33,7 @@ struct SolidOptions {
       1e-9;  ///< of the residual, relative to the applied force, and of the increment
   unsigned int max_iterations = 25;
   unsigned int max_cutbacks = 5;
+  SolverKind solver = SolverKind::automatic;  ///< of the linear systems
 };
 
 /// The mesh of a refinement. Throws InputError if there is none of that number.

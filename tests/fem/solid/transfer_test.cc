@@ -205,13 +205,13 @@ TEST(Lift, TakesThePapersWholeLoadInOneStep) {
   std::vector<Hyperelastic> materials;
   for (const Segment& s : cilium.segments)
     materials.push_back(Hyperelastic::neo_hooke(s.shear_modulus(), s.bulk_modulus()));
-  Level with_beam(cilium, mesh, materials, {}, nullptr, true);
+  Level with_beam(cilium, mesh, materials, {.beam_guess = true}, nullptr);
   const LoadPathOutcome guessed =
       with_beam.advance(load, [&](const std::string& line) { lines.push_back(line); });
   EXPECT_EQ(guessed.status, Status::converged) << guessed.message;
   EXPECT_LE(guessed.iterations, 8);
   for (const std::string& line : lines) EXPECT_NE(line.find("load 0.004"), std::string::npos);
-  Level without(cilium, mesh, materials, {}, nullptr, false);
+  Level without(cilium, mesh, materials, {.beam_guess = false}, nullptr);
   const LoadPathOutcome plain = without.advance(load, {});
   EXPECT_EQ(plain.status, Status::converged) << plain.message;
   EXPECT_GT(plain.iterations, guessed.iterations);

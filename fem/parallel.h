@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/types.h>
+
+#include <span>
+
+namespace ciliaval::fem {
+
+/// Starts MPI and PETSc unless they run already, and ends them at the end of the program. With more
+/// than one rank each of them uses one thread. PETSc's errors come back as codes instead of ending
+/// the program. Throws SolverError if they cannot be started.
+void start_mpi();
+
+/// Whether a process manager (mpirun, srun …) has started this program on more than one rank. Does
+/// not start MPI.
+bool launched_on_several_ranks();
+
+/// Number of this rank, and of all ranks: 0 and 1 unless MPI was started.
+int rank();
+int rank_count();
+
+/// Ends all ranks with the exit code, if there are several: after a failure of one rank alone, for
+/// which the others would wait forever.
+void abort_all_ranks(int exit_code);
+
+/// Rank 0's value, on all ranks. Collective.
+int from_first_rank(int value);
+
+/// Replaces the values by their sums over the ranks: the same bits on all of them. Collective.
+void sum_over_ranks(std::span<double> values);
+
+using Row = dealii::types::global_dof_index;
+
+/// A contiguous part of a range of rows.
+struct RowRange {
+  Row begin = 0;
+  Row end = 0;
+  bool contains(Row index) const { return index >= begin && index < end; }
+};
+
+/// This rank's part of 0 … size − 1; the ranks'' parts are contiguous, in order and nearly equal.
+RowRange own_range(Row size);
+
+/// Every rank holds its own_range() of the values; afterwards all of them. Collective.
+void gather_over_ranks(std::span<double> values);
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The linear solvers of the solid against each other and against what theory says of them.
+#include "fem/solid/linear_solver.h"
+
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "cube.h"
+#include "fem/solid/solid.h"
+
+namespace ciliaval::fem {
+namespace {
+
+using dealii::Vector;
+
+/// The tangent of an undeformed block, clamped on −x, and the nodal forces of a body force.
+struct System {
+  Block block;
+  SolidSpace space;
+  dealii::AffineConstraints<double> constraints;
+  dealii::SparsityPattern pattern;
+  dealii::SparseMatrix<double> matrix;
+  Vector<double> forces;
+
+  explicit System(double poisson_ratio)
+      : block(neo_hooke(1, poisson_ratio), {6, 2, 2}, {3, 1, 1}, 0.2),
+        space(block.triangulation, block.mapping, block.materials),
+        constraints(increment_constraints(space, std::vector<DirichletCondition>{{.boundary = 0}})),
+        forces(body_force(space, [](const Vector3&) -> Vector3 {
+          return {0, 0.001, 0.002};
+        })) {
+    dealii::DynamicSparsityPattern dynamic(space.unknowns());
+    dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), dynamic, constraints, true);
+    pattern.copy_from(dynamic);
+    matrix.reinit(pattern);
+    const SolidState state = space.undeformed();
+    add_stiffness(space, state, *internal_forces(space, state), constraints, matrix);
+    constraints.set_zero(forces);
+  }
+};
+
+double relative_residual(const System& system, const Vector<double>& solution) {
+  Vector<double> residual(solution.size());
+  return system.matrix.residual(residual, solution, system.forces) / system.forces.l2_norm();
+}
+
+// Oracle: the definition of the residual. Measured 1e-14 and 7e-9; the first bound leaves the
+// rounding errors of a larger K/μ room.
+TEST(SolidLinearSolver, SolvesToTheReductionAskedFor) {
+  const System system(0.49);
+  for (const SolverKind kind : {SolverKind::direct, SolverKind::iterative}) {
+    LinearSolver solver(system.space, system.constraints, system.pattern, kind);
+    solver.prepare(system.matrix);
+    Vector<double> solution;
+    solver.solve(system.forces, solution, 1e-8);
+    EXPECT_LE(relative_residual(system, solution), kind == SolverKind::direct ? 1e-11 : 1e-8);
+    // The same preparation serves other right-hand sides.
+    Vector<double> twice(system.forces);
+    twice *= 2;
+    Vector<double> other;
+    solver.solve(twice, other, 1e-8);
+    other.add(-2, solution);
+    EXPECT_LE(other.linfty_norm(), 1e-6 * solution.linfty_norm());
+  }
+}
+
+// Oracle: Schwarz theory. A cell meets eight stars, so that λ_max ≤ 8; on a mesh with cells that
+// have eight free stars it comes near. Power iteration, from below.
+TEST(SolidLinearSolver, VertexStarsHaveNoEigenvalueBeyondEight) {
+  const System system(0.49);
+  VertexStars stars(system.space, system.constraints, {0, system.space.unknowns()});
+  stars.update(system.matrix);
+  Vector<double> x(system.space.unknowns());
+  std::iota(x.begin(), x.end(), 1.0);
+  system.constraints.set_zero(x);
+  Vector<double> y(x.size());
+  double eigenvalue = 0;
+  for (int i = 0; i < 40; ++i) {
+    x /= x.l2_norm();
+    system.matrix.vmult(y, x);
+    stars.vmult(x, y);
+    eigenvalue = x.l2_norm();
+  }
+  EXPECT_LE(eigenvalue, VertexStars::largest_eigenvalue * (1 + 1e-5));  // single precision
+  EXPECT_GE(eigenvalue, 0.5 * VertexStars::largest_eigenvalue);
+}
+
+// Oracle: the purpose of the vertex stars. A point or cell smoother would need √(K/μ) times as many
+// iterations: 17 times at ν = 0.4999 against 0.3 …
+TEST(SolidLinearSolver, IterationsGrowLittleWithTheBulkModulus) {
+  const auto iterations = [](double poisson_ratio) {
+    const System system(poisson_ratio);
+    LinearSolver solver(system.space, system.constraints, system.pattern, SolverKind::iterative);
+    solver.prepare(system.matrix);
+    Vector<double> solution;
+    return solver.solve(system.forces, solution, 1e-6);
+  };
+  const int compressible = iterations(0.3);
+  EXPECT_LE(iterations(0.49), 3 * compressible);
+}
+
+// Oracle: linear algebra; nothing can be solved with a matrix of zeros.
+TEST(SolidLinearSolver, RefusesASingularMatrix) {
+  System system(0.3);
+  system.matrix = 0;
+  LinearSolver solver(system.space, system.constraints, system.pattern, SolverKind::direct);
+  Vector<double> solution;
+  EXPECT_THROW(
+      {
+        solver.prepare(system.matrix);
+        solver.solve(system.forces, solution, 1e-6);
+      },
+      SolverError);
+}
+
+// Oracle: the direct solver, which shares only the assembly. Both end with an estimated error of
+// 1e-9 of the displacement; the bound is that of MPI and of the solvers together.
+TEST(SolidLinearSolver, DirectAndIterativeGiveTheSameCilium) {
+  const Cilium cilium{
+      3e-3,
+      {{.name = "base", .length = 3e-3, .young_modulus = 1e5, .poisson_ratio = 0.49},
+       {.name = "magnet", .length = 17e-3, .young_modulus = 3e6, .poisson_ratio = 0.49}}};
+  const auto tip = [&](SolverKind kind) {
+    SolidOptions options;
+    options.refinement = 0;
+    options.solver = kind;
+    const LoadPath path{ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = 0.5}};
+    const MechanicsStep step = Solid(options).solve(cilium, path).steps.front();
+    if (!step.deformation) throw SolverError(step.message);
+    return step.deformation->centreline.at(cilium.length()).position;
+  };
+  const Vector3 direct = tip(SolverKind::direct);
+  const Vector3 iterative = tip(SolverKind::iterative);
+  EXPECT_LE((direct - iterative).norm(), 1e-9 * direct.head<2>().norm());
+}
+
+}  // namespace
+}  // namespace ciliaval::fem
