@@ -17,7 +17,7 @@
 namespace ciliaval::fem {
 
 /// Unknowns beyond which `automatic` is `iterative` (measured: docs/solid.md).
-inline constexpr dealii::types::global_dof_index direct_unknowns = 40000;
+inline constexpr dealii::types::global_dof_index direct_unknowns = 30000;
 
 /// Solves systems with the solid's tangent, which may be unsymmetric: by sparse LU (MUMPS), or by
 /// GMRES preconditioned from the right by one multigrid cycle. Vectors are whole on every rank, the
