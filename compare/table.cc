@@ -63,23 +63,24 @@ const Comparison* find(const std::vector<Comparison>& comparisons, std::optional
 }
 
 std::string mechanics_table(const CaseResult& result, std::size_t index) {
-  std::string text = fmt::format("  {:<22}{:<12}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>7}{:>9}\n",
-                                 "mechanics", "status", "tip x", "y", "z (mm)", "(deg)",
+  std::string text = fmt::format("  {:<22}{:<12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>7}{:>9}\n",
+                                 "mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)",
                                  "force(mN)", "unknowns", "iter.", "time (s)");
   for (const MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
-    std::array<std::string, 5> cells{"-", "-", "-", "-", "-"};
+    std::array<std::string, 6> cells{"-", "-", "-", "-", "-", "-"};
     if (step.deformation) {
       const Centreline& centreline = step.deformation->centreline;
       const CentrelinePoint tip = centreline.at(centreline.length());
       for (std::size_t i = 0; i < 3; ++i)
         cells[i] = cell(tip.position[static_cast<Eigen::Index>(i)], 1e-3, "{:.4f}");
-      cells[3] = cell(tip.theta(), degree, "{:.3f}");
-      cells[4] = cell(step.applied_force, 1e-3, "{:.5g}");
+      if (step.tip_uncertainty) cells[3] = cell(*step.tip_uncertainty, 1e-6, "{:.2g}");
+      cells[4] = cell(tip.theta(), degree, "{:.3f}");
+      cells[5] = cell(step.applied_force, 1e-3, "{:.5g}");
     }
-    text += fmt::format("  {:<22}{:<12}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>7}{:>9.3g}\n", run.model,
-                        to_string(step.status), cells[0], cells[1], cells[2], cells[3], cells[4],
-                        step.unknowns, step.iterations, step.seconds);
+    text += fmt::format("  {:<22}{:<12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>7}{:>9.3g}\n",
+                        run.model, to_string(step.status), cells[0], cells[1], cells[2], cells[3],
+                        cells[4], cells[5], step.unknowns, step.iterations, step.seconds);
   }
   for (const MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
@@ -194,6 +195,7 @@ std::string path_errors(const CaseResult& result, const std::vector<Comparison>&
 }
 
 constexpr const char* mechanics_legend =
+    "+- estimate of the tip's discretisation error in micrometres, where the model has one.\n"
     "(1) distance of the two centrelines at common material points, largest, RMS over the arc\n"
     "    length and at the tip, divided by the tip deflection of the second; tip angle divided by\n"
     "    its tip angle. R2 of the deflection w over the current height z, and the square of its\n"

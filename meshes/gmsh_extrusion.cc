@@ -125,6 +125,7 @@ void find_vertices(const UserMesh& mesh, Extrusion& extrusion) {
   for (const GmshElement& element : mesh.file.hexahedra)
     for (const std::size_t node : corners(element.nodes, n)) corner_nodes.insert(node);
   std::vector<double> heights;
+  heights.reserve(corner_nodes.size());
   for (const std::size_t node : corner_nodes) heights.push_back(mesh.position(node)[2]);
   extrusion.planes = find_planes(mesh, std::move(heights));
   PointIndex index(mesh.tolerance());
@@ -230,6 +231,7 @@ std::vector<std::size_t> turned(const std::vector<std::size_t>& nodes, const Fra
   std::set<std::size_t> planes;
   for (const std::size_t v : vertex) planes.insert(extrusion.plane(v));
   std::vector<std::string> heights;
+  heights.reserve(planes.size());
   for (const std::size_t plane : planes)
     heights.push_back(fmt::format("{:.6g}", mesh.in_file(extrusion.planes[plane])));
   constexpr std::string_view advice =

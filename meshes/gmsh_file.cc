@@ -215,7 +215,9 @@ GmshElementType gmsh_element_type(int dimension, bool quadratic) {
   for (int a = 0; a < properties.nodes; ++a) {
     long lexicographic = 0;
     for (int c = dimension - 1; c >= 0; --c) {
-      const double x = properties.coordinates[static_cast<std::size_t>(a * dimension + c)];
+      const auto entry = static_cast<std::size_t>(a) * static_cast<std::size_t>(dimension) +
+                         static_cast<std::size_t>(c);
+      const double x = properties.coordinates[entry];
       lexicographic = lexicographic * (order + 1) + std::lround((x + 1) / 2 * order);
     }
     result.lexicographic.push_back(static_cast<std::size_t>(lexicographic));

@@ -232,12 +232,13 @@ void take_nodes(const UserMesh& mesh, const Extrusion& extrusion, Section& secti
     const Extrusion::Cell& cell = extrusion.cells[e];
     for (std::size_t a = 0; a < cell.nodes.size(); ++a) {
       const std::size_t i = a % 9;
+      const std::size_t level = a / 9;  // lower, middle, upper plane
       const bool corner = i == 0 || i == 2 || i == 6 || i == 8;
       const Point<2> xy =
           corner ? extrusion.columns[extrusion.column(extrusion.vertices[cell.nodes[i]])]
                  : place(cell, i);
       const double z = extrusion.planes[cell.layer] +
-                       static_cast<double>(a / 9) / 2 *
+                       static_cast<double>(level) / 2 *
                            (extrusion.planes[cell.layer + 1] - extrusion.planes[cell.layer]);
       if (mesh.position(cell.nodes[a]).distance(Point<3>(xy[0], xy[1], z)) > 2 * mesh.tolerance())
         mesh.fail(fmt::format(

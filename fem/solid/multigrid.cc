@@ -41,7 +41,7 @@ int corner_node(std::size_t corner) {
 }
 
 std::size_t element_dof(int component, int node) {
-  return static_cast<std::size_t>(element_nodes * component + node);
+  return element_nodes * static_cast<std::size_t>(component) + static_cast<std::size_t>(node);
 }
 
 /// Trilinear shape function of a corner at a node of the element.

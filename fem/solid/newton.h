@@ -50,7 +50,7 @@ using NewtonProgress = std::function<void(int, double)>;
 ///
 /// The force scale of the residual is the l₂ norm of the nodal external forces or, if they vanish,
 /// of the reactions at the constrained degrees of freedom. Once the residual is below the
-/// tolerance, or below 1e-6, where rounding errors may keep it, the increment that the last
+/// tolerance, or below 1e-4, where rounding errors may keep it, the increment that the last
 /// tangent gives for it estimates the error of the displacement that is left; that must be
 /// below the tolerance.
 class Newton {

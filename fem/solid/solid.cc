@@ -30,8 +30,8 @@ struct MeshLevel {
   double coarsest_layer;
   double growth;
 };
-constexpr std::array<MeshLevel, 6> mesh_levels{{{2, 1, 1.0, 0.32, 1.2, 0.6},
-                                                {2, 2, 0.5, 0.16, 0.8, 0.45},
+constexpr std::array<MeshLevel, 6> mesh_levels{{{2, 1, 1.0, 0.32, 1.2, 0.35},
+                                                {2, 2, 0.5, 0.16, 0.8, 0.25},
                                                 {2, 3, 0.5, 0.08, 0.5, 0.3},
                                                 {2, 4, 0.5, 0.04, 0.5, 0.3},
                                                 {4, 5, 0.5, 0.02, 0.4, 0.25},

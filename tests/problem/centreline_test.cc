@@ -34,7 +34,8 @@ Centreline::Piece arc_piece(double a, double b, double kappa, double phi) {
 TEST(Centreline, InterpolatesACircularArcToRoundingError) {
   const double kappa = 70;
   const Centreline line({arc_piece(0, 8e-3, kappa, 0.5), arc_piece(8e-3, 20e-3, kappa, 0.5)});
-  for (double S = 0; S <= 20e-3; S += 0.37e-3) {
+  for (int i = 0; i <= 54; ++i) {
+    const double S = 0.37e-3 * i;
     const CentrelinePoint p = line.at(S);
     const SectionState exact = arc(S, kappa, 0.5);
     EXPECT_NEAR((p.position - exact.position).norm(), 0, 1e-16 * 10);

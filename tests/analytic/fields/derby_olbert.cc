@@ -30,7 +30,7 @@ Real cel(const Real& kc2, const Real& p, const Real& c, const Real& s) {
 }  // namespace
 
 Vector3 derby_olbert(double M, double radius, double bottom, double top, const Vector3& x) {
-  const Real pi = boost::math::constants::pi<Real>();
+  const Real& pi = boost::math::constants::pi<Real>();
   const Real R = radius;
   const Real rho = sqrt(Real(x[0]) * x[0] + Real(x[1]) * x[1]);
   const Real r = rho / R;

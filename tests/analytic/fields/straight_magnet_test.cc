@@ -52,9 +52,9 @@ std::vector<Region> regions() {
     list[6].points.push_back(polar(1.49 * t, phi, i % 2 ? 3 + 1e-3 : 20 - 1e-3));
     list[7].points.push_back(polar(1.49 * t, phi, 3.1 + 16.8 * t));
     const double polar_angle = 3.1 * t;
-    for (const int far : {0, 1}) {
-      const double a = far ? 450 : 45;
-      list[static_cast<std::size_t>(8 + far)].points.push_back(
+    for (const std::size_t far : {0, 1}) {
+      const double a = far == 1 ? 450 : 45;
+      list[8 + far].points.push_back(
           Vector3(0, 0, 11.5) + polar(a * std::sin(polar_angle), phi, a * std::cos(polar_angle)));
     }
   }

@@ -20,7 +20,7 @@ struct BadCase {
   std::string_view replaced;  ///< by this
   const char* place;          ///< "line:column"
   std::string_view message;
-  std::string_view advice = "";  ///< what the message says besides
+  std::string_view advice{};  ///< what the message says besides
 };
 
 void PrintTo(const BadCase& bad, std::ostream* out) {

@@ -252,6 +252,7 @@ material = "yeoh"
 yeoh_ratios = [-0.2, 0.03]
 refinement = 2
 initial_guess = "none"
+solver = "iterative"
 symmetry = false
 kernel_width = "0.25 mm"
 tolerance = 1e-7
@@ -297,6 +298,7 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(mooney.solid.material, fem::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.solid.mooney_ratio, 0.1);
   EXPECT_EQ(o.solid.refinement, 2U);
+  EXPECT_EQ(o.solid.solver, fem::SolverKind::iterative);
   EXPECT_EQ(o.solid.initial_guess, fem::InitialGuess::none);
   EXPECT_FALSE(o.solid.symmetry);
   EXPECT_EQ(o.solid.kernel_width, 0.00025);

@@ -35,7 +35,7 @@ Outcome ciliaval(const fs::path& folder, const std::string& arguments) {
 
 /// A case that the rods solve in a moment.
 fs::path write_case(const fs::path& folder, const std::string& name, const std::string& models) {
-  const fs::path file = folder / (name + ".toml");
+  fs::path file = folder / (name + ".toml");
   std::ofstream(file) << "[case]\nname = \"" << name << R"("
 title = "A quick one"
 [cilium]

@@ -144,7 +144,7 @@ MechanicsEntry tilt(const std::string& id, double factor, std::optional<double> 
 
 CaseResult run_tilts(std::optional<double> rough_uncertainty,
                      std::optional<double> fine_uncertainty,
-                     std::optional<Vector3> field_uncertainty,
+                     const std::optional<Vector3>& field_uncertainty,
                      const std::vector<double>& forces = {0.1, 0.2}) {
   Case c = paper_case(forces);
   c.mechanics = {"rough", "fine"};

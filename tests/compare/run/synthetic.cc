@@ -92,14 +92,14 @@ Field FormulaField::field(const Cilium&, const Deformation& deformation,
   return field;
 }
 
-compare::MechanicsEntry mechanics_entry(std::string id, ShapeModel::Shape shape) {
+compare::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape) {
   return {std::move(id), "a known shape", [shape](const compare::ModelOptions&) {
             return std::make_unique<ShapeModel>(shape, straight_centreline({0, 3e-3, 20e-3}));
           }};
 }
 
-compare::FieldEntry field_entry(std::string id, FormulaField::Formula formula,
-                                std::optional<Vector3> uncertainty, bool needs_body) {
+compare::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,
+                                const std::optional<Vector3>& uncertainty, bool needs_body) {
   return {std::move(id), "a known field", [=](const compare::ModelOptions&) {
             return std::make_unique<FormulaField>(formula, uncertainty, needs_body);
           }};

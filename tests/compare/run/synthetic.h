@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compare/run.h"
@@ -57,7 +58,7 @@ class ShapeModel : public MechanicsModel {
 class FormulaField : public FieldModel {
  public:
   using Formula = std::function<Vector3(const Deformation&, const Vector3&)>;
-  FormulaField(Formula formula, std::optional<Vector3> uncertainty, bool needs_body = false)
+  FormulaField(Formula formula, const std::optional<Vector3>& uncertainty, bool needs_body = false)
       : formula_(std::move(formula)), uncertainty_(uncertainty), needs_body_(needs_body) {}
   bool needs_body() const override { return needs_body_; }
   Field field(const Cilium& cilium, const Deformation& deformation,
@@ -69,9 +70,10 @@ class FormulaField : public FieldModel {
   bool needs_body_;
 };
 
-compare::MechanicsEntry mechanics_entry(std::string id, ShapeModel::Shape shape);
-compare::FieldEntry field_entry(std::string id, FormulaField::Formula formula,
-                                std::optional<Vector3> uncertainty = {}, bool needs_body = false);
+compare::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape);
+compare::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,
+                                const std::optional<Vector3>& uncertainty = {},
+                                bool needs_body = false);
 
 /// A converged step.
 MechanicsStep converged(const Load& load, Centreline centreline,

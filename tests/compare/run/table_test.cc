@@ -44,7 +44,7 @@ TEST(Table, ShowsValuesWithUnitsAndErrorsAgainstTheReference) {
   const CaseResult result = run(c, mechanics, fields);
   const std::string text = table(result, compare_models(result));
   EXPECT_THAT(text, HasSubstr("contact, force 1 mN at height 16 mm, azimuth 0 deg"));
-  EXPECT_THAT(text, ContainsRegex("rough +converged +1.9967 +0.0000 +19.9001 +5.730 +1 "));
+  EXPECT_THAT(text, ContainsRegex("rough +converged +1.9967 +0.0000 +19.9001 +0.001 +5.730 +1 "));
   EXPECT_THAT(text, ContainsRegex("rough - fine +50.31 +29.05 +50.31 +-50.00 .*resolved"));
   EXPECT_THAT(text, ContainsRegex("rough/tip +0.1997 +0.0000 +5.0000 +199.67 +0.00 +0.00 "
                                   "+-49.75 +0.00 +0.00"));

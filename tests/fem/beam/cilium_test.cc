@@ -359,7 +359,8 @@ TEST(BeamCentreline, CarriesCurvatureAndSectionForces) {
   const Centreline& curve = result.steps[0].deformation->centreline;
   const double contact = *result.steps[0].contact_arclength;
   double error = 0;
-  for (double S = 0; S <= L; S += L / 97) {
+  for (int i = 0; i <= 97; ++i) {
+    const double S = L * i / 97;
     const CentrelinePoint point = curve.at(S);
     const double EI = (S < 3e-3 ? 0.1e6 : 3e6) * cilium.second_moment();
     const double M = S < contact ? F * (h - point.position[2]) : 0;

@@ -193,7 +193,8 @@ INSTANTIATE_TEST_SUITE_P(Solid, Material, testing::ValuesIn(rubbers),
 /// Whether P_xy, the derivative of W by the shear, falls anywhere up to a shear of 30.
 bool shear_stress_falls(const Hyperelastic& material) {
   double last = 0;
-  for (double shear = 0.01; shear < 30; shear *= 1.002) {
+  double shear = 0.01;
+  for (; shear < 30; shear *= 1.002) {
     Matrix3 F = Matrix3::Identity();
     F(0, 1) = shear;
     const double stress = first_piola_stress(material, F, 0)(0, 1);
