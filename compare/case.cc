@@ -54,6 +54,10 @@ Case read_case(std::string_view text, std::string_view file) {
   const bool load = read_load(root, c);
   read_sensor(root, c);
   const bool models = read_models(root, c);
+  if (!c.options.solid.mesh.empty())  // beside the case file
+    c.options.solid.mesh =
+        std::filesystem::absolute(std::filesystem::path(file).parent_path() / c.options.solid.mesh)
+            .lexically_normal();
   root.finish();
   if (cilium) snap_to_interfaces(c.cilium, c.load_path);
   check_together(table, c, {cilium, load, models}, faults);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "compare/case_sections.h"
 #include "fem/solid/material.h"
@@ -69,6 +71,17 @@ void check_contact(const toml::table& root, const Case& c, Faults& faults) {
                              w, h, length));
     }
   }
+}
+
+/// The mesh itself is checked when it is read: here, that there is one.
+void check_mesh(const toml::table& root, const Case& c, Faults& faults) {
+  const std::filesystem::path& mesh = c.options.solid.mesh;
+  std::error_code error;
+  if (!mesh.empty() && !std::filesystem::is_regular_file(mesh, error))
+    faults.add(place_of(root, "models.solid.mesh"),
+               fmt::format("there is no mesh file '{}': a name without a leading / is looked for "
+                           "beside the case file",
+                           mesh.string()));
 }
 
 void check_section(const toml::table& root, const Case& c, Faults& faults) {
@@ -158,6 +171,7 @@ void check_together(const toml::table& root, const Case& c, const RightTables& r
   if (right.cilium && right.load) check_section(root, c, faults);
   if (right.load && right.models) check_elastica_form(root, c, faults);
   if (right.models) check_material(root, c, faults);
+  if (right.models) check_mesh(root, c, faults);
   if (right.models) check_fields(root, c, right.cilium, faults);
   if (right.load && right.models) check_size(root, c, faults);
 }

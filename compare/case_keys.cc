@@ -83,6 +83,31 @@ Knob choice_knob(Options ModelOptions::*model, T Options::*member, std::string_v
           }};
 }
 
+/// A knob that is the name of a file; empty: none.
+template <typename Options>
+Knob file_knob(Options ModelOptions::*model, std::filesystem::path Options::*member,
+               std::string_view id, std::string_view name, std::string_view doc) {
+  return {
+      id,
+      name,
+      quantity::number,
+      {},
+      {},
+      doc,
+      [=](const ModelOptions& o) { return KnobValue(((o.*model).*member).string()); },
+      [=](ModelOptions& o, const KnobValue& v) { (o.*model).*member = std::get<std::string>(v); }};
+}
+
+/// A TOML string in double quotes; the text has no control characters.
+std::string in_toml_quotes(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
 constexpr Range any_bool{};
 constexpr Range tolerance_range{1e-15, 1e-3, false,
                                 "double precision resolves no less, and more is no solution"};
@@ -173,6 +198,13 @@ void append_solid(std::vector<Knob>& all) {
                             any_bool,
                             "Solve one side of the bending plane; the other is its mirror "
                             "image."));
+  all.push_back(file_knob(solid, &SolidOptions::mesh, "solid", "mesh",
+                          "Gmsh file (docs/meshes.md) in place of the built-in mesh, beside the "
+                          "case file unless absolute; `refinement` and `symmetry` are then not "
+                          "used. Empty: the built-in mesh."));
+  all.push_back(number_knob(solid, &SolidOptions::mesh_unit, "solid", "mesh_unit", quantity::length,
+                            {1e-9, 1, false, key::unit_slip},
+                            "What a coordinate of 1 in that file is: `\"1 mm\"`."));
   all.push_back(number_knob(solid, &SolidOptions::kernel_width, "solid", "kernel_width",
                             quantity::length, key::length_range,
                             "Half-width w of the contact kernel; `contact` needs 0 < h-w and h+w "
@@ -252,6 +284,8 @@ std::string row(const Knob& knob) {
   std::string range;
   if (!knob.choices.empty()) {
     value = fmt::format("`{}`", fmt::join(knob.choices, "` or `"));
+  } else if (std::holds_alternative<std::string>(fallback)) {
+    value = "file name";
   } else if (!std::holds_alternative<bool>(fallback)) {
     const bool whole = std::holds_alternative<unsigned int>(fallback);
     value = whole ? "whole number" : knob.quantity.name;
@@ -307,7 +341,7 @@ std::string to_toml(const Knob& knob, const KnobValue& value) {
   return std::visit(
       [&knob](const auto& v) -> std::string {
         using T = std::decay_t<decltype(v)>;
-        if constexpr (std::is_same_v<T, std::string>) return fmt::format("\"{}\"", v);
+        if constexpr (std::is_same_v<T, std::string>) return in_toml_quotes(v);
         if constexpr (std::is_same_v<T, bool>) return v ? "true" : "false";
         if constexpr (std::is_same_v<T, unsigned int>) return fmt::format("{}", v);
         if constexpr (std::is_same_v<T, std::array<double, 2>>)

@@ -162,6 +162,11 @@ void read_knob(const Knob& knob, const toml::node& node, ModelOptions& options, 
   if (!knob.choices.empty()) {
     if (auto text = read_choice(node, knob.name, knob.choices, {}, faults))
       knob.set(options, *text);
+  } else if (std::holds_alternative<std::string>(fallback)) {
+    if (const auto text = read_text(node, knob.name, faults); text && has_control_character(*text))
+      faults.add(place(node), fmt::format("'{}' must not have control characters", knob.name));
+    else if (text)
+      knob.set(options, *text);
   } else if (std::holds_alternative<bool>(fallback)) {
     if (const auto* flag = node.as_boolean())
       knob.set(options, flag->get());

@@ -16,6 +16,7 @@
 #include "compare/case.h"
 #include "compare/errors.h"
 #include "compare/field_grid.h"
+#include "compare/mesh_command.h"
 #include "compare/output_folder.h"
 #include "compare/provenance.h"
 #include "compare/registry.h"
@@ -71,13 +72,16 @@ void print(const std::string& text) {
     throw FileError(std::string("cannot write to the standard output: ") + std::strerror(errno));
 }
 
-/// All cases, or one InputError with the faults of all files.
+/// All cases, or one InputError with the faults of all files. Prints what is odd about the users'
+/// meshes.
 std::vector<Case> read_cases(const std::vector<fs::path>& files) {
   std::vector<Case> cases;
   std::string faults;
   for (const fs::path& file : files) {
     try {
       cases.push_back(read_case(file));
+      for (const std::string& remark : check_case_mesh(cases.back()))
+        print(fmt::format("Remark: {}: {}\n", cases.back().options.solid.mesh.string(), remark));
     } catch (const InputError& error) {
       faults += (faults.empty() ? "" : "\n") + std::string(error.what());
     }
@@ -180,6 +184,11 @@ void validate_cases(const std::vector<fs::path>& files) {
                     "{}\n",
                     files[i].string(), cases[i].name, cases[i].load_path.size(),
                     cases[i].sensors.size(), cases[i].mechanics.size(), cases[i].fields.size()));
+}
+
+void write_mesh(const fs::path& file, const fs::path& output,
+                std::optional<unsigned int> refinement, const std::string& command) {
+  print(write_case_mesh(read_case(file), output, refinement, command));
 }
 
 void list() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ ExitCode run_cases(const std::vector<std::filesystem::path>& files,
 /// `ciliaval validate`: reads and checks, and says so on stdout. Throws InputError with the faults
 /// of all files, FileError.
 void validate_cases(const std::vector<std::filesystem::path>& files);
+
+/// `ciliaval mesh`: writes the solid's mesh of a case to a `.msh` or `.vtu` file and a line about
+/// it to stdout (compare/mesh_command.h). Throws InputError, FileError.
+void write_mesh(const std::filesystem::path& file, const std::filesystem::path& output,
+                std::optional<unsigned int> refinement, const std::string& command);
 
 /// `ciliaval list`: models, loads and shipped cases, to stdout.
 void list();

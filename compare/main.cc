@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <regex>
 #include <string>
 #include <string_view>
@@ -26,11 +27,13 @@ Examples:
   ciliaval list                          what there is: models, loads, cases
   ciliaval validate my.toml              is the case file right?
   ciliaval run my.toml                   results in results/<case name>
+  ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
 
 A case file states the cilium, its load, the sensors and the models, each quantity with its unit
-(docs/cases.md). The results are explained in docs/results.md.
+(docs/cases.md). The results are explained in docs/results.md, meshes of one's own in
+docs/meshes.md.
 
 Exit codes: 0 done, 2 wrong usage or case file, 3 a model did not converge (the results of the
 others are written), 4 a file could not be read or written.)";
@@ -98,6 +101,22 @@ ExitCode execute(int argc, char** argv) {
       ->capture_default_str();
   CLI::App* validate = app.add_subcommand("validate", "Read and check case files, run nothing");
   validate->add_option("CASE", files, "Case files (TOML)")->required()->check(CLI::ExistingFile);
+  CLI::App* mesh = app.add_subcommand(
+      "mesh",
+      "Write the solid's mesh of a case to a file: FILE.msh for Gmsh, with the names of the\n"
+      "segments and the boundary, or FILE.vtu for ParaView. A .msh can be changed and named\n"
+      "in the case, [models.solid] mesh = \"FILE.msh\" (docs/meshes.md).");
+  std::filesystem::path mesh_case;
+  std::filesystem::path mesh_file;
+  std::optional<unsigned int> refinement;
+  mesh->add_option("CASE", mesh_case, "Case file (TOML)")->required()->check(CLI::ExistingFile);
+  mesh->add_option("-o,--output", mesh_file,
+                   "File to write: .msh or .vtu; one that is there is replaced")
+      ->type_name("FILE")
+      ->required();
+  mesh->add_option("--refinement", refinement,
+                   "0 coarse, 1 default, 2 fine; left out: as the case says")
+      ->type_name("N");
   const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
 
   check_command(app, argc, argv);
@@ -110,6 +129,8 @@ ExitCode execute(int argc, char** argv) {
     ciliaval::compare::list();
   else if (validate->parsed())
     ciliaval::compare::validate_cases(files);
+  else if (mesh->parsed())
+    ciliaval::compare::write_mesh(mesh_case, mesh_file, refinement, command_line(argc, argv));
   else
     return ciliaval::compare::run_cases(files, directory, command_line(argc, argv));
   return ExitCode::pass;

@@ -61,12 +61,16 @@ std::string extension(const vtkDataSet& data) {
   return writer_for(data)->GetDefaultFileExtension();
 }
 
-void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load) {
+void add_provenance(vtkDataSet& data, const Provenance& provenance) {
   std::vector<std::string> lines{"CiliaVal " + provenance.version, "git: " + provenance.git,
                                  "command: " + provenance.command, "date: " + provenance.date};
   for (const auto& [library, version] : provenance.libraries)
     lines.push_back(fmt::format("{} {}", library, version));
   add_string(data, "provenance", lines);
+}
+
+void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load) {
+  add_provenance(data, provenance);
   add_string(data, "load_unit", {std::string(magnitude_unit(load))});
   const vtkNew<vtkDoubleArray> value;
   value->SetName("load");

@@ -19,6 +19,9 @@ std::string extension(const vtkDataSet& data);
 /// `load`, `load_unit`.
 void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load);
 
+/// The same of data without a load: `provenance` only.
+void add_provenance(vtkDataSet& data, const Provenance& provenance);
+
 /// Writes a data set in the XML format of its kind, appended and compressed. Throws FileError with
 /// the path and the reason; VTK's Write() alone does not notice a full disk, its error code does.
 void write(vtkDataSet& data, const std::filesystem::path& file);

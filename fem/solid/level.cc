@@ -9,6 +9,7 @@
 #include "fem/solid/body.h"
 #include "fem/solid/section.h"
 #include "fem/solid/transfer.h"
+#include "meshes/gmsh_mesh.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -32,10 +33,21 @@ Level::Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
     : cilium_(cilium), options_(options), finest_layer_(mesh.finest_layer), coarser_(coarser) {
   meshes::make_cylinder(cilium, mesh, triangulation_);
   mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
+  discretise(mesh.half ? Extent::half : Extent::whole, materials);
+}
+
+Level::Level(const Cilium& cilium, const meshes::MeshFile& mesh,
+             std::span<const Hyperelastic> materials, const LevelOptions& options)
+    : cilium_(cilium), options_(options) {
+  mapping_ = meshes::read_gmsh(mesh, cilium, triangulation_).mapping;
+  discretise(Extent::whole, materials);
+}
+
+void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
   space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
-  fibres_ = std::make_unique<Fibres>(*space_, mesh.half ? Extent::half : Extent::whole);
-  newton_ = std::make_unique<Newton>(
-      *space_, increment_constraints(*space_, supports(fibres_->extent())), options.solver);
+  fibres_ = std::make_unique<Fibres>(*space_, extent);
+  newton_ = std::make_unique<Newton>(*space_, increment_constraints(*space_, supports(extent)),
+                                     options_.solver);
 }
 
 LoadPathOutcome Level::advance(const Load& load, const Progress& progress) {

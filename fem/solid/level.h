@@ -14,6 +14,7 @@
 #include "fem/solid/newton.h"
 #include "fem/solid/space.h"
 #include "meshes/cylinder_mesh.h"
+#include "meshes/mesh_file.h"
 #include "problem/cilium.h"
 #include "problem/deformation.h"
 #include "problem/mechanics_model.h"
@@ -26,8 +27,8 @@ struct LevelOptions {
   bool beam_guess = true;  ///< start the coarsest level from the beam's solution
 };
 
-/// The discretised cilium on one mesh, in the frame of the bending plane (loads along x), with its
-/// solvers. Its members refer to one another: it stays where it is made.
+/// The discretised cilium on one mesh, in the frame of that mesh, with its solvers. Its members
+/// refer to one another: it stays where it is made.
 class Level {
  public:
   /// `coarser` gives the first guesses, and with its own tip the estimate of the error; without
@@ -35,10 +36,15 @@ class Level {
   /// level.
   Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
         std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser);
+  /// On the user's mesh, which is whole: loads of any azimuth, no coarser level and no estimate of
+  /// the error. Throws as meshes::read_gmsh().
+  Level(const Cilium& cilium, const meshes::MeshFile& mesh, std::span<const Hyperelastic> materials,
+        const LevelOptions& options);
   Level(const Level&) = delete;
   Level& operator=(const Level&) = delete;
 
-  /// Brings the level into equilibrium with the load, whose azimuth must be 0.
+  /// Brings the level into equilibrium with the load, whose azimuth is from the mesh's x axis (0 on
+  /// a half mesh).
   LoadPathOutcome advance(const Load& load, const Progress& progress);
 
   /// The level's state in the frame of the cilium, turned by `azimuth`.
@@ -54,6 +60,9 @@ class Level {
   std::size_t unknowns() const { return space_->unknowns(); }
 
  private:
+  /// What all constructors end with: the space and the solvers on the triangulation and its
+  /// mapping.
+  void discretise(Extent extent, std::span<const Hyperelastic> materials);
   Guess first_guess(const Load& load, const Progress& progress) const;
   Guess beam_guess(const Load& load) const;
   const LoadPathSolver& solver() const { return *solver_; }
@@ -62,8 +71,8 @@ class Level {
 
   const Cilium& cilium_;
   LevelOptions options_;
-  double finest_layer_;
-  Level* coarser_;
+  double finest_layer_ = 0;  ///< in diameters; of use only with a coarser level
+  Level* coarser_ = nullptr;
   dealii::Triangulation<3> triangulation_;
   std::unique_ptr<dealii::MappingQCache<3>> mapping_;
   std::unique_ptr<SolidSpace> space_;

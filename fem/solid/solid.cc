@@ -59,16 +59,6 @@ meshes::CylinderMeshOptions level_mesh(unsigned int index) {
   return mesh;
 }
 
-meshes::CylinderMeshOptions mesh_options(unsigned int index, const SolidOptions& options,
-                                         const LoadPath& path) {
-  meshes::CylinderMeshOptions mesh = level_mesh(index);
-  mesh.half = options.symmetry;
-  for (const Load& load : path)
-    if (const auto* section = std::get_if<SectionLoad>(&load))
-      mesh.planes.push_back(section->arclength);
-  return mesh;
-}
-
 Hyperelastic material(const Segment& segment, const SolidOptions& options) {
   const double mu = segment.shear_modulus();
   const double K = segment.bulk_modulus();
@@ -88,9 +78,15 @@ std::vector<Hyperelastic> materials(const Cilium& cilium, const SolidOptions& op
   return result;
 }
 
-/// The load in the frame of the mesh, whose x axis is the load's direction.
-Load in_bending_frame(Load load) {
-  std::visit([](auto& l) { l.azimuth = 0; }, load);
+/// Azimuth of the mesh's x axis: the load's direction; a user's mesh stays as it is.
+double mesh_azimuth(const SolidOptions& options, const Load& load) {
+  return options.mesh.empty() ? azimuth(load) : 0;
+}
+
+/// The load in the frame of the mesh.
+Load in_mesh_frame(const SolidOptions& options, Load load) {
+  const double turn = mesh_azimuth(options, load);
+  std::visit([turn](auto& l) { l.azimuth -= turn; }, load);
   return load;
 }
 
@@ -140,7 +136,19 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
   }
 }
 
-/// The meshes from the coarsest to that of the refinement asked for.
+/// The mesh of a level for a load path, with a plane at each loaded section; half of it if the
+/// options say so.
+meshes::CylinderMeshOptions level_mesh(unsigned int index, const SolidOptions& options,
+                                       const LoadPath& path) {
+  meshes::CylinderMeshOptions mesh = level_mesh(index);
+  mesh.half = options.symmetry;
+  for (const Load& load : path)
+    if (const auto* section = std::get_if<SectionLoad>(&load))
+      mesh.planes.push_back(section->arclength);
+  return mesh;
+}
+
+/// The meshes from the coarsest to that of the refinement asked for; a user's mesh alone.
 std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const LoadPath& path,
                                                 const SolidOptions& options) {
   const LevelOptions level_options{
@@ -150,8 +158,14 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
       options.solver,
       options.initial_guess == InitialGuess::beam};
   std::vector<std::unique_ptr<Level>> levels;
+  if (!options.mesh.empty()) {
+    levels.push_back(std::make_unique<Level>(cilium,
+                                             meshes::MeshFile{options.mesh, options.mesh_unit},
+                                             materials(cilium, options), level_options));
+    return levels;
+  }
   for (unsigned int i = 0; i <= levels_below(options.refinement); ++i)
-    levels.push_back(std::make_unique<Level>(cilium, mesh_options(i, options, path),
+    levels.push_back(std::make_unique<Level>(cilium, level_mesh(i, options, path),
                                              materials(cilium, options), level_options,
                                              levels.empty() ? nullptr : levels.back().get()));
   return levels;
@@ -163,12 +177,19 @@ meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
   return level_mesh(levels_below(refinement));
 }
 
-Solid::Solid(SolidOptions options) : options_(options) {
+meshes::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
+                                                  const LoadPath& path) {
+  return level_mesh(levels_below(options.refinement), options, path);
+}
+
+Solid::Solid(SolidOptions options) : options_(std::move(options)) {
   cylinder_mesh_options(options_.refinement);
   if (!(std::isfinite(options_.kernel_width) && options_.kernel_width > 0))
     throw InputError("the solid's kernel_width must be finite and positive");
   if (!(options_.tolerance > 0 && options_.tolerance < 1))
     throw InputError("the solid's tolerance must lie between 0 and 1");
+  if (!(std::isfinite(options_.mesh_unit) && options_.mesh_unit > 0))
+    throw InputError("the solid's mesh_unit must be finite and positive");
   if (options_.max_iterations == 0) throw InputError("the solid needs max_iterations of 1 or more");
   if (!(std::isfinite(options_.mooney_ratio) && options_.mooney_ratio >= 0))
     throw InputError("the solid's mooney_ratio C01/C10 must be finite and not negative");
@@ -184,14 +205,15 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
   require_valid(cilium, path, options_);
   const std::vector<std::unique_ptr<Level>> levels = make_levels(cilium, path, options_);
   Level& finest = *levels.back();
-  MechanicsResult result{finest.undeformed(path.empty() ? 0 : azimuth(path.front())), {}};
+  MechanicsResult result{finest.undeformed(path.empty() ? 0 : mesh_azimuth(options_, path.front())),
+                         {}};
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     const std::string label =
         "step " + std::to_string(i + 1) + "/" + std::to_string(path.size()) + ", ";
     const Progress report =
         progress ? Progress([&](const std::string& text) { progress(label + text); }) : Progress();
-    const LoadPathOutcome outcome = finest.advance(in_bending_frame(path[i]), report);
+    const LoadPathOutcome outcome = finest.advance(in_mesh_frame(options_, path[i]), report);
     MechanicsStep step;
     step.load = path[i];
     step.status = outcome.status;
@@ -200,7 +222,7 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
     step.iterations = outcome.iterations;
     step.unknowns = finest.unknowns();
     if (outcome.status == Status::converged) {
-      step.deformation = finest.deformation(azimuth(path[i]));
+      step.deformation = finest.deformation(mesh_azimuth(options_, path[i]));
       step.applied_force = finest.applied_force();
       step.tip_uncertainty = finest.tip_uncertainty();
       if (const auto* contact = std::get_if<ContactLoad>(&path[i]))

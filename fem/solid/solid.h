@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 
 #include "fem/solid/solver_kind.h"
+#include "problem/load.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::meshes {
@@ -28,6 +30,9 @@ struct SolidOptions {
   unsigned int refinement = 1;  ///< mesh: 0 coarse, 1 default, 2 fine (cylinder_mesh_options())
   InitialGuess initial_guess = InitialGuess::beam;
   bool symmetry = true;  ///< mesh only one side of the bending plane, which mirrors the other
+  std::filesystem::path mesh{};  ///< a Gmsh file (docs/meshes.md) instead of the built-in mesh:
+                                 ///< refinement and symmetry do nothing, and it does not turn
+  double mesh_unit = 1;          ///< length of that file's unit, m
   double kernel_width = 0.5e-3;  ///< half-width of the contact kernel k(z−h), m
   double tolerance =
       1e-9;  ///< of the residual, relative to the applied force, and of the increment
@@ -38,6 +43,11 @@ struct SolidOptions {
 
 /// The mesh of a refinement. Throws InputError if there is none of that number.
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement);
+
+/// That mesh for a load path, with a plane at each loaded section; half of it if the options say
+/// so.
+meshes::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
+                                                  const LoadPath& path);
 
 /// 3D finite-strain near-incompressible hyperelastic solid of the two-material cilium: Q2
 /// displacement, discontinuous linear pressure, clamped base (docs/solid.md). The mesh turns with

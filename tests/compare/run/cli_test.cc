@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -68,8 +69,9 @@ constexpr const char* rods =
 
 TEST(CommandLine, WrongUsageIsExitCode2) {
   const TemporaryFolder folder;
-  for (const char* arguments : {"", "cross", "run", "run none.toml", "run --colour", "validate",
-                                "validate none.toml", "list everything"}) {
+  for (const char* arguments :
+       {"", "cross", "run", "run none.toml", "run --colour", "validate", "validate none.toml",
+        "list everything", "mesh", "mesh none.toml -o x.msh"}) {
     const Outcome outcome = ciliaval(folder.path(), arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
     EXPECT_EQ(outcome.out, "") << arguments;
@@ -178,7 +180,7 @@ TEST(CommandLine, AMistypedCommandIsNamedWithTheValidOnes) {
   const Outcome outcome = ciliaval(folder.path(), "rum case.toml");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("`rum`"));
-  EXPECT_THAT(outcome.err, HasSubstr("run, validate, list"));
+  EXPECT_THAT(outcome.err, HasSubstr("run, validate, mesh, list"));
 }
 
 TEST(CommandLine, AMessageWithAPlaceStartsWithIt) {
@@ -241,6 +243,60 @@ TEST(CommandLine, AnOutputThatCannotBeWrittenIsExitCode4) {
     EXPECT_EQ(WEXITSTATUS(status), 4) << arguments;
     EXPECT_THAT(read_text(folder.path() / "stderr.txt"), HasSubstr("standard output"));
   }
+}
+
+// The mesh that is written is a mesh that a case can name, and comes out of that as it was.
+TEST(CommandLine, WritesTheMeshOfACaseAndTakesItBack) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "built", "mechanics = [\"solid\"]\n");
+  const Outcome written = ciliaval(folder.path(), "mesh built.toml -o cilium.msh --refinement 0");
+  EXPECT_EQ(written.code, 0) << written.err;
+  EXPECT_THAT(written.out, HasSubstr("Mesh: cilium.msh: "));
+  EXPECT_THAT(read_text(folder.path() / "cilium.msh"), HasSubstr("2 1 \"base\""));
+  write_case(folder.path(), "own",
+             "mechanics = [\"solid\"]\n[models.solid]\nmesh = \"cilium.msh\"\n");
+  const Outcome valid = ciliaval(folder.path(), "validate own.toml");
+  EXPECT_EQ(valid.code, 0) << valid.err;
+  EXPECT_EQ(ciliaval(folder.path(), "mesh own.toml -o again.msh").code, 0);
+  const auto lines = [&](const char* name) {
+    const std::string text = read_text(folder.path() / name);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  EXPECT_EQ(lines("again.msh"), lines("cilium.msh"));
+  const Outcome vtu = ciliaval(folder.path(), "mesh own.toml -o own.vtu");
+  EXPECT_EQ(vtu.code, 0) << vtu.err;
+  EXPECT_THAT(read_text(folder.path() / "own.vtu"), HasSubstr("BoundaryIDs"));
+  // One that is there is replaced, and nothing else is left.
+  EXPECT_EQ(ciliaval(folder.path(), "mesh built.toml -o cilium.msh").code, 0);
+  EXPECT_GT(lines("cilium.msh"), lines("again.msh"));
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
+    EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+}
+
+TEST(CommandLine, TellsWhyAMeshCannotBeWrittenOrTaken) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "built", "mechanics = [\"solid\"]\n");
+  const auto fails = [&](const std::string& arguments, int code, const std::string& words) {
+    const Outcome outcome = ciliaval(folder.path(), arguments);
+    EXPECT_EQ(outcome.code, code) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << arguments;
+    EXPECT_EQ(outcome.out, "");
+  };
+  fails("mesh built.toml", 2, "--output");
+  fails("mesh built.toml -o cilium.stl", 2, "one of these extensions");
+  fails("mesh built.toml -o cilium.msh --refinement 7", 2, "refinements 0 to 3, not 7");
+  fails("mesh built.toml -o none/cilium.msh", 4, "folder does not exist");
+  fs::create_directory(folder.path() / "taken.vtu");
+  fails("mesh built.toml -o taken.vtu", 4, "is a folder");
+  const std::string solid = "mechanics = [\"solid\"]\n[models.solid]\n";
+  write_case(folder.path(), "gone", solid + "mesh = \"gone.msh\"\n");
+  fails("validate gone.toml", 2, "there is no mesh file '");
+  EXPECT_EQ(ciliaval(folder.path(), "mesh built.toml -o metres.msh").code, 0);
+  write_case(folder.path(), "unit", solid + "mesh = \"metres.msh\"\nmesh_unit = \"1 mm\"\n");
+  fails("run unit.toml", 2, "set mesh_unit = \"1 m\"");
+  EXPECT_FALSE(fs::exists(folder.path() / "results" / "unit" / "summary.json"));
+  write_case(folder.path(), "own", solid + "mesh = \"metres.msh\"\n");
+  fails("mesh own.toml -o x.msh --refinement 1", 2, "leave out --refinement");
 }
 
 }  // namespace
