@@ -205,10 +205,11 @@ void append_solid(std::vector<Knob>& all) {
   all.push_back(number_knob(solid, &SolidOptions::mesh_unit, "solid", "mesh_unit", quantity::length,
                             {1e-9, 1, false, key::unit_slip},
                             "What a coordinate of 1 in that file is: `\"1 mm\"`."));
-  all.push_back(number_knob(solid, &SolidOptions::kernel_width, "solid", "kernel_width",
-                            quantity::length, key::length_range,
-                            "Half-width w of the contact kernel; `contact` needs 0 < h-w and h+w "
-                            "below the tip."));
+  all.push_back(
+      number_knob(solid, &SolidOptions::kernel_width, "solid", "kernel_width", quantity::length,
+                  key::length_range,
+                  "Half-width w of the contact kernel; `contact` and `probe` need 0 < h-w "
+                  "and h+w below the tip."));
   all.push_back(number_knob(solid, &SolidOptions::tolerance, "solid", "tolerance", quantity::number,
                             tolerance_range,
                             "Of the residual, relative to the applied force, and of the "

@@ -16,11 +16,6 @@
 namespace ciliaval::fem {
 namespace {
 
-/// Derivatives of quadratic_basis().
-Eigen::Vector3d quadratic_derivative(double x) {
-  return {4 * x - 3, 4 - 8 * x, 4 * x - 1};
-}
-
 Eigen::Matrix<double, 9, 1> plane_values(double xi, double eta) {
   return (quadratic_basis(xi) * quadratic_basis(eta).transpose()).reshaped<Eigen::ColMajor>();
 }
@@ -136,6 +131,10 @@ Eigen::Vector3d quadratic_basis(double zeta) {
   return {(1 - zeta) * (1 - 2 * zeta), 4 * zeta * (1 - zeta), zeta * (2 * zeta - 1)};
 }
 
+Eigen::Vector3d quadratic_derivative(double zeta) {
+  return {4 * zeta - 3, 4 - 8 * zeta, 4 * zeta - 1};
+}
+
 Fibres::Fibres(const SolidSpace& space, Extent extent) : extent_(extent) {
   const dealii::QGauss<1> gauss(section_points_1d);
   const dealii::QGauss<2> section(section_points_1d);
@@ -214,6 +213,12 @@ void integrate_load(const SpreadLoad& load, const Eigen::Vector3d& z, double len
                       quadratic_derivative(zeta).dot(z));
       },
       from, to);
+}
+
+void integrate_in_support(const Eigen::Vector3d& z, const HeightDensity& density,
+                          const std::function<void(double zeta, double weight)>& visit) {
+  static const QuadratureRule rule = gauss_legendre(10, 0, 1);
+  integrate_along(z, density, rule, visit);
 }
 
 std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,

@@ -37,6 +37,8 @@ struct FibreCell {
 
 /// Quadratic Lagrange polynomials on 0, ½, 1: the element's along a fibre.
 Eigen::Vector3d quadratic_basis(double zeta);
+/// Their derivatives.
+Eigen::Vector3d quadratic_derivative(double zeta);
 
 /// Whether the mesh is the whole body or the half Y ≥ 0 of one that its plane Y = 0 mirrors.
 enum class Extent { whole, half };
@@ -92,6 +94,11 @@ struct SpreadLoad {
 /// at ζ = 0, ½, 1, `length` its reference length.
 void integrate_load(const SpreadLoad& load, const Eigen::Vector3d& z, double length, double from,
                     double to, const std::function<void(double zeta, double force)>& add);
+
+/// Calls visit(ζ, weight) at the points of a ten-point Gauss rule on each part of a fibre inside
+/// the support, dζ in the weight. `z` as above.
+void integrate_in_support(const Eigen::Vector3d& z, const HeightDensity& density,
+                          const std::function<void(double zeta, double weight)>& visit);
 
 /// From the first to the last ζ of the fibre inside the support; empty if none of it is.
 std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,

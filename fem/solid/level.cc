@@ -65,7 +65,9 @@ Guess Level::first_guess(const Load& load, const Progress& progress) const {
         progress ? Progress([&](const std::string& text) { progress("coarser mesh, " + text); })
                  : Progress();
     const LoadPathOutcome outcome = coarser_->advance(load, report);
-    guess.slip_off_force = outcome.slip_off_force;
+    guess.slip_off =
+        outcome.slip_off_displacement ? outcome.slip_off_displacement : outcome.slip_off_force;
+    guess.applied_force = coarser_->applied_force();
     if (outcome.status == Status::converged)
       guess.state = transferred(*coarser_->space_, *coarser_->fibres_,
                                 coarser_->solver().current().state, *space_);
@@ -80,7 +82,7 @@ Guess Level::beam_guess(const Load& load) const {
   const MechanicsResult beam = Beam().solve(cilium_, {load});
   const MechanicsStep& step = beam.steps.front();
   if (!step.deformation) return {};
-  return {lifted(step.deformation->centreline, cilium_, *space_), {}};
+  return {lifted(step.deformation->centreline, cilium_, *space_), step.applied_force};
 }
 
 Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
@@ -94,7 +96,8 @@ Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
 Deformation Level::deformation(double azimuth) const {
   const Equilibrium& current = solver().current();
   return deformation(current.state,
-                     spread_load(current.load, fibres_->area(), options_.path.kernel_width),
+                     spread_load(acting(current.load, current.applied_force), fibres_->area(),
+                                 options_.path.kernel_width),
                      azimuth);
 }
 

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "fem/solid/forces.h"
+#include "fem/solid/probe.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -28,17 +29,27 @@ std::string history(const std::vector<double>& residuals) {
   return text;
 }
 
+/// "0.004 N"
+std::string with_unit(const Load& load) {
+  return number(magnitude(load)) + " " + std::string(magnitude_unit(load));
+}
+
 /// The same load but for its magnitude?
 bool same_place(const Load& a, const Load& b) {
   if (type(a) != type(b) || azimuth(a) != azimuth(b)) return false;
-  if (const auto* contact = std::get_if<ContactLoad>(&a))
-    return contact->height == std::get<ContactLoad>(b).height;
+  if (contact_height(a)) return contact_height(a) == contact_height(b);
   if (const auto* section = std::get_if<SectionLoad>(&a))
     return section->arclength == std::get<SectionLoad>(b).arclength;
   return true;
 }
 
 }  // namespace
+
+Load acting(const Load& load, double applied_force) {
+  if (const auto* probe = std::get_if<ProbeLoad>(&load))
+    return ContactLoad{applied_force, probe->height, probe->azimuth};
+  return load;
+}
 
 SpreadLoad spread_load(const Load& load, double area, double kernel_width) {
   SpreadLoad result;
@@ -96,43 +107,56 @@ void LoadPathSolver::restart(const Load& load) {
   slipped_.reset();
 }
 
-SolidState LoadPathSolver::predicted(const Load& load) const {
-  SolidState state = current_.state;
-  if (!previous_) return state;
+Equilibrium LoadPathSolver::predicted(const Load& load) const {
+  Equilibrium result = current_;
+  result.load = load;
+  if (!previous_) return result;
   const double last = magnitude(current_.load) - magnitude(previous_->load);
-  if (last == 0) return state;
+  if (last == 0) return result;
+  SolidState& state = result.state;
   const double factor = std::clamp((magnitude(load) - magnitude(current_.load)) / last, -1.0, 1.5);
   state.displacement.add(factor, current_.state.displacement, -factor,
                          previous_->state.displacement);
   for (std::size_t e = 0; e < state.pressure.size(); ++e)
     state.pressure[e] += factor * (current_.state.pressure[e] - previous_->state.pressure[e]);
-  return state;
+  result.applied_force += factor * (current_.applied_force - previous_->applied_force);
+  return result;
 }
 
 LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, Guess guess,
                                                 LoadPathOutcome& outcome,
                                                 const Progress& progress) {
   if (guess.state) {
-    Attempt attempt = attempt_from(std::move(*guess.state), load, outcome, progress);
+    Attempt attempt =
+        attempt_from({load, std::move(*guess.state), guess.applied_force}, outcome, progress);
     if (attempt.converged) return attempt;
   }
-  return attempt_from(predicted(load), load, outcome, progress);
+  return attempt_from(predicted(load), outcome, progress);
 }
 
-LoadPathSolver::Attempt LoadPathSolver::attempt_from(SolidState state, const Load& load,
-                                                     LoadPathOutcome& outcome,
+LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, LoadPathOutcome& outcome,
                                                      const Progress& progress) {
   Attempt attempt;
-  attempt.equilibrium.load = load;
-  attempt.equilibrium.state = std::move(state);
+  attempt.equilibrium = std::move(start);
+  const Load& load = attempt.equilibrium.load;
+  SolidState& state = attempt.equilibrium.state;
   const auto report = [&](int iteration, double residual) {
     if (progress)
       progress("load " + number(magnitude(load)) + ", iteration " + std::to_string(iteration) +
                ", residual " + number(residual));
   };
-  const NewtonResult result =
-      newton_.solve(external_forces(space_, fibres_, load, options_.kernel_width),
-                    attempt.equilibrium.state, options_.newton, report);
+  NewtonResult result;
+  double contact_force = 0;
+  if (const auto* probe = std::get_if<ProbeLoad>(&load)) {
+    UnknownForce force = probe_force(space_, fibres_, *probe, options_.kernel_width,
+                                     attempt.equilibrium.applied_force);
+    result = newton_.solve(force, state, options_.newton, report);
+    contact_force = force.amplitude;
+  } else {
+    result = newton_.solve(external_forces(space_, fibres_, load, options_.kernel_width), state,
+                           options_.newton, report);
+    if (const auto* contact = std::get_if<ContactLoad>(&load)) contact_force = contact->force;
+  }
   outcome.iterations += result.iterations();
   attempt.overshot = result.overshot;
   attempt.converged = result.converged;
@@ -142,10 +166,8 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(SolidState state, const Loa
   }
   attempt.equilibrium.applied_force =
       whole_force(fibres_, resultant(space_, result.external)).dot(direction(load));
-  attempt.applied = true;
-  if (const auto* contact = std::get_if<ContactLoad>(&load))
-    attempt.applied =
-        attempt.equilibrium.applied_force >= contact->force * (1 - options_.force_shortfall);
+  attempt.applied = !contact_height(load) || attempt.equilibrium.applied_force >=
+                                                 contact_force * (1 - options_.force_shortfall);
   return attempt;
 }
 
@@ -154,9 +176,9 @@ Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) cons
 }
 
 std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const Load& load) const {
-  if (!guess.slip_off_force) return std::nullopt;
+  if (!guess.slip_off) return std::nullopt;
   const double now = magnitude(current_.load);
-  const double borne = *guess.slip_off_force;
+  const double borne = *guess.slip_off;
   const double next = now < borne ? borne : borne * (1 + options_.slip_off_bracket);
   if (now < next && next < magnitude(load)) return next;
   return std::nullopt;
@@ -241,17 +263,23 @@ LoadPathOutcome LoadPathSolver::slip_off(LoadPathOutcome outcome, const Progress
     // A load without a solution tells nothing about the slip-off: try nearer to the last one borne.
     if (++halvings > options_.max_cutbacks) {
       trouble = "; the bracket stays this wide because no equilibrium was found at " +
-                number(magnitude(load)) + " N: " + result.trouble;
+                with_unit(load) + ": " + result.trouble;
       break;
     }
     fraction /= 2;
   }
-  outcome.slip_off_force = magnitude(current_.load);
-  outcome.message = "the cilium slips off: a contact force of " + number(magnitude(current_.load)) +
-                    " N was borne in full, " + number(magnitude(*slipped_)) +
-                    " N was not (a solid begins to slip off where the lowest point of its tip face "
-                    "comes down to the upper end of the contact kernel)" +
-                    trouble;
+  const bool probe = std::holds_alternative<ProbeLoad>(current_.load);
+  outcome.slip_off_force = probe ? current_.applied_force : magnitude(current_.load);
+  if (probe) outcome.slip_off_displacement = magnitude(current_.load);
+  outcome.message =
+      (probe ? "the cilium slips off: with a displacement of "
+             : "the cilium slips off: a contact force of ") +
+      with_unit(current_.load) +
+      (probe ? " the contact force was applied in full, with " : " was borne in full, ") +
+      with_unit(*slipped_) + (probe ? " it was not" : " was not") +
+      " (a solid begins to slip off where the lowest point of its tip face comes "
+      "down to the upper end of the contact kernel)" +
+      trouble;
   return outcome;
 }
 

@@ -20,6 +20,9 @@ SpreadLoad spread_load(const Load& load, double area, double kernel_width);
 ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, const Load& load,
                                double kernel_width);
 
+/// The contact force of a probe, N; any other load as it is.
+Load acting(const Load& load, double applied_force);
+
 /// The solid in equilibrium with a load.
 struct Equilibrium {
   Load load;
@@ -27,11 +30,12 @@ struct Equilibrium {
   double applied_force = 0;  ///< on the whole body along e, N
 };
 
-/// What a cheaper model knows about a load: a state near the equilibrium, or the slip-off force
-/// that it found below the load. Empty if it knows neither.
+/// What a cheaper model knows about a load: a state near the equilibrium, or the magnitude below
+/// the load's with which it slipped off. Empty if it knows neither.
 struct Guess {
   std::optional<SolidState> state;
-  std::optional<double> slip_off_force;  ///< N
+  double applied_force = 0;          ///< with the state, N
+  std::optional<double> slip_off{};  ///< N, or m of a probe
 };
 using FirstGuess = std::function<Guess(const Load&, const Progress&)>;
 
@@ -46,7 +50,8 @@ struct LoadPathOptions {
 struct LoadPathOutcome {
   Status status = Status::failed;
   std::string message;
-  std::optional<double> slip_off_force;  ///< N
+  std::optional<double> slip_off_force;         ///< N
+  std::optional<double> slip_off_displacement;  ///< of a probe, m
   int iterations = 0;
 };
 
@@ -74,12 +79,12 @@ class LoadPathSolver {
   struct Attempt;
   Attempt attempt(const Load& load, Guess guess, LoadPathOutcome& outcome,
                   const Progress& progress);
-  Attempt attempt_from(SolidState state, const Load& load, LoadPathOutcome& outcome,
-                       const Progress& progress);
-  SolidState predicted(const Load& load) const;
+  /// Newton's method from a state and, of a probe, an applied force near the equilibrium.
+  Attempt attempt_from(Equilibrium start, LoadPathOutcome& outcome, const Progress& progress);
+  Equilibrium predicted(const Load& load) const;
   Guess guess_for(const Load& load, const Progress& progress) const;
-  /// The force to try before the load: the guessed slip-off force or, when that is borne, a little
-  /// more.
+  /// The magnitude to try before the load's: the one guessed for the slip-off or, when that is
+  /// borne, a little more.
   std::optional<double> toward_slip_off(const Guess& guess, const Load& load) const;
   void accept(Attempt&& attempt);
   /// Narrows the bracket between the current load and `slipped_`.

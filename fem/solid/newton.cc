@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "fem/solid/assembly.h"
+#include "fem/solid/border.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {
@@ -74,6 +75,21 @@ Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constr
 
 NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
                            const NewtonOptions& options, const NewtonProgress& progress) {
+  return iterate(external, nullptr, state, options, progress);
+}
+
+NewtonResult Newton::solve(UnknownForce& force, SolidState& state, const NewtonOptions& options,
+                           const NewtonProgress& progress) {
+  Border border(force, constraints_);
+  const auto external = [&force](const auto& u, auto& forces, const auto& constraints,
+                                 auto* matrix) {
+    force.forces(force.amplitude)(u, forces, constraints, matrix);
+  };
+  return iterate(external, &border, state, options, progress);
+}
+
+NewtonResult Newton::iterate(const ExternalForces& external, Border* border, SolidState& state,
+                             const NewtonOptions& options, const NewtonProgress& progress) {
   NewtonResult result;
   Vector<double> residual;
   Vector<double> increment;
@@ -96,6 +112,7 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
       // The last tangent is good enough to tell the size of the step that is left.
       try {
         solver_->solve(residual, increment, estimate_reduction);
+        if (border != nullptr) border->complete(state.displacement, increment);
       } catch (const SolverError& error) {
         return fail(error.what());
       }
@@ -106,7 +123,7 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
         return result;
       }
     }
-    if (norm == 0) {
+    if (norm == 0 && (border == nullptr || border->gap(state.displacement) == 0)) {
       result.converged = true;
       return result;
     }
@@ -120,6 +137,12 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
     try {
       solver_->prepare(matrix_);
       result.linear_iterations.push_back(solver_->solve(residual, increment, step_reduction));
+      if (border != nullptr) {
+        border->prepare(state.displacement, [this](const auto& rhs, auto& solution) {
+          solver_->solve(rhs, solution, step_reduction);
+        });
+        border->advance(border->complete(state.displacement, increment));
+      }
     } catch (const SolverError& error) {
       return fail(error.what());
     }

@@ -21,6 +21,18 @@ using ExternalForces = std::function<void(
     const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
     const dealii::AffineConstraints<double>& constraints, dealii::SparseMatrix<double>* matrix)>;
 
+/// A force F f(u) whose amplitude F is one more unknown, and the condition g(u) = 0 that determines
+/// it.
+struct UnknownForce {
+  std::function<ExternalForces(double amplitude)> forces;
+  /// g; adds ∂g/∂u to `gradient` where that is not null.
+  std::function<double(const dealii::Vector<double>& u, dealii::Vector<double>* gradient)>
+      condition;
+  double amplitude = 0;  ///< F: the guess, and the result
+};
+
+class Border;
+
 struct NewtonOptions {
   double tolerance = 1e-9;  ///< of the remaining increment, relative to the displacement,
                             ///< and of the residual, relative to the force scale, as far as
@@ -65,7 +77,14 @@ class Newton {
   NewtonResult solve(const ExternalForces& external, SolidState& state,
                      const NewtonOptions& options, const NewtonProgress& progress = {});
 
+  /// Solves for the amplitude of the force too, by the bordered tangent (fem/solid/border.h).
+  NewtonResult solve(UnknownForce& force, SolidState& state, const NewtonOptions& options,
+                     const NewtonProgress& progress = {});
+
  private:
+  NewtonResult iterate(const ExternalForces& external, Border* border, SolidState& state,
+                       const NewtonOptions& options, const NewtonProgress& progress);
+
   const SolidSpace& space_;
   dealii::AffineConstraints<double> constraints_;
   dealii::SparsityPattern sparsity_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -123,13 +124,9 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
     ciliaval::require_valid(load, cilium);
     if (type(load) != type(path.front()))
       throw InputError("a load path cannot change from one load type to another");
-    if (std::holds_alternative<ProbeLoad>(load))
-      throw InputError(
-          "the solid does not take the load 'probe' yet: use 'contact', whose force is given, or "
-          "another mechanics model");
-    const auto* contact = std::get_if<ContactLoad>(&load);
-    if (contact != nullptr && !(contact->height > options.kernel_width &&
-                                contact->height + options.kernel_width < cilium.length()))
+    const std::optional<double> height = contact_height(load);
+    if (height &&
+        !(*height > options.kernel_width && *height + options.kernel_width < cilium.length()))
       throw InputError(
           "the solid spreads the contact force over h - kernel_width < z < h + kernel_width, which "
           "must lie between the base and the tip: choose a smaller kernel_width");
@@ -219,14 +216,15 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
     step.status = outcome.status;
     step.message = outcome.status == Status::failed ? label + outcome.message : outcome.message;
     step.slip_off_force = outcome.slip_off_force;
+    step.slip_off_displacement = outcome.slip_off_displacement;
     step.iterations = outcome.iterations;
     step.unknowns = finest.unknowns();
     if (outcome.status == Status::converged) {
       step.deformation = finest.deformation(mesh_azimuth(options_, path[i]));
       step.applied_force = finest.applied_force();
       step.tip_uncertainty = finest.tip_uncertainty();
-      if (const auto* contact = std::get_if<ContactLoad>(&path[i]))
-        step.contact_arclength = contact_arclength(step.deformation->centreline, contact->height);
+      if (const auto height = contact_height(path[i]))
+        step.contact_arclength = contact_arclength(step.deformation->centreline, *height);
     }
     step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     result.steps.push_back(std::move(step));

@@ -61,8 +61,9 @@ class Solid : public MechanicsModel {
 
   /// Besides the interface's: throws InputError if the contact kernel h ± kernel_width does not fit
   /// between the base and the tip of the straight cilium.
-  /// A contact step whose fibre ends come into the kernel is `slipped_off`; slip_off_force is the
-  /// lower end of a 1 % bracket, which the message gives.
+  /// A contact or probe step whose fibre ends come into the kernel is `slipped_off`; slip_off_force
+  /// (of a probe slip_off_displacement, with the force there) is the lower end of a 1 % bracket,
+  /// which the message gives.
   MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                         const Progress& progress = {}) const override;
 
