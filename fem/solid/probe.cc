@@ -2,6 +2,8 @@
 #include "fem/solid/probe.h"
 
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "fem/solid/load_path.h"
 #include "problem/error.h"
@@ -76,11 +78,12 @@ double mean_displacement(const SolidSpace& space, const Fibres& fibres, const He
     if (share.weight == 0) continue;
     weight += share.weight;
     moment += share.displacement;
-    if (gradient != nullptr) shares.emplace_back(e, share);
+    shares.emplace_back(e, share);
   }
   if (!(weight > 0))
     throw SolverError("no part of the solid is at the height of the probe: the cilium has let go");
   const double mean = moment / weight;
+  if (gradient == nullptr) return mean;
   for (const auto& [e, share] : shares) {
     const auto& dofs = space.elements()[e].dofs;
     for (std::size_t a = 0; a < element_nodes; ++a) {
