@@ -19,7 +19,6 @@ namespace {
 using dealii::Point;
 using dealii::Triangulation;
 
-constexpr dealii::types::manifold_id interior_manifold = 0;
 constexpr dealii::types::manifold_id mantle_manifold = 1;
 
 void require_valid(const CylinderMeshOptions& options, double length) {
@@ -191,7 +190,6 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
   make_section(node_radius(cilium.radius(), options), options, section);
   dealii::GridGenerator::extrude_triangulation(section, planes, triangulation);
 
-  triangulation.set_all_manifold_ids(interior_manifold);
   const double tolerance = 1e-9 * cilium.diameter;
   for (const auto& cell : triangulation.active_cell_iterators()) {
     cell->set_material_id(
@@ -211,9 +209,6 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
     }
   }
   triangulation.set_manifold(mantle_manifold, dealii::CylindricalManifold<3>(2));
-  dealii::TransfiniteInterpolationManifold<3> interior;
-  interior.initialize(triangulation);
-  triangulation.set_manifold(interior_manifold, interior);
 }
 
 std::unique_ptr<dealii::MappingQCache<3>> cylinder_mapping(const Triangulation<3>& triangulation,

@@ -128,8 +128,8 @@ void write_materials(std::ostream& out, const Cilium& cilium) {
 
 }  // namespace
 
-const std::array<int, 20> calculix_nodes{0,  2,  8,  6,  18, 20, 26, 24, 1,  5,
-                                         7,  3,  19, 23, 25, 21, 9,  11, 17, 15};
+const std::array<int, 20> calculix_nodes{0, 2, 8,  6,  18, 20, 26, 24, 1,  5,
+                                         7, 3, 19, 23, 25, 21, 9,  11, 17, 15};
 
 Eigen::Matrix<double, 20, 4> serendipity_functions(const Vector3& at) {
   Eigen::Matrix<double, 20, 4> result;

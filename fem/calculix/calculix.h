@@ -15,14 +15,14 @@ namespace ciliaval::fem {
 /// The nodes of CalculiX's C3D20R among the 27 of a cell, in CalculiX's order.
 extern const std::array<int, 20> calculix_nodes;
 
-/// Shape functions of the 20-node hexahedron (serendipity) at a point of [−1, 1]³: columns N, ∂N/∂ξ,
-/// ∂N/∂η, ∂N/∂ζ; rows in CalculiX's order.
+/// Shape functions of the 20-node hexahedron (serendipity) at a point of [−1, 1]³: columns N,
+/// ∂N/∂ξ, ∂N/∂η, ∂N/∂ζ; rows in CalculiX's order.
 Eigen::Matrix<double, 20, 4> serendipity_functions(const Vector3& at);
 
-/// Consistent nodal forces of a dead load on the 20-node hexahedra, N, one for each node of the mesh
-/// (zero where an element has no node): ∫ N_a q/A e dV for `dead`, ∫ N_a F/A e dA over the plane
-/// Z = S for `section`. On a half of the cylinder, the half's share. Throws InputError for any other
-/// load, or if the mesh has no plane Z = S.
+/// Consistent nodal forces of a dead load on the 20-node hexahedra, N, one for each node of the
+/// mesh (zero where an element has no node): ∫ N_a q/A e dV for `dead`, ∫ N_a F/A e dA over the
+/// plane Z = S for `section`. On a half of the cylinder, the half's share. Throws InputError for
+/// any other load, or if the mesh has no plane Z = S.
 std::vector<Vector3> calculix_forces(const meshes::MeshNodes& mesh, const Cilium& cilium,
                                      const Load& load);
 
@@ -33,13 +33,13 @@ struct CalculixOptions {
 
 /// Writes the input of a static, geometrically nonlinear run of CalculiX: C3D20R elements, the
 /// neo-Hooke solid U = C₁₀(Ī₁ − 3) + (J − 1)²/D₁ with C₁₀ = μ/2, D₁ = 2/K, the base clamped, no
-/// displacement across a plane of symmetry. Its .dat file then holds the displacements of all nodes.
-/// Azimuth 0 is needed on a half. Throws InputError as calculix_forces() does.
+/// displacement across a plane of symmetry. Its .dat file then holds the displacements of all
+/// nodes. Azimuth 0 is needed on a half. Throws InputError as calculix_forces() does.
 void write_calculix(std::ostream& out, const meshes::MeshNodes& mesh, const Cilium& cilium,
                     const Load& load, const CalculixOptions& options = {});
 
-/// The displacements of the last increment in a .dat file, one for each node of the mesh (zero where
-/// an element has no node). Throws FileError if the file holds none, or ends before time 1.
+/// The displacements of the last increment in a .dat file, one for each node of the mesh (zero
+/// where an element has no node). Throws FileError if the file holds none, or ends before time 1.
 std::vector<Vector3> read_calculix(std::istream& in, std::size_t nodes);
 
 }  // namespace ciliaval::fem

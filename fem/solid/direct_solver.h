@@ -11,12 +11,16 @@
 
 namespace ciliaval::fem {
 
-/// Sparse LU by MUMPS (through PETSc), on all ranks. The symbolic factorisation is made once.
-/// Vectors are whole on every rank. All functions are collective.
+/// Sparse LU, or LDLᵀ of the symmetric part, by MUMPS (through PETSc), on all ranks. The symbolic
+/// factorisation is made once. Vectors are whole on every rank. All functions are collective.
 class DirectSolver {
  public:
-  /// Starts MPI if need be.
-  explicit DirectSolver(const dealii::SparsityPattern& pattern);
+  enum class Kind {
+    general,        ///< A = LU
+    symmetric_part  ///< (A + Aᵀ)/2 = LDLᵀ: half the work and memory
+  };
+  /// The pattern must be symmetric. Starts MPI if need be.
+  DirectSolver(const dealii::SparsityPattern& pattern, Kind kind);
   ~DirectSolver();
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;
@@ -30,6 +34,7 @@ class DirectSolver {
 
  private:
   struct Handles;
+  Kind kind_;
   std::unique_ptr<Handles> handles_;
 };
 

@@ -22,7 +22,7 @@
 namespace ciliaval::fem {
 
 struct LevelOptions {
-  LoadPathOptions path;
+  LoadPathOptions path{};
   SolverKind solver = SolverKind::automatic;
   bool beam_guess = true;  ///< start the coarsest level from the beam's solution
 };

@@ -4,7 +4,9 @@
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/solver_gmres.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "problem/error.h"
@@ -14,6 +16,17 @@ namespace {
 
 constexpr unsigned int max_iterations = 300;
 constexpr unsigned int restart = 60;  ///< vectors of GMRES
+/// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
+constexpr unsigned int max_with_old_factors = 12;
+/// Such an iteration costs little: the residual goes on to this part of the one asked for.
+constexpr double margin_with_factors = 1e-3;
+
+struct Factors {
+  const DirectSolver& solver;
+  void vmult(dealii::Vector<double>& x, const dealii::Vector<double>& b) const {
+    solver.solve(b, x);
+  }
+};
 
 }  // namespace
 
@@ -27,38 +40,69 @@ LinearSolver::LinearSolver(const SolidSpace& space,
   if (kind == SolverKind::iterative)
     multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_);
   else
-    direct_ = std::make_unique<DirectSolver>(pattern);
+    direct_ = std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general);
 }
 
-void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix) {
+void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix, bool near_last) {
+  const bool first = matrix_ == nullptr;
   matrix_ = &matrix;
+  current_ = false;
+  if (first || !near_last) update();
+}
+
+void LinearSolver::update() {
   if (multigrid_)
-    multigrid_->update(matrix);
+    multigrid_->update(*matrix_);
   else
-    direct_->factorize(matrix, rows_);
+    direct_->factorize(*matrix_, rows_);
+  current_ = true;
+  usual_ = 0;
+}
+
+std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
+                                       dealii::Vector<double>& solution, double reduction,
+                                       unsigned int max_iterations) const {
+  using Vector = dealii::Vector<double>;
+  // The flexible variant: the multigrid rounds to single precision, so that it is not quite linear,
+  // which the stiffness of the volume would amplify when the solution is put together.
+  using Solver = dealii::SolverFGMRES<Vector>;
+  const double margin = direct_ ? margin_with_factors : 1;
+  dealii::SolverControl control(max_iterations, margin * reduction * rhs.l2_norm());
+  Solver solver(control, Solver::AdditionalData(restart));
+  const RowMatrix matrix(*matrix_, rows_);
+  solution.reinit(rhs.size());
+  try {
+    if (multigrid_)
+      solver.solve(matrix, solution, rhs, *multigrid_);
+    else
+      solver.solve(matrix, solution, rhs, Factors{*direct_});
+  } catch (const dealii::SolverControl::NoConvergence&) {
+    return std::nullopt;
+  }
+  return static_cast<int>(control.last_step());
 }
 
 int LinearSolver::solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution,
-                        double reduction) const {
-  if (direct_) {
+                        double reduction) {
+  std::optional<int> iterations;
+  if (!current_) {
+    const unsigned int limit = direct_ ? max_with_old_factors : 2 * usual_;
+    iterations = gmres(rhs, solution, reduction, limit);
+    if (!iterations) update();
+  }
+  if (!iterations && direct_) {
     direct_->solve(rhs, solution);
     return 1;
   }
-  using Vector = dealii::Vector<double>;
-  dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
-  // The flexible variant: the multigrid rounds to single precision, so that it is not quite linear,
-  // which the stiffness of the volume would amplify when the solution is put together.
-  dealii::SolverFGMRES<Vector> gmres(control,
-                                     dealii::SolverFGMRES<Vector>::AdditionalData(restart));
-  solution.reinit(rhs.size());
-  try {
-    gmres.solve(RowMatrix(*matrix_, rows_), solution, rhs, *multigrid_);
-  } catch (const dealii::SolverControl::NoConvergence& failure) {
-    throw SolverError("GMRES did not converge in " + std::to_string(failure.last_step) +
-                      " iterations");
+  if (!iterations) {
+    iterations = gmres(rhs, solution, reduction, max_iterations);
+    if (!iterations)
+      throw SolverError("GMRES did not converge in " + std::to_string(max_iterations) +
+                        " iterations");
+    usual_ = std::max(usual_, static_cast<unsigned int>(*iterations));
   }
   if (!std::isfinite(solution.l2_norm())) throw SolverError("the stiffness matrix is singular");
-  return static_cast<int>(control.last_step());
+  return *iterations;
 }
 
 }  // namespace ciliaval::fem

@@ -7,6 +7,7 @@
 #include <deal.II/lac/vector.h>
 
 #include <memory>
+#include <optional>
 
 #include "fem/parallel.h"
 #include "fem/solid/direct_solver.h"
@@ -35,20 +36,28 @@ class LinearSolver {
   /// degree of freedom among them are those that it needs.
   const RowRange& rows() const { return rows_; }
 
-  /// Factorises, or prepares the preconditioner. The matrix must stay as it is until the next call.
-  void prepare(const dealii::SparseMatrix<double>& matrix);
+  /// Factorises, or prepares the multigrid. The matrix must stay as it is until the next call. One
+  /// that is near the last, as in an iteration of Newton's method, is solved by GMRES with the
+  /// factors or the multigrid of that one, as long as it converges fast.
+  void prepare(const dealii::SparseMatrix<double>& matrix, bool near_last = false);
 
   /// Any number of right-hand sides with the matrix last prepared. `reduction` is what GMRES
-  /// reduces the residual by (‖b − Ax‖₂ ≤ reduction ‖b‖₂); the direct solver ignores it. Returns
-  /// the number of iterations.
-  int solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution,
-            double reduction) const;
+  /// reduces the residual by (‖b − Ax‖₂ ≤ reduction ‖b‖₂). Returns the number of iterations; 1 for
+  /// the matrix's own LU.
+  int solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution, double reduction);
 
  private:
+  void update();
+  /// Empty if GMRES does not get there in max_iterations.
+  std::optional<int> gmres(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution,
+                           double reduction, unsigned int max_iterations) const;
+
   RowRange rows_;
   const dealii::SparseMatrix<double>* matrix_ = nullptr;
   std::unique_ptr<DirectSolver> direct_;
   std::unique_ptr<Multigrid> multigrid_;
+  bool current_ = false;    ///< factors or multigrid are those of the matrix
+  unsigned int usual_ = 0;  ///< iterations that the multigrid took with its own matrix
 };
 
 }  // namespace ciliaval::fem

@@ -91,6 +91,34 @@ void RowMatrix::vmult(Vector<double>& y, const Vector<double>& x) const {
   gather_over_ranks({y.begin(), y.size()});
 }
 
+void SingleRows::update(const SparseMatrix<double>& matrix) {
+  if (starts_.empty()) {
+    starts_.push_back(0);
+    for (Row row = rows_.begin; row < rows_.end; ++row)
+      starts_.push_back(starts_.back() + matrix.get_sparsity_pattern().row_length(row));
+    columns_.resize(starts_.back());
+    values_.resize(starts_.back());
+  }
+  for_each(rows_.end - rows_.begin, 256, [&](std::size_t i) {
+    const Row row = rows_.begin + static_cast<Row>(i);
+    std::size_t k = starts_[i];
+    for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry, ++k) {
+      columns_[k] = static_cast<std::uint32_t>(entry->column());
+      values_[k] = static_cast<float>(entry->value());
+    }
+  });
+}
+
+void SingleRows::vmult(Vector<double>& y, const Vector<double>& x) const {
+  for_each(rows_.end - rows_.begin, 256, [&](std::size_t i) {
+    double sum = 0;
+    for (std::size_t k = starts_[i]; k < starts_[i + 1]; ++k)
+      sum += static_cast<double>(values_[k]) * x[columns_[k]];
+    y[rows_.begin + static_cast<Row>(i)] = sum;
+  });
+  gather_over_ranks({y.begin(), y.size()});
+}
+
 VertexStars::VertexStars(const SolidSpace& space,
                          const dealii::AffineConstraints<double>& constraints, RowRange rows) {
   std::map<global_dof_index, std::set<Index>> stars;
@@ -173,7 +201,7 @@ void VertexStars::vmult(Vector<double>& z, const Vector<double>& r) const {
 
 Multigrid::Multigrid(const SolidSpace& space, const dealii::AffineConstraints<double>& constraints,
                      RowRange rows)
-    : rows_(rows), stars_(space, constraints, rows) {
+    : rows_(rows), stars_(space, constraints, rows), matrix_(rows) {
   make_prolongation(space, constraints);
 }
 
@@ -215,7 +243,8 @@ void Multigrid::make_prolongation(const SolidSpace& space,
   }
   coarse_pattern_.copy_from(pattern);
   coarse_matrix_.reinit(coarse_pattern_);
-  coarse_solver_ = std::make_unique<DirectSolver>(coarse_pattern_);
+  coarse_solver_ =
+      std::make_unique<DirectSolver>(coarse_pattern_, DirectSolver::Kind::symmetric_part);
   work_.resize(coarse_matrix_.m());
 }
 
@@ -243,7 +272,7 @@ void Multigrid::add_coarse_row(const SparseMatrix<double>& matrix, Row row) {
 }
 
 void Multigrid::update(const SparseMatrix<double>& matrix) {
-  matrix_ = &matrix;
+  matrix_.update(matrix);
   stars_.update(matrix);
   coarse_matrix_ = 0;
   for (Row row = rows_.begin; row < rows_.end; ++row) add_coarse_row(matrix, row);
@@ -255,7 +284,7 @@ void Multigrid::update(const SparseMatrix<double>& matrix) {
 void Multigrid::residual(Vector<double>& r, const Vector<double>& x,
                          const Vector<double>& b) const {
   r.reinit(b.size(), true);
-  RowMatrix(*matrix_, rows_).vmult(r, x);
+  matrix_.vmult(r, x);
   r.sadd(-1, 1, b);
 }
 

@@ -135,7 +135,7 @@ NewtonResult Newton::iterate(const ExternalForces& external, Border* border, Sol
     Vector<double> unused(space_.unknowns());
     external(state.displacement, unused, constraints_, &matrix_);
     try {
-      solver_->prepare(matrix_);
+      solver_->prepare(matrix_, iteration > 0);
       result.linear_iterations.push_back(solver_->solve(residual, increment, step_reduction));
       if (border != nullptr) {
         border->prepare(state.displacement, [this](const auto& rhs, auto& solution) {

@@ -31,12 +31,12 @@ struct MeshLevel {
   double coarsest_layer;
   double growth;
 };
-constexpr std::array<MeshLevel, 6> mesh_levels{{{2, 1, 1.0, 0.32, 1.2, 0.35},
-                                                {2, 2, 0.5, 0.16, 0.8, 0.25},
-                                                {2, 3, 0.5, 0.08, 0.5, 0.3},
-                                                {2, 4, 0.5, 0.04, 0.5, 0.3},
-                                                {4, 5, 0.5, 0.02, 0.4, 0.25},
-                                                {4, 6, 0.5, 0.01, 0.25, 0.2}}};
+constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 1.0, 0.32, 1.2, 0.35},
+                                                               {2, 2, 0.5, 0.16, 0.8, 0.25},
+                                                               {2, 3, 0.5, 0.08, 0.5, 0.3},
+                                                               {2, 4, 0.5, 0.04, 0.5, 0.3},
+                                                               {4, 5, 0.5, 0.02, 0.4, 0.25},
+                                                               {4, 6, 0.5, 0.01, 0.25, 0.2}}};
 /// The level of each refinement.
 constexpr std::array<unsigned int, 4> refinement_levels{1, 3, 4, 5};
 
@@ -46,18 +46,6 @@ unsigned int levels_below(unsigned int refinement) {
                      std::to_string(refinement_levels.size() - 1) + ", not " +
                      std::to_string(refinement));
   return refinement_levels[refinement];
-}
-
-meshes::CylinderMeshOptions level_mesh(unsigned int index) {
-  const MeshLevel& level = mesh_levels[index];
-  meshes::CylinderMeshOptions mesh;
-  mesh.square_cells = level.square_cells;
-  mesh.rings = level.rings;
-  mesh.ring_ratio = level.ring_ratio;
-  mesh.finest_layer = level.finest_layer;
-  mesh.coarsest_layer = level.coarsest_layer;
-  mesh.growth = level.growth;
-  return mesh;
 }
 
 Hyperelastic material(const Segment& segment, const SolidOptions& options) {
@@ -169,6 +157,18 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
 }
 
 }  // namespace
+
+meshes::CylinderMeshOptions level_mesh(unsigned int number) {
+  const MeshLevel& level = mesh_levels.at(number);
+  meshes::CylinderMeshOptions mesh;
+  mesh.square_cells = level.square_cells;
+  mesh.rings = level.rings;
+  mesh.ring_ratio = level.ring_ratio;
+  mesh.finest_layer = level.finest_layer;
+  mesh.coarsest_layer = level.coarsest_layer;
+  mesh.growth = level.growth;
+  return mesh;
+}
 
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
   return level_mesh(levels_below(refinement));

@@ -49,6 +49,10 @@ meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement);
 meshes::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
                                                   const LoadPath& path);
 
+/// The sequence of meshes from coarse to fine, of which cylinder_mesh_options() are some.
+inline constexpr unsigned int mesh_level_count = 6;
+meshes::CylinderMeshOptions level_mesh(unsigned int level);
+
 /// 3D finite-strain near-incompressible hyperelastic solid of the two-material cilium: Q2
 /// displacement, discontinuous linear pressure, clamped base (docs/solid.md). The mesh turns with
 /// the load's azimuth, so that the bending plane is always one of its planes of symmetry. A

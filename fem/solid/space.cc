@@ -3,6 +3,7 @@
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_renumbering.h>
 #include <deal.II/fe/component_mask.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/vector_tools_boundary.h>
@@ -65,6 +66,8 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
       element_(scalar_element_, 3),
       dof_handler_(triangulation) {
   dof_handler_.distribute_dofs(element_);
+  // From the base to the tip: the rows of a rank then belong to one part of the cilium.
+  dealii::DoFRenumbering::downstream(dof_handler_, dealii::Tensor<1, 3>({0, 0, 1}));
   const std::vector<unsigned int> inverse = scalar_element_.get_poly_space_numbering_inverse();
   lexicographic_.resize(inverse.size());
   for (unsigned int lex = 0; lex < inverse.size(); ++lex) lexicographic_[inverse[lex]] = lex;

@@ -196,7 +196,8 @@ void compare(const fs::path& folder) {
         std::printf("at %.1f %%: %s %.2f s, CalculiX %.2f s, ratio %.1f\n", 100 * limit, name,
                     *ours, *theirs, *theirs / *ours);
       else
-        std::printf("at %.1f %%: not reached by %s\n", 100 * limit, ours ? "CalculiX" : "the solid");
+        std::printf("at %.1f %%: not reached by %s\n", 100 * limit,
+                    ours ? "CalculiX" : "the solid");
     }
 }
 
