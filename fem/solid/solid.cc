@@ -123,8 +123,8 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
 
 /// The mesh of a level for a load path, with a plane at each loaded section; half of it if the
 /// options say so.
-meshes::CylinderMeshOptions level_mesh(unsigned int index, const SolidOptions& options,
-                                       const LoadPath& path) {
+meshes::CylinderMeshOptions path_mesh(unsigned int index, const SolidOptions& options,
+                                      const LoadPath& path) {
   meshes::CylinderMeshOptions mesh = level_mesh(index);
   mesh.half = options.symmetry;
   for (const Load& load : path)
@@ -150,7 +150,7 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
     return levels;
   }
   for (unsigned int i = 0; i <= levels_below(options.refinement); ++i)
-    levels.push_back(std::make_unique<Level>(cilium, level_mesh(i, options, path),
+    levels.push_back(std::make_unique<Level>(cilium, path_mesh(i, options, path),
                                              materials(cilium, options), level_options,
                                              levels.empty() ? nullptr : levels.back().get()));
   return levels;
@@ -176,7 +176,7 @@ meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
 
 meshes::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
                                                   const LoadPath& path) {
-  return level_mesh(levels_below(options.refinement), options, path);
+  return path_mesh(levels_below(options.refinement), options, path);
 }
 
 Solid::Solid(SolidOptions options) : options_(std::move(options)) {
