@@ -178,7 +178,10 @@ bool ContactSolver::find_arclength(Loaded& trial, double magnitude, BeamStep& st
   if (!report.converged) step.message = describe(report);
   if (progress) progress(magnitude, report);
   trial.force = unit * std::exchange(trial.state.load_factor, 1);
-  return report.converged;
+  // A large step may end where the contact lies below its segment, which is no state of the beam.
+  const bool below = trial.state.shift < -at_end * cilium_.length();
+  if (report.converged && below) step.message = "the contact went below its segment";
+  return report.converged && !below;
 }
 
 bool ContactSolver::find_force(Loaded& trial, BeamStep& step) {

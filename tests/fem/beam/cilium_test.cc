@@ -231,6 +231,22 @@ TEST(BeamContactSlow, ALowContactPastItsLimitSlipsOff) {
   }
 }
 
+TEST(BeamContact, ALargeStepDoesNotTakeTheContactBelowItsSegment) {
+  // Oracle: the same limit by another path of loads. From nothing to 0.3 N Newton's method may end
+  // with a contact below the clamp. Measured: 4e-16.
+  const Cilium cilium = paper_cilium();
+  const double low = 2.5e-3;
+  const auto at_once = fem::Beam().solve(cilium, {ContactLoad{0.3, low, 0}});
+  const auto by_steps =
+      fem::Beam().solve(cilium, {ContactLoad{0.1, low, 0}, ContactLoad{0.3, low, 0}});
+  ASSERT_EQ(at_once.steps[0].status, Status::slipped_off) << at_once.steps[0].message;
+  ASSERT_EQ(by_steps.steps[1].status, Status::slipped_off) << by_steps.steps[1].message;
+  EXPECT_LT(
+      measured("force",
+               std::abs(*at_once.steps[0].slip_off_force / *by_steps.steps[1].slip_off_force - 1)),
+      1e-10);
+}
+
 TEST(BeamContact, NextToTheClampConvergesOrFailsSoon) {
   // Oracle: s_c = h and no bending: a millinewton a nanometre above the clamp. No force is known
   // that shears the clamp off; one of 1e10 N is given up.
