@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "compare/case.h"
+#include "compare/checkpoint_folder.h"
 #include "compare/errors.h"
 #include "compare/field_grid.h"
 #include "compare/mesh_command.h"
@@ -99,26 +100,76 @@ std::vector<Case> read_cases(const std::vector<fs::path>& files) {
   return cases;
 }
 
-ExitCode run_one(const Case& problem, OutputFolder& folder, const std::string& command) {
+/// A case of `ciliaval run` and what it may write to.
+struct Prepared {
+  Case problem;
+  OutputFolder folder;
+  std::optional<CheckpointFolder> checkpoints;  ///< if a model of the case keeps one
+};
+
+Checkpoint checkpoint(const fs::path& directory, const Case& problem) {
+  return {checkpoint_path(directory, problem.name), version_line()};
+}
+
+/// Makes the folders. Says what the case goes on from, or deletes it if options.fresh.
+Prepared prepare(const Case& problem, const RunOptions& options) {
+  Prepared result{problem, OutputFolder(options.directory, problem.name), std::nullopt};
+  if (kept_checkpoints(problem, mechanics_models(), {}).empty()) return result;
+  result.checkpoints.emplace(options.directory, problem.name);
+  if (options.fresh) result.checkpoints->clear();
+  const Checkpoint saved = checkpoint(options.directory, problem);
+  const std::size_t steps = problem.load_path.size();
+  for (const Kept& kept : kept_checkpoints(problem, mechanics_models(), saved))
+    if (fs::exists(saved.path / kept.model))
+      fmt::print(stderr, "ciliaval: case \"{}\": {} {}, as `{}` says; --fresh starts anew\n",
+                 problem.name, kept.model,
+                 kept.finished_steps < steps
+                     ? fmt::format("goes on at step {}/{}", kept.finished_steps + 1, steps)
+                     : fmt::format("has solved all {} steps", steps),
+                 (saved.path / kept.model).string());
+  return result;
+}
+
+/// Deletes the checkpoints, unless a model that keeps one has failed: says how to go on from there.
+void end_checkpoints(CheckpointFolder& folder, const CaseResult& result) {
+  bool needed = false;
+  for (const MechanicsRun& run : result.mechanics) {
+    const fs::path file = folder.path() / run.model;
+    if (!fs::exists(file) || all_solved(run)) continue;
+    needed = true;
+    fmt::print(stderr,
+               "ciliaval: case \"{0}\": the last state of {1} that converged is kept in `{2}`: run "
+               "the case again, with a larger models.{1}.max_iterations or max_cutbacks, to go on "
+               "from there, or with --fresh\n",
+               result.problem.name, run.model, file.string());
+  }
+  if (!needed) folder.clear();
+}
+
+ExitCode run_one(Prepared& prepared, const RunOptions& options) {
   ProgressLine line;
   const Progress progress = line.callback();
-  const CaseResult result = run(problem, mechanics_models(), field_models(), progress);
+  const Case& problem = prepared.problem;
+  OutputFolder& folder = prepared.folder;
+  const CaseResult result = run(problem, mechanics_models(), field_models(), progress,
+                                checkpoint(options.directory, problem));
   const std::vector<Comparison> comparisons = compare_models(result);
   const auto grid = field_grid(result, field_models(), progress);
-  const Provenance origin = provenance(command);
+  const Provenance origin = provenance(options.command);
   write_text(folder.path() / "case.toml", to_toml(problem));
   write_results(result, comparisons, origin, folder.path());
   vtk::write_vtk(result, grid, origin, folder.path() / "vtk");
   folder.commit();
   print(table(result, comparisons));
+  if (prepared.checkpoints) end_checkpoints(*prepared.checkpoints, result);
   return all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
 
 /// The part of the ranks beyond the first in a case: the solid, which shares its work with them.
-void take_part(Case problem) {
+void take_part(Case problem, const RunOptions& options) {
   std::erase_if(problem.mechanics, [](const std::string& id) { return id != "solid"; });
   problem.fields.clear();
-  run(problem, mechanics_models(), field_models(), {});
+  run(problem, mechanics_models(), field_models(), {}, checkpoint(options.directory, problem));
 }
 
 /// The folder of the shipped cases: installed beside the program, or the build tree's sources.
@@ -156,22 +207,21 @@ std::string list_of_cases() {
 
 }  // namespace
 
-ExitCode run_cases(const std::vector<fs::path>& files, const fs::path& directory,
-                   const std::string& command) {
+ExitCode run_cases(const std::vector<fs::path>& files, const RunOptions& options) {
   const std::vector<Case> cases = read_cases(files);
   if (fem::rank() > 0) {
-    for (const Case& problem : cases) take_part(problem);
+    for (const Case& problem : cases) take_part(problem, options);
     return ExitCode::pass;  // rank 0 knows
   }
-  std::vector<OutputFolder> folders;
-  folders.reserve(cases.size());
-  for (const Case& problem : cases) folders.emplace_back(directory, problem.name);
+  std::vector<Prepared> prepared;
+  prepared.reserve(cases.size());
+  for (const Case& problem : cases) prepared.push_back(prepare(problem, options));
   ExitCode code = ExitCode::pass;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    const ExitCode one = run_one(cases[i], folders[i], command);
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    const ExitCode one = run_one(prepared[i], options);
     if (one != ExitCode::pass) code = one;
-    print(fmt::format("Results: {}\n{}", folders[i].target().string(),
-                      i + 1 < cases.size() ? "\n" : ""));
+    print(fmt::format("Results: {}\n{}", prepared[i].folder.target().string(),
+                      i + 1 < prepared.size() ? "\n" : ""));
   }
   return code;
 }

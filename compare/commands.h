@@ -16,12 +16,17 @@ enum class ExitCode {
   input_output = 4  ///< a file could not be read or written
 };
 
-/// `ciliaval run`: reads and checks all case files and output folders before anything runs, then
-/// runs each case, writes its results to DIRECTORY/name and its table to stdout. `command` is the
-/// command line, for the provenance. Throws InputError (also if two cases have the same name) and
-/// FileError.
-ExitCode run_cases(const std::vector<std::filesystem::path>& files,
-                   const std::filesystem::path& directory, const std::string& command);
+struct RunOptions {
+  std::filesystem::path directory = "results";
+  bool fresh = false;   ///< delete the checkpoints of runs that were killed
+  std::string command;  ///< the command line, for the provenance
+};
+
+/// `ciliaval run`: reads and checks all case files, output folders and checkpoints before anything
+/// runs, then runs each case, from its checkpoint if there is one, writes its results to
+/// DIRECTORY/name and its table to stdout. Throws InputError (also if two cases have the same name)
+/// and FileError.
+ExitCode run_cases(const std::vector<std::filesystem::path>& files, const RunOptions& options);
 
 /// `ciliaval validate`: reads and checks, and says so on stdout. Throws InputError with the faults
 /// of all files, FileError.

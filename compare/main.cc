@@ -2,8 +2,11 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -12,6 +15,7 @@
 #include <regex>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "compare/commands.h"
@@ -30,6 +34,9 @@ Examples:
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
+
+A run that was killed goes on where it was when the same command is given again; --fresh starts anew
+(docs/restart.md).
 
 A case file states the cilium, its load, the sensors and the models, each quantity with its unit
 (docs/cases.md). The results are explained in docs/results.md, meshes of one's own in
@@ -93,12 +100,16 @@ ExitCode execute(int argc, char** argv) {
   app.require_subcommand(1);
 
   std::vector<std::filesystem::path> files;
-  std::filesystem::path directory = "results";
+  ciliaval::compare::RunOptions options;
+  options.command = command_line(argc, argv);
   CLI::App* run = app.add_subcommand("run", "Run cases, compare the models, write the results");
   run->add_option("CASE", files, "Case files (TOML)")->required()->check(CLI::ExistingFile);
-  run->add_option("-o,--output", directory, "Folder for the results, one subfolder for each case")
+  run->add_option("-o,--output", options.directory,
+                  "Folder for the results, one subfolder for each case")
       ->type_name("DIR")
       ->capture_default_str();
+  run->add_flag("--fresh", options.fresh,
+                "Start anew: delete the checkpoint of a run that was killed or did not converge");
   CLI::App* validate = app.add_subcommand("validate", "Read and check case files, run nothing");
   validate->add_option("CASE", files, "Case files (TOML)")->required()->check(CLI::ExistingFile);
   CLI::App* mesh = app.add_subcommand(
@@ -132,25 +143,38 @@ ExitCode execute(int argc, char** argv) {
   else if (mesh->parsed())
     ciliaval::compare::write_mesh(mesh_case, mesh_file, refinement, command_line(argc, argv));
   else
-    return ciliaval::compare::run_cases(files, directory, command_line(argc, argv));
+    return ciliaval::compare::run_cases(files, options);
   return ExitCode::pass;
 }
+
+/// The stderr of a rank that keeps silent.
+int silenced_stderr = STDERR_FILENO;
 
 /// Under mpirun: rank 0 alone reads, writes and prints.
 void start_ranks() {
   ciliaval::fem::start_mpi();
   if (ciliaval::fem::rank() == 0) return;
+  silenced_stderr = dup(STDERR_FILENO);
   for (std::FILE* stream : {stdout, stderr})
     if (std::freopen("/dev/null", "w", stream) == nullptr)
       throw ciliaval::FileError("cannot open /dev/null");
 }
 
-}  // namespace
+/// Says what has gone wrong. Where all ranks meet the same error, rank 0 says it and ends them;
+/// another rank speaks if it has failed alone, which it knows or learns by waiting.
+void print_error(const std::string& message, bool of_this_rank_alone) {
+  using namespace std::chrono_literals;
+  if (ciliaval::fem::rank() > 0 && !of_this_rank_alone) std::this_thread::sleep_for(10s);
+  const std::string line = fmt::format("{}{}\n", is_located(message) ? "" : "ciliaval: ", message);
+  const int file = ciliaval::fem::rank() > 0 ? silenced_stderr : STDERR_FILENO;
+  if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
+}
 
 /// The one place where errors become exit codes.
 int main(int argc, char** argv) {
   ExitCode code = ExitCode::pass;
   std::string message;
+  bool alone = false;
   try {
     if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
     code = execute(argc, argv);
@@ -163,13 +187,17 @@ int main(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     code = ExitCode::input_output;
     message = error.what();
+  } catch (const ciliaval::RankFailure& error) {
+    code = ExitCode::solver;
+    message = error.what();
+    alone = true;
   } catch (const std::exception& error) {  // SolverError, and what no model should throw
     code = ExitCode::solver;
     message = error.what();
   }
-  if (!message.empty())
-    fmt::print(stderr, "{}{}\n", is_located(message) ? "" : "ciliaval: ", message);
-  // A message stands for a failure of this rank alone, or of all.
-  if (!message.empty()) ciliaval::fem::abort_all_ranks(static_cast<int>(code));
+  if (!message.empty()) {
+    print_error(message, alone);
+    ciliaval::fem::abort_all_ranks(static_cast<int>(code));
+  }
   return ciliaval::fem::from_first_rank(static_cast<int>(code));
 }

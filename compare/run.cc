@@ -52,17 +52,28 @@ void check(MechanicsStep& step) {
   }
 }
 
+/// The checkpoint of one model.
+Checkpoint checkpoint_of(const std::string& id, const Checkpoint& checkpoints) {
+  Checkpoint result = checkpoints;
+  if (!result.path.empty()) result.path /= id;
+  return result;
+}
+
 MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
-                           const Progress& progress) {
+                           const Progress& progress, const Checkpoint& checkpoint) {
   MechanicsRun run{id, {}};
   std::string failure;
   try {
     Progress named;
     if (progress) named = [&](const std::string& text) { progress(id + ": " + text); };
-    run.result = model.solve(problem.cilium, problem.load_path, named);
+    run.result = model.solve_from(problem.cilium, problem.load_path, checkpoint, named);
     if (run.result.steps.size() != problem.load_path.size())
       failure = "the model gave " + std::to_string(run.result.steps.size()) +
                 " steps for a path of " + std::to_string(problem.load_path.size());
+  } catch (const CheckpointError&) {
+    throw;
+  } catch (const RankFailure&) {
+    throw;
   } catch (const std::exception& error) {
     failure = error.what();
   }
@@ -195,13 +206,15 @@ bool FieldStep::any() const {
 }
 
 CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
-               std::span<const FieldEntry> fields, const Progress& progress) {
+               std::span<const FieldEntry> fields, const Progress& progress,
+               const Checkpoint& checkpoints) {
   const auto mechanics_models = make_chosen(mechanics, problem.mechanics, problem.options);
   const auto field_models = make_chosen(fields, problem.fields, problem.options);
   CaseResult result{problem, {}, {}};
   for (const auto& [id, model] : mechanics_models) {
     if (progress) progress(id + ": starting");
-    result.mechanics.push_back(run_mechanics(id, *model, problem, progress));
+    result.mechanics.push_back(
+        run_mechanics(id, *model, problem, progress, checkpoint_of(id, checkpoints)));
   }
   for (const MechanicsRun& mechanics_run : result.mechanics) {
     const Deformation& undeformed = mechanics_run.result.undeformed;
@@ -213,15 +226,27 @@ CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
   return result;
 }
 
+std::vector<Kept> kept_checkpoints(const Case& problem, std::span<const MechanicsEntry> mechanics,
+                                   const Checkpoint& checkpoints) {
+  std::vector<Kept> result;
+  for (const auto& [id, model] : make_chosen(mechanics, problem.mechanics, problem.options))
+    if (const auto steps = model->finished_steps(problem.cilium, problem.load_path,
+                                                 checkpoint_of(id, checkpoints)))
+      result.push_back({id, *steps});
+  return result;
+}
+
+bool all_solved(const MechanicsRun& run) {
+  return std::none_of(run.result.steps.begin(), run.result.steps.end(),
+                      [](const MechanicsStep& step) { return step.status == Status::failed; });
+}
+
 bool all_solved(const CaseResult& result) {
-  const auto solved = [](const MechanicsStep& step) { return step.status != Status::failed; };
   const auto computed = [](const std::optional<FieldStep>& step) {
     return !step || step->failure.empty();
   };
   return std::all_of(result.mechanics.begin(), result.mechanics.end(),
-                     [&](const MechanicsRun& run) {
-                       return std::all_of(run.result.steps.begin(), run.result.steps.end(), solved);
-                     }) &&
+                     [](const MechanicsRun& run) { return all_solved(run); }) &&
          std::all_of(result.fields.begin(), result.fields.end(), [&](const FieldRun& run) {
            return run.undeformed.failure.empty() &&
                   std::all_of(run.steps.begin(), run.steps.end(), computed);

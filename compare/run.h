@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -58,9 +59,26 @@ struct CaseResult {
 /// field model on the undeformed cilium and on every converged step (a model that needs a body only
 /// where there is one). What one model throws, or a result that is not finite, is recorded as its
 /// failure and does not stop the others; where B diverges at one sensor, the rest are computed.
-/// Throws InputError if the case names a model that is not among the entries.
+/// A mechanics model that keeps a checkpoint goes on from it and keeps it in the folder
+/// `checkpoints.path`, under its id; without a path there is none. Throws InputError if the case
+/// names a model that is not among the entries, CheckpointError, RankFailure.
 CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
-               std::span<const FieldEntry> fields, const Progress& progress = {});
+               std::span<const FieldEntry> fields, const Progress& progress = {},
+               const Checkpoint& checkpoints = {});
+
+/// A mechanics model of a case that keeps a checkpoint, and the steps that it holds.
+struct Kept {
+  std::string model;  ///< id
+  std::size_t finished_steps = 0;
+};
+
+/// Those of the case, in the order of the registry. Throws CheckpointError if one of the
+/// checkpoints cannot be used.
+std::vector<Kept> kept_checkpoints(const Case& problem, std::span<const MechanicsEntry> mechanics,
+                                   const Checkpoint& checkpoints);
+
+/// Whether no step of the model failed.
+bool all_solved(const MechanicsRun& run);
 
 /// Whether nothing failed. A cilium that slipped off is a result, not a failure.
 bool all_solved(const CaseResult& result);

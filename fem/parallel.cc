@@ -6,13 +6,24 @@
 #include <mpi.h>
 #include <petscsys.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 #include <vector>
 
 #include "problem/error.h"
 
 namespace ciliaval::fem {
 namespace {
+
+/// Seconds that a rank which has failed waits for the others to fail too. They do the same work,
+/// and what is wrong with it all ranks find at nearly the same time.
+constexpr double patience = 10;
+
+/// All ranks once more: on it they tell one another that they have failed, while some of them may
+/// be waiting for a message of the solver's.
+MPI_Comm failures = MPI_COMM_NULL;
 
 bool running() {
   int started = 0;
@@ -55,6 +66,7 @@ void start_mpi() {
     if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
       throw SolverError("MPI cannot be started");
     std::atexit(end_mpi);
+    if (rank_count() > 1) MPI_Comm_dup(MPI_COMM_WORLD, &failures);
   }
   PetscBool started = PETSC_FALSE;
   PetscInitialized(&started);
@@ -87,9 +99,48 @@ void abort_all_ranks(int exit_code) {
   if (rank_count() > 1) MPI_Abort(MPI_COMM_WORLD, exit_code);
 }
 
+void require_failure_of_all_ranks(const std::string& message) {
+  if (rank_count() == 1) return;
+  MPI_Request all = MPI_REQUEST_NULL;
+  MPI_Ibarrier(failures, &all);
+  const double start = MPI_Wtime();
+  int done = 0;
+  while (MPI_Wtime() - start < patience) {
+    MPI_Test(&all, &done, MPI_STATUS_IGNORE);
+    if (done != 0) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  throw RankFailure("rank " + std::to_string(rank()) + " of " + std::to_string(rank_count()) +
+                    " failed alone: " + message);
+}
+
 int from_first_rank(int value) {
   if (rank_count() > 1) MPI_Bcast(&value, 1, MPI_INT, 0, MPI_COMM_WORLD);
   return value;
+}
+
+std::string from_first_rank(const std::function<std::string()>& work) {
+  if (rank_count() == 1) return work();
+  std::string text;
+  int failed = 0;
+  if (rank() == 0) {
+    try {
+      text = work();
+    } catch (const CheckpointError& error) {
+      text = error.what();
+      failed = 1;
+    }
+  }
+  unsigned long long size = text.size();
+  MPI_Bcast(&failed, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+  text.resize(size);
+  constexpr std::size_t part = std::size_t{1} << 30;
+  for (std::size_t start = 0; start < text.size(); start += part)
+    MPI_Bcast(text.data() + start, to_int(std::min(part, text.size() - start)), MPI_CHAR, 0,
+              MPI_COMM_WORLD);
+  if (failed != 0) throw CheckpointError(text);
+  return text;
 }
 
 void sum_over_ranks(std::span<double> values) {

@@ -3,7 +3,9 @@
 
 #include <deal.II/base/types.h>
 
+#include <functional>
 #include <span>
+#include <string>
 
 namespace ciliaval::fem {
 
@@ -24,8 +26,17 @@ int rank_count();
 /// which the others would wait forever.
 void abort_all_ranks(int exit_code);
 
+/// For a rank that has caught an exception in work that all ranks share. Returns if all of them
+/// have caught one, within some seconds, or if there is only one rank; otherwise the others still
+/// wait for this one in that work: throws RankFailure with the message.
+void require_failure_of_all_ranks(const std::string& message);
+
 /// Rank 0's value, on all ranks. Collective.
 int from_first_rank(int value);
+
+/// What the work, done by rank 0 alone, returns, on all ranks; so is a CheckpointError that it
+/// throws. Collective.
+std::string from_first_rank(const std::function<std::string()>& work);
 
 /// Replaces the values by their sums over the ranks: the same bits on all of them. Collective.
 void sum_over_ranks(std::span<double> values);

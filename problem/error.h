@@ -26,4 +26,16 @@ class FileError : public Error {
   using Error::Error;
 };
 
+/// A checkpoint cannot be used or written. It ends the run, instead of being one model's failure:
+/// what was saved stays as it is.
+class CheckpointError : public FileError {
+  using FileError::FileError;
+};
+
+/// One rank of several has failed alone, and the others wait for it: nothing but the end of the
+/// program can follow. Exit code 3.
+class RankFailure : public Error {
+  using Error::Error;
+};
+
 }  // namespace ciliaval

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -47,6 +48,12 @@ struct MechanicsResult {
 /// 3, residual 1e-4").
 using Progress = std::function<void(const std::string&)>;
 
+/// Where a model keeps how far it has come, to go on from there if the program is killed.
+struct Checkpoint {
+  std::filesystem::path path;  ///< a file, and others whose names begin with this; empty: none
+  std::string program;         ///< name and version, one line: another one's files are refused
+};
+
 /// A model of the bending cilium: load path in, states out. How it steps from load to load is its
 /// own affair.
 class MechanicsModel {
@@ -57,6 +64,24 @@ class MechanicsModel {
   /// so and the rest goes on where it can. Throws InputError if the cilium or a load is not valid.
   virtual MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                                 const Progress& progress = {}) const = 0;
+
+  /// Steps of the path that the checkpoint holds; 0 without one. Nothing for a model that keeps
+  /// none because it takes but a moment. Throws CheckpointError if the files are damaged, or those
+  /// of another problem.
+  virtual std::optional<std::size_t> finished_steps(const Cilium& /*cilium*/,
+                                                    const LoadPath& /*path*/,
+                                                    const Checkpoint& /*checkpoint*/) const {
+    return std::nullopt;
+  }
+
+  /// solve() that goes on from the checkpoint, if there is one, and keeps it up to date; the steps
+  /// are those of solve(). Steps from the first failed one on are not kept: they are solved again.
+  /// Besides the interface's errors, throws CheckpointError if the files cannot be used or written.
+  virtual MechanicsResult solve_from(const Cilium& cilium, const LoadPath& path,
+                                     const Checkpoint& /*checkpoint*/,
+                                     const Progress& progress = {}) const {
+    return solve(cilium, path, progress);
+  }
 };
 
 }  // namespace ciliaval

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,14 +15,15 @@
 namespace ciliaval::fem {
 namespace {
 
-/// PETSc's errors are those of one rank: the others would wait for it.
+/// PETSc's errors are those of one rank: the others wait for it.
 void check(PetscErrorCode code) {
   if (code == 0) return;
   const char* text = nullptr;
   PetscErrorMessage(code, &text, nullptr);
-  abort_all_ranks(3);
-  throw SolverError(std::string("the linear solver failed: ") +
-                    (text != nullptr ? text : "PETSc error " + std::to_string(code)));
+  const std::string message = std::string("the linear solver failed: ") +
+                              (text != nullptr ? text : "PETSc error " + std::to_string(code));
+  if (rank_count() > 1) throw RankFailure("rank " + std::to_string(rank()) + ": " + message);
+  throw SolverError(message);
 }
 
 PetscInt to_petsc(std::size_t value) {
@@ -43,7 +45,8 @@ struct DirectSolver::Handles {
   ~Handles() {
     PetscBool ended = PETSC_FALSE;
     PetscFinalized(&ended);
-    if (ended) return;
+    // On several ranks these wait for the others, which may not come where one rank has failed.
+    if (ended || (std::uncaught_exceptions() > 0 && rank_count() > 1)) return;
     KSPDestroy(&solver);
     MatDestroy(&matrix);
     VecDestroy(&rhs);

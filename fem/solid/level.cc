@@ -10,6 +10,7 @@
 #include "fem/solid/section.h"
 #include "fem/solid/transfer.h"
 #include "meshes/gmsh_mesh.h"
+#include "problem/error.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -50,12 +51,30 @@ void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
                                      options_.solver);
 }
 
-LoadPathOutcome Level::advance(const Load& load, const Progress& progress) {
+void Level::make_solver(const Load& first) {
   if (!solver_)
     solver_ = std::make_unique<LoadPathSolver>(
-        *space_, *fibres_, *newton_, load, options_.path,
+        *space_, *fibres_, *newton_, first, options_.path,
         [this](const Load& target, const Progress& report) { return first_guess(target, report); });
-  return solver_->advance(load, progress);
+}
+
+LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
+                               const std::function<void()>& on_equilibrium) {
+  make_solver(load);
+  return solver_->advance(load, progress, on_equilibrium);
+}
+
+void Level::restore(LoadPathState state) {
+  const auto fits = [this](const Equilibrium& equilibrium) {
+    return equilibrium.state.displacement.size() == space_->unknowns() &&
+           equilibrium.state.pressure.size() == space_->elements().size();
+  };
+  if (!fits(state.current) || (state.previous && !fits(*state.previous)))
+    throw CheckpointError(
+        "the checkpoint cannot be used: its states are those of other meshes; start anew with "
+        "--fresh, which deletes it");
+  make_solver(state.current.load);
+  solver_->restore(std::move(state));
 }
 
 Guess Level::first_guess(const Load& load, const Progress& progress) const {
@@ -68,6 +87,7 @@ Guess Level::first_guess(const Load& load, const Progress& progress) const {
     guess.slip_off =
         outcome.slip_off_displacement ? outcome.slip_off_displacement : outcome.slip_off_force;
     guess.applied_force = coarser_->applied_force();
+    guess.lost = outcome.status == Status::failed;
     if (outcome.status == Status::converged)
       guess.state = transferred(*coarser_->space_, *coarser_->fibres_,
                                 coarser_->solver().current().state, *space_);
@@ -93,16 +113,19 @@ Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
                 azimuth);
 }
 
-Deformation Level::deformation(double azimuth) const {
-  const Equilibrium& current = solver().current();
-  return deformation(current.state,
-                     spread_load(acting(current.load, current.applied_force), fibres_->area(),
-                                 options_.path.kernel_width),
+Deformation Level::deformation(const Equilibrium& equilibrium, double azimuth) const {
+  return deformation(equilibrium.state,
+                     spread_load(acting(equilibrium.load, equilibrium.applied_force),
+                                 fibres_->area(), options_.path.kernel_width),
                      azimuth);
 }
 
+Deformation Level::deformation(double azimuth) const {
+  return deformation(solver().current(), azimuth);
+}
+
 Deformation Level::undeformed(double azimuth) const {
-  return deformation(space_->undeformed(), {}, azimuth);
+  return deformation(space_->undeformed(), SpreadLoad{}, azimuth);
 }
 
 Vector3 Level::tip() const {

@@ -4,6 +4,7 @@
 #include <deal.II/fe/mapping_q_cache.h>
 #include <deal.II/grid/tria.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -44,11 +45,19 @@ class Level {
   Level& operator=(const Level&) = delete;
 
   /// Brings the level into equilibrium with the load, whose azimuth is from the mesh's x axis (0 on
-  /// a half mesh).
-  LoadPathOutcome advance(const Load& load, const Progress& progress);
+  /// a half mesh). Calls `on_equilibrium` after each one on the way (LoadPathSolver::advance()).
+  LoadPathOutcome advance(const Load& load, const Progress& progress,
+                          const std::function<void()>& on_equilibrium = {});
 
-  /// The level's state in the frame of the cilium, turned by `azimuth`.
+  /// What the level goes on from; null before the first load.
+  const LoadPathState* state() const { return solver_ ? &solver_->state() : nullptr; }
+  /// Throws CheckpointError if it is not the state of a mesh of this size.
+  void restore(LoadPathState state);
+
+  /// The level's state, or another one of its mesh, in the frame of the cilium, turned by
+  /// `azimuth`.
   Deformation deformation(double azimuth) const;
+  Deformation deformation(const Equilibrium& equilibrium, double azimuth) const;
   Deformation undeformed(double azimuth) const;
 
   /// Estimate of the distance of the tip from that of the exact solution, m: what separates it from
@@ -63,6 +72,7 @@ class Level {
   /// What all constructors end with: the space and the solvers on the triangulation and its
   /// mapping.
   void discretise(Extent extent, std::span<const Hyperelastic> materials);
+  void make_solver(const Load& first);
   Guess first_guess(const Load& load, const Progress& progress) const;
   Guess beam_guess(const Load& load) const;
   const LoadPathSolver& solver() const { return *solver_; }

@@ -13,9 +13,12 @@
 namespace ciliaval::fem {
 namespace {
 
-/// Cutbacks of a load path's step that turn the material inside out in one iteration: the load is
-/// too large by far, each takes a single factorisation, and they do not count as max_cutbacks.
-constexpr unsigned int max_overshoots = 20;
+/// What is left of a step that failed.
+constexpr double cut_factor = 0.25;
+
+/// Cuts of steps that turn the material inside out in one iteration: the load is too large by far
+/// (4¹⁰ times, at most), each takes a single factorisation, and they do not count as max_cutbacks.
+constexpr unsigned int max_overshoots = 10;
 
 std::string number(double value) {
   char text[32];
@@ -99,42 +102,40 @@ LoadPathSolver::LoadPathSolver(const SolidSpace& space, const Fibres& fibres, Ne
       newton_(newton),
       options_(options),
       first_guess_(std::move(first_guess)),
-      current_{with_magnitude(first, 0), space.undeformed(), 0} {}
+      now_{{with_magnitude(first, 0), space.undeformed(), 0}, {}, {}, {}} {}
 
 void LoadPathSolver::restart(const Load& load) {
-  current_ = {with_magnitude(load, 0), space_.undeformed(), 0};
-  previous_.reset();
-  slipped_.reset();
+  now_ = {{with_magnitude(load, 0), space_.undeformed(), 0}, {}, {}, {}};
 }
 
 Equilibrium LoadPathSolver::predicted(const Load& load) const {
-  Equilibrium result = current_;
+  Equilibrium result = now_.current;
   result.load = load;
-  if (!previous_) return result;
-  const double last = magnitude(current_.load) - magnitude(previous_->load);
+  if (!now_.previous) return result;
+  const Equilibrium& current = now_.current;
+  const Equilibrium& previous = *now_.previous;
+  const double last = magnitude(current.load) - magnitude(previous.load);
   if (last == 0) return result;
   SolidState& state = result.state;
-  const double factor = std::clamp((magnitude(load) - magnitude(current_.load)) / last, -1.0, 1.5);
-  state.displacement.add(factor, current_.state.displacement, -factor,
-                         previous_->state.displacement);
+  const double factor = std::clamp((magnitude(load) - magnitude(current.load)) / last, -1.0, 1.5);
+  state.displacement.add(factor, current.state.displacement, -factor, previous.state.displacement);
   for (std::size_t e = 0; e < state.pressure.size(); ++e)
-    state.pressure[e] += factor * (current_.state.pressure[e] - previous_->state.pressure[e]);
-  result.applied_force += factor * (current_.applied_force - previous_->applied_force);
+    state.pressure[e] += factor * (current.state.pressure[e] - previous.state.pressure[e]);
+  result.applied_force += factor * (current.applied_force - previous.applied_force);
   return result;
 }
 
-LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, Guess guess,
-                                                LoadPathOutcome& outcome,
+LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, Guess guess, int& iterations,
                                                 const Progress& progress) {
   if (guess.state) {
     Attempt attempt =
-        attempt_from({load, std::move(*guess.state), guess.applied_force}, outcome, progress);
+        attempt_from({load, std::move(*guess.state), guess.applied_force}, iterations, progress);
     if (attempt.converged) return attempt;
   }
-  return attempt_from(predicted(load), outcome, progress);
+  return attempt_from(predicted(load), iterations, progress);
 }
 
-LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, LoadPathOutcome& outcome,
+LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& iterations,
                                                      const Progress& progress) {
   Attempt attempt;
   attempt.equilibrium = std::move(start);
@@ -157,7 +158,7 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, LoadPath
                            options_.newton, report);
     if (const auto* contact = std::get_if<ContactLoad>(&load)) contact_force = contact->force;
   }
-  outcome.iterations += result.iterations();
+  iterations += result.iterations();
   attempt.overshot = result.overshot;
   attempt.converged = result.converged;
   if (!result.converged) {
@@ -177,7 +178,7 @@ Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) cons
 
 std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const Load& load) const {
   if (!guess.slip_off) return std::nullopt;
-  const double now = magnitude(current_.load);
+  const double now = magnitude(now_.current.load);
   const double borne = *guess.slip_off;
   const double next = now < borne ? borne : borne * (1 + options_.slip_off_bracket);
   if (now < next && next < magnitude(load)) return next;
@@ -185,98 +186,122 @@ std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const 
 }
 
 void LoadPathSolver::accept(Attempt&& attempt) {
-  previous_ = std::move(current_);
-  current_ = std::move(attempt.equilibrium);
+  now_.previous = std::move(now_.current);
+  now_.current = std::move(attempt.equilibrium);
 }
 
-LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress) {
-  LoadPathOutcome outcome;
-  if (!same_place(current_.load, target)) restart(target);
-  if (magnitude(current_.load) == magnitude(target)) {
-    outcome.status = Status::converged;
+bool LoadPathSolver::cut(Ramp& ramp, bool overshot) const {
+  const bool far_off = overshot && ramp.overshoots < max_overshoots;
+  if (far_off)
+    ++ramp.overshoots;
+  else if (++ramp.cuts > options_.max_cutbacks)
+    return false;
+  ramp.step *= cut_factor;
+  // Where steps fail now and then, the cuts are never many in a row.
+  return ramp.step >= std::pow(cut_factor, options_.max_cutbacks + ramp.overshoots);
+}
+
+LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
+                                        const std::function<void()>& on_equilibrium) {
+  if (!same_place(now_.current.load, target)) restart(target);
+  if (!now_.ramp || magnitude(now_.ramp->target) != magnitude(target))
+    now_.ramp = Ramp{now_.current.load, target};
+  const auto finish = [this](LoadPathOutcome outcome) {
+    outcome.iterations = now_.ramp->iterations;
+    now_.ramp.reset();
     return outcome;
-  }
-  if (slipped_ && magnitude(target) >= magnitude(*slipped_)) return slip_off(outcome, progress);
-  const Load start = current_.load;
-  double reached = 0;
-  double step = 1;
-  unsigned int halvings = 0;
-  unsigned int overshoots = 0;
-  while (reached < 1) {
-    double aim = std::min(1.0, reached + step);
-    Load load = aim == 1 ? target : interpolate(start, target, aim);
-    Guess guess = guess_for(load, progress);
+  };
+  if (magnitude(now_.current.load) == magnitude(target))
+    return finish({Status::converged, {}, {}, {}});
+  if (now_.slipped && magnitude(target) >= magnitude(*now_.slipped))
+    return finish(slip_off(progress, on_equilibrium));
+  return finish(follow_ramp(progress, on_equilibrium));
+}
+
+LoadPathOutcome LoadPathSolver::follow_ramp(const Progress& progress,
+                                            const std::function<void()>& on_equilibrium) {
+  Ramp& ramp = *now_.ramp;
+  while (ramp.reached < 1) {
+    double aim = std::min(1.0, ramp.reached + ramp.step);
+    Load load = aim == 1 ? ramp.target : interpolate(ramp.start, ramp.target, aim);
+    Guess guess = ramp.unguided ? Guess{} : guess_for(load, progress);
+    ramp.unguided = ramp.unguided || guess.lost;
     if (const auto nearer = toward_slip_off(guess, load)) {
-      aim = (*nearer - magnitude(start)) / (magnitude(target) - magnitude(start));
+      aim = (*nearer - magnitude(ramp.start)) / (magnitude(ramp.target) - magnitude(ramp.start));
       load = with_magnitude(load, *nearer);
       guess = guess_for(load, progress);
     }
-    Attempt result = attempt(load, std::move(guess), outcome, progress);
-    if (result.converged && !result.applied && magnitude(load) <= magnitude(current_.load)) {
+    Attempt result = attempt(load, std::move(guess), ramp.iterations, progress);
+    if (result.converged && !result.applied && magnitude(load) <= magnitude(now_.current.load)) {
       result.converged = false;
       result.trouble = "Newton's method went to a cilium that has slipped off under a smaller load";
     }
     if (result.converged && !result.applied) {
-      slipped_ = load;
-      return slip_off(outcome, progress);
+      now_.slipped = load;
+      return slip_off(progress, on_equilibrium);
     }
     if (result.converged) {
       accept(std::move(result));
-      reached = aim;
-      step *= 2;
-      halvings = halvings > 0 ? halvings - 1 : 0;
+      ramp.reached = aim;
+      ramp.step *= 2;
+      ramp.cuts = 0;
+      if (on_equilibrium) on_equilibrium();
       continue;
     }
-    const bool far_off = result.overshot && overshoots < max_overshoots;
-    if (far_off) ++overshoots;
-    if (!far_off && ++halvings > options_.max_cutbacks) {
-      outcome.message = "no equilibrium found at load " + number(magnitude(load)) + ": " +
-                        result.trouble + "; the last load that converged is " +
-                        number(magnitude(current_.load));
-      return outcome;
+    ramp.step = aim - ramp.reached;
+    if (!cut(ramp, result.overshot)) {
+      const double part = (aim - ramp.reached) * 100;
+      return {Status::failed,
+              "no equilibrium found at load " + with_unit(load) + " in a step of " + number(part) +
+                  " % of the way: " + result.trouble + "; the last load that converged is " +
+                  with_unit(now_.current.load),
+              {},
+              {}};
     }
-    step = (aim - reached) / 2;
   }
-  outcome.status = Status::converged;
-  return outcome;
+  return {Status::converged, {}, {}, {}};
 }
 
-LoadPathOutcome LoadPathSolver::slip_off(LoadPathOutcome outcome, const Progress& progress) {
-  outcome.status = Status::slipped_off;
+LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
+                                         const std::function<void()>& on_equilibrium) {
   std::string trouble;
   double fraction = 0.5;
-  unsigned int halvings = 0;
-  while (magnitude(*slipped_) - magnitude(current_.load) >
-         options_.slip_off_bracket * magnitude(*slipped_)) {
-    const Load load = interpolate(current_.load, *slipped_, fraction);
-    Attempt result = attempt(load, guess_for(load, progress), outcome, progress);
+  unsigned int cuts = 0;
+  while (magnitude(*now_.slipped) - magnitude(now_.current.load) >
+         options_.slip_off_bracket * magnitude(*now_.slipped)) {
+    const Load load = interpolate(now_.current.load, *now_.slipped, fraction);
+    Attempt result = attempt(load, guess_for(load, progress), now_.ramp->iterations, progress);
     if (result.converged) {
       if (result.applied) {
         accept(std::move(result));
       } else {
-        slipped_ = load;
+        now_.slipped = load;
       }
       fraction = 0.5;
-      halvings = 0;
+      cuts = 0;
+      if (on_equilibrium) on_equilibrium();
       continue;
     }
     // A load without a solution tells nothing about the slip-off: try nearer to the last one borne.
-    if (++halvings > options_.max_cutbacks) {
+    if (++cuts > options_.max_cutbacks) {
       trouble = "; the bracket stays this wide because no equilibrium was found at " +
                 with_unit(load) + ": " + result.trouble;
       break;
     }
-    fraction /= 2;
+    fraction *= cut_factor;
   }
-  const bool probe = std::holds_alternative<ProbeLoad>(current_.load);
-  outcome.slip_off_force = probe ? current_.applied_force : magnitude(current_.load);
-  if (probe) outcome.slip_off_displacement = magnitude(current_.load);
+  const Load& borne = now_.current.load;
+  const bool probe = std::holds_alternative<ProbeLoad>(borne);
+  LoadPathOutcome outcome;
+  outcome.status = Status::slipped_off;
+  outcome.slip_off_force = probe ? now_.current.applied_force : magnitude(borne);
+  if (probe) outcome.slip_off_displacement = magnitude(borne);
   outcome.message =
       (probe ? "the cilium slips off: with a displacement of "
              : "the cilium slips off: a contact force of ") +
-      with_unit(current_.load) +
+      with_unit(borne) +
       (probe ? " the contact force was applied in full, with " : " was borne in full, ") +
-      with_unit(*slipped_) + (probe ? " it was not" : " was not") +
+      with_unit(*now_.slipped) + (probe ? " it was not" : " was not") +
       " (a solid begins to slip off where the lowest point of its tip face comes "
       "down to the upper end of the contact kernel)" +
       trouble;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "fem/solid/fibres.h"
 #include "fem/solid/newton.h"
@@ -36,12 +37,13 @@ struct Guess {
   std::optional<SolidState> state;
   double applied_force = 0;          ///< with the state, N
   std::optional<double> slip_off{};  ///< N, or m of a probe
+  bool lost = false;  ///< it failed, and costs more than it gives on the rest of the way
 };
 using FirstGuess = std::function<Guess(const Load&, const Progress&)>;
 
 struct LoadPathOptions {
   NewtonOptions newton;
-  unsigned int max_cutbacks = 5;   ///< halvings of a step in a row
+  unsigned int max_cutbacks = 5;   ///< cuts of a step to its quarter, in a row
   double kernel_width = 0.5e-3;    ///< half-width of the contact kernel, m
   double force_shortfall = 1e-6;   ///< relative; a contact force that falls short by more slips off
   double slip_off_bracket = 0.01;  ///< relative width at which the search for the slip-off ends
@@ -55,13 +57,34 @@ struct LoadPathOutcome {
   int iterations = 0;
 };
 
+/// The way from one load to the next, as far as it is gone.
+struct Ramp {
+  Load start;
+  Load target;
+  double reached = 0;           ///< part of the way
+  double step = 1;              ///< the next step, in parts of the way
+  unsigned int cuts = 0;        ///< in a row
+  unsigned int overshoots = 0;  ///< cuts of steps that turned the material inside out at once
+  int iterations = 0;           ///< of Newton's method, so far
+  bool unguided = false;        ///< the first guess is lost
+};
+
+/// All that the following of a load path goes on from.
+struct LoadPathState {
+  Equilibrium current;
+  std::optional<Equilibrium> previous;
+  /// The smallest load at this place with an equilibrium in which it is not applied in full.
+  std::optional<Load> slipped;
+  std::optional<Ramp> ramp;  ///< while a load is on its way
+};
+
 /// Follows a load path from equilibrium to equilibrium. A load is tried from the first guess, where
 /// there is one; else, or if Newton's method fails, a load at the place (height, section) of the
 /// last one is reached from it, at once from a linear extrapolation of the last two equilibria or
-/// in steps that are halved and grow again after each success; steps that overshoot at once (det F
-/// ≤ 0 after one iteration) may be halved 20 times more. At a new place it starts from the straight
-/// solid: on the way from one place to another the cilium might slip off under loads that nobody
-/// asked for.
+/// in steps that are cut to a quarter where they fail and doubled after each success;
+/// steps that overshoot at once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new
+/// place it starts from the straight solid: on the way from one place to another the cilium might
+/// slip off under loads that nobody asked for.
 class LoadPathSolver {
  public:
   /// Starts from the straight solid under no load of the path's type. The space, fibres and Newton
@@ -70,25 +93,32 @@ class LoadPathSolver {
                  LoadPathOptions options, FirstGuess first_guess = {});
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
-  /// a load fully applied.
-  LoadPathOutcome advance(const Load& target, const Progress& progress = {});
+  /// a load fully applied. Calls `on_equilibrium` after each one on the way: from the state()
+  /// that is there at that time, the same advance() finds the same bits.
+  LoadPathOutcome advance(const Load& target, const Progress& progress = {},
+                          const std::function<void()>& on_equilibrium = {});
 
-  const Equilibrium& current() const { return current_; }
+  const Equilibrium& current() const { return now_.current; }
+  const LoadPathState& state() const { return now_; }
+  void restore(LoadPathState state) { now_ = std::move(state); }
 
  private:
   struct Attempt;
-  Attempt attempt(const Load& load, Guess guess, LoadPathOutcome& outcome,
-                  const Progress& progress);
+  Attempt attempt(const Load& load, Guess guess, int& iterations, const Progress& progress);
   /// Newton's method from a state and, of a probe, an applied force near the equilibrium.
-  Attempt attempt_from(Equilibrium start, LoadPathOutcome& outcome, const Progress& progress);
+  Attempt attempt_from(Equilibrium start, int& iterations, const Progress& progress);
   Equilibrium predicted(const Load& load) const;
   Guess guess_for(const Load& load, const Progress& progress) const;
   /// The magnitude to try before the load's: the one guessed for the slip-off or, when that is
   /// borne, a little more.
   std::optional<double> toward_slip_off(const Guess& guess, const Load& load) const;
   void accept(Attempt&& attempt);
-  /// Narrows the bracket between the current load and `slipped_`.
-  LoadPathOutcome slip_off(LoadPathOutcome outcome, const Progress& progress);
+  /// Makes the ramp's step shorter. False if it has been cut too often.
+  bool cut(Ramp& ramp, bool overshot) const;
+  LoadPathOutcome follow_ramp(const Progress& progress,
+                              const std::function<void()>& on_equilibrium);
+  /// Narrows the bracket between the current load and the one that slipped.
+  LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
   void restart(const Load& load);
 
   const SolidSpace& space_;
@@ -96,10 +126,7 @@ class LoadPathSolver {
   Newton& newton_;
   LoadPathOptions options_;
   FirstGuess first_guess_;
-  Equilibrium current_;
-  std::optional<Equilibrium> previous_;
-  /// The smallest load at this place with an equilibrium in which it is not applied in full.
-  std::optional<Load> slipped_;
+  LoadPathState now_;
 };
 
 }  // namespace ciliaval::fem

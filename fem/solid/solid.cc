@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -13,6 +14,8 @@
 #include <variant>
 #include <vector>
 
+#include "fem/parallel.h"
+#include "fem/solid/checkpoint.h"
 #include "fem/solid/level.h"
 #include "fem/solid/load_path.h"
 #include "meshes/cylinder_mesh.h"
@@ -156,6 +159,56 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
   return levels;
 }
 
+Facts facts(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
+  std::vector<meshes::CylinderMeshOptions> meshes;
+  if (options.mesh.empty())
+    for (unsigned int i = 0; i <= levels_below(options.refinement); ++i)
+      meshes.push_back(path_mesh(i, options, path));
+  return solid_facts(cilium, path, options, meshes);
+}
+
+/// What is made of a step that the finest mesh has ended with.
+MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double mesh_azimuth,
+                       const Level& finest) {
+  MechanicsStep step;
+  step.load = load;
+  step.status = outcome.status;
+  step.message = outcome.message;
+  step.slip_off_force = outcome.slip_off_force;
+  step.slip_off_displacement = outcome.slip_off_displacement;
+  step.iterations = outcome.iterations;
+  step.unknowns = finest.unknowns();
+  if (outcome.status != Status::converged) return step;
+  step.deformation = finest.deformation(mesh_azimuth);
+  step.applied_force = finest.applied_force();
+  step.tip_uncertainty = finest.tip_uncertainty();
+  if (const auto height = contact_height(load))
+    step.contact_arclength = contact_arclength(step.deformation->centreline, *height);
+  return step;
+}
+
+std::vector<const LoadPathState*> states(const std::vector<std::unique_ptr<Level>>& levels) {
+  std::vector<const LoadPathState*> result;
+  for (const auto& level : levels) result.push_back(level->state());
+  return result;
+}
+
+/// Puts the levels and the finished steps where the checkpoint, if there is one, left them.
+void go_on_from(SolidCheckpoint& saved, const std::vector<std::unique_ptr<Level>>& levels,
+                const SolidOptions& options, MechanicsResult& result) {
+  std::vector<std::optional<LoadPathState>> states = saved.read();
+  for (std::size_t i = 0; i < states.size(); ++i)
+    if (states[i]) levels.at(i)->restore(std::move(*states[i]));
+  for (std::size_t i = 0; i < saved.steps().size(); ++i) {
+    MechanicsStep step = saved.steps()[i];
+    if (step.status == Status::converged)
+      step.deformation = levels.back()->deformation(
+          {in_mesh_frame(options, step.load), saved.finished_state(i), step.applied_force},
+          mesh_azimuth(options, step.load));
+    result.steps.push_back(std::move(step));
+  }
+}
+
 }  // namespace
 
 meshes::CylinderMeshOptions level_mesh(unsigned int number) {
@@ -199,34 +252,61 @@ Solid::Solid(SolidOptions options) : options_(std::move(options)) {
 
 MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
                              const Progress& progress) const {
+  return solve_from(cilium, path, {}, progress);
+}
+
+std::optional<std::size_t> Solid::finished_steps(const Cilium& cilium, const LoadPath& path,
+                                                 const Checkpoint& checkpoint) const {
   require_valid(cilium, path, options_);
+  return SolidCheckpoint(checkpoint, facts(cilium, path, options_)).verify();
+}
+
+MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
+                                  const Checkpoint& checkpoint, const Progress& progress) const {
+  require_valid(cilium, path, options_);
+  try {
+    return follow(cilium, path, checkpoint, progress);
+  } catch (const CheckpointError&) {
+    throw;  // on all ranks
+  } catch (const RankFailure&) {
+    throw;
+  } catch (const std::exception& error) {
+    require_failure_of_all_ranks(error.what());
+    throw;
+  }
+}
+
+MechanicsResult Solid::follow(const Cilium& cilium, const LoadPath& path,
+                              const Checkpoint& checkpoint, const Progress& progress) const {
   const std::vector<std::unique_ptr<Level>> levels = make_levels(cilium, path, options_);
   Level& finest = *levels.back();
   MechanicsResult result{finest.undeformed(path.empty() ? 0 : mesh_azimuth(options_, path.front())),
                          {}};
-  for (std::size_t i = 0; i < path.size(); ++i) {
+  SolidCheckpoint saved(checkpoint, facts(cilium, path, options_));
+  go_on_from(saved, levels, options_, result);
+  const auto save = [&] { saved.save(states(levels)); };
+  bool failed = false;
+  for (std::size_t i = result.steps.size(); i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     const std::string label =
         "step " + std::to_string(i + 1) + "/" + std::to_string(path.size()) + ", ";
     const Progress report =
         progress ? Progress([&](const std::string& text) { progress(label + text); }) : Progress();
-    const LoadPathOutcome outcome = finest.advance(in_mesh_frame(options_, path[i]), report);
-    MechanicsStep step;
-    step.load = path[i];
-    step.status = outcome.status;
-    step.message = outcome.status == Status::failed ? label + outcome.message : outcome.message;
-    step.slip_off_force = outcome.slip_off_force;
-    step.slip_off_displacement = outcome.slip_off_displacement;
-    step.iterations = outcome.iterations;
-    step.unknowns = finest.unknowns();
-    if (outcome.status == Status::converged) {
-      step.deformation = finest.deformation(mesh_azimuth(options_, path[i]));
-      step.applied_force = finest.applied_force();
-      step.tip_uncertainty = finest.tip_uncertainty();
-      if (const auto height = contact_height(path[i]))
-        step.contact_arclength = contact_arclength(step.deformation->centreline, *height);
+    const LoadPathOutcome outcome = finest.advance(in_mesh_frame(options_, path[i]), report,
+                                                   failed ? std::function<void()>() : save);
+    MechanicsStep step = finished(outcome, path[i], mesh_azimuth(options_, path[i]), finest);
+    failed = failed || step.status == Status::failed;
+    if (step.status == Status::failed) {
+      step.message = label + step.message;
+      if (saved.file())
+        step.message +=
+            "; what converged up to the first failure is kept in `" + saved.file()->string() + "`";
     }
     step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!failed) {
+      saved.add(step, step.deformation ? &finest.state()->current.state : nullptr);
+      save();
+    }
     result.steps.push_back(std::move(step));
   }
   return result;

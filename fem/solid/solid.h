@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 
 #include "fem/solid/solver_kind.h"
 #include "problem/load.h"
@@ -71,7 +73,16 @@ class Solid : public MechanicsModel {
   MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                         const Progress& progress = {}) const override;
 
+  std::optional<std::size_t> finished_steps(const Cilium& cilium, const LoadPath& path,
+                                            const Checkpoint& checkpoint) const override;
+  MechanicsResult solve_from(const Cilium& cilium, const LoadPath& path,
+                             const Checkpoint& checkpoint,
+                             const Progress& progress = {}) const override;
+
  private:
+  MechanicsResult follow(const Cilium& cilium, const LoadPath& path, const Checkpoint& checkpoint,
+                         const Progress& progress) const;
+
   SolidOptions options_;
 };
 

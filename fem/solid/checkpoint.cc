@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/checkpoint.h"
+
+#include <array>
+#include <boost/archive/archive_exception.hpp>
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/array_wrapper.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <variant>
+
+#include "fem/checkpoint_file.h"
+#include "fem/parallel.h"
+#include "problem/error.h"
+
+// What a state consists of. Each type is taken apart by structured bindings: a member that is added
+// to it and forgotten here does not compile.
+namespace boost::serialization {
+
+template <class Archive, class T>
+void serialize(Archive& archive, std::optional<T>& value, unsigned int /*version*/) {
+  bool there = value.has_value();
+  archive& there;
+  if (there && !value) value.emplace();
+  if (there)
+    archive&* value;
+  else
+    value.reset();
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/) {
+  std::size_t type = load.index();
+  archive& type;
+  if (type != load.index()) {
+    static const std::array<ciliaval::Load, 5> loads{ciliaval::ContactLoad{}, ciliaval::FlowLoad{},
+                                                     ciliaval::SectionLoad{}, ciliaval::DeadLoad{},
+                                                     ciliaval::ProbeLoad{}};
+    static_assert(std::variant_size_v<ciliaval::Load> == loads.size());
+    load = loads.at(type);
+  }
+  std::visit(
+      [&archive](auto& l) {
+        if constexpr (
+            requires { l.height; } || requires { l.arclength; }) {
+          auto& [magnitude, place, azimuth] = l;
+          archive& magnitude& place& azimuth;
+        } else {
+          auto& [magnitude, azimuth] = l;
+          archive& magnitude& azimuth;
+        }
+      },
+      load);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::SolidState& state, unsigned int /*version*/) {
+  auto& [displacement, pressure] = state;
+  auto unknowns = displacement.size();
+  std::size_t elements = pressure.size();
+  archive& unknowns& elements;
+  if (unknowns != displacement.size()) displacement.reinit(unknowns);
+  pressure.resize(elements);
+  archive& make_array(displacement.begin(), unknowns);
+  for (auto& coefficients : pressure)
+    archive& make_array(coefficients.data(), static_cast<std::size_t>(coefficients.size()));
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::Equilibrium& equilibrium, unsigned int /*v*/) {
+  auto& [load, state, applied_force] = equilibrium;
+  archive& load& state& applied_force;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::Ramp& ramp, unsigned int /*version*/) {
+  auto& [start, target, reached, step, cuts, overshoots, iterations, unguided] = ramp;
+  archive& start& target& reached& step& cuts& overshoots& iterations;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::LoadPathState& state, unsigned int /*version*/) {
+  auto& [current, previous, slipped, ramp] = state;
+  archive& current& previous& slipped& ramp;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
+  auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
+         contact_arclength, tip_uncertainty, unknowns, iterations, seconds] = step;
+  static_cast<void>(deformation);  // rebuilt from the state
+  archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
+      contact_arclength& tip_uncertainty& unknowns& iterations& seconds;
+}
+
+}  // namespace boost::serialization
+
+namespace ciliaval::fem {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string describe(const Load& load) {
+  std::string text = std::string(type(load)) + ", " + number(magnitude(load)) + " " +
+                     std::string(magnitude_unit(load));
+  if (const auto height = contact_height(load)) text += ", height " + number(*height) + " m";
+  if (const auto* section = std::get_if<SectionLoad>(&load))
+    text += ", arclength " + number(section->arclength) + " m";
+  return text + ", azimuth " + number(azimuth(load)) + " rad";
+}
+
+std::string describe(const meshes::CylinderMeshOptions& mesh) {
+  std::string text = std::to_string(mesh.square_cells) + " cells and " +
+                     std::to_string(mesh.rings) + " rings with ratio " + number(mesh.ring_ratio) +
+                     ", layers from " + number(mesh.finest_layer) + " to " +
+                     number(mesh.coarsest_layer) + " growing by " + number(mesh.growth);
+  for (const double plane : mesh.planes) text += ", a plane at " + number(plane) + " m";
+  return text + (mesh.half ? ", half" : ", whole");
+}
+
+/// What is in a file. That it cannot be read is for others to say.
+std::string describe_file(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  char text[64];
+  std::snprintf(text, sizeof text, "a file of %zu bytes with the checksum %08x", bytes.size(),
+                static_cast<unsigned int>(checksum(bytes)));
+  return text;
+}
+
+std::string serialized(const auto&... values) {
+  std::ostringstream stream;
+  {
+    boost::archive::binary_oarchive archive(stream);
+    (archive << ... << values);
+  }
+  return std::move(stream).str();
+}
+
+/// Reads the first of the values that were serialised together. `path` is for the message.
+void deserialize(const std::filesystem::path& path, const std::string& bytes, auto&... values) {
+  std::istringstream stream(bytes);
+  try {
+    boost::archive::binary_iarchive archive(stream);
+    (archive >> ... >> values);
+  } catch (const std::exception& error) {
+    throw CheckpointError(
+        refusal(path, std::string("its content cannot be read: ") + error.what()));
+  }
+}
+
+}  // namespace
+
+Facts solid_facts(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
+                  std::span<const meshes::CylinderMeshOptions> meshes) {
+  Facts facts{{"diameter", number(cilium.diameter) + " m"},
+              {"number of segments", std::to_string(cilium.segments.size())}};
+  for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
+    const auto& [name, length, young_modulus, poisson_ratio, magnetization] = cilium.segments[i];
+    const std::string of = " of segment `" + name + "`";
+    facts.emplace_back("length" + of, number(length) + " m");
+    facts.emplace_back("young_modulus" + of, number(young_modulus) + " Pa");
+    facts.emplace_back("poisson_ratio" + of, number(poisson_ratio));
+    facts.emplace_back("magnetization" + of, number(magnetization) + " A/m");
+  }
+  facts.emplace_back("number of load steps", std::to_string(path.size()));
+  for (std::size_t i = 0; i < path.size(); ++i)
+    facts.emplace_back("load of step " + std::to_string(i + 1), describe(path[i]));
+  const auto& [material, mooney_ratio, yeoh_ratios, refinement, initial_guess, symmetry, mesh,
+               mesh_unit, kernel_width, tolerance, max_iterations, max_cutbacks, solver] = options;
+  static_cast<void>(max_iterations);
+  static_cast<void>(max_cutbacks);
+  const auto option = [&facts](const std::string& name, const std::string& value) {
+    facts.emplace_back("models.solid." + name, value);
+  };
+  option("material", std::to_string(static_cast<int>(material)));
+  option("mooney_ratio", number(mooney_ratio));
+  option("yeoh_ratios", number(yeoh_ratios[0]) + ", " + number(yeoh_ratios[1]));
+  option("mesh", mesh.empty() ? "none" : describe_file(mesh));
+  option("mesh_unit", number(mesh_unit) + " m");
+  option("refinement", std::to_string(refinement));
+  option("initial_guess", initial_guess == InitialGuess::beam ? "beam" : "none");
+  option("symmetry", symmetry ? "true" : "false");
+  option("kernel_width", number(kernel_width) + " m");
+  option("tolerance", number(tolerance));
+  option("solver", std::to_string(static_cast<int>(solver)));
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    facts.emplace_back("built-in mesh " + std::to_string(i + 1), describe(meshes[i]));
+  return facts;
+}
+
+std::string difference(const Facts& saved, const Facts& asked) {
+  std::string text;
+  int found = 0;
+  const auto value_in = [](const Facts& facts, const std::string& name) -> const std::string* {
+    for (const auto& [key, value] : facts)
+      if (key == name) return &value;
+    return nullptr;
+  };
+  const auto say = [&](const std::string& name, const std::string* there, const std::string* now) {
+    if (++found > 3) return;
+    text += (text.empty() ? "" : "; ") + name + " was " +
+            (there != nullptr ? *there : "not given") + ", now it is " +
+            (now != nullptr ? *now : "not given");
+  };
+  for (const auto& [name, value] : asked) {
+    const std::string* there = value_in(saved, name);
+    if (there == nullptr || *there != value) say(name, there, &value);
+  }
+  for (const auto& [name, value] : saved)
+    if (value_in(asked, name) == nullptr) say(name, &value, nullptr);
+  return found > 3 ? text + "; and " + std::to_string(found - 3) + " more" : text;
+}
+
+SolidCheckpoint::SolidCheckpoint(Checkpoint files, Facts facts)
+    : files_(std::move(files)), facts_(std::move(facts)) {}
+
+std::filesystem::path SolidCheckpoint::step_file(std::size_t step) const {
+  char text[32];
+  std::snprintf(text, sizeof text, ".%04zu", step);
+  std::filesystem::path path = files_.path;
+  path += text;
+  return path;
+}
+
+std::string SolidCheckpoint::verified_content() const {
+  const std::optional<std::string> content = read_checkpoint_file(files_.path, files_.program);
+  if (!content) return {};
+  Facts facts;
+  std::vector<MechanicsStep> steps;
+  std::vector<std::uint32_t> checksums;
+  deserialize(files_.path, *content, facts);
+  const std::string other = difference(facts, facts_);
+  if (!other.empty())
+    throw CheckpointError(refusal(files_.path, "it is that of another problem: " + other));
+  deserialize(files_.path, *content, facts, steps, checksums);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i].status != Status::converged) continue;
+    const auto state = read_checkpoint_file(step_file(i), files_.program);
+    if (!state) throw CheckpointError(refusal(step_file(i), "the file is missing"));
+    if (checksum(*state) != checksums.at(i))
+      throw CheckpointError(refusal(step_file(i), "it belongs to another run"));
+  }
+  return *content;
+}
+
+std::size_t SolidCheckpoint::verify() const {
+  if (files_.path.empty()) return 0;
+  const std::string content = verified_content();
+  if (content.empty()) return 0;
+  Facts facts;
+  std::vector<MechanicsStep> steps;
+  deserialize(files_.path, content, facts, steps);
+  return steps.size();
+}
+
+std::vector<std::optional<LoadPathState>> SolidCheckpoint::read() {
+  std::vector<std::optional<LoadPathState>> levels;
+  if (files_.path.empty()) return levels;
+  const std::string content = from_first_rank([this] { return verified_content(); });
+  if (content.empty()) return levels;
+  Facts facts;
+  deserialize(files_.path, content, facts, steps_, checksums_, levels);
+  saved_ = true;
+  return levels;
+}
+
+SolidState SolidCheckpoint::finished_state(std::size_t step) const {
+  const std::string content = from_first_rank(
+      [&] { return read_checkpoint_file(step_file(step), files_.program).value_or(""); });
+  if (checksum(content) != checksums_.at(step))
+    throw CheckpointError(refusal(step_file(step), "it was changed while it was read"));
+  SolidState state;
+  deserialize(step_file(step), content, state);
+  return state;
+}
+
+void SolidCheckpoint::add(const MechanicsStep& step, const SolidState* state) {
+  if (files_.path.empty()) return;
+  const std::string content = state != nullptr ? serialized(*state) : "";
+  if (state != nullptr)
+    from_first_rank([&] {
+      write_checkpoint_file(step_file(steps_.size()), files_.program, content);
+      return std::string();
+    });
+  checksums_.push_back(state != nullptr ? checksum(content) : 0);
+  steps_.push_back(step);
+  steps_.back().deformation.reset();
+}
+
+void SolidCheckpoint::save(std::span<const LoadPathState* const> levels) {
+  if (files_.path.empty()) return;
+  from_first_rank([&] {
+    std::vector<std::optional<LoadPathState>> states;
+    for (const LoadPathState* level : levels)
+      states.push_back(level != nullptr ? std::optional(*level) : std::nullopt);
+    write_checkpoint_file(files_.path, files_.program,
+                          serialized(facts_, steps_, checksums_, states));
+    return std::string();
+  });
+  saved_ = true;
+}
+
+std::optional<std::filesystem::path> SolidCheckpoint::file() const {
+  return saved_ ? std::optional(files_.path) : std::nullopt;
+}
+
+}  // namespace ciliaval::fem
