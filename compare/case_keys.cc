@@ -217,9 +217,9 @@ void append_solid(std::vector<Knob>& all) {
   all.push_back(number_knob(solid, &SolidOptions::max_iterations, "solid", "max_iterations",
                             quantity::number, iterations_range,
                             "Newton iterations of a load increment."));
-  all.push_back(number_knob(solid, &SolidOptions::max_cutbacks, "solid", "max_cutbacks",
-                            quantity::number, cutbacks_range,
-                            "Halvings of a load increment that does not converge."));
+  all.push_back(number_knob(
+      solid, &SolidOptions::max_cutbacks, "solid", "max_cutbacks", quantity::number, cutbacks_range,
+      "Cuts, to a quarter, of a load step that does not converge, in a row."));
   all.push_back(choice_knob(solid, &SolidOptions::solver, "solid", "solver",
                             {{"auto", fem::SolverKind::automatic},
                              {"direct", fem::SolverKind::direct},

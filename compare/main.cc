@@ -170,6 +170,8 @@ void print_error(const std::string& message, bool of_this_rank_alone) {
   if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
 }
 
+}  // namespace
+
 /// The one place where errors become exit codes.
 int main(int argc, char** argv) {
   ExitCode code = ExitCode::pass;

@@ -21,19 +21,24 @@ struct Outcome {
   std::string out;
 };
 
-/// `ciliaval run` on one or two ranks, also as root and on a single core.
-Outcome run(const fs::path& folder, int ranks, const std::string& results,
-            const std::string& file = "case.toml") {
-  const std::string launcher =
-      ranks == 1 ? "" : "'" CILIAVAL_MPIEXEC "' -n " + std::to_string(ranks) + " ";
+/// Runs a command, for mpirun also as root and on a single core.
+Outcome execute(const fs::path& folder, const std::string& words) {
   const std::string command =
       "cd '" + folder.string() +
       "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
       "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
       "OMPI_MCA_mpi_yield_when_idle=1 " +
-      launcher + "'" CILIAVAL_PROGRAM "' run " + file + " -o " + results + " >out.txt 2>err.txt";
+      words + " >out.txt 2>err.txt";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out.txt")};
+}
+
+/// `ciliaval run` on one or two ranks.
+Outcome run(const fs::path& folder, int ranks, const std::string& results,
+            const std::string& file = "case.toml") {
+  const std::string launcher =
+      ranks == 1 ? "" : "'" CILIAVAL_MPIEXEC "' -n " + std::to_string(ranks) + " ";
+  return execute(folder, launcher + "'" CILIAVAL_PROGRAM "' run " + file + " -o " + results);
 }
 
 void write_case(const fs::path& folder, const std::string& solid) {
@@ -95,6 +100,40 @@ TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
   EXPECT_EQ(run(folder.path(), 2, "two").code, 3);
   EXPECT_EQ(solid_step(folder.path() / "two").at("status"), "failed");
   EXPECT_EQ(run(folder.path(), 2, "two", "none.toml").code, 2);
+}
+
+/// How often a text occurs.
+int count(const std::string& text, const std::string& part) {
+  int result = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++result;
+  return result;
+}
+
+// Rank 1 or rank 0 alone runs out of memory, at several places of the solution: both end, with the
+// exit code of a solver's failure, and the one that failed says so, once. Oracle: the contract; a
+// minute's `timeout` stands for "waits forever" (code 124).
+TEST(Mpi, AFaultOfOneRankAloneEndsAllOfThem) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "");
+  const std::string program = "'" CILIAVAL_PROGRAM "' run case.toml -o out";
+  for (const int failing : {1, 0})
+    for (const int allocation : {1, 20, 60}) {
+      fs::remove_all(folder.path() / "out");
+      const std::string faulty = "env LD_PRELOAD='" CILIAVAL_FAILING_NEW "' CILIAVAL_FAIL_AT=" +
+                                 std::to_string(allocation) + " " + program;
+      const Outcome outcome =
+          execute(folder.path(), "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 " +
+                                     (failing == 0 ? faulty : program) + " : -n 1 " +
+                                     (failing == 1 ? faulty : program));
+      const std::string said = read_text(folder.path() / "err.txt");
+      const std::string what =
+          "rank " + std::to_string(failing) + ", allocation " + std::to_string(allocation);
+      EXPECT_EQ(outcome.code, 3) << what << ": " << said;
+      EXPECT_EQ(count(said, "rank " + std::to_string(failing) + " of 2 failed alone: "), 1)
+          << what << ": " << said;
+      EXPECT_EQ(count(said, "ciliaval: "), 1) << what << ": " << said;
+      EXPECT_FALSE(fs::exists(folder.path() / "out" / "mpi"));
+    }
 }
 
 }  // namespace

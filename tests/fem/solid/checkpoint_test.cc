@@ -98,19 +98,19 @@ void expect_same(const MechanicsResult& a, const MechanicsResult& b, const std::
 /// Stops the solution again and again, each time after some more lines of progress than before, and
 /// compares what comes of it at last with the solution that nothing has stopped.
 void stop_and_go_on(const SolidOptions& options, const LoadPath& loads, const Checkpoint& files,
-                    int stride) {
-  const MechanicsResult whole = Solid(options).solve(stub(), loads);
+                    int stops) {
   int total = 0;
-  Solid(options).solve(stub(), loads, [&total](const std::string&) { ++total; });
+  const MechanicsResult whole =
+      Solid(options).solve(stub(), loads, [&total](const std::string&) { ++total; });
   ASSERT_GT(total, 10);
   bool went_on = false;
-  for (int first = 1; first < total; first += stride) {
+  for (int first = total / 4; first < total; first += total / stops) {
     const std::string what = "stopped first at line " + std::to_string(first);
     fs::remove_all(files.path.parent_path());
     fs::create_directories(files.path.parent_path());
     int lines = first;
     EXPECT_THROW(Solid(options).solve_from(stub(), loads, files, killed_after(lines)), Killed);
-    went_on = went_on || Solid(options).finished_steps(stub(), loads, files).value_or(0) > 0;
+    went_on = went_on || fs::exists(files.path);
     lines = first + total / 3;
     try {
       Solid(options).solve_from(stub(), loads, files, killed_after(lines));
@@ -123,20 +123,20 @@ void stop_and_go_on(const SolidOptions& options, const LoadPath& loads, const Ch
 
 // Oracle: the solution that nothing has stopped, to the last bit: steps, iterations, shape, stress.
 TEST_F(SolidCheckpointFiles, GoOnToTheSameBits) {
-  stop_and_go_on(coarse(), path({2e-3, 4e-3, 1e-3}), checkpoint(), 5);
+  stop_and_go_on(coarse(), path({2e-3, 4e-3, 1e-3}), checkpoint(), 4);
 }
 
 // … with the bracket of a slip-off half closed.
 TEST_F(SolidCheckpointFiles, GoOnInTheSearchForTheSlipOff) {
-  stop_and_go_on(coarse(), path({3e-3, 1.0, 1e-3}), checkpoint(), 11);
+  stop_and_go_on(coarse(), path({3e-3, 1.0}), checkpoint(), 2);
 }
 
-// … in the middle of a ramp whose steps are cut, because three iterations are too few.
+// … in the middle of a ramp whose steps are cut, because four iterations are too few.
 TEST_F(SolidCheckpointFiles, GoOnInARampOfShortSteps) {
   SolidOptions options = coarse();
   options.initial_guess = InitialGuess::none;
   options.max_iterations = 4;
-  stop_and_go_on(options, path({6e-3}), checkpoint(), 17);
+  stop_and_go_on(options, path({6e-3}), checkpoint(), 3);
 }
 
 // What a failed step leaves can be gone on from with more iterations; it ends as it would have.

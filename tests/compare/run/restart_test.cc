@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The program, killed and started again.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "synthetic.h"
+
+namespace ciliaval {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_text;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+using Seconds = std::chrono::duration<double>;
+
+/// A short cilium and small steps, solved on the coarse mesh in some seconds.
+void write_case(const fs::path& folder, const std::string& solid = "",
+                const std::string& forces = R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN"])") {
+  std::ofstream(folder / "case.toml") << R"([case]
+name = "killed"
+[cilium]
+diameter = "3 mm"
+[[cilium.segment]]
+name = "base"
+length = "3 mm"
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.49
+[[cilium.segment]]
+name = "magnet"
+length = "3 mm"
+young_modulus = "3 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+[load]
+type = "contact"
+force = )" << forces << R"(
+height = "4.5 mm"
+azimuth = "30 deg"
+[sensor]
+position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
+[models]
+mechanics = ["elastica", "solid"]
+fields = ["line", "mesh"]
+[models.solid]
+refinement = 0
+)" << solid;
+}
+
+struct Outcome {
+  bool killed = false;
+  int code = -1;
+  std::string err;
+};
+
+/// Runs `ciliaval run case.toml -o out …` and kills it with SIGKILL as soon as `kill_now()` says
+/// so.
+Outcome run(const fs::path& folder, const std::vector<std::string>& arguments,
+            const std::function<bool()>& kill_now) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const auto redirect = [](const char* file, int to) {
+      dup2(open(file, O_WRONLY | O_CREAT | O_TRUNC, 0666), to);
+    };
+    if (chdir(folder.c_str()) != 0) _exit(126);
+    redirect("out.txt", STDOUT_FILENO);
+    redirect("err.txt", STDERR_FILENO);
+    std::vector<std::string> words{CILIAVAL_PROGRAM, "run", "case.toml"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    execv(CILIAVAL_PROGRAM, argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (kill_now()) kill(child, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  Outcome outcome;
+  outcome.killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
+  outcome.err = read_text(folder / "err.txt");
+  return outcome;
+}
+
+bool never() {
+  return false;
+}
+
+std::function<bool()> after(Seconds time) {
+  return [time, start = std::chrono::steady_clock::now()] {
+    return std::chrono::steady_clock::now() - start > time;
+  };
+}
+
+const std::vector<std::string> to_out{"-o", "out"};
+
+/// The results without what says when and how they were made.
+std::vector<std::pair<std::string, std::string>> contents(const fs::path& results) {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(results))
+    if (entry.is_regular_file() && entry.path().filename() != "summary.json")
+      files.emplace_back(entry.path().filename().string(), read_text(entry.path()));
+  std::sort(files.begin(), files.end());
+  auto summary = nlohmann::json::parse(read_text(results / "summary.json"));
+  summary.erase("provenance");
+  const std::function<void(nlohmann::json&)> untimed = [&](nlohmann::json& node) {
+    if (node.is_object()) node.erase("seconds");
+    if (node.is_structured())
+      for (auto& child : node) untimed(child);
+  };
+  untimed(summary);
+  files.emplace_back("summary.json", summary.dump(1));
+  return files;
+}
+
+/// Kills the program at random moments until it comes to its end, and again from the beginning,
+/// until it was killed so often. The results must be those of a run that nothing has disturbed, to
+/// the last digit: the text of all files.
+void kill_and_compare(int kills_wanted) {
+  const TemporaryFolder folder;
+  write_case(folder.path());
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(run(folder.path(), {"-o", "reference"}, never).code, 0);
+  const Seconds whole = std::chrono::steady_clock::now() - start;
+  const auto expected = contents(folder.path() / "reference" / "killed");
+  std::mt19937 random(20261121);  // NOLINT(cert-msc51-cpp): the same moments in every run
+  std::uniform_real_distribution<double> moment(0, 0.8);
+  int kills = 0;
+  int continued = 0;
+  while (kills < kills_wanted) {
+    fs::remove_all(folder.path() / "out");
+    Outcome outcome;
+    do {
+      outcome = run(folder.path(), to_out, after(moment(random) * whole));
+      kills += outcome.killed;
+      continued += outcome.err.find("goes on at step") != std::string::npos;
+      ASSERT_TRUE(outcome.killed || outcome.code == 0) << outcome.err;
+    } while (outcome.killed);
+    EXPECT_EQ(contents(folder.path() / "out" / "killed"), expected) << "after " << kills;
+    EXPECT_FALSE(fs::exists(folder.path() / "out" / ".killed.checkpoint"));
+  }
+  EXPECT_GT(continued, 0) << "no run went on from a checkpoint";
+}
+
+// Oracle: an undisturbed run.
+TEST(Restart, AKilledRunEndsWithTheSameDigits) {
+  kill_and_compare(2);
+}
+TEST(RestartSlow, ARunKilledAtTwentyRandomMomentsEndsWithTheSameDigits) {
+  kill_and_compare(20);
+}
+
+/// Leaves the checkpoint of a run that was killed after its second step.
+void interrupt(const fs::path& folder) {
+  const fs::path second = folder / "out" / ".killed.checkpoint" / "solid.0001";
+  const fs::path last = folder / "out" / ".killed.checkpoint" / "solid";
+  std::error_code none;
+  fs::file_time_type written{};
+  const Outcome outcome = run(folder, to_out, [&] {
+    // The file itself follows that of the step.
+    if (!fs::exists(second, none)) return false;
+    if (written == fs::file_time_type{}) written = fs::last_write_time(second, none);
+    return fs::last_write_time(last, none) > written;
+  });
+  ASSERT_TRUE(outcome.killed) << outcome.err;
+}
+
+TEST(Restart, SaysWhereItGoesOnAndFreshStartsAnew) {
+  const TemporaryFolder folder;
+  write_case(folder.path());
+  interrupt(folder.path());
+  const Outcome again = run(folder.path(), to_out, never);
+  EXPECT_EQ(again.code, 0);
+  EXPECT_THAT(again.err, testing::ContainsRegex("case \"killed\": solid goes on at step [34]/4"));
+  EXPECT_THAT(again.err, HasSubstr("--fresh"));
+  fs::remove_all(folder.path() / "out");
+  interrupt(folder.path());
+  const Outcome fresh = run(folder.path(), {"-o", "out", "--fresh"}, never);
+  EXPECT_EQ(fresh.code, 0);
+  EXPECT_EQ(fresh.err, "");
+  EXPECT_FALSE(fs::exists(folder.path() / "out" / ".killed.checkpoint"));
+}
+
+// Damaged, or of a case that was changed since: exit code 4 before anything is written, and the
+// checkpoint is still there. What does not touch the solid may be changed.
+TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
+  const TemporaryFolder folder;
+  write_case(folder.path());
+  interrupt(folder.path());
+  const fs::path file = folder.path() / "out" / ".killed.checkpoint" / "solid";
+  const std::string good = read_text(file);
+  const auto refused = [&](const std::string& why) {
+    const std::string before = read_text(file);
+    const Outcome outcome = run(folder.path(), to_out, never);
+    EXPECT_EQ(outcome.code, 4) << why;
+    EXPECT_THAT(outcome.err, HasSubstr("out/.killed.checkpoint/solid"));
+    EXPECT_THAT(outcome.err, HasSubstr(why));
+    EXPECT_THAT(outcome.err, HasSubstr("--fresh"));
+    EXPECT_FALSE(fs::exists(folder.path() / "out" / "killed"));
+    EXPECT_EQ(read_text(file), before);
+  };
+  std::ofstream(file, std::ios::binary) << good.substr(0, good.size() / 2);
+  refused("cut short");
+  std::ofstream(file, std::ios::binary) << std::string(good).replace(good.size() / 2, 8, 8, '!');
+  refused("damaged");
+  std::ofstream(file, std::ios::binary) << good;
+  write_case(folder.path(), "tolerance = 1e-8\n");
+  refused("models.solid.tolerance was");
+  write_case(folder.path(), "", R"(["0.5 mN", "1 mN", "1.25 mN", "2 mN"])");
+  refused("load of step 3 was contact, 0.0015 N");
+  write_case(folder.path(), "max_iterations = 30\n[models.line]\ntolerance = 1e-9\n");
+  EXPECT_EQ(run(folder.path(), to_out, never).code, 0);
+}
+
+// One run at a time has a checkpoint.
+TEST(Restart, ASecondRunOfTheSameCaseIsRefusedWhileTheFirstGoesOn) {
+  const TemporaryFolder folder;
+  write_case(folder.path());
+  Outcome second;
+  const fs::path file = folder.path() / "out" / ".killed.checkpoint" / "solid";
+  run(folder.path(), to_out, [&] {
+    if (second.code >= 0) return true;
+    if (!fs::exists(file)) return false;
+    fs::create_directory(folder.path() / "second");
+    fs::copy_file(folder.path() / "case.toml", folder.path() / "second" / "case.toml");
+    second = run(folder.path() / "second", {"-o", "../out"}, never);
+    return true;
+  });
+  EXPECT_EQ(second.code, 4);
+  EXPECT_THAT(second.err, HasSubstr("another run of this case"));
+}
+
+// One iteration is not enough for the second step: the message has the step, the residuals, the
+// last load that converged and the file that holds its state, from which more iterations go on.
+TEST(Restart, AFailedStepCanBeGoneOnFromWithMoreIterations) {
+  const TemporaryFolder folder;
+  const std::string forces = R"(["1e-6 mN", "4 mN"])";
+  const std::string options = "initial_guess = \"none\"\nmax_cutbacks = 0\nmax_iterations = ";
+  write_case(folder.path(), options + "3\n", forces);
+  const Outcome failed = run(folder.path(), to_out, never);
+  EXPECT_EQ(failed.code, 3);
+  EXPECT_THAT(failed.err, HasSubstr("out/.killed.checkpoint/solid"));
+  EXPECT_THAT(failed.err, HasSubstr("max_iterations"));
+  const auto solid = [&] {
+    const std::string text = read_text(folder.path() / "out" / "killed" / "summary.json");
+    return nlohmann::json::parse(text)["steps"][1]["mechanics"]["solid"];
+  };
+  EXPECT_EQ(solid()["status"], "failed");
+  const std::string message = solid()["message"];
+  EXPECT_THAT(message, HasSubstr("step 2/2"));
+  EXPECT_THAT(message, HasSubstr("relative residuals"));
+  EXPECT_THAT(message, HasSubstr("the last load that converged is 1e-09 N"));
+  EXPECT_THAT(message, HasSubstr("out/.killed.checkpoint/solid"));
+  write_case(folder.path(), options + "25\n", forces);
+  const Outcome again = run(folder.path(), to_out, never);
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("goes on at step 2/2"));
+  EXPECT_EQ(solid()["status"], "converged");
+  EXPECT_FALSE(fs::exists(folder.path() / "out" / ".killed.checkpoint"));
+}
+
+}  // namespace
+}  // namespace ciliaval
