@@ -112,12 +112,12 @@ int count(const std::string& text, const std::string& part) {
 // Rank 1 or rank 0 alone runs out of memory, at several places of the solution: both end, with the
 // exit code of a solver's failure, and the one that failed says so, once. Oracle: the contract; a
 // minute's `timeout` stands for "waits forever" (code 124).
-TEST(Mpi, AFaultOfOneRankAloneEndsAllOfThem) {
+TEST(MpiSlow, AFaultOfOneRankAloneEndsAllOfThem) {
   const TemporaryFolder folder;
   write_case(folder.path(), "");
   const std::string program = "'" CILIAVAL_PROGRAM "' run case.toml -o out";
   for (const int failing : {1, 0})
-    for (const int allocation : {1, 20, 60}) {
+    for (const int allocation : {1, 20}) {
       fs::remove_all(folder.path() / "out");
       const std::string faulty = "env LD_PRELOAD='" CILIAVAL_FAILING_NEW "' CILIAVAL_FAIL_AT=" +
                                  std::to_string(allocation) + " " + program;

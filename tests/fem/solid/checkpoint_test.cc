@@ -126,17 +126,10 @@ TEST_F(SolidCheckpointFiles, GoOnToTheSameBits) {
   stop_and_go_on(coarse(), path({2e-3, 4e-3, 1e-3}), checkpoint(), 4);
 }
 
-// … with the bracket of a slip-off half closed.
-TEST_F(SolidCheckpointFiles, GoOnInTheSearchForTheSlipOff) {
+// … on the way to the slip-off and with its bracket half closed.
+using SolidCheckpointFilesSlow = SolidCheckpointFiles;
+TEST_F(SolidCheckpointFilesSlow, GoOnInTheSearchForTheSlipOff) {
   stop_and_go_on(coarse(), path({3e-3, 1.0}), checkpoint(), 2);
-}
-
-// … in the middle of a ramp whose steps are cut, because four iterations are too few.
-TEST_F(SolidCheckpointFiles, GoOnInARampOfShortSteps) {
-  SolidOptions options = coarse();
-  options.initial_guess = InitialGuess::none;
-  options.max_iterations = 4;
-  stop_and_go_on(options, path({6e-3}), checkpoint(), 3);
 }
 
 // What a failed step leaves can be gone on from with more iterations; it ends as it would have.
