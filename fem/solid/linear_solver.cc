@@ -21,6 +21,18 @@ constexpr unsigned int max_with_old_factors = 12;
 /// Such an iteration costs little: the residual goes on to this part of the one asked for.
 constexpr double margin_with_factors = 1e-3;
 
+/// The matrix on one rank, its own rows on several.
+struct Product {
+  const dealii::SparseMatrix<double>& matrix;
+  const OwnRows<double>& own;
+  void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const {
+    if (rank_count() == 1)
+      matrix.vmult(y, x);
+    else
+      own.vmult(y, x);
+  }
+};
+
 struct Factors {
   const DirectSolver& solver;
   void vmult(dealii::Vector<double>& x, const dealii::Vector<double>& b) const {
@@ -32,9 +44,8 @@ struct Factors {
 
 LinearSolver::LinearSolver(const SolidSpace& space,
                            const dealii::AffineConstraints<double>& constraints,
-                           const dealii::SparsityPattern& pattern, SolverKind kind) {
-  start_mpi();
-  rows_ = own_range(space.unknowns());
+                           const dealii::SparsityPattern& pattern, SolverKind kind)
+    : rows_((start_mpi(), own_range(space.unknowns()))), own_(rows_) {
   if (kind == SolverKind::automatic)
     kind = space.unknowns() > direct_unknowns ? SolverKind::iterative : SolverKind::direct;
   if (kind == SolverKind::iterative)
@@ -47,6 +58,7 @@ void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix, bool near
   const bool first = matrix_ == nullptr;
   matrix_ = &matrix;
   current_ = false;
+  if (rank_count() > 1) own_.update(matrix);
   if (first || !near_last) update();
 }
 
@@ -69,7 +81,7 @@ std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
   const double margin = direct_ ? margin_with_factors : 1;
   dealii::SolverControl control(max_iterations, margin * reduction * rhs.l2_norm());
   Solver solver(control, Solver::AdditionalData(restart));
-  const RowMatrix matrix(*matrix_, rows_);
+  const Product matrix{*matrix_, own_};
   solution.reinit(rhs.size());
   try {
     if (multigrid_)

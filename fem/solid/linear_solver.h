@@ -54,6 +54,7 @@ class LinearSolver {
 
   RowRange rows_;
   const dealii::SparseMatrix<double>* matrix_ = nullptr;
+  OwnRows<double> own_;  ///< of the matrix, on several ranks
   std::unique_ptr<DirectSolver> direct_;
   std::unique_ptr<Multigrid> multigrid_;
   bool current_ = false;    ///< factors or multigrid are those of the matrix

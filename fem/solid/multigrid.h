@@ -16,24 +16,13 @@
 
 namespace ciliaval::fem {
 
-/// y = A x, where the matrix is complete in this rank's own rows and the vectors are whole on every
-/// rank. Collective.
-class RowMatrix {
+/// A copy of this rank's own rows of a matrix. In single precision, for a preconditioner, there is
+/// a third less to read.
+template <typename Number>
+class OwnRows {
  public:
-  RowMatrix(const dealii::SparseMatrix<double>& matrix, RowRange rows)
-      : matrix_(matrix), rows_(rows) {}
-  void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const;
-
- private:
-  const dealii::SparseMatrix<double>& matrix_;
-  RowRange rows_;
-};
-
-/// The own rows of a matrix in single precision, for the preconditioner: two thirds of the memory
-/// to read.
-class SingleRows {
- public:
-  explicit SingleRows(RowRange rows) : rows_(rows) {}
+  explicit OwnRows(RowRange rows) : rows_(rows) {}
+  /// The matrix must be complete in the own rows, and its pattern always the same.
   void update(const dealii::SparseMatrix<double>& matrix);
   /// y = A x; vectors whole on every rank. Collective.
   void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const;
@@ -42,8 +31,11 @@ class SingleRows {
   RowRange rows_;
   std::vector<std::size_t> starts_;
   std::vector<std::uint32_t> columns_;
-  std::vector<float> values_;
+  std::vector<Number> values_;
 };
+
+extern template class OwnRows<float>;
+extern template class OwnRows<double>;
 
 /// The additive Schwarz method on vertex stars. The star of a vertex holds the nodes inside the
 /// cells around it (27 for an inner vertex of Q2: its own, those of its edges, faces and cells),
@@ -102,7 +94,7 @@ class Multigrid {
 
   RowRange rows_;
   VertexStars stars_;
-  SingleRows matrix_;
+  OwnRows<float> matrix_;
   std::vector<std::size_t> prolongation_starts_;
   std::vector<Weight> prolongation_;  ///< row by row
   std::vector<Row> fixed_;            ///< coarse degrees of freedom that are constrained
