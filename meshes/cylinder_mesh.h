@@ -44,7 +44,7 @@ std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions
 /// The straight cylinder of the cilium: an o-grid (inner square and rings) extruded through
 /// layer_planes(). Material ids are the segments' indices, boundary ids as above. The mesh lines
 /// along the third local coordinate ζ run from base to tip and are straight: X and Y are constant
-/// on them. The mantle is a cylinder, the cells are transfinite inside. The triangulation must be
+/// on them. The mantle is a cylinder, all other edges are straight. The triangulation must be
 /// empty and must stay at its place in memory, for its manifolds point to it. Throws InputError if
 /// the cilium or the options are not valid.
 void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
