@@ -20,14 +20,10 @@
 #include "fem/solid/assembly.h"
 #include "fem/solid/solid.h"
 #include "meshes/cylinder_mesh.h"
+#include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem {
 namespace {
-
-const Cilium& paper_cilium() {
-  static const Cilium cilium{3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 0}}};
-  return cilium;
-}
 
 /// The coarse mesh (refinement 0), bent into an arc of 1 rad, clamped, with its matrix.
 class BentCilium {

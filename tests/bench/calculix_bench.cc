@@ -24,6 +24,7 @@
 #include "fem/solid/solid.h"
 #include "meshes/cylinder_mesh.h"
 #include "problem/error.h"
+#include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -33,17 +34,6 @@ namespace fs = std::filesystem;
 constexpr double force = 2e-3;       // N
 constexpr double arclength = 16e-3;  // m
 const Load load = SectionLoad{.force = force, .arclength = arclength, .azimuth = 0};
-
-Cilium cilium() {
-  Segment base;
-  base.length = 3e-3;
-  base.young_modulus = 1e5;
-  base.poisson_ratio = 0.49;
-  Segment magnet = base;
-  magnet.length = 17e-3;
-  magnet.young_modulus = 3e6;
-  return {3e-3, {base, magnet}};
-}
 
 /// One run of a program on one mesh.
 struct Run {
@@ -82,7 +72,7 @@ Run solid_run(unsigned int refinement) {
   rusage after{};
   getrusage(RUSAGE_SELF, &before);
   const Stopwatch watch;
-  const MechanicsResult result = Solid(options).solve(cilium(), {load});
+  const MechanicsResult result = Solid(options).solve(paper_cilium(), {load});
   getrusage(RUSAGE_SELF, &after);
   const MechanicsStep& step = result.steps.front();
   if (!step.deformation) throw SolverError(step.message);
@@ -92,8 +82,9 @@ Run solid_run(unsigned int refinement) {
 
 /// Mean displacement of the tip face along x.
 double tip_deflection(const meshes::MeshNodes& mesh, const std::vector<Vector3>& displacements) {
-  const auto weights = calculix_forces(
-      mesh, cilium(), SectionLoad{.force = 1, .arclength = cilium().length(), .azimuth = 0});
+  const auto weights =
+      calculix_forces(mesh, paper_cilium(),
+                      SectionLoad{.force = 1, .arclength = paper_cilium().length(), .azimuth = 0});
   double sum = 0;
   double weight = 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -109,12 +100,12 @@ std::optional<Run> calculix_run(const fs::path& folder, unsigned int refinement,
   options.half = true;
   options.planes = {arclength};
   dealii::Triangulation<3> triangulation;
-  meshes::make_cylinder(cilium(), options, triangulation);
+  meshes::make_cylinder(paper_cilium(), options, triangulation);
   const auto mapping = meshes::cylinder_mapping(triangulation);
   const meshes::MeshNodes mesh = meshes::mesh_nodes(triangulation, *mapping);
   {
     std::ofstream input(folder / "cilium.inp");
-    write_calculix(input, mesh, cilium(), load, {first_increment, 1000});
+    write_calculix(input, mesh, paper_cilium(), load, {first_increment, 1000});
   }
   const Stopwatch watch;
   const pid_t child = fork();

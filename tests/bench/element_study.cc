@@ -33,6 +33,7 @@
 #include "fem/solid/transfer.h"
 #include "meshes/cylinder_mesh.h"
 #include "problem/error.h"
+#include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -51,17 +52,6 @@ struct Element {
 };
 const std::vector<Element> elements{
     {"Q2", 2, -1}, {"Q3", 3, -1}, {"Q2-P0", 2, 0}, {"Q2-P1", 2, 1}, {"Q3-P2", 3, 2}};
-
-Cilium cilium(double poisson_ratio) {
-  Segment base;
-  base.length = 3e-3;
-  base.young_modulus = 1e5;
-  base.poisson_ratio = poisson_ratio;
-  Segment magnet = base;
-  magnet.length = 17e-3;
-  magnet.young_modulus = 3e6;
-  return {3e-3, {base, magnet}};
-}
 
 /// Monomials of the local coordinates x up to a degree.
 Eigen::VectorXd monomials(const Vector3& x, int degree) {
@@ -99,7 +89,7 @@ class Study {
  public:
   Study(const Element& element, double poisson_ratio, const meshes::CylinderMeshOptions& mesh)
       : kind_(element),
-        cilium_(cilium(poisson_ratio)),
+        cilium_(paper_cilium(poisson_ratio)),
         element_(dealii::FE_Q<3>(static_cast<unsigned int>(element.degree)), 3),
         quadrature_(static_cast<unsigned int>(element.degree) + 1) {
     for (const Segment& segment : cilium_.segments)
@@ -377,7 +367,7 @@ double solid_deflection(double poisson_ratio, unsigned int refinement) {
   SolidOptions options;
   options.refinement = refinement;
   options.solver = SolverKind::direct;
-  const MechanicsResult result = Solid(options).solve(cilium(poisson_ratio), {load});
+  const MechanicsResult result = Solid(options).solve(paper_cilium(poisson_ratio), {load});
   const MechanicsStep& step = result.steps.front();
   if (!step.deformation) throw SolverError(step.message);
   const Centreline& line = step.deformation->centreline;

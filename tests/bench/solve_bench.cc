@@ -17,6 +17,7 @@
 #include "fem/solid/linear_solver.h"
 #include "fem/solid/load_path.h"
 #include "meshes/cylinder_mesh.h"
+#include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -35,17 +36,6 @@ const std::vector<Mesh> family{{4, 1, 1, 0.11, 0.4},
                                {8, 5, 0.85, 0.036, 0.11},
                                {10, 7, 0.87, 0.025, 0.066}};
 
-Cilium cilium() {
-  Segment base;
-  base.length = 3e-3;
-  base.young_modulus = 1e5;
-  base.poisson_ratio = 0.49;
-  Segment magnet = base;
-  magnet.length = 17e-3;
-  magnet.young_modulus = 3e6;
-  return {3e-3, {base, magnet}};
-}
-
 class Discretised {
  public:
   explicit Discretised(const Mesh& mesh) {
@@ -56,10 +46,10 @@ class Discretised {
     options.finest_layer = mesh.finest_layer;
     options.coarsest_layer = mesh.coarsest_layer;
     options.growth = 0.3;
-    meshes::make_cylinder(cilium(), options, triangulation_);
+    meshes::make_cylinder(paper_cilium(), options, triangulation_);
     mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
     std::vector<Hyperelastic> materials;
-    for (const Segment& segment : cilium().segments)
+    for (const Segment& segment : paper_cilium().segments)
       materials.push_back(Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
     space = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
     const std::vector<DirichletCondition> clamped{{.boundary = meshes::base_id}};
