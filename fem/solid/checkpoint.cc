@@ -165,8 +165,7 @@ Facts solid_facts(const Cilium& cilium, const LoadPath& path, const SolidOptions
                   std::span<const meshes::CylinderMeshOptions> meshes) {
   Facts facts{{"diameter", number(cilium.diameter) + " m"},
               {"number of segments", std::to_string(cilium.segments.size())}};
-  for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
-    const auto& [name, length, young_modulus, poisson_ratio, magnetization] = cilium.segments[i];
+  for (const auto& [name, length, young_modulus, poisson_ratio, magnetization] : cilium.segments) {
     const std::string of = " of segment `" + name + "`";
     facts.emplace_back("length" + of, number(length) + " m");
     facts.emplace_back("young_modulus" + of, number(young_modulus) + " Pa");
