@@ -18,7 +18,7 @@
 namespace ciliaval::fem {
 
 /// Unknowns beyond which `automatic` is `iterative` (measured: docs/solid.md).
-inline constexpr dealii::types::global_dof_index direct_unknowns = 30000;
+inline constexpr dealii::types::global_dof_index direct_unknowns = 100000;
 
 /// Solves systems with the solid's tangent, which may be unsymmetric: by sparse LU (MUMPS), or by
 /// GMRES preconditioned from the right by one multigrid cycle. Vectors are whole on every rank, the
@@ -29,8 +29,6 @@ class LinearSolver {
   /// The pattern must outlive it. The constraints may only set unknowns to zero.
   LinearSolver(const SolidSpace& space, const dealii::AffineConstraints<double>& constraints,
                const dealii::SparsityPattern& pattern, SolverKind kind);
-
-  bool iterative() const { return multigrid_ != nullptr; }
 
   /// This rank's rows: the only ones in which the matrix must be complete. The cells that have a
   /// degree of freedom among them are those that it needs.
