@@ -19,6 +19,12 @@ namespace {
 /// tied (docs/solid.md): the singularities at the clamped rim and at the interfaces' rims govern.
 constexpr double tip_order = 1.5;
 
+void add(SolidState& sum, double factor, const SolidState& state) {
+  sum.displacement.add(factor, state.displacement);
+  for (std::size_t e = 0; e < sum.pressure.size(); ++e)
+    sum.pressure[e] += factor * state.pressure[e];
+}
+
 /// A clamped base; on the plane of symmetry, where there is one, no displacement across it.
 std::vector<DirichletCondition> supports(Extent extent) {
   std::vector<DirichletCondition> conditions{{.boundary = meshes::base_id}};
@@ -83,19 +89,37 @@ Guess Level::first_guess(const Load& load, const Progress& progress) const {
     const Progress report =
         progress ? Progress([&](const std::string& text) { progress("coarser mesh, " + text); })
                  : Progress();
+    const std::optional<Equilibrium> before = coarser_at(solver().current().load);
     const LoadPathOutcome outcome = coarser_->advance(load, report);
     guess.slip_off =
         outcome.slip_off_displacement ? outcome.slip_off_displacement : outcome.slip_off_force;
-    guess.applied_force = coarser_->applied_force();
     guess.lost = outcome.status == Status::failed;
-    if (outcome.status == Status::converged)
-      guess.state = transferred(*coarser_->space_, *coarser_->fibres_,
-                                coarser_->solver().current().state, *space_);
+    if (outcome.status == Status::converged) {
+      const Equilibrium& after = coarser_->solver().current();
+      guess.applied_force = after.applied_force;
+      guess.state = transferred(*coarser_->space_, *coarser_->fibres_, after.state, *space_);
+      if (before) {
+        // What separates the two meshes' states changes less than the states do.
+        const SolidState old =
+            transferred(*coarser_->space_, *coarser_->fibres_, before->state, *space_);
+        add(*guess.state, 1, solver().current().state);
+        add(*guess.state, -1, old);
+        guess.applied_force += solver().current().applied_force - before->applied_force;
+      }
+    }
   } else if (options_.beam_guess) {
     guess = beam_guess(load);
   }
   if (guess.state) prescribe(*space_, supports(fibres_->extent()), *guess.state);
   return guess;
+}
+
+std::optional<Equilibrium> Level::coarser_at(const Load& load) const {
+  if (!coarser_->solver_ || magnitude(load) == 0) return std::nullopt;
+  const Equilibrium& equilibrium = coarser_->solver().current();
+  if (!same_place(equilibrium.load, load) || magnitude(equilibrium.load) != magnitude(load))
+    return std::nullopt;
+  return equilibrium;
 }
 
 Guess Level::beam_guess(const Load& load) const {

@@ -74,6 +74,8 @@ class Level {
   void discretise(Extent extent, std::span<const Hyperelastic> materials);
   void make_solver(const Load& first);
   Guess first_guess(const Load& load, const Progress& progress) const;
+  /// The coarser level's equilibrium if that is under this load.
+  std::optional<Equilibrium> coarser_at(const Load& load) const;
   Guess beam_guess(const Load& load) const;
   const LoadPathSolver& solver() const { return *solver_; }
   Deformation deformation(const SolidState& state, const SpreadLoad& load, double azimuth) const;

@@ -37,7 +37,8 @@ std::string with_unit(const Load& load) {
   return number(magnitude(load)) + " " + std::string(magnitude_unit(load));
 }
 
-/// The same load but for its magnitude?
+}  // namespace
+
 bool same_place(const Load& a, const Load& b) {
   if (type(a) != type(b) || azimuth(a) != azimuth(b)) return false;
   if (contact_height(a)) return contact_height(a) == contact_height(b);
@@ -45,8 +46,6 @@ bool same_place(const Load& a, const Load& b) {
     return section->arclength == std::get<SectionLoad>(b).arclength;
   return true;
 }
-
-}  // namespace
 
 Load acting(const Load& load, double applied_force) {
   if (const auto* probe = std::get_if<ProbeLoad>(&load))

@@ -24,6 +24,9 @@ ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, co
 /// The contact force of a probe, N; any other load as it is.
 Load acting(const Load& load, double applied_force);
 
+/// Whether two loads differ in nothing but their magnitude.
+bool same_place(const Load& a, const Load& b);
+
 /// The solid in equilibrium with a load.
 struct Equilibrium {
   Load load;
