@@ -37,30 +37,7 @@ Outcome ciliaval(const fs::path& folder, const std::string& arguments) {
 /// A case that the rods solve in a moment.
 fs::path write_case(const fs::path& folder, const std::string& name, const std::string& models) {
   fs::path file = folder / (name + ".toml");
-  std::ofstream(file) << "[case]\nname = \"" << name << R"("
-title = "A quick one"
-[cilium]
-diameter = "3 mm"
-[[cilium.segment]]
-name = "base"
-length = "3 mm"
-young_modulus = "0.1 MPa"
-poisson_ratio = 0.49
-[[cilium.segment]]
-name = "magnet"
-length = "17 mm"
-young_modulus = "3 MPa"
-poisson_ratio = 0.49
-magnetization = "75 kA/m"
-[load]
-type = "contact"
-force = ["1 mN", "9 mN"]
-height = "16 mm"
-azimuth = "30 deg"
-[sensor]
-position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
-[models]
-)" << models;
+  std::ofstream(file) << test::case_text({.name = name, .force = R"(["1 mN", "9 mN"])"}, models);
   return file;
 }
 

@@ -32,34 +32,13 @@ using Seconds = std::chrono::duration<double>;
 /// A short cilium and small steps, solved on the coarse mesh in some seconds.
 void write_case(const fs::path& folder, const std::string& solid = "",
                 const std::string& forces = R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN"])") {
-  std::ofstream(folder / "case.toml") << R"([case]
-name = "killed"
-[cilium]
-diameter = "3 mm"
-[[cilium.segment]]
-name = "base"
-length = "3 mm"
-young_modulus = "0.1 MPa"
-poisson_ratio = 0.49
-[[cilium.segment]]
-name = "magnet"
-length = "3 mm"
-young_modulus = "3 MPa"
-poisson_ratio = 0.49
-magnetization = "75 kA/m"
-[load]
-type = "contact"
-force = )" << forces << R"(
-height = "4.5 mm"
-azimuth = "30 deg"
-[sensor]
-position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
-[models]
-mechanics = ["elastica", "solid"]
+  std::ofstream(folder / "case.toml") << test::case_text(
+      {.name = "killed", .magnet_length = "3 mm", .force = forces, .height = "4.5 mm"},
+      R"(mechanics = ["elastica", "solid"]
 fields = ["line", "mesh"]
 [models.solid]
 refinement = 0
-)" << solid;
+)" + solid);
 }
 
 struct Outcome {

@@ -25,6 +25,34 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
+std::string case_text(const ContactCaseText& text, const std::string& models) {
+  return "[case]\nname = \"" + text.name + R"("
+title = "A test"
+[cilium]
+diameter = "3 mm"
+[[cilium.segment]]
+name = "base"
+length = "3 mm"
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.49
+[[cilium.segment]]
+name = "magnet"
+length = ")" +
+         text.magnet_length + R"("
+young_modulus = "3 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+[load]
+type = "contact"
+force = )" +
+         text.force + "\nheight = \"" + text.height + R"("
+azimuth = "30 deg"
+[sensor]
+position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
+[models]
+)" + models;
+}
+
 std::string read_text(const std::filesystem::path& file) {
   const std::ifstream stream(file, std::ios::binary);
   if (!stream) throw std::runtime_error("there is no " + file.string());

@@ -26,6 +26,16 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// The text of a case file: the paper's cilium, or one with another magnet, under contact forces.
+struct ContactCaseText {
+  std::string name;
+  std::string magnet_length = "17 mm";
+  std::string force = R"("1 mN")";  ///< a TOML value: a string or a list of them
+  std::string height = "16 mm";
+};
+/// `models` are the lines that follow `[models]`.
+std::string case_text(const ContactCaseText& text, const std::string& models);
+
 std::string read_text(const std::filesystem::path& file);
 
 /// The curve r(S) with the section's rotation about ê_z × e by θ(S), in two pieces that join at
