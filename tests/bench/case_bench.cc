@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Seconds that whole cases take: read, run, compared and written, as `ciliaval run` does it, but
+// for its start. Wall time.
+#include <benchmark/benchmark.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/case.h"
+#include "compare/errors.h"
+#include "compare/field_grid.h"
+#include "compare/provenance.h"
+#include "compare/registry.h"
+#include "compare/results.h"
+#include "compare/run.h"
+#include "compare/vtk/output.h"
+
+namespace ciliaval::compare {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path shipped(const std::string& name) {
+  return fs::path(CILIAVAL_SOURCE_DIR) / "cases" / "paper" / (name + ".toml");
+}
+
+/// What a case is changed to before it is timed.
+struct Change {
+  std::vector<std::string> mechanics;  ///< empty: those of the file
+  std::optional<std::size_t> last;     ///< the first steps of the load path are left out
+  unsigned int refinement = 1;
+};
+
+void whole_case(benchmark::State& state, const std::string& name, const Change& change) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("ciliaval-bench-" + std::to_string(getpid()));
+  for (auto _ : state) {
+    Case problem = read_case(shipped(name));
+    if (!change.mechanics.empty()) problem.mechanics = change.mechanics;
+    problem.options.solid.refinement = change.refinement;
+    if (change.last)
+      problem.load_path.erase(problem.load_path.begin(),
+                              problem.load_path.end() - static_cast<std::ptrdiff_t>(*change.last));
+    fs::create_directories(folder);
+    const CaseResult result = run(problem, mechanics_models(), field_models());
+    if (!all_solved(result)) state.SkipWithError("a model failed");
+    const Provenance origin = provenance("bench_case");
+    write_results(result, compare_models(result), origin, folder);
+    vtk::write_vtk(result, field_grid(result, field_models()), origin, folder / "vtk");
+    state.counters["steps"] = static_cast<double>(problem.load_path.size());
+  }
+  fs::remove_all(folder);
+}
+
+void add(const std::string& label, const std::string& name, const Change& change) {
+  benchmark::RegisterBenchmark(
+      (name + "/" + label).c_str(),
+      [name, change](benchmark::State& state) { whole_case(state, name, change); })
+      ->Unit(benchmark::kSecond)
+      ->UseRealTime()
+      ->Iterations(1);
+}
+
+}  // namespace
+}  // namespace ciliaval::compare
+
+int main(int argc, char** argv) {
+  using ciliaval::compare::add;
+  add("rods", "fig3b", {.mechanics = {"elastica", "beam"}, .last = {}});
+  for (const unsigned int refinement : {0U, 1U, 2U}) {
+    const std::string label = "/refinement:" + std::to_string(refinement);
+    add("4mN" + label, "fig3b", {.mechanics = {}, .last = 1, .refinement = refinement});
+    add("all" + label, "fig3b", {.mechanics = {}, .last = {}, .refinement = refinement});
+  }
+  add("all", "fig3d", {.mechanics = {}, .last = {}});
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
