@@ -35,7 +35,13 @@ Centreline::Centreline(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
       Quaternion& q = piece.states[i].rotation;
       if (q.dot(piece.states[i - 1].rotation) < 0) q.coeffs() = -q.coeffs();
     }
-    bases_.emplace_back(piece.S);
+    const LagrangeBasis& basis = bases_.emplace_back(piece.S);
+    std::vector<Vector3>& derivatives = derivatives_.emplace_back();
+    for (std::size_t j = 0; j < basis.size(); ++j) {
+      Vector3& derivative = derivatives.emplace_back(Vector3::Zero());
+      for (std::size_t i = 0; i < basis.size(); ++i)
+        derivative += basis.slope(i, j) * piece.states[i].position;
+    }
   }
 }
 
@@ -54,24 +60,41 @@ CentrelinePoint Centreline::at(double S) const {
 CentrelinePoint Centreline::at(double S, std::size_t piece) const {
   const Piece& p = pieces_.at(piece);
   const LagrangeBasis& basis = bases_[piece];
+  const std::vector<Vector3>& derivatives = derivatives_[piece];
   S = std::clamp(S, p.S.front(), p.S.back());
-  std::vector<double> values(basis.size());
-  std::vector<double> derivatives(basis.size());
-  basis.values_and_derivatives(S, values, derivatives);
-
   CentrelinePoint point;
+  // dr/dS of the interpolant is a polynomial too, so it is interpolated from its nodal values.
   point.derivative.setZero();
   Eigen::Vector4d rotation = Eigen::Vector4d::Zero();
+  double sum = 0;
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const SectionState& state = p.states[i];
-    point.position += values[i] * state.position;
-    point.derivative += derivatives[i] * state.position;
-    rotation += values[i] * state.rotation.coeffs();
-    point.curvature += values[i] * state.curvature;
-    point.forces.force += values[i] * state.forces.force;
-    point.forces.moment += values[i] * state.forces.moment;
+    const double distance = S - basis.nodes()[i];
+    if (distance == 0) return node(piece, i);
+    const double share = basis.weights()[i] / distance;
+    sum += share;
+    point.position += share * state.position;
+    point.derivative += share * derivatives[i];
+    rotation += share * state.rotation.coeffs();
+    point.curvature += share * state.curvature;
+    point.forces.force += share * state.forces.force;
+    point.forces.moment += share * state.forces.moment;
   }
-  point.rotation.coeffs() = rotation.normalized();
+  const double scale = 1 / sum;
+  point.position *= scale;
+  point.derivative *= scale;
+  point.curvature *= scale;
+  point.forces.force *= scale;
+  point.forces.moment *= scale;
+  point.rotation.coeffs() = (scale * rotation).normalized();
+  return point;
+}
+
+CentrelinePoint Centreline::node(std::size_t piece, std::size_t i) const {
+  CentrelinePoint point;
+  static_cast<SectionState&>(point) = pieces_.at(piece).states.at(i);
+  point.rotation.normalize();
+  point.derivative = derivatives_[piece][i];
   return point;
 }
 

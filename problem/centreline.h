@@ -60,11 +60,14 @@ class Centreline {
   CentrelinePoint at(double S) const;
   /// State at S by the interpolation of one piece: for one-sided values at breaks.
   CentrelinePoint at(double S, std::size_t piece) const;
+  /// State at a node of a piece, which takes no interpolation.
+  CentrelinePoint node(std::size_t piece, std::size_t i) const;
   std::size_t piece_at(double S) const;
 
  private:
   std::vector<Piece> pieces_;
   std::vector<LagrangeBasis> bases_;
+  std::vector<std::vector<Vector3>> derivatives_;  ///< dr/dS at the nodes of each piece
   std::vector<double> breaks_;
 };
 

@@ -17,6 +17,10 @@ class LagrangeBasis {
 
   std::size_t size() const { return nodes_.size(); }
   const std::vector<double>& nodes() const { return nodes_; }
+  /// Barycentric weights: ℓ_i(x) = w_i/(x − x_i) / Σ_j w_j/(x − x_j).
+  const std::vector<double>& weights() const { return weights_; }
+  /// ℓ_i'(x_j).
+  double slope(std::size_t i, std::size_t j) const { return differentiation_[j * size() + i]; }
 
   /// ℓ_i(x), i < size(), into `values`.
   void values(double x, std::span<double> values) const;
