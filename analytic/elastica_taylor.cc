@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "analytic/elastica_taylor.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 
 #include "problem/error.h"
@@ -10,12 +13,41 @@
 namespace ciliaval::analytic {
 namespace {
 
-/// Σ_{k≥1} a_k t^k
-template <class Series>
-double horner(const Series& a, double t) {
-  double sum = 0;
-  for (std::size_t k = a.size() - 1; k > 0; --k) sum = (sum + a[k]) * t;
-  return sum;
+constexpr std::size_t order = TaylorStep::order;
+
+/// Σ_{k≥1} a_k t^k of several series at once: each waits for its last product, not for the others.
+template <class... Series>
+std::array<double, sizeof...(Series)> horner(double t, const Series&... series) {
+  std::array<double, sizeof...(Series)> sums{};
+  for (std::size_t k = order; k > 0; --k) {
+    std::size_t i = 0;
+    ((sums[i] = (sums[i] + series[k]) * t, ++i), ...);
+  }
+  return sums;
+}
+
+constexpr std::array<double, order + 1> reciprocal = [] {
+  std::array<double, order + 1> values{};
+  for (std::size_t k = 1; k <= order; ++k) values[k] = 1 / static_cast<double>(k);
+  return values;
+}();
+
+/// A series kept from its last coefficient to its first, so that a product of two series reads both
+/// forwards.
+class Backward {
+ public:
+  double& operator[](std::size_t k) { return coefficients_[order - k]; }
+  const double* from(std::size_t k) const { return &coefficients_[order - k]; }
+
+ private:
+  std::array<double, order + 1> coefficients_{};
+};
+
+/// Σ_{j ≤ k} a_j b_{k−j}, the coefficient k of a product.
+double product(const std::array<double, order + 1>& a, const Backward& b, std::size_t k) {
+  const auto n = static_cast<Eigen::Index>(k + 1);
+  return Eigen::Map<const Eigen::VectorXd>(a.data(), n)
+      .dot(Eigen::Map<const Eigen::VectorXd>(b.from(k), n));
 }
 
 }  // namespace
@@ -57,8 +89,9 @@ TaylorStep TaylorStep::straight(PlanarState start, ForceLaw law, double target) 
 
 void TaylorStep::expand(ForceLaw law) {
   const double tau = width_;
-  Series sine{};
-  Series cosine{};
+  Backward sine;
+  Backward cosine;
+  Series rate{};  // of θ: (k + 1) θ_{k+1}
   sine[0] = std::sin(start_.theta);
   cosine[0] = std::sin(start_.phi);
   theta_[0] = start_.theta;
@@ -68,27 +101,23 @@ void TaylorStep::expand(ForceLaw law) {
   force_.fill(0);
   force_[0] = start_.force;
   for (std::size_t k = 0; k < order; ++k) {
-    const double scale = tau / static_cast<double>(k + 1);
-    theta_[k + 1] = scale * flexibility_ * moment_[k];
+    const double over = reciprocal[k + 1];
+    const double scale = tau * over;
+    rate[k] = tau * flexibility_ * moment_[k];
+    theta_[k + 1] = over * rate[k];
     w_[k + 1] = scale * sine[k];
     z_[k + 1] = scale * cosine[k];
     if (law == ForceLaw::height) force_[k + 1] = -scale * cosine[k];
     if (law == ForceLaw::length && k == 0) force_[1] = -tau;
-    const std::size_t last =
-        std::min(k, law == ForceLaw::height ? k : std::size_t{law == ForceLaw::length});
-    double torque = 0;
-    for (std::size_t j = 0; j <= last; ++j) torque += force_[j] * cosine[k - j];
+    double torque = force_[0] * cosine[k];
+    if (law == ForceLaw::height) torque = product(force_, cosine, k);
+    if (law == ForceLaw::length && k > 0) torque += force_[1] * cosine[k - 1];
     moment_[k + 1] = -scale * torque;
     // (sin θ)' = θ' cos θ, (cos θ)' = −θ' sin θ
-    double sine_rate = 0;
-    double cosine_rate = 0;
-    for (std::size_t j = 0; j <= k; ++j) {
-      const double rate = static_cast<double>(j + 1) * theta_[j + 1];
-      sine_rate += rate * cosine[k - j];
-      cosine_rate -= rate * sine[k - j];
-    }
-    sine[k + 1] = sine_rate / static_cast<double>(k + 1);
-    cosine[k + 1] = cosine_rate / static_cast<double>(k + 1);
+    const double sine_rate = product(rate, cosine, k);
+    const double cosine_rate = -product(rate, sine, k);
+    sine[k + 1] = over * sine_rate;
+    cosine[k + 1] = over * cosine_rate;
   }
 }
 
@@ -134,32 +163,34 @@ bool TaylorStep::finite() const {
 
 PlanarState TaylorStep::at(double S) const {
   const double t = (S - start_.S) / width_;
-  const double turned = horner(theta_, t);
+  const auto [turned, w, z, moment, force] = horner(t, theta_, w_, z_, moment_, force_);
   PlanarState state;
   state.S = S;
   state.theta = start_.theta + turned;
   state.phi = start_.phi - turned;
-  state.w = w_[0] + horner(w_, t);
-  state.z = z_[0] + horner(z_, t);
-  state.moment = moment_[0] + horner(moment_, t);
-  state.force = force_[0] + horner(force_, t);
+  state.w = w_[0] + w;
+  state.z = z_[0] + z;
+  state.moment = moment_[0] + moment;
+  state.force = force_[0] + force;
   state.curvature = flexibility_ * state.moment;
   return state;
 }
 
 double TaylorStep::zero_moment() const {
-  // M is monotone in the step (−dM/dS = H cos θ); Newton from the start, bisection where it leaves.
+  // M is monotone in the step (−dM/dS = H cos θ); Newton from the end, bisection where it leaves.
   double a = start();
   double b = end();
   double S = b;
   const double sign = std::copysign(1.0, moment_[0]);
   for (int iteration = 0; iteration < 200; ++iteration) {
-    const PlanarState state = at(S);
-    (sign * state.moment > 0 ? a : b) = S;
-    const double slope = -state.force * std::sin(state.phi);
-    double next = S - state.moment / slope;
+    const auto [turned, rise, force] = horner((S - start_.S) / width_, theta_, moment_, force_);
+    const double moment = moment_[0] + rise;
+    (sign * moment > 0 ? a : b) = S;
+    const double slope = -(force_[0] + force) * std::sin(start_.phi - turned);
+    double next = S - moment / slope;
     if (!((next - a) * (next - b) <= 0)) next = std::midpoint(a, b);
-    if (std::abs(next - S) <= 1e-16 * std::max(1.0, std::abs(S)) || a == b) return next;
+    // After a step of the last bits Newton has converged; smaller ones would only go to and fro.
+    if (std::abs(next - S) <= 4e-16 * std::max(1.0, std::abs(S)) || a == b) return next;
     S = next;
   }
   return S;
