@@ -48,9 +48,11 @@ void lay_out(FieldGrid& grid, const CaseResult& result, const MechanicsRun& run)
     grid.spacing[i] = size[i] / (grid.points[static_cast<std::size_t>(i)] - 1);
 }
 
-/// B at some points. A model refuses all of them if B diverges at one: then each is asked alone.
+/// B at some points. A model refuses all of them if B diverges at one: then they are asked again in
+/// pieces of the first of the smaller sizes, and where that fails of the next.
 void sample(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
-            std::span<const Vector3> points, FieldGrid::Step& step) {
+            std::span<const Vector3> points, std::span<const std::size_t> smaller,
+            FieldGrid::Step& step) {
   const auto add = [&](const Vector3& B) {
     const bool valid = B.allFinite();
     step.B.push_back(valid ? B : Vector3::Zero());
@@ -59,27 +61,29 @@ void sample(const FieldModel& model, const Cilium& cilium, const Deformation& de
   try {
     for (const Vector3& B : model.field(cilium, deformation, points).B) add(B);
   } catch (const Error&) {
-    if (points.size() == 1) {
-      step.B.emplace_back(Vector3::Zero());
-      step.valid.push_back(0);
-    } else {
-      for (const Vector3& point : points)
-        sample(model, cilium, deformation, std::span(&point, 1), step);
+    if (smaller.empty()) {
+      step.B.insert(step.B.end(), points.size(), Vector3::Zero());
+      step.valid.insert(step.valid.end(), points.size(), 0);
+      return;
     }
+    for (std::size_t i = 0; i < points.size(); i += smaller.front())
+      sample(model, cilium, deformation, points.subspan(i, smaller.front()), smaller.subspan(1),
+             step);
   }
 }
 
+/// All points in one call, so that the model sets up once and spreads them over its threads.
 FieldGrid::Step sample_grid(const FieldGrid& grid, const FieldModel& model, const Cilium& cilium,
                             const Deformation& deformation) {
-  FieldGrid::Step step;
-  std::vector<Vector3> row;
+  std::vector<Vector3> points;
   for (int k = 0; k < grid.points[2]; ++k)
-    for (int j = 0; j < grid.points[1]; ++j) {
-      row.clear();
+    for (int j = 0; j < grid.points[1]; ++j)
       for (int i = 0; i < grid.points[0]; ++i)
-        row.emplace_back(grid.origin + grid.spacing.cwiseProduct(Vector3(i, j, k)));
-      sample(model, cilium, deformation, row, step);
-    }
+        points.emplace_back(grid.origin + grid.spacing.cwiseProduct(Vector3(i, j, k)));
+  const auto row = static_cast<std::size_t>(grid.points[0]);
+  const std::array<std::size_t, 3> smaller{row * static_cast<std::size_t>(grid.points[1]), row, 1};
+  FieldGrid::Step step;
+  sample(model, cilium, deformation, points, smaller, step);
   return step;
 }
 
