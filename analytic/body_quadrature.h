@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,7 +34,8 @@ inline Vector3 source_field(const Vector3& moment, const Vector3& offset) {
 /// B of sources spread over smooth patches ξ ∈ [0,1]^dim, by tensor Gauss–Legendre quadrature.
 /// A patch is cut into 2^dim boxes as long as its middle is nearer to the field point than 1.5
 /// times its half-diameter; then the order is raised box by box (`raise_orders`). Points and
-/// strengths of uncut patches are kept for the next field point, up to order 8.
+/// strengths of uncut patches are kept for the next field point, up to order 8. Several threads may
+/// ask at once.
 template <int dim, class Strength>
 class PatchIntegral {
  public:
@@ -54,7 +55,7 @@ class PatchIntegral {
 
   /// `inside` (T, the μ₀m of a point in the magnet) plus B of the sources at x, its tolerance
   /// relative to |B|. Throws SolverError on or too near to a patch.
-  FieldValue field(const Vector3& x, const Vector3& inside, double tolerance) {
+  FieldValue field(const Vector3& x, const Vector3& inside, double tolerance) const {
     std::vector<Box> boxes;
     for (std::size_t i = 0; i < whole_.size(); ++i) append_graded(whole_[i], balls_[i], x, boxes);
     return raise_orders(boxes,
@@ -174,19 +175,28 @@ class PatchIntegral {
     return B;
   }
 
-  Vector3 field_of(const Box& box, std::size_t order, const Vector3& x) {
-    if (!box.is_whole() || order > 8) return field_of(points_of(box, order), x);
-    auto& kept = kept_[box.patch];
-    auto points = kept.find(order);
-    if (points == kept.end()) points = kept.emplace(order, points_of(box, order)).first;
-    return field_of(points->second, x);
+  static constexpr std::size_t kept_orders = 3;  // 4, 6, 8
+  struct Kept {
+    std::array<std::once_flag, kept_orders> made;
+    std::array<std::vector<PatchPoint<Strength>>, kept_orders> points;
+  };
+
+  Vector3 field_of(const Box& box, std::size_t order, const Vector3& x) const {
+    if (box.is_whole())
+      for (std::size_t i = 0; i < kept_orders; ++i) {
+        if (quadrature_orders[i] != order) continue;
+        Kept& kept = kept_[box.patch];
+        std::call_once(kept.made[i], [&] { kept.points[i] = points_of(box, order); });
+        return field_of(kept.points[i], x);
+      }
+    return field_of(points_of(box, order), x);
   }
 
   Source source_;
   std::string name_;
   std::vector<Box> whole_;
   std::vector<Ball> balls_;
-  std::vector<std::map<std::size_t, std::vector<PatchPoint<Strength>>>> kept_;
+  mutable std::vector<Kept> kept_;
 };
 
 }  // namespace ciliaval::analytic

@@ -59,7 +59,7 @@ Field DipoleField::field(const Cilium& cilium, const Deformation& deformation,
                          std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   const std::vector<Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
-  return field_at(points, [&](const Vector3& x) {
+  return field_at(points, 4096, [&](const Vector3& x) {
     FieldValue sum;
     for (const Dipole& dipole : sources) {
       const Vector3 offset = x - dipole.position;

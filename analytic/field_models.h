@@ -11,7 +11,11 @@ namespace ciliaval::analytic {
 enum class PushForward { F, R };
 
 /// How an integral that has a closed form is computed.
-enum class Method { closed_form, quadrature };
+enum class Method {
+  closed_form,
+  quadrature,  ///< Gauss–Legendre to the tolerance: the closed form's check
+  uniform      ///< the paper's own sums over `elements` slices of equal height: its accuracy
+};
 
 /// Each magnetic segment's total moment as one dipole at the centroid of its centreline.
 struct DipoleOptions {
@@ -33,6 +37,7 @@ struct LineOptions {
   Method method =
       Method::closed_form;   ///< two poles, F only: R has no closed form and takes the quadrature
   double tolerance = 1e-10;  ///< relative to |B|, of the quadrature
+  unsigned int elements = 100;  ///< `uniform`: n dipoles in each magnetic segment
 };
 class LineField : public FieldModel {
  public:
@@ -52,8 +57,9 @@ struct VolumeOptions {
   };
   Slices slices = Slices::wedge;
   Method method =
-      Method::closed_form;   ///< wedge: two charged discs; stacked: a stack of current loops
-  double tolerance = 1e-10;  ///< relative to |B|
+      Method::closed_form;     ///< wedge: two charged discs; stacked: a stack of current loops
+  double tolerance = 1e-10;    ///< relative to |B|, not of `uniform`
+  unsigned int elements = 20;  ///< `uniform`: n³ dipoles in each magnetic segment
 };
 class VolumeField : public FieldModel {
  public:

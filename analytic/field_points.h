@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
@@ -21,13 +22,39 @@ struct FieldValue {
   }
 };
 
-/// `field` at each of the points. Throws InputError if a point is not finite, SolverError if a
-/// result is not.
-Field field_at(std::span<const Vector3> points,
-               const std::function<FieldValue(const Vector3&)>& field);
-
 /// "(x, y, z) m", for messages.
 std::string to_string(const Vector3& x);
+
+/// Throws InputError if the point is not finite.
+void require_finite(const Vector3& x);
+/// Throws SolverError if the value at x is not finite.
+void require_finite(const FieldValue& value, const Vector3& x);
+
+/// Calls `work(begin, end)` for ranges that make up [0, count), on the threads of TBB unless there
+/// is but one range. If some throw, the exception of the lowest range is thrown on.
+void for_ranges(std::size_t count, std::size_t longest,
+                const std::function<void(std::size_t begin, std::size_t end)>& work);
+
+/// `field(x)`, a FieldValue, at each of the points, which are dealt out to threads `grain` at a
+/// time: as many as take some 50 µs, or waking a thread costs more than it saves. `field` must bear
+/// to be called by several threads at once. Throws InputError if a point is not finite, SolverError
+/// if a result is not; of several errors that of the first point.
+template <class PointField>
+Field field_at(std::span<const Vector3> points, std::size_t grain, const PointField& field) {
+  Field result;
+  result.B.resize(points.size());
+  result.uncertainty.resize(points.size());
+  for_ranges(points.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      require_finite(points[i]);
+      const FieldValue value = field(points[i]);
+      require_finite(value, points[i]);
+      result.B[i] = value.B;
+      result.uncertainty[i] = value.uncertainty;
+    }
+  });
+  return result;
+}
 
 /// The error (m) that the rounding of two positions leaves in their difference: 4ε(|x| + |y|).
 double rounding_of_offset(const Vector3& x, const Vector3& y);

@@ -1,27 +1,56 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <vector>
 
 #include "analytic/dipole.h"
 #include "analytic/field_models.h"
 #include "analytic/field_points.h"
 #include "analytic/order_raising.h"
 #include "analytic/rod_magnet.h"
+#include "analytic/uniform_sums.h"
 #include "problem/error.h"
 
 namespace ciliaval::analytic {
 namespace {
 
-/// B = Σ μ₀q a/(4πa³) of the poles q = πR²(M below − M above) at the magnet's ends.
-FieldValue field_of_poles(const RodMagnet& magnet, double area, const Vector3& x) {
-  FieldValue sum;
-  for (const RodEnd& end : magnet.ends) {
-    const Vector3& pole = end.section.centre;
-    if ((x - pole).norm() <= rounding_of_offset(x, pole))
+/// A pole q = πR²(M below − M above) at an end of the magnet.
+struct Pole {
+  Vector3 position;      ///< m
+  double strength;       ///< μ₀q/4π, T·m²
+  double position_norm;  ///< m
+};
+
+std::vector<Pole> poles_of(const RodMagnet& magnet, double area) {
+  std::vector<Pole> poles;
+  for (const RodEnd& end : magnet.ends)
+    poles.push_back({end.section.centre,
+                     vacuum_permeability / (4 * std::numbers::pi) * area * end.magnetization_jump,
+                     end.section.centre.norm()});
+  return poles;
+}
+
+/// B = Σ μ₀q a/(4πa³), |B| of each to 8 ε and the rounding of the offset times 4|B|/a.
+FieldValue field_of_poles(std::span<const Pole> poles, const Vector3& x) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  const double x_norm = x.norm();
+  Vector3 B = Vector3::Zero();
+  double error = 0;
+  for (const Pole& pole : poles) {
+    const Vector3 offset = x - pole.position;
+    const double rounding = 4 * epsilon * (x_norm + pole.position_norm);
+    const double a = offset.norm();
+    if (a <= rounding)
       throw InputError("the field of the model `line` diverges at its pole " + to_string(x) +
                        ": move the point, or take the model `volume`");
-    sum += with_rounding(pole_field(area * end.magnetization_jump, x - pole), x, pole);
+    const double inverse = 1 / a;
+    const double size = pole.strength * inverse * inverse;
+    B += size * inverse * offset;
+    error += std::abs(size) * (8 * epsilon + 4 * rounding * inverse);
   }
-  return sum;
+  return {B, Vector3::Constant(error)};
 }
 
 /// ∫ dB over the dipoles M πR² dr (F) or M πR² d₃ dS (R) of the centreline.
@@ -56,11 +85,15 @@ FieldValue field_of_dipoles(const RodMagnet& magnet, double area, const LineOpti
 Field LineField::field(const Cilium& cilium, const Deformation& deformation,
                        std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);
-  const bool poles =
+  if (options_.method == Method::uniform) return field_of_uniform_line(magnet, options_, points);
+  const bool closed_form =
       options_.method == Method::closed_form && options_.push_forward == PushForward::F;
-  return field_at(points, [&](const Vector3& x) {
-    return poles ? field_of_poles(magnet, cilium.area(), x)
-                 : field_of_dipoles(magnet, cilium.area(), options_, x);
+  if (closed_form) {
+    const std::vector<Pole> poles = poles_of(magnet, cilium.area());
+    return field_at(points, 4096, [&](const Vector3& x) { return field_of_poles(poles, x); });
+  }
+  return field_at(points, 4, [&](const Vector3& x) {
+    return field_of_dipoles(magnet, cilium.area(), options_, x);
   });
 }
 

@@ -93,13 +93,13 @@ PatchPoint<Vector3> rotated_moment(const SolidBody& body, const SolidCell& cell,
 
 Field field_of_charges(const SolidBody& body, double tolerance, std::span<const Vector3> points) {
   const std::vector<MagneticCell> cells = magnetic_cells(body);
-  PatchIntegral<2, double> integral(
+  const PatchIntegral<2, double> integral(
       body.charged_faces.size(),
       [&](std::size_t face, const std::array<double, 2>& xi) {
         return charge(body, body.charged_faces[face], xi);
       },
       "field of the charged faces of the mesh");
-  return field_at(points, [&](const Vector3& x) {
+  return field_at(points, 1, [&](const Vector3& x) {
     const auto m = magnetization_at(body.nodes, cells, x);
     const Vector3 inside = m ? Vector3(vacuum_permeability * *m) : Vector3(Vector3::Zero());
     return integral.field(x, inside, tolerance);
@@ -108,13 +108,13 @@ Field field_of_charges(const SolidBody& body, double tolerance, std::span<const 
 
 Field field_of_moments(const SolidBody& body, double tolerance, std::span<const Vector3> points) {
   const std::vector<MagneticCell> cells = magnetic_cells(body);
-  PatchIntegral<3, Vector3> integral(
+  const PatchIntegral<3, Vector3> integral(
       cells.size(),
       [&](std::size_t cell, const std::array<double, 3>& xi) {
         return rotated_moment(body, *cells[cell].cell, xi);
       },
       "field of the dipoles R·M of the mesh");
-  return field_at(points, [&](const Vector3& x) {
+  return field_at(points, 1, [&](const Vector3& x) {
     if (magnetization_at(body.nodes, cells, x))
       throw SolverError("the field inside the magnet was asked at " + to_string(x) +
                         ": with the push-forward R it is not available, take F");

@@ -24,81 +24,39 @@ void append_stretches(RodMagnet& magnet, std::size_t segment, double begin, doub
   }
 }
 
-/// Sections along the stretches first … last−1 of one segment, close enough that between two of
-/// them (x − r)·d₃ changes its sign at most once.
-std::vector<RodSample> samples(const RodMagnet& magnet, std::size_t first, std::size_t last) {
-  std::vector<RodSample> line;
-  for (std::size_t i = first; i < last; ++i) {
-    const RodStretch& stretch = magnet.stretches[i];
-    const std::size_t intervals = 2 * magnet.centreline.pieces()[stretch.piece].S.size();
-    for (std::size_t k = i == first ? 0 : 1; k <= intervals; ++k) {
-      const double t = static_cast<double>(k) / static_cast<double>(intervals);
-      const double S = k == intervals ? stretch.end : std::lerp(stretch.begin, stretch.end, t);
-      const CentrelinePoint point = at(magnet, stretch, S);
-      const Vector3 d3 = point.normal();
-      const double jacobian =
-          d3.dot(point.derivative) - magnet.radius * point.curvature.cross(d3).norm();
-      line.push_back({S, i, point.position, d3, jacobian});
-    }
-  }
-  return line;
+Circle section_at(const RodMagnet& magnet, const RodStretch& stretch, double S) {
+  return section(magnet, at(magnet, stretch, S));
 }
 
-/// Ends with a jump. An interface's section is taken from the segment below; the sample above takes
-/// it over, so that a point on the section is on the same side for the disc and for both segments.
+/// Ends with a jump. An interface's section is taken from the segment below.
 void append_ends(RodMagnet& magnet) {
-  for (std::size_t i = 0; i < magnet.lines.size(); ++i) {
-    std::vector<RodSample>& line = magnet.lines[i];
-    const double M = magnet.stretches[line.front().stretch].magnetization;
-    const std::size_t segment = magnet.stretches[line.front().stretch].segment;
-    double below = 0;
-    if (i > 0) {
-      const RodSample& previous = magnet.lines[i - 1].back();
-      if (magnet.stretches[previous.stretch].segment + 1 == segment) {
-        below = magnet.stretches[previous.stretch].magnetization;
-        line.front().position = previous.position;
-        line.front().normal = previous.normal;
-        magnet.ends.pop_back();
-      }
+  const RodStretch* below = nullptr;
+  for (std::size_t i = 0; i < magnet.stretches.size(); ++i) {
+    const RodStretch& stretch = magnet.stretches[i];
+    if (below == nullptr || below->segment != stretch.segment) {
+      const bool touches = below != nullptr && below->segment + 1 == stretch.segment;
+      const double M_below = touches ? below->magnetization : 0;
+      if (below != nullptr && !touches)
+        magnet.ends.push_back({section_at(magnet, *below, below->end), below->magnetization});
+      if (M_below != stretch.magnetization)
+        magnet.ends.push_back({touches ? section_at(magnet, *below, below->end)
+                                       : section_at(magnet, stretch, stretch.begin),
+                               M_below - stretch.magnetization});
     }
-    if (below != M)
-      magnet.ends.push_back(
-          {{line.front().position, line.front().normal, magnet.radius}, below - M});
-    magnet.ends.push_back({{line.back().position, line.back().normal, magnet.radius}, M});
+    below = &stretch;
   }
+  if (below != nullptr)
+    magnet.ends.push_back({section_at(magnet, *below, below->end), below->magnetization});
 }
 
-/// (x − r)·d₃, the height of x above a section.
-double height_above(const RodSample& sample, const Vector3& x) {
-  return (x - sample.position).dot(sample.normal);
-}
-
-std::optional<Vector3> magnetization_between(const RodMagnet& magnet, const RodSample& low,
-                                             const RodSample& high, const Vector3& x) {
-  const double above_low = height_above(low, x);
-  const double above_high = height_above(high, x);
-  if (!(above_low >= 0 && above_high < 0)) return std::nullopt;
-  // A point of the rod is within R of its section, whose centre is between the two samples.
-  const double reach = magnet.radius + 2 * (high.position - low.position).norm();
-  if ((x - low.position).norm() > reach) return std::nullopt;
-
-  const RodStretch& stretch = magnet.stretches[high.stretch];
-  double S = low.S;
-  if (above_low > 0) {
-    const auto height = [&](double s) {
-      const CentrelinePoint point = at(magnet, stretch, s);
-      return (x - point.position).dot(point.normal());
-    };
-    std::uintmax_t iterations = 100;
-    const auto bracket = boost::math::tools::toms748_solve(
-        height, low.S, high.S, above_low, above_high, boost::math::tools::eps_tolerance<double>(52),
-        iterations);
-    S = (bracket.first + bracket.second) / 2;
-  }
-  const CentrelinePoint point = at(magnet, stretch, S);
-  if (!((x - point.position).norm() < magnet.radius)) return std::nullopt;
-  const Vector3 carried = stretch_vector(point, x);
-  return stretch.magnetization / point.normal().dot(carried) * carried;
+/// Calls `visit(point)` at the nodes of the stretch and at its ends.
+template <class Visit>
+void for_each_node(const RodMagnet& magnet, const RodStretch& stretch, Visit visit) {
+  const std::vector<double>& S = magnet.centreline.pieces()[stretch.piece].S;
+  visit(at(magnet, stretch, stretch.begin));
+  for (std::size_t i = 0; i < S.size(); ++i)
+    if (S[i] > stretch.begin && S[i] < stretch.end) visit(magnet.centreline.node(stretch.piece, i));
+  visit(at(magnet, stretch, stretch.end));
 }
 
 /// Appends the parts of a stretch that are no longer than their distance; false if one would be
@@ -126,9 +84,7 @@ bool append_graded(const RodMagnet& magnet, const RodStretch& stretch,
 
 RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
   if (cilium.segments.empty()) throw InputError("the field of a cilium without segments was asked");
-  RodMagnet magnet;
-  magnet.radius = cilium.radius();
-  magnet.centreline = deformation.centreline;
+  RodMagnet magnet{cilium.radius(), deformation.centreline};
   const std::vector<double> interfaces = cilium.interfaces();
   if (!(std::abs(magnet.centreline.length() - interfaces.back()) <= 1e-9 * interfaces.back()))
     throw InputError(
@@ -137,9 +93,7 @@ RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
   for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
     const double M = cilium.segments[i].magnetization;
     if (M == 0) continue;
-    const std::size_t first = magnet.stretches.size();
     append_stretches(magnet, i, interfaces[i], interfaces[i + 1], M);
-    magnet.lines.push_back(samples(magnet, first, magnet.stretches.size()));
   }
   append_ends(magnet);
   return magnet;
@@ -167,18 +121,104 @@ std::optional<std::vector<RodStretch>> graded_stretches(
 }
 
 void require_body(const RodMagnet& magnet) {
-  for (const std::vector<RodSample>& line : magnet.lines)
-    for (const RodSample& sample : line)
-      if (!(sample.jacobian > 0))
+  for (const RodStretch& stretch : magnet.stretches)
+    for_each_node(magnet, stretch, [&](const CentrelinePoint& point) {
+      const Vector3 d3 = point.normal();
+      const double smallest_jacobian =
+          d3.dot(point.derivative) - magnet.radius * point.curvature.cross(d3).norm();
+      if (!(smallest_jacobian > 0))
         throw SolverError(
             "the magnet is bent more sharply than its radius, so that its sections "
             "cross and it has no volume: take the model `line`");
+    });
 }
 
-std::optional<Vector3> magnetization_at(const RodMagnet& magnet, const Vector3& x) {
-  for (const std::vector<RodSample>& line : magnet.lines) {
+RodInterior::RodInterior(const RodMagnet& magnet) : magnet_(magnet) {
+  double spacing = 0;
+  for (const RodStretch& stretch : magnet.stretches) {
+    std::optional<Vector3> previous;
+    for_each_node(magnet, stretch, [&](const CentrelinePoint& point) {
+      box_.extend(point.position);
+      if (previous) spacing = std::max(spacing, (point.position - *previous).norm());
+      previous = point.position;
+    });
+  }
+  // A point of the rod is within R of its section's centre, and that is half the spacing of the
+  // nodes, or little more, from one of them.
+  const Vector3 margin = Vector3::Constant(magnet.radius + spacing);
+  if (!box_.isEmpty()) box_ = {box_.min() - margin, box_.max() + margin};
+}
+
+/// Close enough that between two of them (x − r)·d₃ changes its sign at most once.
+void RodInterior::append_samples(std::size_t i, Line& line) const {
+  const RodStretch& stretch = magnet_.stretches[i];
+  const std::size_t intervals = 2 * magnet_.centreline.pieces()[stretch.piece].S.size();
+  for (std::size_t k = line.empty() ? 0 : 1; k <= intervals; ++k) {
+    const double t = static_cast<double>(k) / static_cast<double>(intervals);
+    const double S = k == intervals ? stretch.end : std::lerp(stretch.begin, stretch.end, t);
+    const CentrelinePoint point = at(magnet_, stretch, S);
+    line.push_back({S, i, point.position, point.normal()});
+  }
+}
+
+std::vector<RodInterior::Line> RodInterior::sample() const {
+  std::vector<Line> lines;
+  for (std::size_t i = 0; i < magnet_.stretches.size(); ++i) {
+    const std::size_t segment = magnet_.stretches[i].segment;
+    const bool continues = i > 0 && magnet_.stretches[i - 1].segment == segment;
+    if (!continues) lines.emplace_back();
+    append_samples(i, lines.back());
+    if (i > 0 && magnet_.stretches[i - 1].segment + 1 == segment) {
+      // An interface's section is that of the segment below, so that a point on it is on the same
+      // side for the disc and for both segments.
+      const Sample& below = lines[lines.size() - 2].back();
+      lines.back().front().position = below.position;
+      lines.back().front().normal = below.normal;
+    }
+  }
+  return lines;
+}
+
+std::optional<Vector3> RodInterior::magnetization_between(const Sample& low, const Sample& high,
+                                                          double above_low, double above_high,
+                                                          const Vector3& x) const {
+  // A point of the rod is within R of its section, whose centre is between the two samples.
+  const double reach = magnet_.radius + 2 * (high.position - low.position).norm();
+  if ((x - low.position).norm() > reach) return std::nullopt;
+
+  const RodStretch& stretch = magnet_.stretches[high.stretch];
+  double S = low.S;
+  if (above_low > 0) {
+    const auto height = [&](double s) {
+      const CentrelinePoint point = at(magnet_, stretch, s);
+      return (x - point.position).dot(point.normal());
+    };
+    std::uintmax_t iterations = 100;
+    const auto bracket = boost::math::tools::toms748_solve(
+        height, low.S, high.S, above_low, above_high, boost::math::tools::eps_tolerance<double>(52),
+        iterations);
+    S = (bracket.first + bracket.second) / 2;
+  }
+  const CentrelinePoint point = at(magnet_, stretch, S);
+  if (!((x - point.position).norm() < magnet_.radius)) return std::nullopt;
+  const Vector3 carried = stretch_vector(point, x);
+  return stretch.magnetization / point.normal().dot(carried) * carried;
+}
+
+std::optional<Vector3> RodInterior::magnetization_at(const Vector3& x) const {
+  if (!box_.contains(x)) return std::nullopt;
+  std::call_once(sampled_, [&] { lines_ = sample(); });
+  const auto height_above = [&](const Sample& sample) {
+    return (x - sample.position).dot(sample.normal);
+  };
+  for (const Line& line : lines_) {
+    double above_low = height_above(line.front());
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-      if (auto m = magnetization_between(magnet, line[i], line[i + 1], x)) return m;
+      const double above_high = height_above(line[i + 1]);
+      if (above_low >= 0 && above_high < 0)
+        if (auto m = magnetization_between(line[i], line[i + 1], above_low, above_high, x))
+          return m;
+      above_low = above_high;
     }
   }
   return std::nullopt;

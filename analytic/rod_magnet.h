@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -28,22 +30,13 @@ struct RodEnd {
   double magnetization_jump;  ///< M below − M above, A/m; the reference charge on the section
 };
 
-/// A section of a magnetic segment, for the search of a point inside the rod.
-struct RodSample {
-  double S;  ///< m
-  std::size_t stretch;
-  Vector3 position;  ///< r, m
-  Vector3 normal;    ///< d₃
-  double jacobian;   ///< the smallest J = d₃·∂x/∂S of the section
-};
-
-/// The magnetic segments of a bent rod, as the field models of rods read them.
+/// The magnetic segments of a bent rod, as the field models of rods read them. It refers to the
+/// deformation's centreline.
 struct RodMagnet {
   double radius = 0;  ///< m
-  Centreline centreline;
-  std::vector<RodStretch> stretches;          ///< from base to tip
-  std::vector<RodEnd> ends;                   ///< those with a jump
-  std::vector<std::vector<RodSample>> lines;  ///< samples of each magnetic segment, base to tip
+  const Centreline& centreline;
+  std::vector<RodStretch> stretches{};  ///< from base to tip
+  std::vector<RodEnd> ends{};           ///< those with a jump
 };
 
 /// Throws InputError if the cilium has no segments, or its length is not that of the centreline.
@@ -66,13 +59,41 @@ std::optional<std::vector<RodStretch>> graded_stretches(
     const RodMagnet& magnet, const std::function<double(const CentrelinePoint&)>& distance,
     double shortest);
 
-/// Throws SolverError if sections cross inside a magnetic segment (J ≤ 0: bent more sharply than
-/// its radius), so that the rod is no body.
+/// Throws SolverError if sections cross at a node of a magnetic segment (J ≤ 0: bent more sharply
+/// than its radius), so that the rod is no body.
 void require_body(const RodMagnet& magnet);
 
-/// m = F·M/J (A/m) at x if x is inside a magnetic segment: on the section S with
-/// (x − r)·d₃ = 0, nearer to r than the radius, where F·M = M ∂x/∂S and J = d₃·∂x/∂S. The mantle
-/// and a segment's upper end section count as outside, its lower end section as inside.
-std::optional<Vector3> magnetization_at(const RodMagnet& magnet, const Vector3& x);
+/// The inside of the magnetic segments. What the search needs is made at the first point that is
+/// near enough to be inside; several threads may ask at once.
+class RodInterior {
+ public:
+  explicit RodInterior(const RodMagnet& magnet);
+
+  /// m = F·M/J (A/m) at x if x is inside a magnetic segment: on the section S with
+  /// (x − r)·d₃ = 0, nearer to r than the radius, where F·M = M ∂x/∂S and J = d₃·∂x/∂S. The mantle
+  /// and a segment's upper end section count as outside, its lower end section as inside.
+  std::optional<Vector3> magnetization_at(const Vector3& x) const;
+
+ private:
+  /// A section of a magnetic segment.
+  struct Sample {
+    double S;  ///< m
+    std::size_t stretch;
+    Vector3 position;  ///< r, m
+    Vector3 normal;    ///< d₃
+  };
+  using Line = std::vector<Sample>;  ///< of one segment, base to tip
+
+  std::vector<Line> sample() const;
+  void append_samples(std::size_t stretch, Line& line) const;
+  std::optional<Vector3> magnetization_between(const Sample& low, const Sample& high,
+                                               double above_low, double above_high,
+                                               const Vector3& x) const;
+
+  const RodMagnet& magnet_;
+  Eigen::AlignedBox3d box_;  ///< around all that may be inside
+  mutable std::once_flag sampled_;
+  mutable std::vector<Line> lines_;
+};
 
 }  // namespace ciliaval::analytic

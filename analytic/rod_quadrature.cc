@@ -80,9 +80,9 @@ Vector3 rod_field(const RodMagnet& magnet, Slices slices, const std::vector<RodS
 
 }  // namespace
 
-FieldValue rod_field_by_quadrature(const RodMagnet& magnet, Slices slices, double tolerance,
-                                   const Vector3& x) {
-  if (magnetization_at(magnet, x)) throw_too_near(x);
+FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodInterior& interior,
+                                   Slices slices, double tolerance, const Vector3& x) {
+  if (interior.magnetization_at(x)) throw_too_near(x);
   const auto parts = graded_stretches(
       magnet,
       [&](const CentrelinePoint& point) { return distance_from_disc(section(magnet, point), x); },

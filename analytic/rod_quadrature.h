@@ -15,7 +15,8 @@ namespace ciliaval::analytic {
 /// raising it by half moves B by less than tolerance·|B|/3. The three changes are the uncertainty.
 /// Throws SolverError inside the rod, so near to it that the tolerance needs more than 2·10⁷
 /// nodes, or if the changes are down to rounding (10⁻¹⁴|B|) and still above the tolerance.
-FieldValue rod_field_by_quadrature(const RodMagnet& magnet, VolumeOptions::Slices slices,
-                                   double tolerance, const Vector3& x);
+FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodInterior& interior,
+                                   VolumeOptions::Slices slices, double tolerance,
+                                   const Vector3& x);
 
 }  // namespace ciliaval::analytic

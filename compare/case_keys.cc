@@ -235,18 +235,28 @@ void append_fields(std::vector<Knob>& all) {
   const std::vector<std::pair<std::string_view, PushForward>> push_forward{{"F", PushForward::F},
                                                                            {"R", PushForward::R}};
   const std::vector<std::pair<std::string_view, Method>> method{
-      {"closed_form", Method::closed_form}, {"quadrature", Method::quadrature}};
+      {"closed_form", Method::closed_form},
+      {"quadrature", Method::quadrature},
+      {"uniform", Method::uniform}};
   constexpr std::string_view rod = "`F`: M dr (ideal hard magnet); `R`: M d₃ dS (rigid sections).";
 
   all.push_back(choice_knob(&ModelOptions::dipole, &analytic::DipoleOptions::push_forward, "dipole",
                             "push_forward", push_forward, rod));
   all.push_back(choice_knob(&ModelOptions::line, &analytic::LineOptions::push_forward, "line",
                             "push_forward", push_forward, rod));
-  all.push_back(choice_knob(&ModelOptions::line, &analytic::LineOptions::method, "line", "method",
-                            method, "`closed_form`: two poles; `quadrature`: its check."));
+  all.push_back(
+      choice_knob(&ModelOptions::line, &analytic::LineOptions::method, "line", "method", method,
+                  "`closed_form`: two poles; `quadrature`: its check; `uniform`: the paper's "
+                  "sum over slices of equal height."));
   all.push_back(number_knob(&ModelOptions::line, &analytic::LineOptions::tolerance, "line",
                             "tolerance", quantity::number, tolerance_range,
                             "Relative to the field, of the quadrature."));
+  Knob line = number_knob(&ModelOptions::line, &analytic::LineOptions::elements, "line", "elements",
+                          quantity::number, {1, 1e6, false, "more take gigabytes"},
+                          "`uniform`: n dipoles in each magnetic segment.");
+  line.goes_with = "method = \"uniform\"";
+  line.belongs = [](const ModelOptions& o) { return o.line.method == Method::uniform; };
+  all.push_back(std::move(line));
   all.push_back(choice_knob(&ModelOptions::volume, &analytic::VolumeOptions::slices, "volume",
                             "slices", {{"wedge", Slices::wedge}, {"stacked", Slices::stacked}},
                             "`wedge`: the true volume of the bent rod; `stacked`: the paper's Eq. "
@@ -254,10 +264,17 @@ void append_fields(std::vector<Knob>& all) {
   all.push_back(choice_knob(&ModelOptions::volume, &analytic::VolumeOptions::method, "volume",
                             "method", method,
                             "`closed_form`: charged discs or current loops; `quadrature`: their "
-                            "check."));
+                            "check; `uniform`: the paper's sum over slices of equal height."));
   all.push_back(number_knob(&ModelOptions::volume, &analytic::VolumeOptions::tolerance, "volume",
                             "tolerance", quantity::number, tolerance_range,
                             "Relative to the field."));
+  Knob volume =
+      number_knob(&ModelOptions::volume, &analytic::VolumeOptions::elements, "volume", "elements",
+                  quantity::number, {1, 400, false, "more than 400^3 dipoles take too long"},
+                  "`uniform`: n³ dipoles in each magnetic segment, n in z, r and φ.");
+  volume.goes_with = "method = \"uniform\"";
+  volume.belongs = [](const ModelOptions& o) { return o.volume.method == Method::uniform; };
+  all.push_back(std::move(volume));
   all.push_back(choice_knob(&ModelOptions::mesh, &analytic::MeshOptions::push_forward, "mesh",
                             "push_forward", push_forward,
                             "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M (rigid sections)."));

@@ -54,4 +54,27 @@ Vector3 derby_olbert(double M, double radius, double bottom, double top, const V
   return B;
 }
 
+Vector3 charged_disc(double sigma, const Vector3& centre, const Vector3& normal, double radius,
+                     const Vector3& x) {
+  using Vector = Eigen::Matrix<Real, 3, 1>;
+  const Real& pi = boost::math::constants::pi<Real>();
+  Vector n = normal.cast<Real>();
+  n /= Real(sqrt(n.dot(n)));
+  const Vector offset = (x.cast<Real>() - centre.cast<Real>()) / Real(radius);
+  const Real z = offset.dot(n);
+  const Vector in_plane = offset - z * n;
+  const Real r = sqrt(in_plane.dot(in_plane));
+  const Real gamma = (1 - r) / (1 + r);
+  const Real s2 = z * z + (1 + r) * (1 + r);
+  const Real s = sqrt(s2);
+  const Real kc2 = r == 0 ? Real(1) : Real((z * z + (1 - r) * (1 - r)) / s2);
+  // The solenoid's end has +sign where the charge is negative: the sign of both terms turns.
+  const Real radial = -cel(kc2, 1, 1, -1) / (pi * s);
+  const Real inside = r < 1 ? Real(z > 0 ? 0.5 : -0.5) : Real(0);
+  const Real axial = inside - z * cel(kc2, gamma * gamma, 1, gamma) / (pi * s * (1 + r));
+  Vector H = axial * n;
+  if (r > 0) H += radial / r * in_plane;
+  return (Real(vacuum_permeability) * Real(sigma) * H).cast<double>();
+}
+
 }  // namespace ciliaval::oracle

@@ -11,4 +11,10 @@ namespace ciliaval::oracle {
 /// not on ρ = R.
 Vector3 derby_olbert(double M, double radius, double bottom, double top, const Vector3& x);
 
+/// B (T) of a flat disc of uniform magnetic charge σ (A/m), centre (m), unit normal and radius
+/// (m), any way up: one end of Derby & Olbert's cylinder less the magnetisation it ends, in 50
+/// digits as above and rounded once; the normal is normalised in 50 digits. Not in its plane.
+Vector3 charged_disc(double sigma, const Vector3& centre, const Vector3& normal, double radius,
+                     const Vector3& x);
+
 }  // namespace ciliaval::oracle

@@ -42,9 +42,12 @@ TEST(FieldErrors, PointOnTheRimIsAnInputError) {
         for (const Method method : {Method::closed_form, Method::quadrature})
           EXPECT_NE(error_of<InputError>(VolumeField({slices, method}), bent(), rim).find("rim"),
                     std::string::npos);
-      // A nanometre away there is a field.
-      EXPECT_NO_THROW(
-          flux_density(VolumeField(), paper_cilium(), bent(), rim + 1e-9 * end.normal()));
+      // A nanometre away there is a field, of which rounding leaves less than the default 1e-10.
+      const Vector3 near_rim = rim + 1e-9 * end.normal();
+      EXPECT_NO_THROW(flux_density(VolumeField({Slices::wedge, Method::closed_form, 1e-6}),
+                                   paper_cilium(), bent(), near_rim));
+      EXPECT_NE(error_of<SolverError>(VolumeField(), bent(), near_rim).find("larger tolerance"),
+                std::string::npos);
     }
   }
 }
@@ -109,6 +112,16 @@ TEST(FieldErrors, QuadratureInsideOrOnTheMagnetIsASolverError) {
   EXPECT_THROW(flux_density(VolumeField({Slices::stacked}), paper_cilium(), bent(),
                             section.position + 1.5e-3 * n),
                SolverError);
+}
+
+// Rounding of the loops' places leaves 1e-8 there, so 1e-10 must be refused, not missed.
+TEST(FieldErrors, StackedSlicesRefuseAnAccuracyThatRoundingTakesAway) {
+  const CentrelinePoint section = oracle::arc(60, 0.5)(9e-3);
+  const Vector3 x = section.position + (1.5e-3 + 1e-9) * (section.rotation * Vector3::UnitX());
+  EXPECT_NE(error_of<SolverError>(VolumeField({Slices::stacked}), bent(), x).find("1e-10 of |B|"),
+            std::string::npos);
+  EXPECT_NO_THROW(flux_density(VolumeField({Slices::stacked, Method::closed_form, 1e-5}),
+                               paper_cilium(), bent(), x));
 }
 
 TEST(FieldErrors, RodBentMoreSharplyThanItsRadiusIsASolverError) {

@@ -54,7 +54,7 @@ TEST(EllipticIntegrals, KeepAllDigitsAsTheModulusVanishes) {
     const Real m = 1 - Real(kc) * kc;
     const Real K = boost::math::ellint_1(Real(sqrt(m)));
     const Real E = boost::math::ellint_2(Real(sqrt(m)));
-    const CompleteElliptic value = complete_elliptic(kc, static_cast<double>(m));
+    const CompleteElliptic<double> value = complete_elliptic<double>(kc, static_cast<double>(m));
     for (const Real& ratio : {Real(value.K / K), Real(value.E / E), Real(value.D / ((K - E) / m)),
                               Real(value.C / (((2 - m) * K - 2 * E) / (m * m)))})
       error = std::max(error, std::abs(static_cast<double>(ratio - 1)));
@@ -64,7 +64,7 @@ TEST(EllipticIntegrals, KeepAllDigitsAsTheModulusVanishes) {
 }
 
 TEST(EllipticIntegrals, AreThoseOfTheCircleForAVanishingModulus) {
-  const CompleteElliptic value = complete_elliptic(1, 0);
+  const CompleteElliptic<double> value = complete_elliptic<double>(1, 0);
   EXPECT_DOUBLE_EQ(value.K, std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(value.E, std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(value.D, std::numbers::pi / 4);

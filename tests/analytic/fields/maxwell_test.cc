@@ -53,7 +53,7 @@ TEST(Maxwell, FieldOutsideHasNeitherDivergenceNorCurl) {
       std::make_shared<DipoleField>(), std::make_shared<LineField>(),
       std::make_shared<LineField>(LineOptions{PushForward::R, Method::quadrature, 1e-12}),
       std::make_shared<VolumeField>(),
-      std::make_shared<VolumeField>(VolumeOptions{Slices::stacked, Method::closed_form, 1e-12})};
+      std::make_shared<VolumeField>(VolumeOptions{Slices::stacked, Method::closed_form, 1e-11})};
   double error = 0;
   for (const auto& model : models) {
     const VectorField B = field_of(*model, contorted());

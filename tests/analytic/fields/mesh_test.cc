@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analytic/dipole.h"
@@ -81,6 +83,74 @@ TEST(MeshField, VolumeQuadratureOfRotatedMomentsIsDerbyAndOlbertsCylinder) {
   const double error = error_of_straight(mesh_R, cylinder, outside);
   record("mesh R of degree 6, straight", error);
   EXPECT_LT(error, 1e-7);
+}
+
+// Oracle: Derby & Olbert. R·M is integrated over the volume, so the mantle's geometry counts too:
+// the same order p + 1. Measured 2.6e-7 at degree 4, the 1e-6 that is asked for and below.
+TEST(MeshField, RotatedMomentsConvergeAtTheOrderOfTheGeometry) {
+  const std::vector<Vector3> points = {oracle::paper_sensor, {3e-3, -2e-3, 10e-3}};
+  for (const std::size_t degree : {1, 2, 3, 4}) {
+    double previous = 0;
+    for (const std::size_t cuts : {1, 2}) {
+      const CylinderBody cylinder{.degree = degree, .cuts = cuts, .layers = 2};
+      const double error = error_of_straight(mesh_R, cylinder, points);
+      record("mesh R, degree " + std::to_string(degree) + ", cuts " + std::to_string(cuts), error);
+      if (previous > 0) {
+        EXPECT_GT(std::log2(previous / error), static_cast<double>(degree) + 1 - 0.2);
+      }
+      previous = error;
+    }
+    if (degree == 4) {
+      EXPECT_LT(previous, 1e-6);
+    }
+  }
+}
+
+// Oracle: Derby & Olbert. Patches are cut towards the point, down to a micrometre from the charged
+// face and from the mantle, where a fixed rule would be off by orders of magnitude.
+// Measured 1.5e-11 with F; with R 3e-8, of the geometry.
+TEST(MeshField, HoldsAMicrometreOffItsSurface) {
+  struct Push {
+    std::string name;
+    MeshField model;
+    CylinderBody cylinder;
+    double tolerance;
+  };
+  for (const Push& push :
+       {Push{"F", MeshField({PushForward::F, 1e-8}), {.degree = 8}, 1e-8},
+        Push{
+            "R", MeshField({PushForward::R, 1e-6}), {.degree = 4, .cuts = 2, .layers = 2}, 1e-6}}) {
+    const Deformation body = deformation_of(push.cylinder, identity);
+    for (const auto& [where, x] :
+         std::vector<std::pair<std::string, Vector3>>{{"below", {0.4e-3, 0.3e-3, 3e-3 - 1e-6}},
+                                                      {"above", {-0.2e-3, 0.7e-3, 20e-3 + 1e-6}},
+                                                      {"beside", {1.5e-3 + 1e-6, 0, 9.3e-3}}}) {
+      const Vector3 exact = oracle::derby_olbert(75e3, 1.5e-3, 3e-3, 20e-3, x);
+      const Field field = push.model.field(paper_cilium(), body, std::span(&x, 1));
+      const double error = relative_difference(field.B.front(), exact);
+      record("mesh " + push.name + ", a micrometre " + where, error);
+      EXPECT_LT(error, push.tolerance) << push.name << ' ' << where;
+      EXPECT_LE(field.uncertainty.front().norm(), push.tolerance * exact.norm())
+          << push.name << ' ' << where;
+    }
+  }
+}
+
+// Oracle: the same moments integrated to 1e-10.
+TEST(MeshField, UncertaintyBoundsTheErrorOfItsVolumeQuadrature) {
+  const CylinderBody cylinder{.degree = 3, .cuts = 1, .layers = 2};
+  const Deformation body = deformation_of(cylinder, identity);
+  for (const double height : {1e-4, 1e-3, 1e-2, 1e-1}) {
+    const Vector3 x(0.3e-3, -0.8e-3, 20e-3 + height);
+    const Vector3 exact = flux_density(MeshField({PushForward::R, 1e-10}), paper_cilium(), body, x);
+    for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
+      const Field field =
+          MeshField({PushForward::R, tolerance}).field(paper_cilium(), body, std::span(&x, 1));
+      EXPECT_LE((field.B.front() - exact).norm(),
+                field.uncertainty.front().norm() + 1e-10 * exact.norm());
+      EXPECT_LE(field.uncertainty.front().norm(), tolerance * exact.norm());
+    }
+  }
 }
 
 // Oracle: a rigid motion has F = R, and turns the field.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,22 +75,62 @@ double largest_error(const Region& region, const VolumeOptions& options) {
   return error;
 }
 
+bool is_far(const Region& region) {
+  return region.name.starts_with("300");
+}
+
+// Measured 2e-15 up to 30 radii, 1.2e-14 at 300 (of the sum of two opposite fields): margin 5, 8.
 TEST(StraightMagnet, TwoDiscsAreDerbyAndOlbertsCylinderEverywhere) {
   for (const Region& region : regions()) {
     const double error = largest_error(region, {Slices::wedge, Method::closed_form});
     record("two discs " + region.name, error);
-    EXPECT_LT(error, 1e-11) << region.name;
+    EXPECT_LT(error, is_far(region) ? 1e-13 : 1e-14) << region.name;
   }
 }
 
+/// What can be asked of the stacked loops in a region. Beside the mantle rounding shifts the loops
+/// against each other, and |B| is a hundredth of μ₀M: see docs/fields.md.
+double stacked_tolerance(const Region& region) {
+  if (region.name.starts_with("a nanometre")) return 1e-6;
+  return region.name.starts_with("a micrometre") ? 1e-9 : 1e-11;
+}
+
+// Measured 5e-15, asked 1e-11; beside the mantle 9e-11 to a micrometre, 1e-7 to a nanometre.
 TEST(StraightMagnet, StackedLoopsAreDerbyAndOlbertsCylinderEverywhere) {
   for (const Region& region : regions()) {
-    // Nearer than a micrometre to the loops' edges rounding leaves less: see docs/fields.md.
-    const bool grazing = region.name.ends_with("mantle");
-    const double tolerance = grazing ? 1e-7 : 1e-11;
+    const double tolerance = stacked_tolerance(region);
     const double error = largest_error(region, {Slices::stacked, Method::closed_form, tolerance});
     record("stacked loops " + region.name, error);
-    EXPECT_LT(error, tolerance) << region.name;
+    EXPECT_LT(error, tolerance < 1e-10 ? 1e-13 : tolerance) << region.name;
+  }
+}
+
+// The relative accuracy asked, 1e-10 if nothing is said, is kept, and the estimate that comes with
+// the field lies between the true error and the tolerance.
+TEST(StraightMagnet, EveryToleranceAskedIsKeptAndItsEstimateBoundsTheError) {
+  EXPECT_EQ(VolumeOptions{}.tolerance, 1e-10);
+  EXPECT_EQ(LineOptions{}.tolerance, 1e-10);
+  const Cilium cilium = paper_cilium();
+  for (const Region& region : regions()) {
+    const bool outside = region.name == "near" || region.name == "30 radii away" || is_far(region);
+    for (const double tolerance : {1e-3, 1e-5, 1e-6, 1e-8, 1e-10, 1e-11})
+      for (const Slices slices : {Slices::wedge, Slices::stacked})
+        for (const Method method : {Method::closed_form, Method::quadrature}) {
+          if (method == Method::quadrature && (!outside || tolerance < 1e-10)) continue;
+          if (slices == Slices::stacked && tolerance < stacked_tolerance(region)) continue;
+          for (const Vector3& point : region.points) {
+            const Vector3 x = 1e-3 * point;
+            const Field field = VolumeField({slices, method, tolerance})
+                                    .field(cilium, oracle::straight(cilium), std::span(&x, 1));
+            const Vector3 exact = oracle::derby_olbert(75e3, 1.5e-3, 3e-3, 20e-3, x);
+            const double error = (field.B.front() - exact).norm();
+            // 1e-14: a quadrature's estimate leaves out the rounding of its sums.
+            EXPECT_LE(error, field.uncertainty.front().norm() + 1e-14 * exact.norm())
+                << region.name << ' ' << tolerance;
+            EXPECT_LE(field.uncertainty.front().norm(), tolerance * exact.norm())
+                << region.name << ' ' << tolerance;
+          }
+        }
   }
 }
 
@@ -124,7 +165,7 @@ TEST(StraightMagnet, UncertaintyBoundsTheError) {
     for (const Slices slices : {Slices::wedge, Slices::stacked}) {
       for (const Vector3& point : region.points) {
         const Vector3 x = 1e-3 * point;
-        const Field field = VolumeField({slices, Method::closed_form, 1e-7})
+        const Field field = VolumeField({slices, Method::closed_form, 1e-6})
                                 .field(cilium, oracle::straight(cilium), std::span(&x, 1));
         const Vector3 exact = oracle::derby_olbert(75e3, 1.5e-3, 3e-3, 20e-3, x);
         const double bound = field.uncertainty.front().norm() + 1e-14 * exact.norm();

@@ -280,9 +280,11 @@ std::string with_all_knobs() {
                   mesh);
 }
 
-/// The other material, and its knob.
+/// The other material and the paper's sums, and their knobs.
 std::string with_mooney_rivlin() {
-  return replaced(good_case, "refinement = 1", "mooney_ratio = 0.1\nmaterial = \"mooney-rivlin\"");
+  return replaced(good_case, "refinement = 1", "mooney_ratio = 0.1\nmaterial = \"mooney-rivlin\"") +
+         "\n[models.line]\nmethod = \"uniform\"\nelements = 7\n"
+         "[models.volume]\nmethod = \"uniform\"\nelements = 9\n";
 }
 
 TEST(Knobs, ReachTheOptionsOfTheirModel) {
@@ -300,6 +302,10 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   const ModelOptions mooney = read(with_mooney_rivlin()).options;
   EXPECT_EQ(mooney.solid.material, fem::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.solid.mooney_ratio, 0.1);
+  EXPECT_EQ(mooney.line.method, analytic::Method::uniform);
+  EXPECT_EQ(mooney.line.elements, 7U);
+  EXPECT_EQ(mooney.volume.method, analytic::Method::uniform);
+  EXPECT_EQ(mooney.volume.elements, 9U);
   EXPECT_EQ(o.solid.refinement, 2U);
   EXPECT_EQ(o.solid.solver, fem::SolverKind::iterative);
   EXPECT_EQ(o.solid.initial_guess, fem::InitialGuess::none);
