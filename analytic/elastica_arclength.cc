@@ -184,6 +184,23 @@ PlanarState descend(const PlanarProblem& problem, const Launch& from, const Accu
   return state;
 }
 
+/// Root of a smooth function by secants from a and b; nothing if they lead away. The error of a
+/// secant's root is about the product of the last two steps: it ends where that is rounding error.
+template <class Function>
+std::optional<double> secant_root(const Function& function, double a, double b, double f_a,
+                                  double f_b) {
+  for (int k = 0; k < 10; ++k) {
+    const double next = b - f_b * (b - a) / (f_b - f_a);
+    if (!(std::abs(next - b) <= 0.5)) return std::nullopt;
+    const double enough = epsilon * std::max(1.0, std::abs(next));
+    if (std::abs(next - b) * std::abs(b - a) <= enough / 4 || std::abs(next - b) <= enough)
+      return next;
+    a = std::exchange(b, next);
+    f_a = std::exchange(f_b, function(next));
+  }
+  return std::nullopt;
+}
+
 /// Solves θ(0) = 0 for x.
 double shoot(const PlanarProblem& problem, Launch from, const Accuracy& accuracy, int& iterations) {
   const auto base_angle = [&](double x) {
@@ -193,10 +210,15 @@ double shoot(const PlanarProblem& problem, Launch from, const Accuracy& accuracy
   };
   double a = from.x;
   double f_a = base_angle(a);
-  double step = f_a > 0 ? -0.05 : 0.05;
+  // dθ(0)/dθ(top) ≥ 1, as a larger angle shortens the lever, and dθ(top)/dx = sin(2θ)/2: a step for
+  // the slope 1 goes beyond the root, but not far.
+  const double slope = std::sin(2 * std::atan(std::exp(a))) / 2;
+  double step = std::copysign(std::clamp(1.02 * std::abs(f_a) / slope, 1e-14, 0.5), -f_a);
   for (int k = 0; k < 60; ++k) {
     const double b = a + step;
     const double f_b = base_angle(b);
+    if (k == 0)
+      if (const auto x = secant_root(base_angle, a, b, f_a, f_b)) return *x;
     if ((f_a > 0) != (f_b > 0)) return root(base_angle, a, b, f_a, f_b);
     a = b;
     f_a = f_b;

@@ -12,8 +12,8 @@ namespace ciliaval::analytic {
 /// contact: an initial value problem from the base, for M = h − z is known there; it ends where
 /// M = 0. The others are shot down from the free end, where M = 0, with the angle at the top
 /// θ = arctan(e^x) as unknown x: θ at the base increases with x (dM/dθ > 0 all along), so the
-/// solution is unique and a bracket finds it. Towards the base the solution grows away from
-/// θ = 90° as it does in the cilium, so errors do not.
+/// solution is unique; secants find it, or a bracket where they lead away. Towards the base the
+/// solution grows away from θ = 90° as it does in the cilium, so errors do not.
 ///
 /// Empty if the contact force is above the slip-off force. Throws SolverError if the accuracy asked
 /// is not reached.
