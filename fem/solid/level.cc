@@ -19,6 +19,15 @@ namespace {
 /// tied (docs/solid.md): the singularities at the clamped rim and at the interfaces' rims govern.
 constexpr double tip_order = 1.5;
 
+/// Says once, of however many levels, that it is not the finest mesh that is solved.
+Progress coarser_progress(const Progress& progress) {
+  if (!progress) return {};
+  return [&progress](const std::string& text) {
+    const std::string prefix = "coarser mesh, ";
+    progress(text.starts_with(prefix) ? text : prefix + text);
+  };
+}
+
 void add(SolidState& sum, double factor, const SolidState& state) {
   sum.displacement.add(factor, state.displacement);
   for (std::size_t e = 0; e < sum.pressure.size(); ++e)
@@ -86,9 +95,7 @@ void Level::restore(LoadPathState state) {
 Guess Level::first_guess(const Load& load, const Progress& progress) const {
   Guess guess;
   if (coarser_ != nullptr) {
-    const Progress report =
-        progress ? Progress([&](const std::string& text) { progress("coarser mesh, " + text); })
-                 : Progress();
+    const Progress report = coarser_progress(progress);
     const std::optional<Equilibrium> before = coarser_at(solver().current().load);
     const LoadPathOutcome outcome = coarser_->advance(load, report);
     guess.slip_off =
