@@ -2,18 +2,13 @@
 #include "compare/commands.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <cstdio>
-#include <cstring>
-#include <map>
 #include <optional>
 #include <system_error>
 
 #include "compare/case.h"
+#include "compare/case_files.h"
 #include "compare/checkpoint_folder.h"
 #include "compare/errors.h"
 #include "compare/field_grid.h"
@@ -24,6 +19,7 @@
 #include "compare/results.h"
 #include "compare/run.h"
 #include "compare/table.h"
+#include "compare/terminal.h"
 #include "compare/vtk/output.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
@@ -32,73 +28,6 @@ namespace ciliaval::compare {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// One line of stderr that is written over and over, if stderr is a terminal; nothing in the first
-/// two seconds.
-class ProgressLine {
- public:
-  ProgressLine() = default;
-  ~ProgressLine() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  Progress callback() {
-    if (isatty(STDERR_FILENO) == 0) return {};
-    return [this](const std::string& text) { show(text); };
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  void show(const std::string& text) {
-    using namespace std::chrono_literals;
-    const auto now = Clock::now();
-    if (now - start_ < 2s || now - last_ < 100ms) return;
-    fmt::print(stderr, "\r\033[K{}", text);
-    std::fflush(stderr);
-    last_ = now;
-    shown_ = true;
-  }
-
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point last_ = start_;
-  bool shown_ = false;
-};
-
-/// stdout is the result: that it cannot be written is an error.
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    throw FileError(std::string("cannot write to the standard output: ") + std::strerror(errno));
-}
-
-/// All cases, or one InputError with the faults of all files. Prints what is odd about the users'
-/// meshes.
-std::vector<Case> read_cases(const std::vector<fs::path>& files) {
-  std::vector<Case> cases;
-  std::string faults;
-  for (const fs::path& file : files) {
-    try {
-      cases.push_back(read_case(file));
-      for (const std::string& remark : check_case_mesh(cases.back()))
-        print(fmt::format("Remark: {}: {}\n", cases.back().options.solid.mesh.string(), remark));
-    } catch (const InputError& error) {
-      faults += (faults.empty() ? "" : "\n") + std::string(error.what());
-    }
-  }
-  if (!faults.empty()) throw InputError(faults);
-  std::map<std::string, fs::path> file_of;
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    const auto [first, added] = file_of.emplace(cases[i].name, files[i]);
-    if (!added)
-      throw InputError(
-          fmt::format("`{}` and `{}` both have the name \"{}\": the results of one "
-                      "would replace those of the other; rename one",
-                      first->second.string(), files[i].string(), cases[i].name));
-  }
-  return cases;
-}
 
 /// A case of `ciliaval run` and what it may write to.
 struct Prepared {
@@ -172,18 +101,6 @@ void take_part(Case problem, const RunOptions& options) {
   run(problem, mechanics_models(), field_models(), {}, checkpoint(options.directory, problem));
 }
 
-/// The folder of the shipped cases: installed beside the program, or the build tree's sources.
-std::optional<fs::path> shipped_cases() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) return std::nullopt;
-  for (const char* data : {CILIAVAL_INSTALLED_DATA, CILIAVAL_SOURCE_DATA}) {
-    const fs::path folder = (program.parent_path() / data / "cases").lexically_normal();
-    if (fs::is_directory(folder, error)) return folder;
-  }
-  return std::nullopt;
-}
-
 std::string title_of(const fs::path& file) {
   try {
     return read_case(file).title;
@@ -193,15 +110,12 @@ std::string title_of(const fs::path& file) {
 }
 
 std::string list_of_cases() {
-  const auto folder = shipped_cases();
-  if (!folder) return "Shipped cases: none found beside the program\n";
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(*folder))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  std::string text = fmt::format("Shipped cases, in {}\n", folder->string());
-  for (const fs::path& file : files)
-    text += fmt::format("  {:<28} {}\n", file.lexically_relative(*folder).string(), title_of(file));
+  const ShippedCases shipped = shipped_cases();
+  if (shipped.files.empty()) return "Shipped cases: none found beside the program\n";
+  std::string text = fmt::format("Shipped cases, in {}\n", shipped.folder.string());
+  for (const fs::path& file : shipped.files)
+    text += fmt::format("  {:<28} {}\n", file.lexically_relative(shipped.folder).string(),
+                        title_of(file));
   return text;
 }
 

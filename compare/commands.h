@@ -11,9 +11,11 @@ namespace ciliaval::compare {
 /// What the program returns.
 enum class ExitCode {
   pass = 0,
-  usage = 2,        ///< the command line or a case file cannot be used
-  solver = 3,       ///< a model did not converge; the results of the others are written
-  input_output = 4  ///< a file could not be read or written
+  tolerance = 1,     ///< `check`: a result is not as it was accepted
+  usage = 2,         ///< the command line or a case file cannot be used
+  solver = 3,        ///< a model did not converge; the results of the others are written
+  input_output = 4,  ///< a file could not be read or written
+  undecided = 5      ///< `check`: there was nothing to compare
 };
 
 struct RunOptions {

@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "compare/check_command.h"
 #include "compare/commands.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
@@ -31,6 +32,7 @@ Examples:
   ciliaval list                          what there is: models, loads, cases
   ciliaval validate my.toml              is the case file right?
   ciliaval run my.toml                   results in results/<case name>
+  ciliaval check                         are the results of all shipped cases as accepted?
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
@@ -42,8 +44,9 @@ A case file states the cilium, its load, the sensors and the models, each quanti
 (docs/cases.md). The results are explained in docs/results.md, meshes of one's own in
 docs/meshes.md.
 
-Exit codes: 0 done, 2 wrong usage or case file, 3 a model did not converge (the results of the
-others are written), 4 a file could not be read or written.)";
+Exit codes: 0 done, 1 `check`: a result is not as accepted, 2 wrong usage or case file, 3 a model
+did not converge (the results of the others are written), 4 a file could not be read or written,
+5 `check`: there was nothing to compare.)";
 
 /// A word as a POSIX shell reads it back: in single quotes if it holds anything special.
 std::string shell_word(std::string_view word) {
@@ -128,6 +131,24 @@ ExitCode execute(int argc, char** argv) {
   mesh->add_option("--refinement", refinement,
                    "0 coarse, 1 default, 2 fine; left out: as the case says")
       ->type_name("N");
+  CLI::App* check = app.add_subcommand(
+      "check",
+      "Regression check: run cases, by default all shipped ones, and hold every result against\n"
+      "the accepted one in the baseline beside the case, NAME.baseline.json (docs/evidence.md).");
+  ciliaval::compare::CheckOptions check_options;
+  check_options.command = options.command;
+  check->add_option("CASE", files, "Case files (TOML); none: all shipped ones")
+      ->check(CLI::ExistingFile);
+  check->add_flag("--quick", check_options.quick,
+                  "Leave out the solid: seconds instead of minutes");
+  check->add_flag(
+      "--accept", check_options.accept,
+      "Check nothing: write NAME.baseline.candidate.json beside each case that has\n"
+      "changed, and say what changed from what to what. It is accepted by renaming it.");
+  check->add_option("--junit", check_options.junit, "Write the report as JUnit's XML too")
+      ->type_name("FILE");
+  check->add_option("--json", check_options.json, "Write the report as JSON too")
+      ->type_name("FILE");
   const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
 
   check_command(app, argc, argv);
@@ -140,6 +161,8 @@ ExitCode execute(int argc, char** argv) {
     ciliaval::compare::list();
   else if (validate->parsed())
     ciliaval::compare::validate_cases(files);
+  else if (check->parsed())
+    return ciliaval::compare::check_cases(files, check_options);
   else if (mesh->parsed())
     ciliaval::compare::write_mesh(mesh_case, mesh_file, refinement, command_line(argc, argv));
   else

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::compare {
+
+/// One line of stderr that is written over and over, if stderr is a terminal; nothing in the first
+/// two seconds. It must outlive its callback.
+class ProgressLine {
+ public:
+  ProgressLine() = default;
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Empty unless stderr is a terminal.
+  Progress callback();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void show(const std::string& text);
+
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_ = start_;
+  bool shown_ = false;
+};
+
+/// Writes to stdout, which is the result: throws FileError if it cannot be written.
+void print(const std::string& text);
+
+}  // namespace ciliaval::compare
