@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 #include "analytic/circle.h"
 #include "analytic/elliptic.h"
@@ -21,7 +22,9 @@ struct LoopField {
 /// s² = ζ² + (1+ρ)², kc² = [ζ² + (1−ρ)²]/s², m = 4ρ/s² and E, D, C of `complete_elliptic`:
 ///   H_ρ = ζ m (D − C)/(π s³ kc²),  H_ζ = [E − ρ m (D − C)]/(π s³ kc²).
 /// These are the textbook forms in K and E (Jackson, Classical Electrodynamics, §5.5) rearranged so
-/// that nothing cancels far away or near the axis. Not finite on the loop. Real is double or an
+/// that nothing cancels far away or near the axis; near the loop, kc < ½, where the two terms of
+/// H_ζ cancel, it is the sum of small terms
+///   H_ζ = [(1−ρ²)E + (1−ρ)²K + ζ²mD]/(2π s³ kc²).  Not finite on the loop. Real is double or an
 /// Eigen array of several points.
 template <class Real>
 LoopField<Real> loop_field(const Real& rho, const Real& zeta) {
@@ -35,7 +38,15 @@ LoopField<Real> loop_field(const Real& rho, const Real& zeta) {
   const auto elliptic = complete_elliptic<Real>(kc, Real(four_over_s2 * rho));
   const Real scale = 1 / (std::numbers::pi * s * d2);
   const Real difference = four_over_s2 * (elliptic.D - elliptic.C);
-  return {scale * zeta * difference, scale * (elliptic.E - rho * rho * difference)};
+  const Real far = elliptic.E - rho * rho * difference;
+  const Real near = (1 - rho) * ((1 + rho) * elliptic.E + (1 - rho) * elliptic.K) / 2 +
+                    zeta2 * four_over_s2 * rho * elliptic.D / 2;
+  Real axial;
+  if constexpr (std::is_same_v<Real, double>)
+    axial = kc < 0.5 ? near : far;
+  else
+    axial = (kc < 0.5).select(near, far);
+  return {scale * zeta * difference, scale * axial};
 }
 
 /// H_ρ and H_ζ of the same loop.

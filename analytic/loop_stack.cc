@@ -77,7 +77,7 @@ class LoopStack::Part {
   Part(const Part& whole, double side)
       : Part(whole.magnet_, whole.stretch_, whole.middle_S_ + side * whole.extent_ / 4,
              whole.extent_ / 2) {
-    from_whole_ = whole.offset(side * whole.extent_ / 4, middle_);
+    from_whole_ = whole.offset(side * whole.extent_ / 4);
   }
 
   const RodStretch& stretch() const { return stretch_; }
@@ -96,7 +96,7 @@ class LoopStack::Part {
   /// from loop to loop.
   double rounding(const Vector3& a) const {
     const double size = a.norm() + magnet_.radius;
-    return 8 * epsilon * (is_short_ ? size : size + middle_.position.norm());
+    return 2 * epsilon * size;
   }
 
   const std::array<std::unique_ptr<Part>, 2>& halves() const {
@@ -123,11 +123,10 @@ class LoopStack::Part {
         middle_(at(magnet, stretch, middle_S)),
         normal_(middle_.normal()) {}
 
-  /// r − r(middle) of the section `point` at ΔS. Of a short part by integration of dr/dS, with the
-  /// digits of the small difference: the loops beside a point that is close to the mantle must not
-  /// shift against each other.
-  Vector3 offset(double dS, const CentrelinePoint& point) const {
-    if (!is_short_) return point.position - middle_.position;
+  /// r at ΔS from the middle, less r there, by integration of dr/dS, with the digits of the small
+  /// difference: the loops beside a point that is close to the mantle must not shift against each
+  /// other.
+  Vector3 offset(double dS) const {
     const std::size_t nodes = magnet_.centreline.pieces()[stretch_.piece].S.size();
     const QuadratureRule& rule = unit_gauss_legendre(nodes / 2 + 1);
     Vector3 sum = Vector3::Zero();
@@ -144,7 +143,8 @@ class LoopStack::Part {
       const std::size_t node = std::min(i, order - 1);  // the last ones only fill up
       const double dS = (rule.nodes[node] - 0.5) * extent_;
       const CentrelinePoint point = at(magnet_, stretch_, middle_S_ + dS);
-      const Vector3 centre = offset(dS, point) / R;
+      // The loops of a long part are too far from any point for the last bits of r to matter.
+      const Vector3 centre = (is_short_ ? offset(dS) : point.position - middle_.position) / R;
       const Vector3 normal = point.normal();
       Loops& loops = all[i / lanes];
       const auto lane = static_cast<Eigen::Index>(i % lanes);
@@ -232,14 +232,15 @@ FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
   const OrderRaising asked{tolerance, 54, "field of the stacked slices", x};
   FieldValue value = raise_orders(parts, contribution, asked, first_level);
   // A rounding error δ that differs from loop to loop moves the field of a loop at the distance d
-  // by up to I δ/(2πd²), and the integral by μ₀Mδ/(2 min d); far away B by 4|B|δ/d.
+  // by up to I δ/(2πd²), and the integral by μ₀Mδ/(2 min d), on top of the rounding of its sum; far
+  // away B by 4|B|δ/d.
   double rounding = 0;
   for (const Near& near : parts) {
     const double M = vacuum_permeability * std::abs(near.part->stretch().magnetization);
     const double delta = near.part->rounding(near.offset);
     const double bound = near.distance > 3 * magnet_.radius
                              ? 4 * contribution(near, 4).norm() * delta / near.distance
-                             : M * delta / (2 * near.distance);
+                             : M * (delta / (2 * near.distance) + 16 * epsilon);
     rounding = std::max(rounding, bound);
   }
   rounding += 40 * epsilon * value.B.norm();

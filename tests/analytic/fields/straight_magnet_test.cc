@@ -88,20 +88,22 @@ TEST(StraightMagnet, TwoDiscsAreDerbyAndOlbertsCylinderEverywhere) {
   }
 }
 
-/// What can be asked of the stacked loops in a region. Beside the mantle rounding shifts the loops
-/// against each other, and |B| is a hundredth of μ₀M: see docs/fields.md.
+/// What can be asked of the stacked loops in a region: beside the mantle their estimate grows like
+/// the rounding of a bent rod's sections over the distance, and |B| is a hundredth of μ₀M.
 double stacked_tolerance(const Region& region) {
   if (region.name.starts_with("a nanometre")) return 1e-6;
-  return region.name.starts_with("a micrometre") ? 1e-9 : 1e-11;
+  return region.name.starts_with("a micrometre") ? 1e-10 : 1e-11;
 }
 
-// Measured 5e-15, asked 1e-11; beside the mantle 9e-11 to a micrometre, 1e-7 to a nanometre.
+// Measured 5e-15, beside the mantle 2e-13 at worst of 40 points; margin 5. To a nanometre, where
+// 1e-6 can be asked, 6e-11.
 TEST(StraightMagnet, StackedLoopsAreDerbyAndOlbertsCylinderEverywhere) {
   for (const Region& region : regions()) {
     const double tolerance = stacked_tolerance(region);
     const double error = largest_error(region, {Slices::stacked, Method::closed_form, tolerance});
     record("stacked loops " + region.name, error);
-    EXPECT_LT(error, tolerance < 1e-10 ? 1e-13 : tolerance) << region.name;
+    const bool grazing = region.name.starts_with("a nanometre");
+    EXPECT_LT(error, grazing ? 1e-9 : 1e-12) << region.name;
   }
 }
 
