@@ -9,6 +9,7 @@
 #include "analytic/elastica.h"
 #include "analytic/field_models.h"
 #include "fem/beam/beam.h"
+#include "fem/potential/potential.h"
 #include "fem/solid/solid.h"
 #include "problem/cilium.h"
 #include "problem/load.h"
@@ -25,6 +26,7 @@ struct ModelOptions {
   analytic::LineOptions line;
   analytic::VolumeOptions volume;
   analytic::MeshOptions mesh;
+  fem::PotentialOptions potential;
 };
 
 /// A validation case, as a case file states it (docs/cases.md), in SI units.

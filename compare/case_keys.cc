@@ -12,12 +12,12 @@ namespace ciliaval::compare {
 namespace {
 
 constexpr std::array<std::string_view, 3> known_mechanics{"elastica", "beam", "solid"};
-constexpr std::array<std::string_view, 4> known_fields{"dipole", "line", "volume", "mesh"};
+constexpr std::array<std::string_view, 5> known_fields{"dipole", "line", "volume", "mesh",
+                                                       "potential"};
 
-constexpr std::array<LaterKey, 3> known_later{{
+constexpr std::array<LaterKey, 2> known_later{{
     {"environment", "gravity, buoyancy and uniform fields"},
     {"cilium.segment.density", "weight (it goes with [environment])"},
-    {"models.potential", "the field model 'potential'"},
 }};
 
 const std::array<TextKey, 6> text_keys{{
@@ -30,16 +30,17 @@ const std::array<TextKey, 6> text_keys{{
      "What the load is and does as the cilium bends."},
     {"models", "mechanics", "list of `elastica`, `beam`, `solid`", "",
      "The mechanics models to run, at least one."},
-    {"models", "fields", "list of `dipole`, `line`, `volume`, `mesh`", "none",
+    {"models", "fields", "list of `dipole`, `line`, `volume`, `mesh`, `potential`", "none",
      "The field models to run on the deformation of each mechanics model; `mesh` takes `solid` "
      "only."},
 }};
 
-const std::array<const QuantityKey*, 16> quantity_keys{
-    &key::diameter,         &key::segment_length,   &key::young_modulus, &key::poisson_ratio,
-    &key::magnetization,    &key::load_force,       &key::displacement,  &key::height,
-    &key::force_per_height, &key::velocity,         &key::density,       &key::drag_coefficient,
-    &key::arclength,        &key::force_per_length, &key::azimuth,       &key::position};
+const std::array<const QuantityKey*, 19> quantity_keys{
+    &key::diameter,         &key::segment_length,   &key::young_modulus,     &key::poisson_ratio,
+    &key::magnetization,    &key::load_force,       &key::displacement,      &key::height,
+    &key::force_per_height, &key::velocity,         &key::density,           &key::drag_coefficient,
+    &key::arclength,        &key::force_per_length, &key::azimuth,           &key::position,
+    &key::plate_lower,      &key::plate_upper,      &key::plate_permeability};
 
 /// A knob that is a double, an unsigned int, a bool or two doubles of the options of one model.
 template <typename Options, typename T>
@@ -283,6 +284,28 @@ void append_fields(std::vector<Knob>& all) {
                             "Relative to the field."));
 }
 
+void append_potential(std::vector<Knob>& all) {
+  using fem::MagnetPushForward;
+  using fem::PotentialOptions;
+  constexpr auto potential = &ModelOptions::potential;
+  all.push_back(number_knob(potential, &PotentialOptions::relative_permeability, "potential",
+                            "relative_permeability", quantity::number, key::permeability_range,
+                            "Recoil permeability μ_r of the magnetised segments: about 1.05 for "
+                            "NdFeB composites; 1 is what the dipole models assume."));
+  all.push_back(choice_knob(
+      potential, &PotentialOptions::push_forward, "potential", "push_forward",
+      {{"F", MagnetPushForward::F}, {"R", MagnetPushForward::R}},
+      "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M, of rods M d₃ (rigid sections)."));
+  all.push_back(number_knob(potential, &PotentialOptions::tolerance, "potential", "tolerance",
+                            quantity::number,
+                            {1e-7, 0.1, false, "finer meshes exceed the memory of a machine"},
+                            "Estimated error of B at each sensor, relative to |B|."));
+  all.push_back(number_knob(potential, &PotentialOptions::max_unknowns, "potential", "max_unknowns",
+                            quantity::number,
+                            {1000, 20000000, false, "more exceed the memory of a machine"},
+                            "Where the tolerance is not reached with these, it is an error."));
+}
+
 std::string row(std::string_view table, std::string_view name, std::string_view value,
                 std::string_view range, std::string_view fallback, std::string_view doc) {
   return fmt::format("| `{}.{}` | {} | {} | {} | {} |\n", table, name, value, range,
@@ -334,6 +357,7 @@ const std::vector<Knob>& knobs() {
     append_beam(list);
     append_solid(list);
     append_fields(list);
+    append_potential(list);
     return list;
   }();
   return all;
@@ -384,6 +408,8 @@ std::string key_table() {
   for (const TextKey& k : text_keys)
     if (k.table == "models") table += row(k.table, k.name, k.value, "", k.fallback, k.doc);
   for (const Knob& knob : knobs()) table += row(knob);
+  for (const QuantityKey* k : quantity_keys)
+    if (k->table == key::plate_table) table += row(*k);
   return table;
 }
 

@@ -151,6 +151,24 @@ inline constexpr QuantityKey position{
     "none",
     "The point `[x, y, z]` where the field is computed, or a list of points; required if `fields` "
     "are asked for."};
+inline constexpr std::string_view plate_table = "models.potential.plate";
+inline constexpr Range permeability_range{
+    0, 1e6, true, "a permeability is positive, that of vacuum is 1 and iron has some thousands"};
+/// Each coordinate of a plate's corner.
+inline constexpr QuantityKey plate_lower{
+    plate_table,
+    "lower",
+    quantity::length,
+    {-1000, 1000, false, "a plate farther away is taken for a slip in the unit"},
+    "",
+    "The corner `[x, y, z]` of a permeable box with the lowest coordinates; one "
+    "`[[models.potential.plate]]` for each box."};
+inline constexpr QuantityKey plate_upper{
+    plate_table,       "upper", quantity::length,
+    plate_lower.range, "",      "The corner with the highest coordinates."};
+inline constexpr QuantityKey plate_permeability{
+    plate_table, "relative_permeability", quantity::number, permeability_range,
+    "",          "The plate's μ_r."};
 }  // namespace key
 
 /// A key whose value is text or a list of texts, for the table of keys.

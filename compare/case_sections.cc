@@ -98,8 +98,7 @@ void read_segments(Section& cilium, std::vector<Segment>& segments) {
 
 using Coordinates = std::optional<Vector3>;
 
-Coordinates read_point(const toml::array& list, Faults& faults) {
-  const QuantityKey& k = key::position;
+Coordinates read_point(const toml::array& list, const QuantityKey& k, Faults& faults) {
   if (list.size() != 3) {
     faults.add(place(list), fmt::format("a point has three coordinates, such as [\"0 mm\", \"0 "
                                         "mm\", \"-1.55 mm\"]; found {}",
@@ -183,6 +182,58 @@ void read_knob(const Knob& knob, const toml::node& node, ModelOptions& options, 
   }
 }
 
+/// [[models.potential.plate]]: the boxes that are right by themselves and beside each other.
+void read_plates(Section& potential, std::vector<fem::PermeableBox>& plates) {
+  constexpr std::size_t most_plates = 100;
+  Faults& faults = potential.faults();
+  const toml::node* node = potential.find("plate");
+  if (node == nullptr) return;
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->size() > most_plates) {
+    faults.add(place(*node), fmt::format("the plates are a list of at most {} tables, found {}: "
+                                         "write [[models.potential.plate]] above each",
+                                         most_plates, describe(*node)));
+    return;
+  }
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) {
+      faults.add(
+          place(element),
+          fmt::format("expected a table [[models.potential.plate]], found {}", describe(element)));
+      continue;
+    }
+    const std::size_t before = faults.size();
+    Section table(element.as_table(), "[[models.potential.plate]]", "models.potential.plate",
+                  place(element), faults);
+    fem::PermeableBox plate;
+    const auto corner = [&](const QuantityKey& k, auto set) {
+      const toml::node* value = table.require(k.name);
+      if (value == nullptr) return;
+      if (!value->is_array())
+        faults.add(place(*value), fmt::format("'{}' must be a point, such as [\"-5 mm\", \"-5 "
+                                              "mm\", \"-3 mm\"], found {}",
+                                              k.name, describe(*value)));
+      else if (const Coordinates p = read_point(*value->as_array(), k, faults))
+        set(*p);
+    };
+    corner(key::plate_lower, [&](const Vector3& p) { plate.box.min() = p; });
+    corner(key::plate_upper, [&](const Vector3& p) { plate.box.max() = p; });
+    const QuantityKey& k = key::plate_permeability;
+    if (const toml::node* value = table.require(k.name))
+      plate.relative_permeability =
+          read_value(*value, k.name, k.quantity, k.range, faults).value_or(1.0);
+    table.finish();
+    if (faults.size() == before && !(plate.box.sizes().minCoeff() > 0))
+      faults.add(place(element),
+                 "a plate's 'upper' corner must lie above its 'lower' one in x, y "
+                 "and z");
+    for (const fem::PermeableBox& other : plates)
+      if (faults.size() == before && other.box.intersection(plate.box).sizes().minCoeff() > 0)
+        faults.add(place(element), "the plate overlaps one above: cut them apart");
+    if (faults.size() == before) plates.push_back(plate);
+  }
+}
+
 void read_knobs(Section& models, ModelOptions& options) {
   const auto read_model = [&](std::string_view id) {
     Section table = models.section(id);
@@ -197,6 +248,7 @@ void read_knobs(Section& models, ModelOptions& options) {
         table.faults().add(place(*node),
                            fmt::format("'{}' goes with {} only", knob.name, knob.goes_with));
     }
+    if (id == "potential") read_plates(table, options.potential.plates);
     table.finish();
   };
   for (const std::string_view id : mechanics_ids()) read_model(id);
@@ -261,13 +313,14 @@ bool read_sensor(Section& root, Case& c) {
                            [](const toml::node& n) { return n.is_array(); })) {
       for (const toml::node& element : *list) {
         if (const toml::array* point = element.as_array()) {
-          if (const Coordinates p = read_point(*point, faults)) c.sensors.push_back(*p);
+          if (const Coordinates p = read_point(*point, key::position, faults))
+            c.sensors.push_back(*p);
         } else {
           faults.add(place(element),
                      fmt::format("expected a point among the others, found {}", describe(element)));
         }
       }
-    } else if (const Coordinates p = read_point(*list, faults)) {
+    } else if (const Coordinates p = read_point(*list, key::position, faults)) {
       c.sensors.push_back(*p);
     }
   }
@@ -276,7 +329,6 @@ bool read_sensor(Section& root, Case& c) {
 }
 
 bool read_models(Section& root, Case& c) {
-  static constexpr std::array<std::string_view, 1> later_fields{"potential"};
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
   Section table = require_section(root, "models");
@@ -288,7 +340,7 @@ bool read_models(Section& root, Case& c) {
                                            fmt::join(mechanics_ids(), ", ")));
   }
   if (const toml::node* node = table.find("fields"))
-    c.fields = read_ids(*node, "fields", field_ids(), later_fields, faults);
+    c.fields = read_ids(*node, "fields", field_ids(), {}, faults);
   read_knobs(table, c.options);
   table.finish();
   return faults.size() == before;

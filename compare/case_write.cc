@@ -134,6 +134,13 @@ std::string models(const Case& c) {
     if (!belongs(knob, c.options)) continue;
     text += fmt::format("{} = {}\n", knob.name, to_toml(knob, knob.get(c.options)));
   }
+  const auto corner = [](const QuantityKey& k, const Vector3& x) {
+    return fmt::format("{} = {}\n", k.name, list({value(k, x[0]), value(k, x[1]), value(k, x[2])}));
+  };
+  for (const fem::PermeableBox& plate : c.options.potential.plates)
+    text += fmt::format("\n[[{}]]\n", key::plate_table) +
+            corner(key::plate_lower, plate.box.min()) + corner(key::plate_upper, plate.box.max()) +
+            line(key::plate_permeability, plate.relative_permeability);
   return text;
 }
 

@@ -98,7 +98,7 @@ std::optional<FieldGrid> field_grid(const CaseResult& result, std::span<const Fi
   for (const FieldEntry& entry : fields) {
     if (std::find(asked.begin(), asked.end(), entry.id) == asked.end()) continue;
     auto candidate = entry.make(with_closed_forms(result.problem.options));
-    if (candidate->needs_body()) continue;
+    if (candidate->needs_body() || !candidate->pointwise()) continue;
     model = std::move(candidate);
     grid.field = entry.id;
   }

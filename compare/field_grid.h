@@ -31,7 +31,7 @@ struct FieldGrid {
   std::function<std::optional<Step>(std::size_t)> sample;
 };
 
-/// The most detailed field model that needs no body (it reads the centreline), on the most detailed
+/// The most detailed pointwise field model that needs no body (it reads the centreline), on the most detailed
 /// mechanics model, to be sampled in a box that holds the cilium at every step and the sensors no
 /// farther than two lengths from it, two diameters wider. Closed forms are used whatever the case
 /// asks: the picture checks no quadrature. None if no such pair converged at any step. The result

@@ -25,6 +25,8 @@ const std::vector<FieldEntry>& field_models() {
        [](const ModelOptions& o) { return std::make_unique<analytic::VolumeField>(o.volume); }},
       {"mesh", "the solid's own deformed magnet (with `solid` only)",
        [](const ModelOptions& o) { return std::make_unique<analytic::MeshField>(o.mesh); }},
+      {"potential", "scalar-potential FEM with recoil permeability and permeable plates",
+       [](const ModelOptions& o) { return std::make_unique<fem::Potential>(o.potential); }},
   };
   return entries;
 }

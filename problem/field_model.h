@@ -26,6 +26,10 @@ class FieldModel {
   /// Whether the model needs Deformation::body.
   virtual bool needs_body() const { return false; }
 
+  /// Whether each point is computed by itself at little cost, so that the field may be drawn on a
+  /// grid of many.
+  virtual bool pointwise() const { return true; }
+
   /// B of the deformed magnet at the points (m). Inside the magnet it is B, not μ₀H. Throws
   /// InputError where B diverges (the end face's rim; a dipole) or if the deformation lacks what
   /// the model needs, SolverError if the accuracy asked cannot be reached.

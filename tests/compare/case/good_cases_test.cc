@@ -76,6 +76,13 @@ void expect_same(const Case& a, const Case& b) {
   EXPECT_EQ(a.fields, b.fields);
   for (const Knob& knob : knobs())
     EXPECT_EQ(knob.get(a.options), knob.get(b.options)) << knob.model << '.' << knob.name;
+  ASSERT_EQ(a.options.potential.plates.size(), b.options.potential.plates.size());
+  for (std::size_t i = 0; i < a.options.potential.plates.size(); ++i) {
+    const fem::PermeableBox& plate = a.options.potential.plates[i];
+    EXPECT_EQ(plate.box.min(), b.options.potential.plates[i].box.min());
+    EXPECT_EQ(plate.box.max(), b.options.potential.plates[i].box.max());
+    EXPECT_EQ(plate.relative_permeability, b.options.potential.plates[i].relative_permeability);
+  }
 }
 
 TEST(GoodCase, IsReadAsTheFileStatesIt) {
@@ -271,6 +278,19 @@ tolerance = 1e-5
 [models.mesh]
 push_forward = "R"
 tolerance = 1e-4
+[models.potential]
+relative_permeability = 1.2
+push_forward = "R"
+tolerance = 1e-2
+max_unknowns = 5000
+[[models.potential.plate]]
+lower = ["-5 mm", "-6 mm", "-4 mm"]
+upper = ["5 mm", "6 mm", "-3 mm"]
+relative_permeability = 1000
+[[models.potential.plate]]
+lower = ["-5 mm", "-6 mm", "-8 mm"]
+upper = ["5 mm", "6 mm", "-7 mm"]
+relative_permeability = 0.5
 )toml";
 
 std::string with_all_knobs() {
@@ -325,6 +345,15 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.volume.tolerance, 1e-5);
   EXPECT_EQ(o.mesh.push_forward, analytic::PushForward::R);
   EXPECT_EQ(o.mesh.tolerance, 1e-4);
+  EXPECT_EQ(o.potential.relative_permeability, 1.2);
+  EXPECT_EQ(o.potential.push_forward, fem::MagnetPushForward::R);
+  EXPECT_EQ(o.potential.tolerance, 1e-2);
+  EXPECT_EQ(o.potential.max_unknowns, 5000U);
+  ASSERT_EQ(o.potential.plates.size(), 2U);
+  EXPECT_EQ(o.potential.plates[0].box.min(), Vector3(-0.005, -0.006, -0.004));
+  EXPECT_EQ(o.potential.plates[0].box.max(), Vector3(0.005, 0.006, -0.003));
+  EXPECT_EQ(o.potential.plates[0].relative_permeability, 1000);
+  EXPECT_EQ(o.potential.plates[1].relative_permeability, 0.5);
 }
 
 // A mesh is looked for beside the case file, and is written back with its full name: the results go

@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/potential/adaptive.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <sstream>
+
+#include "fem/parallel.h"
+#include "fem/potential/functional.h"
+#include "fem/potential/multipole.h"
+#include "fem/potential/operator.h"
+#include "problem/error.h"
+#include "problem/field_model.h"
+
+namespace ciliaval::fem {
+namespace {
+
+constexpr unsigned int degree = 2;          ///< of the solution that B is taken from
+constexpr double solver_tolerance = 1e-8;   ///< residual of ψ
+constexpr double dual_tolerance = 1e-4;     ///< of the duals, which only choose the leaves to cut
+constexpr double ball_over_distance = 0.7;  ///< radius of a sensor's ball over its distance
+constexpr double finest_over_extent = 1.0 / 4096;  ///< finest leaf over the radius of the bodies
+
+/// The sphere that holds all bodies and points, and the sensors' balls.
+struct Layout {
+  Vector3 centre = Vector3::Zero();
+  double radius = 0;
+  std::vector<SensorBall> balls;
+};
+
+std::string to_text(const Vector3& x) {
+  std::ostringstream text;
+  text << '(' << x[0] << ", " << x[1] << ", " << x[2] << ") m";
+  return text.str();
+}
+
+void require_valid(const PotentialProblem& problem, const PotentialControl& control) {
+  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+  if (!positive(problem.relative_permeability))
+    throw InputError("the relative permeability of the magnet must be finite and positive");
+  for (const PermeableBox& plate : problem.plates) {
+    if (!positive(plate.relative_permeability))
+      throw InputError("the relative permeability of a plate must be finite and positive");
+    if (!plate.box.sizes().allFinite() || !(plate.box.sizes().minCoeff() > 0))
+      throw InputError("a plate's upper corner must lie above its lower one in x, y and z");
+    for (const PermeableBox& other : problem.plates)
+      if (&other != &plate && other.box.intersection(plate.box).sizes().minCoeff() > 0)
+        throw InputError("two permeable plates overlap");
+  }
+  for (const Vector3& point : problem.points)
+    if (!point.allFinite()) throw InputError("a point of the potential is not finite");
+  if (!positive(control.tolerance) || problem.points.empty())
+    throw InputError("the potential needs points and a positive tolerance");
+}
+
+Layout lay_out(const PotentialProblem& problem) {
+  Layout layout;
+  Eigen::AlignedBox3d all;
+  for (const Magnet::Block& block : problem.magnet.blocks())
+    all.extend(problem.magnet.extent(block).box);
+  for (const PermeableBox& plate : problem.plates) all.extend(plate.box);
+  const Eigen::AlignedBox3d bodies = all;
+  for (const Vector3& point : problem.points) all.extend(point);
+  layout.centre = all.center();
+  layout.radius = all.sizes().norm() / 2;
+  const double finest = finest_over_extent * bodies.sizes().norm() / 2;
+  for (const PermeableBox& plate : problem.plates)
+    if (problem.magnet.meets(plate.box))
+      throw InputError("a permeable plate and the magnet overlap");
+  for (const Vector3& point : problem.points) {
+    double distance = problem.magnet.distance(point, finest);
+    for (const PermeableBox& plate : problem.plates)
+      distance = std::min(distance, plate.box.exteriorDistance(point));
+    if (distance < 2 * finest)
+      throw InputError("the point " + to_text(point) + " lies in the magnet or a plate, or in a " +
+                       "leaf that one of them cuts on the finest octree (" +
+                       std::to_string(finest) + " m): the potential gives B only outside of them");
+    layout.balls.push_back({point, ball_over_distance * std::min(distance, layout.radius)});
+  }
+  return layout;
+}
+
+/// Dipole and quadrupole of the magnet, and the largest |ψ| that they leave out on a sphere.
+struct Source {
+  Multipole magnet;
+  double rest = 0;  ///< A
+};
+
+Source source_of(const Magnet& magnet, const Vector3& centre, double distance) {
+  Source source;
+  source.magnet.centre = centre;
+  std::vector<MagnetSample> samples;
+  for (const Magnet::Block& block : magnet.blocks()) magnet.sample(block, 4, samples);
+  for (const MagnetSample& s : samples) source.magnet.add(s.position, s.moment);
+  for (int i = -2; i <= 2; ++i) {
+    for (int j = -2; j <= 2; ++j) {
+      for (int k = -2; k <= 2; ++k) {
+        if (std::max({std::abs(i), std::abs(j), std::abs(k)}) != 2) continue;
+        const Vector3 x = centre + distance / 2 * Vector3(i, j, k);
+        double exact = 0;
+        for (const MagnetSample& s : samples) exact += dipole_potential(s.moment, x - s.position);
+        source.rest = std::max(source.rest, std::abs(exact - source.magnet.potential(x)));
+      }
+    }
+  }
+  return source;
+}
+
+/// ψ in a space, with what belongs to it.
+struct Solution {
+  PotentialSpace space;
+  PotentialOperator matrix;
+  PotentialMultigrid multigrid;
+  PotentialVector psi;  ///< complete
+  unsigned int iterations = 0;
+
+  Solution(const Octree& octree, unsigned int p, const CutCells& bodies,
+           const PotentialMultigrid::Coarse& coarse)
+      : space(octree, p), matrix(space, bodies), multigrid(matrix, coarse), psi(space.vector()) {}
+
+  void solve_for(const CutCells& bodies, const std::function<double(const Vector3&)>& boundary,
+                 const PotentialVector* guess);
+};
+
+void Solution::solve_for(const CutCells& bodies,
+                         const std::function<double(const Vector3&)>& boundary,
+                         const PotentialVector* guess) {
+  const PotentialVector lift = space.boundary_values(boundary);
+  PotentialVector load = matrix.apply_complete(lift);
+  load *= -1;
+  for (const int cell : bodies.cells())
+    if (const Eigen::VectorXd F = bodies.source(cell, space.basis()); F.size() != 0)
+      space.add_free(cell, F, load);
+  load.compress(dealii::VectorOperation::add);
+  PotentialVector x = space.vector();
+  if (guess != nullptr) space.copy_free(*guess, x);
+  iterations = solve(matrix, multigrid, load, solver_tolerance, x);
+  psi = lift;
+  psi.zero_out_ghost_values();
+  space.add_free_values(x, psi);
+  space.complete(psi);
+}
+
+/// The values of a complete vector of one space at the nodes of another on the same octree.
+PotentialVector interpolated(const PotentialSpace& from, const PotentialVector& complete,
+                             const PotentialSpace& to) {
+  PotentialVector result = to.vector();
+  const Eigen::MatrixXd values = interpolation(from.basis(), to.basis());
+  Eigen::VectorXd u(from.nodes());
+  for (int c = 0; c < static_cast<int>(from.octree().cells().size()); ++c) {
+    from.read(c, complete, u);
+    to.write(c, values * u, result);
+  }
+  return result;
+}
+
+class Adaptive {
+ public:
+  Adaptive(const PotentialProblem& problem, const PotentialControl& control)
+      : problem_(problem),
+        control_(control),
+        layout_(lay_out(problem)),
+        half_width_(control.box * layout_.radius),
+        source_(source_of(problem.magnet, layout_.centre, half_width_)),
+        octree_(layout_.centre, half_width_) {
+    induced_.centre = layout_.centre;
+  }
+
+  void make_first_mesh();
+  PotentialCycle solve();
+  void refine() { octree_.refine_largest(indicators_, control_.refined_fraction); }
+  std::size_t cells() const { return octree_.leaf_count(); }
+
+ private:
+  double boundary_value(const Vector3& x) const;
+  void update_induced();
+  double truncation() const;
+  double set_indicators();
+  std::vector<Vector3> B_at_points(const Solution& solution) const;
+  std::vector<std::vector<Vector3>> dual_directions() const;
+
+  const PotentialProblem& problem_;
+  const PotentialControl& control_;
+  Layout layout_;
+  double half_width_;
+  Source source_;
+  Octree octree_;
+  Multipole induced_;          ///< of the permeable bodies, as the last mesh gives it
+  double induced_change_ = 0;  ///< of its dipole by the last mesh, A·m²
+  std::optional<CutCells> bodies_;
+  std::unique_ptr<PotentialMultigrid::Coarse> coarse_;
+  std::unique_ptr<Solution> low_;
+  std::unique_ptr<Solution> high_;
+  std::vector<Vector3> B_;
+  std::vector<double> indicators_;  ///< one for each own leaf
+};
+
+void Adaptive::make_first_mesh() {
+  const auto too_coarse = [&](const Cube& cube) {
+    if (cube.size > half_width_ / 3) return true;
+    for (const SensorBall& ball : layout_.balls)
+      if (cube.size > ball.radius && cube.box().exteriorDistance(ball.centre) < ball.radius)
+        return true;
+    for (const PermeableBox& plate : problem_.plates)
+      if (cube.size > plate.box.sizes().minCoeff() && cube.box().intersects(plate.box)) return true;
+    return false;
+  };
+  while (octree_.refine(too_coarse)) {
+  }
+  // The magnet in leaves no larger than twice its smallest block is wide.
+  std::vector<Magnet::Extent> extents;
+  for (const Magnet::Block& block : problem_.magnet.blocks())
+    extents.push_back(problem_.magnet.extent(block));
+  const auto too_coarse_for_magnet = [&](const Cube& cube) {
+    return std::any_of(extents.begin(), extents.end(), [&](const Magnet::Extent& e) {
+      Vector3 lengths = e.lengths;
+      std::sort(lengths.begin(), lengths.end());
+      return cube.size > 2 * lengths[1] && cube.box().intersects(e.box);
+    });
+  };
+  while (octree_.refine(too_coarse_for_magnet)) {
+  }
+}
+
+double Adaptive::boundary_value(const Vector3& x) const {
+  return source_.magnet.potential(x) + induced_.potential(x) -
+         problem_.uniform_field.dot(x - layout_.centre) / vacuum_permeability;
+}
+
+/// Moments (μ_r − 1) H dv of the permeable bodies.
+void Adaptive::update_induced() {
+  Multipole sum;
+  sum.centre = layout_.centre;
+  bodies_->for_each_permeable_point(high_->space, high_->psi,
+                                    [&](const Vector3& x, double weight, const Vector3& gradient) {
+                                      sum.add(x, -weight * gradient);
+                                    });
+  std::array<double, 12> values{};
+  std::copy_n(sum.dipole.data(), 3, values.begin());
+  std::copy_n(sum.moments.data(), 9, values.begin() + 3);
+  sum_over_ranks(values);
+  std::copy_n(values.begin(), 3, sum.dipole.data());
+  std::copy_n(values.begin() + 3, 9, sum.moments.data());
+  induced_change_ = (sum.dipole - induced_.dipole).norm();
+  induced_ = sum;
+}
+
+/// A harmonic function that is at most δ on the boundary has a gradient of at most 3δ/d at the
+/// distance d from it (mean-value property). δ holds the magnet's higher multipoles, of the induced
+/// moments the change by the last mesh and the higher multipoles, at most |m| a²/(πL⁴) for bodies
+/// within a radius a.
+double Adaptive::truncation() const {
+  const double L = half_width_;
+  const double delta = source_.rest + induced_change_ / (4 * std::numbers::pi * L * L) +
+                       induced_.dipole.norm() * layout_.radius * layout_.radius /
+                           (std::numbers::pi * std::pow(L, 4));
+  return 3 * vacuum_permeability * delta / (L - layout_.radius);
+}
+
+std::vector<Vector3> Adaptive::B_at_points(const Solution& solution) const {
+  std::vector<Vector3> B = SensorFunctional(solution.space, layout_.balls).gradients(solution.psi);
+  for (Vector3& value : B) value *= -vacuum_permeability;
+  return B;
+}
+
+PotentialCycle Adaptive::solve() {
+  const auto start = std::chrono::steady_clock::now();
+  high_.reset();
+  low_.reset();
+  coarse_.reset();
+  bodies_.emplace(octree_, degree + 1);
+  bodies_->add(problem_.magnet, problem_.relative_permeability, control_.sampling);
+  for (const PermeableBox& plate : problem_.plates) bodies_->add(plate);
+  coarse_ = std::make_unique<PotentialMultigrid::Coarse>(octree_, *bodies_);
+  const auto boundary = [&](const Vector3& x) { return boundary_value(x); };
+  low_ = std::make_unique<Solution>(octree_, degree, *bodies_, *coarse_);
+  low_->solve_for(*bodies_, boundary, nullptr);
+  high_ = std::make_unique<Solution>(octree_, degree + 1, *bodies_, *coarse_);
+  const PotentialVector guess = interpolated(low_->space, low_->psi, high_->space);
+  high_->solve_for(*bodies_, boundary, &guess);
+
+  PotentialCycle cycle;
+  cycle.cells = octree_.leaf_count();
+  cycle.unknowns = low_->space.unknowns();
+  cycle.iterations = low_->iterations;
+  cycle.check_iterations = high_->iterations;
+  cycle.B = B_at_points(*low_);
+  B_ = B_at_points(*high_);
+  for (std::size_t i = 0; i < B_.size(); ++i) cycle.difference.push_back(B_[i] - cycle.B[i]);
+  update_induced();
+  cycle.truncation = truncation();
+  cycle.kinks = set_indicators();
+  for (const Vector3& B : B_)
+    if (!B.allFinite()) throw SolverError("the potential is not finite");
+  cycle.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return cycle;
+}
+
+/// Loads of the dual problems: the three components at one point, over |B| there; at more points
+/// three sums over all of them with signs that change from point to point, whose dual solutions
+/// have, in the mean over the signs, the squares of all duals together.
+std::vector<std::vector<Vector3>> Adaptive::dual_directions() const {
+  std::vector<std::vector<Vector3>> result;
+  for (int d = 0; d < 3; ++d) {
+    std::vector<Vector3> directions;
+    unsigned int state = 12345;
+    for (const Vector3& B : B_) {
+      state = state * 1103515245U + 12345U;
+      const double sign = ((state >> 16U) & 1U) != 0U ? 1 : -1;
+      directions.emplace_back(sign / std::max(B.norm(), 1e-300) * Vector3::Unit(d));
+    }
+    result.push_back(directions);
+  }
+  return result;
+}
+
+/// Indicator of a leaf: the energy norms of the errors of ψ and of the duals on it multiplied. That
+/// of ψ is the difference of the two degrees; that of a dual z is foreseen from the energies of
+/// its trilinear part s₁ and of the rest s₂ as s₂²/s₁, plus the kink that a permeable body's
+/// surface puts into z, which no polynomial of the leaf follows.
+///
+/// Returns what the error of ψ in the permeable bodies, a kink as well, is worth at the points,
+/// relative to |B|: ∫ (μ_r − 1) ∇(error of ψ)·∇z. It is one part of the difference of the degrees,
+/// and may by chance be of the opposite sign as the rest.
+double Adaptive::set_indicators() {
+  const PotentialSpace& space = low_->space;
+  const auto cells = static_cast<int>(octree_.cells().size());
+  const auto count = static_cast<std::size_t>(cells);
+  const LagrangeBasis linear({0, 1});
+  const Eigen::MatrixXd to_linear = interpolation(space.basis(), linear);
+  const Eigen::MatrixXd from_linear = interpolation(linear, space.basis());
+  const Eigen::MatrixXd raise = interpolation(space.basis(), high_->space.basis());
+  Eigen::VectorXd u(space.nodes());
+  Eigen::VectorXd v(high_->space.nodes());
+  const auto error_of_psi = [&](int cell) {
+    space.read(cell, low_->psi, u);
+    high_->space.read(cell, high_->psi, v);
+    v -= raise * u;
+  };
+  indicators_.assign(count, 0);
+  const SensorFunctional functional(space, layout_.balls);
+  Vector3 kinks = Vector3::Zero();
+  const std::vector<std::vector<Vector3>> directions = dual_directions();
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    PotentialVector z = space.vector();
+    fem::solve(low_->matrix, low_->multigrid,
+               functional.load(directions[static_cast<std::size_t>(d)]), dual_tolerance, z);
+    z.update_ghost_values();
+    for (int c = 0; c < cells; ++c) {
+      if (bodies_->has_permeability(c)) error_of_psi(c);
+      space.read_free(c, z, u);
+      if (bodies_->has_permeability(c)) kinks[d] += high_->matrix.bodies_part(c, v, raise * u);
+      const Eigen::VectorXd trilinear = from_linear * (to_linear * u);
+      const double s1 = low_->matrix.energy(c, trilinear);
+      const double s2 = low_->matrix.energy(c, u - trilinear);
+      double& sum = indicators_[static_cast<std::size_t>(c)];
+      if (s2 > 0) sum += s2 * std::min(1.0, s2 / s1);
+      sum += bodies_->kink(c) / 4 * (s1 + s2);
+    }
+  }
+  for (int c = 0; c < cells; ++c) {
+    error_of_psi(c);
+    double& indicator = indicators_[static_cast<std::size_t>(c)];
+    indicator = std::sqrt(indicator * high_->matrix.energy(c, v));
+  }
+  sum_over_ranks(std::span(kinks.data(), 3));
+  return vacuum_permeability * kinks.norm();
+}
+
+}  // namespace
+
+Vector3 PotentialCycle::estimate(std::size_t point) const {
+  const Vector3& d = difference[point];
+  const double norm = std::max(d.norm(), kinks * B[point].norm());
+  const Vector3 shared = (d.array().square() / 2 + (norm * norm - d.squaredNorm() / 2) / 3).sqrt();
+  return shared.array() + truncation;
+}
+
+namespace {
+
+/// Whether B has moved from the last mesh but one by no more than twice what the two estimates
+/// foresee: a single small estimate may be luck.
+bool agrees_with_last(const std::vector<PotentialCycle>& cycles) {
+  if (cycles.size() < 2) return false;
+  const PotentialCycle& last = cycles.back();
+  const PotentialCycle& before = cycles[cycles.size() - 2];
+  for (std::size_t i = 0; i < last.B.size(); ++i)
+    if ((last.B[i] - before.B[i]).norm() >
+        2 * (last.estimate(i).norm() + before.estimate(i).norm()))
+      return false;
+  return true;
+}
+
+}  // namespace
+
+PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control,
+                                const std::function<void(const std::string&)>& progress) {
+  start_mpi();
+  require_valid(problem, control);
+  Adaptive adaptive(problem, control);
+  adaptive.make_first_mesh();
+  PotentialResult result;
+  while (true) {
+    result.cycles.push_back(adaptive.solve());
+    const PotentialCycle& cycle = result.cycles.back();
+    result.B = cycle.B;
+    result.uncertainty.clear();
+    double worst = 0;
+    for (std::size_t i = 0; i < cycle.B.size(); ++i) {
+      result.uncertainty.push_back(cycle.estimate(i));
+      worst = std::max(worst, result.uncertainty.back().norm() / cycle.B[i].norm());
+    }
+    if (progress)
+      progress(std::to_string(cycle.unknowns) + " unknowns, estimate " + std::to_string(worst) +
+               " of |B|");
+    if (worst <= control.tolerance && agrees_with_last(result.cycles)) return result;
+    if (cycle.unknowns > control.max_unknowns)
+      throw SolverError("the potential was asked for " + std::to_string(control.tolerance) +
+                        " of |B| and has " + std::to_string(worst) + " with " +
+                        std::to_string(cycle.unknowns) +
+                        " unknowns: ask for less, or allow more unknowns");
+    adaptive.refine();
+  }
+}
+
+}  // namespace ciliaval::fem

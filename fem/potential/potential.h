@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <vector>
+
+#include "fem/potential/magnet.h"
+#include "fem/potential/plate.h"
+#include "problem/field_model.h"
+
+namespace ciliaval::fem {
+
+struct PotentialOptions {
+  /// μ_r of the magnetised segments: about 1.05 for composites with NdFeB; 1 is what the dipole
+  /// models assume.
+  double relative_permeability = 1.05;
+  MagnetPushForward push_forward = MagnetPushForward::F;
+  double tolerance = 1e-3;             ///< estimate of the error of B over |B|, at each sensor
+  unsigned int max_unknowns = 600000;  ///< of the solution that B is taken from
+  std::vector<PermeableBox> plates;    ///< at rest, below or beside the sensors
+};
+
+/// The field of the deformed magnet, with its recoil permeability, and of permeable plates, by a
+/// scalar potential in all of space (docs/potential.md): finite elements on an octree that is
+/// refined for B at the sensors. Takes the deformation of any mechanics model. Field::uncertainty
+/// is an estimate, not a bound. field() is collective; it starts MPI. Throws InputError if a sensor
+/// lies in the magnet or a plate or too close to them, a plate meets the magnet or another plate,
+/// a permeability is not positive; SolverError if the tolerance is not reached with the unknowns
+/// allowed.
+class Potential : public FieldModel {
+ public:
+  explicit Potential(PotentialOptions options = {});
+
+  bool pointwise() const override { return false; }
+  Field field(const Cilium& cilium, const Deformation& deformation,
+              std::span<const Vector3> points) const override;
+
+ private:
+  PotentialOptions options_;
+};
+
+}  // namespace ciliaval::fem
