@@ -386,7 +386,7 @@ const BadCase later[]{
      "did you mean 'contact'?"},
     {"PotentialKnobs", "[models.solid]\nrefinement = 1",
      "[models.potential]\nrelative_permeability = 0", "35:25",
-     "'relative_permeability' = 0 must be"},
+     "'relative_permeability' is 0, but must be between 0"},
     {"PotentialPlates", "[models.solid]\nrefinement = 1", "[models.potential]\nplate = \"iron\"",
      "35:9", "the plates are a list"},
     {"PotentialPlateCorners", "[models.solid]\nrefinement = 1",
