@@ -109,6 +109,7 @@ void append_field(const FieldModel& model, const Cilium& cilium, const Deformati
                   std::vector<std::pair<std::size_t, std::string>>& failures) {
   try {
     const Field field = checked_field(model, cilium, deformation, points);
+    step.mesh = field.mesh;
     for (std::size_t i = 0; i < points.size(); ++i) {
       step.B.emplace_back(field.B[i]);
       step.uncertainty.push_back(field.uncertainty.empty() ? std::nullopt

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +31,9 @@ struct FieldStep {
   AtSensors uncertainty;     ///< the field model's estimate of the numerical error of B
   AtSensors dB;              ///< ΔB = B − B(undeformed): none where one of the two is missing
   AtSensors dB_uncertainty;  ///< sum of the two uncertainties
-  double seconds = 0;        ///< wall time
-  std::string failure;       ///< why a value of B or ΔB is missing, at which sensors; else empty
+  std::shared_ptr<const FieldMesh> mesh;  ///< what B was computed from, if it can be drawn
+  double seconds = 0;                     ///< wall time
+  std::string failure;  ///< why a value of B or ΔB is missing, at which sensors; else empty
 
   /// Whether there is B at any sensor.
   bool any() const;

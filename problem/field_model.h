@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "problem/cilium.h"
 #include "problem/deformation.h"
+#include "problem/field_mesh.h"
 
 namespace ciliaval {
 
@@ -16,6 +18,8 @@ struct Field {
   std::vector<Vector3> B;            ///< flux density, T, one for each point
   std::vector<Vector3> uncertainty;  ///< estimate of the numerical error of each component, T;
                                      ///< empty if the model has none
+  std::shared_ptr<const FieldMesh> mesh = nullptr;  ///< what the model computed B from, if it can
+                                                    ///< be drawn
 };
 
 /// A model of the magnetic field of the deformed cilium.

@@ -164,6 +164,61 @@ vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
   return grid;
 }
 
+vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh) {
+  const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
+  const double* coordinates = hexahedron->GetParametricCoords();  // VTK's order of the 27 points
+  const LagrangeBasis basis({0, 0.5, 1});
+  const vtkNew<vtkPoints> points = double_points();
+  Column psi("psi", 1, "A");
+  Column H("H", 3, "A/m");
+  Column B("B", 3, "T");
+  const vtkNew<vtkDoubleArray> permeability;
+  permeability->SetName("relative_permeability");
+  const vtkNew<vtkDoubleArray> magnetization;
+  magnetization->SetName("magnetization");
+  magnetization->SetNumberOfComponents(3);
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  for (const FieldMesh::Leaf& leaf : mesh.leaves) {
+    std::array<vtkIdType, 27> ids{};
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const Vector3 xi(coordinates + 3 * i);
+      std::array<std::array<double, 3>, 3> value{};
+      std::array<std::array<double, 3>, 3> slope{};
+      for (std::size_t d = 0; d < 3; ++d)
+        basis.values_and_derivatives(xi[static_cast<Eigen::Index>(d)], value[d], slope[d]);
+      double potential = 0;
+      Vector3 gradient = Vector3::Zero();
+      for (std::size_t node = 0; node < 27; ++node) {
+        const std::size_t a = node % 3;
+        const std::size_t b = node / 3 % 3;
+        const std::size_t c = node / 9;
+        potential += leaf.psi[node] * value[0][a] * value[1][b] * value[2][c];
+        gradient += leaf.psi[node] / leaf.size *
+                    Vector3(slope[0][a] * value[1][b] * value[2][c],
+                            value[0][a] * slope[1][b] * value[2][c],
+                            value[0][a] * value[1][b] * slope[2][c]);
+      }
+      ids[i] = points->GetNumberOfPoints();
+      add_point(*points, leaf.lower + leaf.size * xi);
+      psi.add(potential);
+      H.add(Vector3(-gradient));
+      B.add(Vector3(vacuum_permeability *
+                    (leaf.magnetization - leaf.relative_permeability * gradient)));
+    }
+    grid->InsertNextCell(VTK_TRIQUADRATIC_HEXAHEDRON, static_cast<vtkIdType>(ids.size()),
+                         ids.data());
+    permeability->InsertNextValue(leaf.relative_permeability);
+    magnetization->InsertNextTuple(leaf.magnetization.data());
+  }
+  grid->SetPoints(points);
+  grid->GetCellData()->AddArray(permeability);
+  grid->GetCellData()->AddArray(magnetization);
+  psi.attach(*grid);
+  H.attach(*grid);
+  B.attach(*grid);
+  return grid;
+}
+
 vtkSmartPointer<vtkPolyData> rod_polyline(const Cilium& cilium, const Centreline& centreline) {
   const vtkNew<vtkPoints> points = double_points();
   const vtkNew<vtkCellArray> line;

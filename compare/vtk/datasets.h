@@ -35,6 +35,11 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
 /// `B_elastica_line`, and a mask `valid_B_elastica_line` that is 0 where there is no value.
 vtkSmartPointer<vtkPolyData> sensors(const CaseResult& result, std::size_t step);
 
+/// A scalar potential on its octree: triquadratic hexahedra on 27 points each of its own, so that
+/// the fields may jump between leaves. Point data `psi`, `H` = −∇ψ and `B` = μ₀(μ_r H + m) with the
+/// means of μ_r and m = B_r/μ₀ over the leaf; these two as cell data.
+vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh);
+
 /// B on a grid, with the mask `valid`.
 vtkSmartPointer<vtkImageData> field_image(const FieldGrid& grid, const FieldGrid::Step& step);
 

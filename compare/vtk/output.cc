@@ -72,6 +72,10 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
     if (grid)
       if (const auto B = grid->sample(step))
         output.add("field_" + grid->mechanics + "_" + grid->field, step, *field_image(*grid, *B));
+    for (const FieldRun& run : result.fields)
+      if (run.steps[step] && run.steps[step]->mesh)
+        output.add("field_" + run.mechanics + "_" + run.field, step,
+                   *octree_grid(*run.steps[step]->mesh));
     if (any_field(result, step)) output.add("sensors", step, *sensors(result, step));
   }
   output.finish();

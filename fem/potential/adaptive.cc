@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/potential/adaptive.h"
 
+#include <mpi.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -9,6 +11,7 @@
 #include <numbers>
 #include <optional>
 #include <sstream>
+#include <type_traits>
 
 #include "fem/parallel.h"
 #include "fem/potential/functional.h"
@@ -83,6 +86,25 @@ Layout lay_out(const PotentialProblem& problem) {
     layout.balls.push_back({point, ball_over_distance * std::min(distance, layout.radius)});
   }
   return layout;
+}
+
+/// Moves all ranks' leaves to rank 0. Collective.
+void gather_leaves(std::vector<FieldMesh::Leaf>& leaves) {
+  if (rank_count() == 1) return;
+  static_assert(std::is_trivially_copyable_v<decltype(FieldMesh::Leaf::psi)>);
+  constexpr int doubles = sizeof(FieldMesh::Leaf) / sizeof(double);
+  static_assert(sizeof(FieldMesh::Leaf) == doubles * sizeof(double));
+  const auto ranks = static_cast<std::size_t>(rank_count());
+  std::vector<int> counts(ranks);
+  std::vector<int> starts(ranks, 0);
+  const int count = doubles * static_cast<int>(leaves.size());
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  for (std::size_t r = 1; r < ranks; ++r) starts[r] = starts[r - 1] + counts[r - 1];
+  std::vector<FieldMesh::Leaf> all;
+  if (rank() == 0) all.resize(static_cast<std::size_t>(starts.back() + counts.back()) / doubles);
+  MPI_Gatherv(leaves.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(),
+              MPI_DOUBLE, 0, MPI_COMM_WORLD);
+  leaves.swap(all);
 }
 
 /// Dipole and quadrupole of the magnet, and the largest |ψ| that they leave out on a sphere.
@@ -173,6 +195,7 @@ class Adaptive {
 
   void make_first_mesh();
   PotentialCycle solve();
+  std::shared_ptr<const FieldMesh> mesh() const;
   void refine() { octree_.refine_largest(indicators_, control_.refined_fraction); }
   std::size_t cells() const { return octree_.leaf_count(); }
 
@@ -212,16 +235,19 @@ void Adaptive::make_first_mesh() {
   };
   while (octree_.refine(too_coarse)) {
   }
-  // The magnet in leaves no larger than twice its smallest block is wide.
+  // The magnet in leaves no larger than twice its largest block is wide.
   std::vector<Magnet::Extent> extents;
-  for (const Magnet::Block& block : problem_.magnet.blocks())
+  double width = 0;
+  for (const Magnet::Block& block : problem_.magnet.blocks()) {
     extents.push_back(problem_.magnet.extent(block));
+    Vector3 lengths = extents.back().lengths;
+    std::sort(lengths.begin(), lengths.end());
+    width = std::max(width, lengths[1]);
+  }
   const auto too_coarse_for_magnet = [&](const Cube& cube) {
-    return std::any_of(extents.begin(), extents.end(), [&](const Magnet::Extent& e) {
-      Vector3 lengths = e.lengths;
-      std::sort(lengths.begin(), lengths.end());
-      return cube.size > 2 * lengths[1] && cube.box().intersects(e.box);
-    });
+    return cube.size > 2 * width &&
+           std::any_of(extents.begin(), extents.end(),
+                       [&](const Magnet::Extent& e) { return cube.box().intersects(e.box); });
   };
   while (octree_.refine(too_coarse_for_magnet)) {
   }
@@ -316,6 +342,25 @@ std::vector<std::vector<Vector3>> Adaptive::dual_directions() const {
     }
     result.push_back(directions);
   }
+  return result;
+}
+
+std::shared_ptr<const FieldMesh> Adaptive::mesh() const {
+  auto result = std::make_shared<FieldMesh>();
+  result->leaves.resize(octree_.cells().size());
+  Eigen::VectorXd u(low_->space.nodes());
+  static_assert(degree == 2, "a leaf of FieldMesh has 27 nodes");
+  for (std::size_t c = 0; c < result->leaves.size(); ++c) {
+    FieldMesh::Leaf& leaf = result->leaves[c];
+    const int cell = static_cast<int>(c);
+    leaf.lower = octree_.cubes()[c].lower;
+    leaf.size = octree_.cubes()[c].size;
+    low_->space.read(cell, low_->psi, u);
+    std::copy_n(u.data(), 27, leaf.psi.begin());
+    leaf.magnetization = bodies_->mean_magnetization(cell);
+    leaf.relative_permeability = bodies_->mean_permeability(cell);
+  }
+  gather_leaves(result->leaves);
   return result;
 }
 
@@ -418,7 +463,10 @@ PotentialResult solve_potential(const PotentialProblem& problem, const Potential
     if (progress)
       progress(std::to_string(cycle.unknowns) + " unknowns, estimate " + std::to_string(worst) +
                " of |B|");
-    if (worst <= control.tolerance && agrees_with_last(result.cycles)) return result;
+    if (worst <= control.tolerance && agrees_with_last(result.cycles)) {
+      result.mesh = adaptive.mesh();
+      return result;
+    }
     if (cycle.unknowns > control.max_unknowns)
       throw SolverError("the potential was asked for " + std::to_string(control.tolerance) +
                         " of |B| and has " + std::to_string(worst) + " with " +

@@ -9,6 +9,7 @@
 
 #include "fem/potential/cut_cells.h"
 #include "fem/potential/magnet.h"
+#include "problem/field_mesh.h"
 
 namespace ciliaval::fem {
 
@@ -51,6 +52,7 @@ struct PotentialResult {
   std::vector<Vector3> B;            ///< T
   std::vector<Vector3> uncertainty;  ///< T
   std::vector<PotentialCycle> cycles;
+  std::shared_ptr<const FieldMesh> mesh;  ///< the solution that B is taken from
 };
 
 /// Refines until the estimates are below the tolerance. Collective. Throws InputError if a point is

@@ -184,6 +184,19 @@ bool CutCells::has_permeability(int cell) const {
   return found != moments_.end() && found->second.permeability.size() != 0;
 }
 
+Vector3 CutCells::mean_magnetization(int cell) const {
+  const auto found = moments_.find(cell);
+  if (found == moments_.end() || found->second.source.size() == 0) return Vector3::Zero();
+  return found->second.source.rowwise().sum() /
+         std::pow(octree_.cubes()[static_cast<std::size_t>(cell)].size, 3);
+}
+
+double CutCells::mean_permeability(int cell) const {
+  if (!has_permeability(cell)) return 1;
+  return 1 + moments_.at(cell).permeability.sum() /
+                 std::pow(octree_.cubes()[static_cast<std::size_t>(cell)].size, 3);
+}
+
 double CutCells::kink(int cell) const {
   if (!has_permeability(cell)) return 0;
   const Moments& moments = moments_.at(cell);

@@ -42,6 +42,9 @@ class CutCells {
   Eigen::VectorXd source(int cell, const LagrangeBasis& basis) const;
   /// ∫ (μ_r − 1) ∇φ_i·∇φ_j of a leaf, m; empty if there is none.
   Eigen::MatrixXd stiffness(int cell, const LagrangeBasis& basis) const;
+  /// Means over a leaf of m = B_r/μ₀ (A/m) and of μ_r.
+  Vector3 mean_magnetization(int cell) const;
+  double mean_permeability(int cell) const;
   /// This rank's leaves that any body meets.
   std::vector<int> cells() const;
   bool has_permeability(int cell) const;

@@ -21,7 +21,7 @@ Field Potential::field(const Cilium& cilium, const Deformation& deformation,
   control.tolerance = options_.tolerance;
   control.max_unknowns = options_.max_unknowns;
   PotentialResult result = solve_potential(problem, control);
-  return {std::move(result.B), std::move(result.uncertainty)};
+  return {std::move(result.B), std::move(result.uncertainty), std::move(result.mesh)};
 }
 
 }  // namespace ciliaval::fem

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -79,6 +80,31 @@ TEST(Mpi, TwoRanksGiveTheTipOfOneTo1e9AndWriteOnce) {
     EXPECT_EQ(two.out.find("Results: "), two.out.rfind("Results: ")) << two.out;
     expect_same_tip(folder.path() / "two", folder.path() / "one", 0, 1e-9, solver);
   }
+}
+
+// Oracle: the run on one rank. The meshes are the same, the sums are in another order, and the
+// algebraic multigrid is another one: what is left is the residual of 1e-8 of conjugate gradients.
+TEST(Mpi, TwoRanksGiveThePotentialsFieldOfOne) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "case.toml")
+      << test::case_text({.name = "mpi", .force = R"("1 mN")"}, R"(mechanics = ["elastica"]
+fields = ["potential"]
+[models.potential]
+tolerance = 1e-2
+)");
+  std::vector<nlohmann::json> B;
+  for (const int ranks : {1, 2}) {
+    const std::string results = std::to_string(ranks);
+    ASSERT_EQ(run(folder.path(), ranks, results).code, 0) << read_text(folder.path() / "err.txt");
+    const fs::path folder_of_case = folder.path() / results / "mpi";
+    const auto summary = nlohmann::json::parse(read_text(folder_of_case / "summary.json"));
+    B.push_back(summary.at("steps").at(0).at("fields").at("elastica/potential").at("B").at(0));
+    EXPECT_TRUE(fs::exists(folder_of_case / "vtk" / "field_elastica_potential_0000.vtu"));
+  }
+  const double scale = std::abs(B[0].at(2).get<double>());
+  EXPECT_GT(scale, 2e-3);
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(B[0].at(i).get<double>(), B[1].at(i).get<double>(), 1e-6 * scale);
 }
 
 // Oracle: the contract of the exit codes.

@@ -237,6 +237,44 @@ TEST(FieldFile, HoldsTheGridAndTheMask) {
   EXPECT_EQ(image->GetPointData()->GetArray("valid")->GetTuple1(6), 1);
 }
 
+// Oracle: ψ = x² − y² + 3z, which the leaves' quadratic functions hold exactly, and its gradient.
+TEST(OctreeFile, HoldsThePotentialAndItsFields) {
+  const auto psi = [](const Vector3& x) { return x[0] * x[0] - x[1] * x[1] + 3 * x[2]; };
+  FieldMesh mesh;
+  for (const double size : {2.0, 0.5}) {
+    FieldMesh::Leaf leaf;
+    leaf.lower = Vector3(1, -2, size);
+    leaf.size = size;
+    leaf.magnetization = Vector3(0, 5, size);
+    leaf.relative_permeability = 1 + size;
+    for (std::size_t node = 0; node < 27; ++node)
+      leaf.psi[node] = psi(leaf.lower + size / 2 *
+                                            Vector3(static_cast<double>(node % 3),
+                                                    static_cast<double>(node / 3 % 3),
+                                                    static_cast<double>(node / 9)));
+    mesh.leaves.push_back(leaf);
+  }
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "octree.vtu";
+  write(*octree_grid(mesh), file);
+  expect_appended_compressed_float64(file);
+  const auto reader = read_back<vtkXMLUnstructuredGridReader>(file);
+  vtkDataSet* data = reader->GetOutput();
+  ASSERT_EQ(data->GetNumberOfCells(), 2);
+  ASSERT_EQ(data->GetNumberOfPoints(), 54);
+  EXPECT_THAT(strings(data, "units"), testing::ElementsAre("psi: A", "H: A/m", "B: T"));
+  for (vtkIdType i = 0; i < 54; ++i) {
+    const Vector3 x(data->GetPoint(i));
+    const FieldMesh::Leaf& leaf = mesh.leaves[i < 27 ? 0 : 1];
+    const Vector3 H(-2 * x[0], 2 * x[1], -3);
+    const Vector3 B = vacuum_permeability * (leaf.relative_permeability * H + leaf.magnetization);
+    EXPECT_NEAR(data->GetPointData()->GetArray("psi")->GetTuple1(i), psi(x), 1e-13);
+    EXPECT_LT((tuple(data, "H", i) - H).norm(), 1e-12);
+    EXPECT_LT((tuple(data, "B", i) - B).norm(), 1e-18);
+  }
+  EXPECT_EQ(data->GetCellData()->GetArray("relative_permeability")->GetTuple1(1), 1.5);
+}
+
 TEST(Write, SaysWhichFileAndWhyOnAFullDisk) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "full.vtu";
