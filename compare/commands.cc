@@ -94,10 +94,13 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options) {
   return all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
 
-/// The part of the ranks beyond the first in a case: the solid, which shares its work with them.
+/// The part of the ranks beyond the first in a case: the solid and the potential, which share their
+/// work with them. For the potential each rank has the rods' deformations from its own solution,
+/// which is the same on all.
 void take_part(Case problem, const RunOptions& options) {
-  std::erase_if(problem.mechanics, [](const std::string& id) { return id != "solid"; });
-  problem.fields.clear();
+  std::erase_if(problem.fields, [](const std::string& id) { return id != "potential"; });
+  if (problem.fields.empty())
+    std::erase_if(problem.mechanics, [](const std::string& id) { return id != "solid"; });
   run(problem, mechanics_models(), field_models(), {}, checkpoint(options.directory, problem));
 }
 
