@@ -70,14 +70,6 @@ std::vector<std::optional<Baseline>> read_baselines(const std::vector<fs::path>&
   return baselines;
 }
 
-/// Under another name first: a report that is there is replaced at once or not at all.
-void write_report(const std::optional<fs::path>& file, const std::string& text) {
-  if (!file) return;
-  const fs::path unfinished = file->string() + ".tmp";
-  write_text(unfinished, text);
-  fs::rename(unfinished, *file);
-}
-
 std::string number(const std::optional<double>& value) {
   return value ? fmt::format("{}", *value) : "nothing";
 }
@@ -109,7 +101,7 @@ void write_candidate(const Case& problem, const fs::path& file, const Baseline* 
   const fs::path baseline = baseline_path(file);
   fs::path path = baseline;
   path.replace_extension(".candidate.json");
-  write_report(path, to_json(candidate));
+  replace_text(path, to_json(candidate));
   std::string text =
       fmt::format("{}: {} quantities, {} changed\n", problem.name, candidate.quantities.size(),
                   old == nullptr ? candidate.quantities.size() : candidate.changes.size());
@@ -148,8 +140,8 @@ ExitCode check_cases(std::vector<fs::path> files, const CheckOptions& options) {
     const std::vector<std::string> left_out = left_out_of(cases[i], options.quick);
     reports.push_back(check(cases[i], run_case(cases[i], left_out), *baselines[i], left_out));
   }
-  write_report(options.junit, report_junit(reports));
-  write_report(options.json, report_json(reports));
+  if (options.junit) replace_text(*options.junit, report_junit(reports));
+  if (options.json) replace_text(*options.json, report_json(reports));
   print(report_text(reports));
   return verdict(reports);
 }

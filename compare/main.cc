@@ -20,6 +20,7 @@
 
 #include "compare/check_command.h"
 #include "compare/commands.h"
+#include "compare/converge_command.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 
@@ -33,6 +34,7 @@ Examples:
   ciliaval validate my.toml              is the case file right?
   ciliaval run my.toml                   results in results/<case name>
   ciliaval check                         are the results of all shipped cases as accepted?
+  ciliaval converge my.toml              how far are the results from the converged ones?
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
@@ -149,6 +151,23 @@ ExitCode execute(int argc, char** argv) {
       ->type_name("FILE");
   check->add_option("--json", check_options.json, "Write the report as JSON too")
       ->type_name("FILE");
+  CLI::App* converge = app.add_subcommand(
+      "converge",
+      "Refinement study: refine each discretised model of a case, give the observed order, the\n"
+      "extrapolated value and its interval of each result, or say why there is none.");
+  std::filesystem::path converge_file;
+  ciliaval::compare::ConvergeOptions converge_options;
+  converge->add_option("CASE", converge_file, "Case file (TOML)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  converge
+      ->add_option("--levels", converge_options.levels,
+                   "How many levels, from the coarsest; the solid has 4")
+      ->capture_default_str();
+  converge->add_option("--json", converge_options.json, "Write the study as JSON too")
+      ->type_name("FILE");
+  converge->add_option("--csv", converge_options.csv, "Write the study as CSV too")
+      ->type_name("FILE");
   const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
 
   check_command(app, argc, argv);
@@ -163,6 +182,8 @@ ExitCode execute(int argc, char** argv) {
     ciliaval::compare::validate_cases(files);
   else if (check->parsed())
     return ciliaval::compare::check_cases(files, check_options);
+  else if (converge->parsed())
+    return ciliaval::compare::converge_case(converge_file, converge_options);
   else if (mesh->parsed())
     ciliaval::compare::write_mesh(mesh_case, mesh_file, refinement, command_line(argc, argv));
   else

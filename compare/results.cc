@@ -243,6 +243,12 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   if (std::fclose(stream.release()) != 0) fail(errno);
 }
 
+void replace_text(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path unfinished = file.string() + ".tmp";
+  write_text(unfinished, text);
+  std::filesystem::rename(unfinished, file);
+}
+
 void write_results(const CaseResult& result, const std::vector<Comparison>& comparisons,
                    const Provenance& provenance, const std::filesystem::path& folder) {
   for (const MechanicsRun& run : result.mechanics)

@@ -37,6 +37,9 @@ std::string centreline_csv(const Centreline& centreline);
 /// Writes text to a file. Throws FileError with the path and the reason, also if the disk is full.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
+/// The same under another name first: what is there is replaced at once or not at all.
+void replace_text(const std::filesystem::path& file, std::string_view text);
+
 /// Writes summary.json, errors.csv and the centrelines of all converged steps into a folder.
 void write_results(const CaseResult& result, const std::vector<Comparison>& comparisons,
                    const Provenance& provenance, const std::filesystem::path& folder);

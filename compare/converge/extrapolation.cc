@@ -31,18 +31,14 @@ void require_levels(std::span<const Level> levels, std::size_t least) {
   }
 }
 
-/// Whether all values agree to rounding: then that is the interval.
+/// Whether the two finest levels agree to rounding: then that is the interval.
 std::optional<Extrapolation> converged(std::span<const Level> levels, double rounding) {
-  const auto [least, largest] =
-      std::minmax_element(levels.begin(), levels.end(),
-                          [](const Level& a, const Level& b) { return a.value < b.value; });
-  const double spread = largest->value - least->value;
-  if (spread > rounding) return std::nullopt;
+  if (std::abs(levels[1].value - levels[0].value) > rounding) return std::nullopt;
   Extrapolation result;
   result.conclusive = true;
-  result.reason = "the levels agree to rounding";
-  result.limit = levels.front().value;
-  result.uncertainty = std::max(rounding, spread);
+  result.reason = "the finest levels agree to rounding";
+  result.limit = levels[0].value;
+  result.uncertainty = rounding;
   result.safety = 1;
   return result;
 }

@@ -32,8 +32,8 @@ struct Extrapolation {
 /// f₀ = f₁ − e₂₁/(r₂₁^p − 1), and the interval is f₁ ± F_s |e₂₁|/(r₂₁^p − 1). F_s is 1.25 if p is
 /// within 10 % of the formal order, where that is given; else 3, with p no larger than the formal
 /// order in the interval (Oberkampf & Roy, 2010, section 8.6). Not conclusive: e₃₂/e₂₁ ≤ 0 (not
-/// monotone), p ≤ 0.1 (does not converge). Values that agree to rounding (`rounding`, absolute) are
-/// converged: the interval is that rounding.
+/// monotone), p ≤ 0.1 (does not converge). Where the two finest values agree to rounding
+/// (`rounding`, absolute), that is the interval.
 ///
 /// Throws InputError if there are not three levels, sizes are not positive and increasing, or a
 /// value is not finite.

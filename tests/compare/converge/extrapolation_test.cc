@@ -61,7 +61,7 @@ TEST(GridConvergence, GivesNoIntervalWhereItIsNotMonotone) {
   const std::vector<Level> wavy{{1, 1.0}, {2, 1.1}, {4, 1.05}};
   EXPECT_FALSE(grid_convergence(wavy, 2).conclusive);
   EXPECT_NE(grid_convergence(wavy, 2).reason.find("monotone"), std::string::npos);
-  const std::vector<Level> still{{1, 1.0}, {2, 1.1}, {4, 1.1}};
+  const std::vector<Level> still{{1, 1.0}, {2, 1.1}, {4, 1.1}};  // e₃₂ = 0
   EXPECT_FALSE(grid_convergence(still, 2).conclusive);
   const std::vector<Level> diverging{{1, 1.0}, {2, 1.1}, {4, 1.15}};
   EXPECT_FALSE(grid_convergence(diverging, 2).conclusive);

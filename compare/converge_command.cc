@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/converge_command.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "compare/case_files.h"
+#include "compare/converge/study.h"
+#include "compare/results.h"
+#include "compare/terminal.h"
+#include "fem/parallel.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+
+ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions& options) {
+  if (fem::rank_count() > 1)
+    throw InputError("`ciliaval converge` runs on one rank: start it without mpirun");
+  const Case problem = read_cases({file}).front();
+  if (!problem.options.solid.mesh.empty())
+    throw InputError(
+        file.string() +
+        ": a mesh of the user has no levels of refinement: leave out models.solid.mesh");
+  std::vector<RefinementStudy> studies;
+  bool failed = false;
+  for (const Refinement& refinement : refinements()) {
+    if (std::find(problem.mechanics.begin(), problem.mechanics.end(), refinement.model) ==
+        problem.mechanics.end())
+      continue;
+    ProgressLine line;
+    studies.push_back(refinement_study(problem, refinement, options.levels, line.callback()));
+    failed = failed || !studies.back().failure.empty();
+  }
+  if (options.json) replace_text(*options.json, study_json(problem.name, studies));
+  if (options.csv) replace_text(*options.csv, study_csv(studies));
+  if (studies.empty()) {
+    print("The case has no discretised model: the elastica is integrated to its tolerance.\n");
+    return ExitCode::undecided;
+  }
+  print(study_text(studies));
+  return failed ? ExitCode::solver : ExitCode::pass;
+}
+
+}  // namespace ciliaval::compare

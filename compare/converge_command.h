@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "compare/commands.h"
+
+namespace ciliaval::compare {
+
+struct ConvergeOptions {
+  unsigned int levels = 3;
+  std::optional<std::filesystem::path> json;
+  std::optional<std::filesystem::path> csv;
+};
+
+/// `ciliaval converge`: refines each discretised mechanics model of a case through its levels and
+/// prints orders, extrapolated values and intervals, or why there is none; writes them as JSON and
+/// CSV where asked. Returns `solver` if a model failed on a level, `undecided` if the case has no
+/// discretised model. Throws InputError, FileError.
+ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions& options);
+
+}  // namespace ciliaval::compare
