@@ -196,7 +196,7 @@ double Magnet::distance(const Vector3& point, double resolution) const {
     if (bound >= nearest) continue;
     const double size = e.lengths.maxCoeff();
     if (size < 0.01 * bound || size < resolution) {
-      nearest = size < 0.01 * bound ? bound : 0.0;
+      nearest = bound;
       continue;
     }
     Eigen::Index longest = 0;

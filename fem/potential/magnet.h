@@ -57,8 +57,8 @@ class Magnet {
   /// Whether any part of the magnet lies in the box, to a hundredth of the magnet's smallest block.
   bool meets(const Eigen::AlignedBox3d& box) const;
 
-  /// Distance of the point from the magnet, m, from below and, if it is more than a hundred times
-  /// the resolution (m), to 2 %; 0 inside.
+  /// Distance of the point from the magnet, m, from below, to 2 % or twice the resolution
+  /// (m); 0 inside.
   double distance(const Vector3& point, double resolution) const;
 
  private:

