@@ -203,8 +203,22 @@ std::vector<std::string> case_text(const Case& problem) {
   Case portable = problem;
   portable.options.solid.mesh = problem.options.solid.mesh.filename();
   std::istringstream text(to_toml(portable));
+  const auto used = [&](const std::string& model) {
+    const auto among = [&](const std::vector<std::string>& ids) {
+      return std::find(ids.begin(), ids.end(), model) != ids.end();
+    };
+    return among(problem.mechanics) || among(problem.fields);
+  };
   std::vector<std::string> result;
-  for (std::string line; std::getline(text, line);) result.push_back(line);
+  bool kept = true;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with('[')) {
+      const auto begin = line.find_first_not_of('[');
+      kept = line.find("models.") != begin ||
+             used(line.substr(begin + 7, line.find_first_of(".]", begin + 7) - begin - 7));
+    }
+    if (kept && !line.empty()) result.push_back(line);
+  }
   return result;
 }
 

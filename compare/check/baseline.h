@@ -61,7 +61,8 @@ struct Baseline {
 /// `dir/fig3b.baseline.json` of `dir/fig3b.toml`.
 std::filesystem::path baseline_path(const std::filesystem::path& case_file);
 
-/// The case as a baseline keeps it: the same on every machine (a mesh file without its folder).
+/// The case as a baseline keeps it: the same on every machine (a mesh file without its folder), and
+/// without the options of models that it does not use, of which there will be more.
 std::vector<std::string> case_text(const Case& problem);
 
 /// Reads a baseline. Every key must be known and there, every number finite, every tolerance

@@ -75,6 +75,26 @@ TEST(Baseline, ListsWhatChangedAndKeepsTheReferences) {
   EXPECT_EQ(read.changes[1].old_value, std::nullopt);
 }
 
+// A new model, or a new option of another model, is no change of a case that does not use it.
+TEST(Baseline, KeepsTheOptionsOfTheModelsInUse) {
+  using testing::Contains;
+  using testing::Not;
+  const Case problem = read_case(
+      test::case_text({.name = "any"},
+                      "mechanics = [\"beam\"]\nfields = [\"potential\"]\n"
+                      "[[models.potential.plate]]\nlower = [\"-1 mm\", \"-1 mm\", \"-5 mm\"]\n"
+                      "upper = [\"1 mm\", \"1 mm\", \"-4 mm\"]\nrelative_permeability = 9\n"),
+      "any.toml");
+  const std::vector<std::string> text = case_text(problem);
+  EXPECT_THAT(text, Contains("[models.beam]"));
+  EXPECT_THAT(text, Contains("[models.potential]"));
+  EXPECT_THAT(text, Contains("[[models.potential.plate]]"));
+  EXPECT_THAT(text, Contains("[[cilium.segment]]"));
+  EXPECT_THAT(text, Contains("[load]"));
+  for (const char* unused : {"[models.solid]", "[models.elastica]", "[models.line]"})
+    EXPECT_THAT(text, Not(Contains(unused)));
+}
+
 TEST(Baseline, RoundingIsNoChange) {
   const Baseline old = some_baseline();
   Measurements now = some();
