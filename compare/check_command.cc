@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "compare/case_files.h"
 #include "compare/check/baseline.h"
@@ -21,24 +23,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The mechanics models that take seconds, which `--quick` leaves out with the fields on them.
-const std::vector<std::string> slow_models{"solid"};
+/// The models that take seconds, which `--quick` leaves out.
+constexpr std::array<std::string_view, 2> slow_models{"solid", "potential"};
 
-/// Field models that take seconds on any mechanics would be named here too; there is none yet.
+/// Those of the case's models that are not run.
 std::vector<std::string> left_out_of(const Case& problem, bool quick) {
   std::vector<std::string> result;
-  if (quick)
-    for (const std::string& id : slow_models)
-      if (std::find(problem.mechanics.begin(), problem.mechanics.end(), id) !=
-          problem.mechanics.end())
+  for (const auto* ids : {&problem.mechanics, &problem.fields})
+    for (const std::string& id : *ids)
+      if (quick && std::find(slow_models.begin(), slow_models.end(), id) != slow_models.end())
         result.push_back(id);
   return result;
 }
 
 CaseResult run_case(Case problem, const std::vector<std::string>& left_out) {
-  std::erase_if(problem.mechanics, [&](const std::string& id) {
+  const auto is_left_out = [&](const std::string& id) {
     return std::find(left_out.begin(), left_out.end(), id) != left_out.end();
-  });
+  };
+  std::erase_if(problem.mechanics, is_left_out);
+  std::erase_if(problem.fields, is_left_out);
   ProgressLine line;
   const Progress progress = line.callback();
   Progress named;

@@ -48,7 +48,7 @@ docs/meshes.md.
 
 Exit codes: 0 done, 1 `check`: a result is not as accepted, 2 wrong usage or case file, 3 a model
 did not converge (the results of the others are written), 4 a file could not be read or written,
-5 `check`: there was nothing to compare.)";
+5 `check`, `converge`: there was nothing to compare or refine.)";
 
 /// A word as a POSIX shell reads it back: in single quotes if it holds anything special.
 std::string shell_word(std::string_view word) {
@@ -142,7 +142,7 @@ ExitCode execute(int argc, char** argv) {
   check->add_option("CASE", files, "Case files (TOML); none: all shipped ones")
       ->check(CLI::ExistingFile);
   check->add_flag("--quick", check_options.quick,
-                  "Leave out the solid: seconds instead of minutes");
+                  "Leave out solid and potential: seconds instead of minutes");
   check->add_flag(
       "--accept", check_options.accept,
       "Check nothing: write NAME.baseline.candidate.json beside each case that has\n"

@@ -258,6 +258,16 @@ TEST(Check, ModelsLeftOutOnPurposeAreCounted) {
             setup.baseline.quantities.size() + setup.baseline.outcomes.size());
 }
 
+TEST(Check, FieldModelsLeftOutOnPurposeAreCounted) {
+  Checked checked = make_checked();
+  checked.left_out = {"volume"};
+  std::erase_if(checked.result.fields, [](const FieldRun& run) { return run.field == "volume"; });
+  const CheckReport report = checked.report();
+  EXPECT_TRUE(report.passed()) << text(report);
+  EXPECT_EQ(report.left_out + report.findings.size(),
+            checked.baseline.quantities.size() + checked.baseline.outcomes.size());
+}
+
 // Oracle: the fault that was planted.
 TEST(Check, EveryPlantedFaultFailsAndIsNamed) {
   const Checked good = make_checked();
