@@ -49,6 +49,11 @@ struct Shape {
   double tip_deflection;                  ///< along e, m
   double tip_displacement;                ///< m
 
+  /// Whether the tip displacement is more than rounding error.
+  bool moved() const { return tip_displacement > vanishing_deflection * curve.length(); }
+  /// Of the deformation, if the tip's is known and it has moved.
+  double relative_uncertainty() const { return *tip_uncertainty / tip_displacement; }
+
   Shape(const MechanicsStep& step, const Deformation& undeformed)
       : curve(step.deformation->centreline), tip_uncertainty(step.tip_uncertainty) {
     const CentrelinePoint end = curve.at(curve.length());
@@ -65,6 +70,14 @@ std::optional<Shape> shape_of(const MechanicsRun& run, std::size_t step) {
   const MechanicsStep& s = run.result.steps[step];
   if (s.status != Status::converged || !s.deformation) return std::nullopt;
   return Shape(s, run.result.undeformed);
+}
+
+/// As if the section's rotation were wrong in proportion to the tip's displacement, rad.
+std::optional<double> angle_uncertainty(const Shape& shape) {
+  if (!shape.tip_uncertainty) return std::nullopt;
+  if (*shape.tip_uncertainty == 0) return 0;
+  if (!shape.moved()) return std::nullopt;
+  return std::abs(shape.tip_angle) * shape.relative_uncertainty();
 }
 
 void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e, Comparison base,
@@ -86,9 +99,8 @@ void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e
     out.push_back(std::move(c));
   };
   const CurveDistance d = distance(model.curve, reference.curve);
-  // The models know the uncertainty of their tips only.
-  add("centreline", "maximum", d.largest, d.largest_at == L ? tip_uncertainty : std::nullopt);
-  add("centreline", "rms", d.rms, std::nullopt);
+  add("centreline", "maximum", d.largest, tip_uncertainty);
+  add("centreline", "rms", d.rms, tip_uncertainty);
   add("tip", "value", (model.tip - reference.tip).norm(), tip_uncertainty);
 
   Comparison angle = base;
@@ -96,6 +108,7 @@ void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e
   angle.statistic = "value";
   angle.unit = "rad";
   angle.difference = model.tip_angle - reference.tip_angle;
+  angle.uncertainty = sum(angle_uncertainty(model), angle_uncertainty(reference));
   finish(angle, reference.tip_angle, vanishing_deflection, "the reference's tip angle");
   out.push_back(std::move(angle));
 
@@ -104,6 +117,7 @@ void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e
   shape.statistic = "r2";
   if (const auto agreement = compare_deflection(model.curve, reference.curve, e)) {
     shape.difference = agreement->rms;
+    shape.uncertainty = tip_uncertainty;
     finish(shape, agreement->deviation, smallest, "the variation of the reference's w(z)");
     if (shape.relative) shape.r2 = agreement->r2();
     if (shape.relative && std::isfinite(agreement->correlation))
@@ -118,25 +132,16 @@ void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e
 
 /// One quantity (B or ΔB) of one pair of models over the path: empty where there is none.
 struct FieldPath {
-  struct Value {
-    Vector3 value;                         ///< T
-    std::optional<Vector3> numerical;      ///< uncertainty of the field model, T
-    std::optional<double> from_mechanics;  ///< uncertainty that the deformation carries into it, T
-    double rounding;                       ///< what the deformation's rounding may make of it, T
-  };
-  std::vector<std::vector<std::optional<Value>>> at;  ///< [sensor][step]
-  std::vector<double> largest;                        ///< max |value| over the path, each sensor, T
+  std::vector<std::vector<std::optional<FieldValue>>> at;  ///< [sensor][step]
+  std::vector<double> largest;  ///< max |value| over the path, each sensor, T
 };
 
-/// First-order estimate of what the tip's discretisation error does to the field: |ΔB|·u/|tip
-/// displacement|, as if ΔB grew in proportion to the deformation. Zero where nothing has moved and
-/// nothing has changed (no load).
+/// |ΔB|·u/|tip displacement|. Zero where nothing has moved and nothing has changed (no load).
 std::optional<double> carried_over(const std::optional<Shape>& shape, const Vector3& B,
                                    const std::optional<Vector3>& dB) {
   if (!shape || !shape->tip_uncertainty || !dB) return std::nullopt;
   if (*shape->tip_uncertainty == 0) return 0;
-  if (shape->tip_displacement > vanishing_deflection * shape->curve.length())
-    return dB->norm() * *shape->tip_uncertainty / shape->tip_displacement;
+  if (shape->moved()) return dB->norm() * shape->relative_uncertainty();
   if (dB->norm() <= vanishing_field * B.norm()) return 0;
   return std::nullopt;
 }
@@ -145,33 +150,14 @@ FieldPath field_path(const FieldRun& run, const MechanicsRun& mechanics, bool ch
                      std::size_t sensors) {
   FieldPath path;
   path.largest.assign(sensors, 0);
-  path.at.assign(sensors, std::vector<std::optional<FieldPath::Value>>(run.steps.size()));
-  for (std::size_t i = 0; i < run.steps.size(); ++i) {
-    if (!run.steps[i]) continue;
-    const FieldStep& step = *run.steps[i];
-    const auto& values = change ? step.dB : step.B;
-    const auto& uncertainty = change ? step.dB_uncertainty : step.uncertainty;
-    const std::optional<Shape> shape = shape_of(mechanics, i);
-    for (std::size_t s = 0; s < sensors; ++s) {
-      if (!values[s]) continue;
-      const Vector3& B = *step.B[s];  // where ΔB is, B is
-      FieldPath::Value value{*values[s], std::nullopt, carried_over(shape, B, step.dB[s]),
-                             rounding * B.norm()};
-      if (step.dB[s]) value.rounding += rounding * (B - *step.dB[s]).norm();
-      if (uncertainty[s]) value.numerical = uncertainty[s]->cwiseAbs();
-      path.largest[s] = std::max(path.largest[s], values[s]->norm());
-      path.at[s][i] = value;
-    }
-  }
+  path.at.assign(sensors, std::vector<std::optional<FieldValue>>(run.steps.size()));
+  for (std::size_t i = 0; i < run.steps.size(); ++i)
+    for (std::size_t s = 0; s < sensors; ++s)
+      if (const auto value = field_value(run, mechanics, i, s, change)) {
+        path.largest[s] = std::max(path.largest[s], value->value.norm());
+        path.at[s][i] = value;
+      }
   return path;
-}
-
-std::optional<double> combined_uncertainty(const FieldPath::Value& a, const FieldPath::Value& b,
-                                           Eigen::Index axis, bool same_mechanics) {
-  if (!a.numerical || !b.numerical) return std::nullopt;
-  const double numerical = (*a.numerical)[axis] + (*b.numerical)[axis];
-  if (same_mechanics) return numerical;
-  return sum(numerical + a.rounding + b.rounding, sum(a.from_mechanics, b.from_mechanics));
 }
 
 /// Sums over the load path of one component at one sensor.
@@ -201,7 +187,7 @@ void compare_component(const FieldPath& model, const FieldPath& reference, std::
     c.step = step;
     c.statistic = "value";
     c.difference = a->value[axis] - b->value[axis];
-    c.uncertainty = combined_uncertainty(*a, *b, axis, same_mechanics);
+    if (const auto u = combined_uncertainty(*a, *b, same_mechanics)) c.uncertainty = (*u)[axis];
     finish(c, largest, smallest_scale, "the reference's largest " + name + " over the load path");
     ++sums.n;
     sums.difference += std::pow(*c.difference, 2);
@@ -259,6 +245,32 @@ std::string_view to_string(Verdict verdict) {
       break;
   }
   return "inconclusive";
+}
+
+std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& mechanics,
+                                      std::size_t step, std::size_t sensor, bool change) {
+  if (!run.steps[step]) return std::nullopt;
+  const FieldStep& fields = *run.steps[step];
+  const std::optional<Vector3>& value = change ? fields.dB[sensor] : fields.B[sensor];
+  if (!value) return std::nullopt;
+  const Vector3& B = *fields.B[sensor];  // where ΔB is, B is
+  const std::optional<Vector3>& dB = fields.dB[sensor];
+  FieldValue result{*value, std::nullopt, carried_over(shape_of(mechanics, step), B, dB),
+                    rounding * B.norm()};
+  if (dB) result.rounding += rounding * (B - *dB).norm();
+  const auto& uncertainty = change ? fields.dB_uncertainty[sensor] : fields.uncertainty[sensor];
+  if (uncertainty) result.numerical = uncertainty->cwiseAbs();
+  return result;
+}
+
+std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValue& b,
+                                            bool same_mechanics) {
+  if (!a.numerical || !b.numerical) return std::nullopt;
+  const Vector3 numerical = *a.numerical + *b.numerical;
+  if (same_mechanics) return numerical;
+  const std::optional<double> deformations = sum(a.from_mechanics, b.from_mechanics);
+  if (!deformations) return std::nullopt;
+  return numerical + Vector3::Constant(*deformations + a.rounding + b.rounding);
 }
 
 std::vector<Comparison> compare_models(const CaseResult& result) {

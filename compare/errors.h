@@ -68,6 +68,24 @@ std::optional<ShapeAgreement> compare_deflection(const Centreline& model,
                                                  const Centreline& reference,
                                                  const Vector3& direction);
 
+/// A field value with what is known of its numerical error.
+struct FieldValue {
+  Vector3 value;                         ///< B or ΔB, T
+  std::optional<Vector3> numerical;      ///< uncertainty of the field model, T
+  std::optional<double> from_mechanics;  ///< what the tip's discretisation error u does to it, to
+                                         ///< first order, in any direction: |ΔB|·u/|tip
+                                         ///< displacement|, T
+  double rounding;                       ///< what the deformation's rounding may make of it, T
+};
+/// B, or its change ΔB, of a pair of models at a step and sensor; empty if there is none.
+/// `mechanics` is the run that the fields belong to.
+std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& mechanics,
+                                      std::size_t step, std::size_t sensor, bool change);
+/// Uncertainty of the components of a − b, T: the sum of the field models', and of what both
+/// deformations carry into them unless it is the same deformation. Empty if a part is not known.
+std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValue& b,
+                                            bool same_mechanics);
+
 /// Every pair of mechanics models and every pair of field results, step by step and over the path.
 std::vector<Comparison> compare_models(const CaseResult& result);
 

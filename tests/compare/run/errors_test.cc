@@ -190,6 +190,21 @@ TEST(Comparisons, AVerdictTakesBothUncertainties) {
   EXPECT_EQ(verdict(std::nullopt, 0), Verdict::inconclusive);
 }
 
+// The angle's uncertainty is that of the tip in proportion: oracle, a chord 2 L sin(θ/2) of a tilt
+// θ.
+TEST(Comparisons, WholeCentrelinesAndAnglesHaveTheTipsUncertainty) {
+  const auto all = compare_models(run_tilts(1e-6, 2e-6, {}));
+  for (const char* statistic : {"maximum", "rms"})
+    EXPECT_NEAR(*find(all, 0, "centreline", "", statistic, "rough").uncertainty, 3e-6, 1e-20);
+  EXPECT_NEAR(*find(all, 0, "deflection", "", "r2", "rough").uncertainty, 3e-6, 1e-20);
+  const Comparison& angle = find(all, 0, "tip_angle", "", "value", "rough");
+  EXPECT_NEAR(*angle.uncertainty,
+              0.1 * 1e-6 / (2 * L * std::sin(0.05)) + 0.2 * 2e-6 / (2 * L * std::sin(0.1)), 1e-15);
+  EXPECT_EQ(angle.verdict, Verdict::resolved);
+  EXPECT_FALSE(find(compare_models(run_tilts(1e-6, {}, {})), 0, "tip_angle", "", "value", "rough")
+                   .uncertainty);
+}
+
 // Two models of the same shape: every error is zero, R² is one, and nothing is resolved.
 TEST(Comparisons, OfIdenticalModelsAreZero) {
   Case c = paper_case({0.1});
