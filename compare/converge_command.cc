@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compare/case_files.h"
+#include "compare/converge/plot.h"
 #include "compare/converge/study.h"
 #include "compare/results.h"
 #include "compare/terminal.h"
@@ -38,6 +39,13 @@ ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions&
     return ExitCode::undecided;
   }
   print(study_text(studies));
+  if (options.plot) {
+    const ConvergencePlot drawing = convergence_plot(problem, studies);
+    if (drawing.script.empty())
+      print("Nothing to plot: at no load step do the levels' values differ.\n");
+    else
+      plot::write_svg(*options.plot, drawing.script, drawing.size);
+  }
   return failed ? ExitCode::solver : ExitCode::pass;
 }
 

@@ -12,12 +12,14 @@ struct ConvergeOptions {
   unsigned int levels = 3;
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> csv;
+  std::optional<std::filesystem::path> plot;  ///< an SVG file
 };
 
 /// `ciliaval converge`: refines each discretised mechanics model of a case through its levels and
-/// prints orders, extrapolated values and intervals, or why there is none; writes them as JSON and
-/// CSV where asked. Returns `solver` if a model failed on a level, `undecided` if the case has no
-/// discretised model. Throws InputError, FileError.
+/// prints orders, extrapolated values and intervals, or why there is none; writes them as JSON, CSV
+/// and a plot where asked, the plot last: without gnuplot, everything else is there. Returns
+/// `solver` if a model failed on a level, `undecided` if the case has no discretised model. Throws
+/// InputError, FileError.
 ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions& options);
 
 }  // namespace ciliaval::compare

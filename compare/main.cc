@@ -168,6 +168,11 @@ ExitCode execute(int argc, char** argv) {
       ->type_name("FILE");
   converge->add_option("--csv", converge_options.csv, "Write the study as CSV too")
       ->type_name("FILE");
+  converge
+      ->add_option(
+          "--plot", converge_options.plot,
+          "Plot the errors over the levels' sizes, with the fitted orders; SVG, by gnuplot")
+      ->type_name("FILE.svg");
   const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
 
   check_command(app, argc, argv);

@@ -32,24 +32,6 @@ std::string percent(const Comparison* c) {
                                                : fmt::format("{:.0e}", value);
 }
 
-std::string describe(const Load& load) {
-  std::string text(type(load));
-  if (const auto* contact = std::get_if<ContactLoad>(&load))
-    text += fmt::format(", force {:g} mN at height {:g} mm", contact->force * 1e3,
-                        contact->height * 1e3);
-  else if (const auto* flow = std::get_if<FlowLoad>(&load))
-    text += fmt::format(", {:g} N per metre of height", flow->force_per_height);
-  else if (const auto* section = std::get_if<SectionLoad>(&load))
-    text += fmt::format(", force {:g} mN at arc length {:g} mm", section->force * 1e3,
-                        section->arclength * 1e3);
-  else if (const auto* dead = std::get_if<DeadLoad>(&load))
-    text += fmt::format(", {:g} N per metre of length", dead->force_per_length);
-  else if (const auto* probe = std::get_if<ProbeLoad>(&load))
-    text += fmt::format(", displacement {:g} mm at height {:g} mm", probe->displacement * 1e3,
-                        probe->height * 1e3);
-  return text + fmt::format(", azimuth {:g} deg", azimuth(load) / degree);
-}
-
 const Comparison* find(const std::vector<Comparison>& comparisons, std::optional<std::size_t> step,
                        std::string_view quantity, std::string_view component,
                        std::string_view statistic, std::string_view model,
@@ -208,6 +190,24 @@ constexpr const char* fields_legend =
     "    - is undefined: the divisor vanishes.\n";
 
 }  // namespace
+
+std::string describe(const Load& load) {
+  std::string text(type(load));
+  if (const auto* contact = std::get_if<ContactLoad>(&load))
+    text += fmt::format(", force {:g} mN at height {:g} mm", contact->force * 1e3,
+                        contact->height * 1e3);
+  else if (const auto* flow = std::get_if<FlowLoad>(&load))
+    text += fmt::format(", {:g} N per metre of height", flow->force_per_height);
+  else if (const auto* section = std::get_if<SectionLoad>(&load))
+    text += fmt::format(", force {:g} mN at arc length {:g} mm", section->force * 1e3,
+                        section->arclength * 1e3);
+  else if (const auto* dead = std::get_if<DeadLoad>(&load))
+    text += fmt::format(", {:g} N per metre of length", dead->force_per_length);
+  else if (const auto* probe = std::get_if<ProbeLoad>(&load))
+    text += fmt::format(", displacement {:g} mm at height {:g} mm", probe->displacement * 1e3,
+                        probe->height * 1e3);
+  return text + fmt::format(", azimuth {:g} deg", azimuth(load) / degree);
+}
 
 std::string table(const CaseResult& result, const std::vector<Comparison>& comparisons) {
   const Case& problem = result.problem;

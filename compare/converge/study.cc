@@ -35,6 +35,27 @@ struct LevelResult {
   std::map<std::string, Quantity> quantities;
 };
 
+/// Adds the lengths of the vectors that people look at first.
+void add_lengths(std::map<std::string, Quantity>& quantities) {
+  std::vector<Quantity> lengths;
+  for (const auto& [id, x] : quantities) {
+    if (!id.ends_with("/x")) continue;
+    const std::string vector = id.substr(0, id.size() - 2);
+    const double y = quantities.at(vector + "/y").value;
+    Quantity length = x;
+    if (vector.ends_with("/tip")) {
+      length.id = vector + "/deflection";
+      length.value = std::hypot(x.value, y);
+      lengths.push_back(std::move(length));
+    } else if (vector.find("/dB/") != std::string::npos) {
+      length.id = vector + "/norm";
+      length.value = std::hypot(x.value, y, quantities.at(vector + "/z").value);
+      lengths.push_back(std::move(length));
+    }
+  }
+  for (Quantity& length : lengths) quantities.emplace(length.id, std::move(length));
+}
+
 LevelResult run_level(Case problem, const Refinement& refinement, unsigned int setting,
                       const Progress& progress, RefinementStudy& study) {
   problem.mechanics = {refinement.model};
@@ -57,6 +78,7 @@ LevelResult run_level(Case problem, const Refinement& refinement, unsigned int s
   for (Quantity& quantity : measurements(result).quantities)
     if (!quantity.id.ends_with("/tip_uncertainty"))
       level.quantities.emplace(quantity.id, std::move(quantity));
+  add_lengths(level.quantities);
   return level;
 }
 
@@ -106,20 +128,20 @@ const std::vector<Refinement>& refinements() {
   static const std::vector<Refinement> all{
       {"beam", "refinement",
        [](ModelOptions& options, unsigned int level) { options.beam.refinement = level; },
-       [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); }, 0, 5,
-       std::nullopt},
+       [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
+       "length of the elements, in segments", 0, 5, std::nullopt},
       // The thickness of the layers at the singular rims, which govern (docs/solid.md): order 1.5
       // on the average, none formal.
       {"solid", "refinement",
        [](ModelOptions& options, unsigned int level) { options.solid.refinement = level; },
-       [](unsigned int level) { return fem::cylinder_mesh_options(level).finest_layer; }, 0, 3,
-       std::nullopt}};
+       [](unsigned int level) { return fem::cylinder_mesh_options(level).finest_layer; },
+       "thickness of the finest layers, in diameters", 0, 3, std::nullopt}};
   return all;
 }
 
 RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,
                                  unsigned int count, const Progress& progress) {
-  RefinementStudy study{refinement.model, refinement.knob, {}, {}, {}, {}};
+  RefinementStudy study{refinement.model, refinement.knob, refinement.size_name, {}, {}, {}, {}};
   if (count < 3 || count > refinement.finest - refinement.coarsest + 1)
     throw InputError(fmt::format("{} has 3 to {} levels of refinement, not {}", refinement.model,
                                  refinement.finest - refinement.coarsest + 1, count));

@@ -18,6 +18,7 @@ struct Refinement {
   std::string knob;   ///< of it, as in `[models.solid] refinement`
   std::function<void(ModelOptions&, unsigned int)> set;
   std::function<double(unsigned int)> size;  ///< h of a level
+  std::string size_name;                     ///< what h is, for people
   unsigned int coarsest = 0;
   unsigned int finest = 0;  ///< the model has no finer one
   std::optional<double> formal_order;
@@ -27,7 +28,9 @@ struct Refinement {
 /// integrated to its tolerance and the field models to theirs: they have no levels.
 const std::vector<Refinement>& refinements();
 
-/// One quantity of a case (compare/check/quantities.h) on all levels, finest first.
+/// One quantity of a case on all levels, finest first: those of compare/check/quantities.h, and
+/// made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and
+/// `…/dB/SENSOR/norm`, |ΔB|.
 struct ConvergedQuantity {
   std::string id;
   std::string unit;
@@ -38,6 +41,7 @@ struct ConvergedQuantity {
 struct RefinementStudy {
   std::string model;
   std::string knob;
+  std::string size_name;
   std::vector<unsigned int> settings;  ///< of the knob, finest first
   std::vector<double> seconds;         ///< wall time of each
   std::vector<ConvergedQuantity> quantities;

@@ -20,9 +20,10 @@ using test::read_text;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-int ciliaval(const fs::path& folder, const std::string& arguments) {
-  const std::string command =
-      "cd '" + folder.string() + "' && '" CILIAVAL_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
+int ciliaval(const fs::path& folder, const std::string& arguments,
+             const std::string& environment = "") {
+  const std::string command = "cd '" + folder.string() + "' && " + environment +
+                              "'" CILIAVAL_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
@@ -62,6 +63,29 @@ TEST(Converge, ABeamOfDegreeTwoConvergesWithOrderFourToTheBeamOfDegreeSix) {
     EXPECT_LT(std::abs(q["limit"].get<double>() - reference), std::abs(finest - reference)) << id;
   }
   EXPECT_THAT(read_text(folder.path() / "two.csv"), HasSubstr("beam,steps/0/mechanics/beam/tip/x"));
+}
+
+// The plot comes last: without gnuplot everything else is there.
+TEST(Converge, PlotsTheOrders) {
+  const TemporaryFolder folder;
+  write_case(folder.path(),
+             "mechanics = [\"beam\"]\nfields = [\"volume\"]\n[models.beam]\ndegree = 2\n");
+  EXPECT_EQ(ciliaval(folder.path(), "converge one.toml --plot one.svg"), 0)
+      << read_text(folder.path() / "err.txt");
+  const std::string svg = read_text(folder.path() / "one.svg");
+  EXPECT_THAT(svg, testing::StartsWith("<?xml"));
+  EXPECT_THAT(svg, testing::ContainsRegex("tip: order (3.9|4.0)"));
+  EXPECT_THAT(svg, testing::ContainsRegex("dB. beam/volume: order (3.9|4.0)"));
+  EXPECT_THAT(svg, HasSubstr("beam, load step 1 of 1"));
+  EXPECT_EQ(
+      ciliaval(folder.path(), "converge one.toml --json two.json --plot two.svg", "PATH=/nowhere "),
+      4);
+  EXPECT_THAT(read_text(folder.path() / "err.txt"), HasSubstr("apt-get install gnuplot-nox"));
+  EXPECT_THAT(read_text(folder.path() / "out.txt"), HasSubstr("extrapolated"));
+  EXPECT_TRUE(fs::exists(folder.path() / "two.json"));
+  EXPECT_FALSE(fs::exists(folder.path() / "two.svg"));
+  EXPECT_EQ(ciliaval(folder.path(), "converge one.toml --plot none/two.svg"), 4);
+  EXPECT_THAT(read_text(folder.path() / "err.txt"), HasSubstr("none/two.svg"));
 }
 
 TEST(Converge, WhatCannotBeRefinedIsSaid) {

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/plot/gnuplot.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "compare/results.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare::plot {
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+/// Without a name: gone when it is closed.
+using File = std::unique_ptr<std::FILE, Close>;
+
+File temporary_file() {
+  File file(std::tmpfile());
+  if (!file)
+    throw FileError(
+        fmt::format("cannot make a temporary file for gnuplot: {}", std::strerror(errno)));
+  return file;
+}
+
+std::string content(std::FILE* file) {
+  std::string text;
+  std::array<char, 65536> part{};
+  std::rewind(file);
+  while (const std::size_t n = std::fread(part.data(), 1, part.size(), file))
+    text.append(part.data(), n);
+  return text;
+}
+
+/// The first of gnuplot's complaints, which begins after the copy of the line and a caret.
+std::string complaint(const std::string& text) {
+  const std::size_t line = text.find("line ");
+  const std::string message = line == std::string::npos ? text : text.substr(line);
+  return message.substr(0, message.find('\n'));
+}
+
+/// gnuplot with the three files as its standard streams; its exit code. Files, not pipes: none of
+/// the two has to read while the other one writes.
+int run_gnuplot(std::FILE* in, std::FILE* out, std::FILE* err) {
+  posix_spawn_file_actions_t streams;
+  posix_spawn_file_actions_init(&streams);
+  posix_spawn_file_actions_adddup2(&streams, fileno(in), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&streams, fileno(out), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&streams, fileno(err), STDERR_FILENO);
+  std::string program = "gnuplot";
+  std::string defaults = "-d";  // not the user's ~/.gnuplot
+  const std::array<char*, 3> arguments{program.data(), defaults.data(), nullptr};
+  pid_t process = 0;
+  const int error =
+      posix_spawnp(&process, program.c_str(), &streams, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&streams);
+  if (error == ENOENT)
+    throw FileError(
+        "cannot plot: there is no gnuplot; install it (apt-get install gnuplot-nox) and run the "
+        "command again");
+  if (error != 0)
+    throw FileError(fmt::format("cannot plot: gnuplot does not start: {}", std::strerror(error)));
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0)
+    if (errno != EINTR)
+      throw FileError(fmt::format("cannot plot: gnuplot is lost: {}", std::strerror(errno)));
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+std::string quoted(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (std::string_view("\\^_@&~{}").find(c) != std::string_view::npos) result += '\\';
+    if (c == '\'') result += '\'';
+    result += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return result + '\'';
+}
+
+std::string draw_svg(std::string_view script, Size size) {
+  const File in = temporary_file();
+  const File out = temporary_file();
+  const File err = temporary_file();
+  fmt::print(in.get(),
+             "set encoding utf8\nset terminal svg size {},{} font 'sans,12' background 'white'\n{}",
+             size.width, size.height, script);
+  if (std::fflush(in.get()) != 0)
+    throw FileError(fmt::format("cannot write a script for gnuplot: {}", std::strerror(errno)));
+  std::rewind(in.get());
+  const int code = run_gnuplot(in.get(), out.get(), err.get());
+  std::string svg = content(out.get());
+  if (code != 0 || !svg.ends_with("</svg>\n\n"))
+    throw FileError(
+        fmt::format("cannot plot: gnuplot ended with {}: {}", code, complaint(content(err.get()))));
+  svg.pop_back();
+  return svg;
+}
+
+void write_svg(const std::filesystem::path& file, std::string_view script, Size size) {
+  replace_text(file, draw_svg(script, size));
+}
+
+}  // namespace ciliaval::compare::plot

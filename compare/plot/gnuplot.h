@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace ciliaval::compare::plot {
+
+/// Size of a drawing in pixels of an SVG.
+struct Size {
+  int width = 800;
+  int height = 500;
+};
+
+/// A text as a string of gnuplot's that shows it letter by letter: quoted, and with the characters
+/// escaped that gnuplot's enhanced mode reads as markup; line breaks become blanks.
+std::string quoted(std::string_view text);
+
+/// What gnuplot draws from a script without a terminal of its own, as SVG. Starts gnuplot directly,
+/// without a shell and without the user's settings. Throws FileError if it is not installed, with
+/// what to install, or if it refuses the script, with its message.
+std::string draw_svg(std::string_view script, Size size);
+
+/// Draws the script into a file. Throws FileError.
+void write_svg(const std::filesystem::path& file, std::string_view script, Size size);
+
+}  // namespace ciliaval::compare::plot
