@@ -47,6 +47,19 @@ void use_one_thread() {
     reinterpret_cast<SetThreads>(blas)(1);
 }
 
+/// Spreads rank 0's value. The others sleep until it comes, however long that takes, instead of
+/// taking a processor from it.
+void idle_until_first_rank_sends(int& value) {
+  using namespace std::chrono_literals;
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibcast(&value, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
+  int done = 0;
+  for (auto nap = 0us; done == 0; nap = std::min(2 * nap + 10us, 10000us)) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done == 0) std::this_thread::sleep_for(nap);
+  }
+}
+
 int to_int(std::size_t value) {
   return static_cast<int>(value);
 }
@@ -132,7 +145,7 @@ std::string from_first_rank(const std::function<std::string()>& work) {
     }
   }
   unsigned long long size = text.size();
-  MPI_Bcast(&failed, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  idle_until_first_rank_sends(failed);
   MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
   text.resize(size);
   constexpr std::size_t part = std::size_t{1} << 30;

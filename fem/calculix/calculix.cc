@@ -5,13 +5,16 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <istream>
 #include <numeric>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <variant>
 
 #include "meshes/cylinder_mesh.h"
@@ -90,14 +93,6 @@ std::vector<std::size_t> boundary_nodes(const MeshNodes& mesh, unsigned int boun
   return nodes;
 }
 
-/// The nodes that 20-node elements have: not the middles of faces and cells.
-std::vector<bool> used_nodes(const MeshNodes& mesh) {
-  std::vector<bool> used(mesh.nodes.size());
-  for (const MeshNodes::Cell& cell : mesh.cells)
-    for (const int a : calculix_nodes) used[cell.nodes[static_cast<std::size_t>(a)]] = true;
-  return used;
-}
-
 void write_mesh(std::ostream& out, const MeshNodes& mesh, const std::vector<bool>& used) {
   out << "*NODE, NSET=ALL\n";
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
@@ -124,6 +119,21 @@ void write_materials(std::ostream& out, const Cilium& cilium) {
     out << "*MATERIAL, NAME=MATERIAL" << i << "\n*HYPERELASTIC, NEO HOOKE\n"
         << cilium.segments[i].shear_modulus() / 2 << ", " << 2 / cilium.segments[i].bulk_modulus()
         << "\n*SOLID SECTION, ELSET=SEGMENT" << i << ", MATERIAL=MATERIAL" << i << "\n";
+}
+
+/// A finite number as Fortran prints it: an exponent of three digits goes without its letter,
+/// "1.234567-101".
+std::optional<double> fortran_number(std::string text) {
+  text.erase(0, text.find_first_not_of(' '));
+  const auto sign = text.find_first_of("+-", 1);
+  if (sign != std::string::npos && text.find_first_of("eE") == std::string::npos)
+    text.insert(sign, "E");
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error == std::errc::result_out_of_range && text.find("E-") != std::string::npos) return 0.0;
+  if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
+  return value;
 }
 
 }  // namespace
@@ -185,9 +195,9 @@ std::vector<Vector3> calculix_forces(const MeshNodes& mesh, const Cilium& cilium
 }
 
 void write_calculix(std::ostream& out, const MeshNodes& mesh, const Cilium& cilium,
-                    const Load& load, const CalculixOptions& options) {
+                    const Load& load, const CalculixStepping& options) {
   const std::vector<Vector3> forces = calculix_forces(mesh, cilium, load);
-  const std::vector<bool> used = used_nodes(mesh);
+  const std::vector<bool> used = calculix_node_set(mesh);
   const auto precision = out.precision(digits);
   write_mesh(out, mesh, used);
   write_materials(out, cilium);
@@ -208,24 +218,47 @@ void write_calculix(std::ostream& out, const MeshNodes& mesh, const Cilium& cili
   out.precision(precision);
 }
 
-std::vector<Vector3> read_calculix(std::istream& in, std::size_t nodes) {
+std::vector<bool> calculix_node_set(const MeshNodes& mesh) {
+  std::vector<bool> used(mesh.nodes.size());
+  for (const MeshNodes::Cell& cell : mesh.cells)
+    for (const int a : calculix_nodes) used[cell.nodes[static_cast<std::size_t>(a)]] = true;
+  return used;
+}
+
+std::vector<Vector3> read_calculix(std::istream& in, const MeshNodes& mesh) {
+  const std::vector<bool> used = calculix_node_set(mesh);
   std::vector<Vector3> displacements;
+  std::vector<bool> there;
   double time = 0;
   for (std::string line; std::getline(in, line);) {
+    if (in.eof())
+      throw FileError("CalculiX's .dat file ends in the middle of a line: is the disk full?");
     if (const auto at = line.find("and time"); at != std::string::npos) {
-      time = std::stod(line.substr(at + 8));
-      displacements.assign(nodes, Vector3::Zero());
+      time = fortran_number(line.substr(at + 8)).value_or(0);
+      displacements.assign(mesh.nodes.size(), Vector3::Zero());
+      there.assign(mesh.nodes.size(), false);
       continue;
     }
     std::istringstream fields(line);
     std::size_t node = 0;
-    Vector3 u;
-    if (fields >> node >> u[0] >> u[1] >> u[2] && node >= 1 && node <= displacements.size())
-      displacements[node - 1] = u;
+    std::array<std::string, 3> texts;
+    if (!(fields >> node >> texts[0] >> texts[1] >> texts[2]) || node < 1 || node > there.size())
+      continue;
+    const std::array u{fortran_number(texts[0]), fortran_number(texts[1]),
+                       fortran_number(texts[2])};
+    if (!u[0] || !u[1] || !u[2])
+      throw FileError("CalculiX's .dat file gives no displacement of node " + std::to_string(node) +
+                      ": `" + line + "`");
+    displacements[node - 1] = {*u[0], *u[1], *u[2]};
+    there[node - 1] = true;
   }
   if (std::abs(time - 1) > 1e-6)
     throw FileError("CalculiX did not reach the whole load: its .dat file ends at time " +
                     std::to_string(time));
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i] && !there[i])
+      throw FileError("CalculiX's .dat file lacks node " + std::to_string(i + 1) +
+                      ": is the disk full?");
   return displacements;
 }
 

@@ -26,7 +26,7 @@ Eigen::Matrix<double, 20, 4> serendipity_functions(const Vector3& at);
 std::vector<Vector3> calculix_forces(const meshes::MeshNodes& mesh, const Cilium& cilium,
                                      const Load& load);
 
-struct CalculixOptions {
+struct CalculixStepping {
   double first_increment = 1;  ///< of the load; CalculiX cuts it back or lets it grow
   int max_increments = 1000;
 };
@@ -36,10 +36,14 @@ struct CalculixOptions {
 /// displacement across a plane of symmetry. Its .dat file then holds the displacements of all
 /// nodes. Azimuth 0 is needed on a half. Throws InputError as calculix_forces() does.
 void write_calculix(std::ostream& out, const meshes::MeshNodes& mesh, const Cilium& cilium,
-                    const Load& load, const CalculixOptions& options = {});
+                    const Load& load, const CalculixStepping& options = {});
+
+/// Which nodes of the mesh 20-node elements have: not the middles of faces and cells.
+std::vector<bool> calculix_node_set(const meshes::MeshNodes& mesh);
 
 /// The displacements of the last increment in a .dat file, one for each node of the mesh (zero
-/// where an element has no node). Throws FileError if the file holds none, or ends before time 1.
-std::vector<Vector3> read_calculix(std::istream& in, std::size_t nodes);
+/// where an element has no node). Throws FileError if the file ends before time 1, or in the middle
+/// of a line, or lacks a node of the elements: CalculiX stopped, or the disk is full.
+std::vector<Vector3> read_calculix(std::istream& in, const meshes::MeshNodes& mesh);
 
 }  // namespace ciliaval::fem

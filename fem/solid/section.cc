@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "fem/solid/assembly.h"
+#include "problem/curvature.h"
 #include "problem/error.h"
-#include "problem/lagrange.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -41,6 +41,7 @@ struct Wrench {
 
 /// The cells between two planes of the mesh: indices of the elements.
 struct Layer {
+  double bottom = 0;
   double top = 0;
   std::vector<std::size_t> cells;
 };
@@ -175,26 +176,9 @@ std::vector<double> Extraction::breaks(const Layer& layer) const {
   return result;
 }
 
-/// κ = 2 vec(q′ q̄) at the stations, from the interpolation of their quaternions.
-void differentiate_rotation(const std::vector<double>& S, std::vector<SectionState>& states) {
-  for (std::size_t i = 1; i < states.size(); ++i) {
-    Quaternion& q = states[i].rotation;
-    if (q.dot(states[i - 1].rotation) < 0) q.coeffs() = -q.coeffs();
-  }
-  const LagrangeBasis basis(S);
-  std::vector<double> values(S.size());
-  std::vector<double> derivatives(S.size());
-  for (std::size_t i = 0; i < S.size(); ++i) {
-    basis.values_and_derivatives(S[i], values, derivatives);
-    Quaternion derivative(0, 0, 0, 0);
-    for (std::size_t j = 0; j < S.size(); ++j)
-      derivative.coeffs() += derivatives[j] * states[j].rotation.coeffs();
-    states[i].curvature = 2 * (derivative * states[i].rotation.conjugate()).vec();
-  }
-}
-
-Centreline::Piece piece(const Extraction& extraction, double bottom, const Layer& layer,
-                        const Wrench& top, double from, double to) {
+Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const Wrench& top,
+                        double from, double to) {
+  const double bottom = layer.bottom;
   Centreline::Piece piece;
   for (const double t : station_points) {
     const double zeta = t == 1 ? to : from + t * (to - from);
@@ -208,8 +192,40 @@ Centreline::Piece piece(const Extraction& extraction, double bottom, const Layer
     piece.S.push_back(zeta == 1 ? layer.top : bottom + zeta * (layer.top - bottom));
     piece.states.push_back(state);
   }
-  differentiate_rotation(piece.S, piece.states);
+  differentiate_rotation(piece);
   return piece;
+}
+
+/// The layers of the mesh from base to tip.
+std::vector<Layer> layers_of(const SolidSpace& space, const Fibres& fibres) {
+  std::map<double, Layer> layers;  // by the Z of their lower planes
+  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+    Layer& layer = layers[fibres.cells()[e].bottom];
+    layer.bottom = fibres.cells()[e].bottom;
+    layer.top = fibres.cells()[e].top;
+    layer.cells.push_back(e);
+  }
+  std::vector<Layer> result;
+  for (auto& [bottom, layer] : layers) result.push_back(std::move(layer));
+  return result;
+}
+
+/// The centreline, given what acts on the upper plane of each layer.
+Centreline centreline(const Extraction& extraction, const std::vector<Layer>& layers,
+                      const std::vector<Wrench>& tops) {
+  std::vector<Centreline::Piece> pieces;
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    const std::vector<double> breaks = extraction.breaks(layers[l]);
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+      pieces.push_back(piece(extraction, layers[l], tops[l], breaks[i], breaks[i + 1]));
+  }
+  // Both sides of a break integrate the same plane in another order: make them equal to the bit.
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    pieces[i].S.front() = pieces[i - 1].S.back();
+    pieces[i].states.front().position = pieces[i - 1].states.back().position;
+    pieces[i].states.front().rotation = pieces[i - 1].states.back().rotation;
+  }
+  return Centreline(std::move(pieces));
 }
 
 }  // namespace
@@ -226,27 +242,31 @@ Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B) {
 
 Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
                       const SpreadLoad& load) {
-  std::map<double, Layer> layers;  // by the Z of their lower planes
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
-    Layer& layer = layers[fibres.cells()[e].bottom];
-    layer.top = fibres.cells()[e].top;
-    layer.cells.push_back(e);
-  }
+  const std::vector<Layer> layers = layers_of(space, fibres);
   const Extraction extraction{space, fibres, state, load};
-  std::vector<Centreline::Piece> pieces;
-  for (const auto& [bottom, layer] : layers) {
-    const Wrench top = extraction.top_wrench(layer);
-    const std::vector<double> breaks = extraction.breaks(layer);
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-      pieces.push_back(piece(extraction, bottom, layer, top, breaks[i], breaks[i + 1]));
+  std::vector<Wrench> tops;
+  for (const Layer& layer : layers) tops.push_back(extraction.top_wrench(layer));
+  return centreline(extraction, layers, tops);
+}
+
+Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
+                                 const SolidState& state, const SpreadLoad& load,
+                                 const std::optional<PlaneForce>& plane) {
+  const std::vector<Layer> layers = layers_of(space, fibres);
+  const Extraction extraction{space, fibres, state, load};
+  std::vector<Wrench> tops(layers.size());
+  Wrench above;
+  for (std::size_t i = layers.size(); i-- > 0;) {
+    if (plane && std::abs(layers[i].top - plane->arclength) <= 1e-9 * fibres.height()) {
+      const Station station = extraction.station(layers[i], 1);
+      above.add(station.x / station.area, plane->force);
+    }
+    tops[i] = above;
+    const Wrench load_of_layer = extraction.station(layers[i], 0).load;
+    above.force += load_of_layer.force;
+    above.moment += load_of_layer.moment;
   }
-  // Both sides of a break integrate the same plane in another order: make them equal to the bit.
-  for (std::size_t i = 1; i < pieces.size(); ++i) {
-    pieces[i].S.front() = pieces[i - 1].S.back();
-    pieces[i].states.front().position = pieces[i - 1].states.back().position;
-    pieces[i].states.front().rotation = pieces[i - 1].states.back().rotation;
-  }
-  return Centreline(std::move(pieces));
+  return centreline(extraction, layers, tops);
 }
 
 }  // namespace ciliaval::fem

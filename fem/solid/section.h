@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <optional>
+
 #include "fem/solid/fibres.h"
 #include "fem/solid/space.h"
 #include "problem/centreline.h"
@@ -27,6 +29,19 @@ namespace ciliaval::fem {
 /// or a section load. Throws SolverError if det F ≤ 0 in the state.
 Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
                       const SpreadLoad& load = {});
+
+/// A dead force on the plane Z = arclength of the whole body, spread evenly over it.
+struct PlaneForce {
+  double arclength = 0;             ///< m
+  Vector3 force = Vector3::Zero();  ///< N
+};
+
+/// The same centreline where the displacement alone is known, not the stress that goes with it
+/// (another program's solution): n and m are by statics the loads above the section, on the
+/// deformed body. `state.pressure` is not used.
+Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
+                                 const SolidState& state, const SpreadLoad& load,
+                                 const std::optional<PlaneForce>& plane = std::nullopt);
 
 /// The rotation that fits the columns b₁, b₂ of a section best (see centreline()). Throws
 /// SolverError if they are parallel or not finite.

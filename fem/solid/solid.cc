@@ -43,14 +43,6 @@ constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 1.0, 0.32,
 /// The level of each refinement.
 constexpr std::array<unsigned int, 4> refinement_levels{1, 3, 4, 5};
 
-unsigned int levels_below(unsigned int refinement) {
-  if (refinement >= refinement_levels.size())
-    throw InputError("the solid has the refinements 0 to " +
-                     std::to_string(refinement_levels.size() - 1) + ", not " +
-                     std::to_string(refinement));
-  return refinement_levels[refinement];
-}
-
 Hyperelastic material(const Segment& segment, const SolidOptions& options) {
   const double mu = segment.shear_modulus();
   const double K = segment.bulk_modulus();
@@ -152,7 +144,7 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
                                              materials(cilium, options), level_options));
     return levels;
   }
-  for (unsigned int i = 0; i <= levels_below(options.refinement); ++i)
+  for (unsigned int i = 0; i <= mesh_level(options.refinement); ++i)
     levels.push_back(std::make_unique<Level>(cilium, path_mesh(i, options, path),
                                              materials(cilium, options), level_options,
                                              levels.empty() ? nullptr : levels.back().get()));
@@ -162,7 +154,7 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
 Facts facts(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
   std::vector<meshes::CylinderMeshOptions> meshes;
   if (options.mesh.empty())
-    for (unsigned int i = 0; i <= levels_below(options.refinement); ++i)
+    for (unsigned int i = 0; i <= mesh_level(options.refinement); ++i)
       meshes.push_back(path_mesh(i, options, path));
   return solid_facts(cilium, path, options, meshes);
 }
@@ -211,6 +203,14 @@ void go_on_from(SolidCheckpoint& saved, const std::vector<std::unique_ptr<Level>
 
 }  // namespace
 
+unsigned int mesh_level(unsigned int refinement) {
+  if (refinement >= refinement_levels.size())
+    throw InputError("the solid has the refinements 0 to " +
+                     std::to_string(refinement_levels.size() - 1) + ", not " +
+                     std::to_string(refinement));
+  return refinement_levels[refinement];
+}
+
 meshes::CylinderMeshOptions level_mesh(unsigned int number) {
   const MeshLevel& level = mesh_levels.at(number);
   meshes::CylinderMeshOptions mesh;
@@ -224,12 +224,12 @@ meshes::CylinderMeshOptions level_mesh(unsigned int number) {
 }
 
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
-  return level_mesh(levels_below(refinement));
+  return level_mesh(mesh_level(refinement));
 }
 
 meshes::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
                                                   const LoadPath& path) {
-  return path_mesh(levels_below(options.refinement), options, path);
+  return path_mesh(mesh_level(options.refinement), options, path);
 }
 
 Solid::Solid(SolidOptions options) : options_(std::move(options)) {

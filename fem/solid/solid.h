@@ -46,6 +46,9 @@ struct SolidOptions {
 /// The mesh of a refinement. Throws InputError if there is none of that number.
 meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement);
 
+/// The number of that mesh in the sequence of level_mesh(). Throws as above.
+unsigned int mesh_level(unsigned int refinement);
+
 /// That mesh for a load path, with a plane at each loaded section; half of it if the options say
 /// so.
 meshes::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,

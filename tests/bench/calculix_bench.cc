@@ -125,7 +125,7 @@ std::optional<Run> calculix_run(const fs::path& folder, unsigned int refinement,
     throw SolverError("CalculiX is not installed: apt-get install calculix-ccx");
   std::ifstream output(folder / "cilium.dat");
   try {
-    const auto displacements = read_calculix(output, mesh.nodes.size());
+    const auto displacements = read_calculix(output, mesh);
     const auto nodes = std::count_if(displacements.begin(), displacements.end(),
                                      [](const Vector3& u) { return u != Vector3::Zero(); });
     return Run{3 * static_cast<std::size_t>(nodes), tip_deflection(mesh, displacements), wall,

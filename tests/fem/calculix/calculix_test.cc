@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "fem/solid/solid.h"
 #include "meshes/cylinder_mesh.h"
@@ -91,20 +93,43 @@ TEST(Calculix, RefusesWhatItCannotLoad) {
                InputError);
 }
 
+/// A mesh of one element whose nodes are numbered as CalculiX's.
+meshes::MeshNodes one_element() {
+  meshes::MeshNodes nodes;
+  nodes.nodes.resize(27);
+  nodes.cells.emplace_back();
+  for (std::size_t a = 0; a < 27; ++a) nodes.cells[0].nodes[a] = a;
+  for (std::size_t b = 0; b < calculix_nodes.size(); ++b)
+    std::swap(nodes.cells[0].nodes[static_cast<std::size_t>(calculix_nodes[b])],
+              *std::find(nodes.cells[0].nodes.begin(), nodes.cells[0].nodes.end(), b));
+  return nodes;
+}
+
+/// An increment of a .dat file in which node n moves by (n, −n, 1e-101) 1e-3 m.
+std::string increment(const std::string& time, int nodes) {
+  std::ostringstream text;
+  text << "\n displacements (vx,vy,vz) for set ALL and time  " << time << "\n\n";
+  for (int n = 1; n <= nodes; ++n)
+    text << "  " << n << "  " << n << ".0E-03 -" << n << ".0E-03  1.0-104\n";
+  return text.str();
+}
+
 TEST(Calculix, ReadsTheLastIncrementAndRefusesAnUnfinishedRun) {
-  const std::string first =
-      "\n displacements (vx,vy,vz) for set ALL and time  0.5000000E+00\n\n"
-      "         1  1.0E-03  0.0E+00  0.0E+00\n";
-  std::istringstream unfinished(first);
-  EXPECT_THROW(read_calculix(unfinished, 2), FileError);
-  std::istringstream empty("");
-  EXPECT_THROW(read_calculix(empty, 2), FileError);
-  std::istringstream finished(first +
-                              "\n displacements (vx,vy,vz) for set ALL and time  0.1000000E+01\n\n"
-                              "         1  2.0E-03  0.0E+00 -1.0E-04\n");
-  const auto u = read_calculix(finished, 2);
-  EXPECT_EQ(u[0], Vector3(2e-3, 0, -1e-4));
-  EXPECT_EQ(u[1], Vector3::Zero());
+  const meshes::MeshNodes mesh = one_element();
+  const std::string half = increment("0.5000000E+00", 20);
+  const std::string whole = increment("0.1000000E+01", 20);
+  std::istringstream finished(half + whole);
+  const auto u = read_calculix(finished, mesh);
+  EXPECT_EQ(u[1], Vector3(2e-3, -2e-3, 1e-104));
+  EXPECT_EQ(u[19], Vector3(20e-3, -20e-3, 1e-104));
+  EXPECT_EQ(u[20], Vector3::Zero());
+  for (const std::string& text :
+       {std::string(), half, whole.substr(0, whole.size() - 4), increment("0.1000000E+01", 19),
+        whole + half, std::string(" for set ALL and time  nothing\n"),
+        std::string(whole).replace(whole.find("7.0E-03"), 7, "    NaN")}) {
+    std::istringstream damaged(text);
+    EXPECT_THROW(read_calculix(damaged, mesh), FileError) << text;
+  }
 }
 
 // Oracle: another program. The input that is written is one that CalculiX solves, and its tip comes
@@ -123,7 +148,7 @@ TEST(Calculix, SolvesTheSameCilium) {
   ASSERT_EQ(std::system(("cd '" + folder.string() + "' && ccx -i cilium > ccx.log 2>&1").c_str()),
             0);
   std::ifstream output(folder / "cilium.dat");
-  const auto displacements = read_calculix(output, nodes.nodes.size());
+  const auto displacements = read_calculix(output, nodes);
   const auto tip = calculix_forces(
       nodes, cilium(), SectionLoad{.force = 2, .arclength = cilium().length(), .azimuth = 0});
   double deflection = 0;  // the weights add up to 1 on the half

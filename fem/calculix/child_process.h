@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ciliaval::fem {
+
+/// A program to run in a folder, without a shell and without input.
+struct ChildCommand {
+  std::string program;  ///< a name that is looked for in PATH, or a path with a slash
+  std::vector<std::string> arguments;
+  std::filesystem::path folder;  ///< where it works
+  std::filesystem::path log;     ///< takes what it prints; replaced
+  unsigned int threads = 1;      ///< OMP_NUM_THREADS; what overrides it in CalculiX is taken away
+  double time_limit = 3600;      ///< s, of wall time; then it and its children are killed
+};
+
+/// How a program ended.
+struct ChildEnd {
+  enum class How { exited, signalled, timed_out, not_found, not_started };
+  How how = How::not_started;
+  int code = 0;        ///< exit code, number of the signal, or errno of the start
+  double seconds = 0;  ///< wall time
+};
+
+/// Runs the program to its end, in a process group of its own. If this program is told to end
+/// meanwhile (SIGINT, SIGTERM, SIGHUP), the child is killed first; the signal takes effect where
+/// the innermost SignalPause ends, or here if there is none.
+ChildEnd run_child(const ChildCommand& command);
+
+/// While it lives, SIGINT, SIGTERM and SIGHUP are kept back, so that what must be tidied up before
+/// the program ends is: at its end they take effect. A signal that is ignored stays so. Not for
+/// several threads at a time.
+class SignalPause {
+ public:
+  SignalPause();
+  ~SignalPause();
+  SignalPause(const SignalPause&) = delete;
+  SignalPause& operator=(const SignalPause&) = delete;
+
+  /// Whether one of the signals has come.
+  static bool interrupted();
+};
+
+/// A folder of its own name, for its owner alone, removed with all that is in it at the end; or one
+/// that stays. Throws FileError if it cannot be made.
+class WorkFolder {
+ public:
+  WorkFolder();                                            ///< among the temporary files (TMPDIR)
+  explicit WorkFolder(const std::filesystem::path& kept);  ///< made if it is not there; stays
+  ~WorkFolder();
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  bool removed_ = false;
+};
+
+}  // namespace ciliaval::fem
