@@ -12,6 +12,7 @@
 
 #include "compare/case_sections.h"
 #include "compare/case_syntax.h"
+#include "compare/external_files.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -42,6 +43,26 @@ std::string read_file(const std::filesystem::path& file) {
   return text;
 }
 
+/// A file name that the case states is that of a file beside the case file, unless absolute.
+void put_beside(std::string_view case_file, std::filesystem::path& file) {
+  if (!file.empty())
+    file = std::filesystem::absolute(std::filesystem::path(case_file).parent_path() / file)
+               .lexically_normal();
+}
+
+/// Reads the files of all external models. Throws InputError with all their faults.
+void read_files(std::vector<ExternalModel>& external, const Case& c) {
+  std::string faults;
+  for (ExternalModel& model : external) {
+    try {
+      read_external_files(model, c.cilium, c.load_path, c.sensors.size());
+    } catch (const InputError& error) {
+      faults += (faults.empty() ? "" : "\n") + std::string(error.what());
+    }
+  }
+  if (!faults.empty()) throw InputError(faults);
+}
+
 }  // namespace
 
 Case read_case(std::string_view text, std::string_view file) {
@@ -54,10 +75,14 @@ Case read_case(std::string_view text, std::string_view file) {
   const bool load = read_load(root, c);
   read_sensor(root, c);
   const bool models = read_models(root, c);
-  if (!c.options.solid.mesh.empty())  // beside the case file
-    c.options.solid.mesh =
-        std::filesystem::absolute(std::filesystem::path(file).parent_path() / c.options.solid.mesh)
-            .lexically_normal();
+  put_beside(file, c.options.solid.mesh);
+  put_beside(file, c.options.calculix.keep);
+  if (c.options.calculix.program.has_parent_path()) put_beside(file, c.options.calculix.program);
+  for (ExternalModel& model : c.external) {
+    for (std::filesystem::path& centreline : model.centreline_files) put_beside(file, centreline);
+    put_beside(file, model.readings_file);
+    put_beside(file, model.background_file);
+  }
   root.finish();
   if (cilium) snap_to_interfaces(c.cilium, c.load_path);
   check_together(table, c, {cilium, load, models}, faults);
@@ -66,6 +91,7 @@ Case read_case(std::string_view text, std::string_view file) {
   // What the models themselves demand; a case that comes so far has it.
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
+  read_files(c.external, c);
   return c;
 }
 

@@ -8,7 +8,9 @@
 
 #include "analytic/elastica.h"
 #include "analytic/field_models.h"
+#include "compare/external.h"
 #include "fem/beam/beam.h"
+#include "fem/calculix/calculix_model.h"
 #include "fem/potential/potential.h"
 #include "fem/solid/solid.h"
 #include "problem/cilium.h"
@@ -21,6 +23,7 @@ namespace ciliaval::compare {
 struct ModelOptions {
   analytic::ElasticaOptions elastica;
   fem::BeamOptions beam;
+  fem::CalculixOptions calculix;
   fem::SolidOptions solid;
   analytic::DipoleOptions dipole;
   analytic::LineOptions line;
@@ -42,6 +45,7 @@ struct Case {
   std::vector<Vector3> sensors;               ///< m
   std::vector<std::string> mechanics;         ///< ids of mechanics models, in the order asked for
   std::vector<std::string> fields;            ///< ids of field models
+  std::vector<ExternalModel> external;        ///< what other programs and test benches gave
   ModelOptions options;
 };
 

@@ -108,6 +108,20 @@ void check_elastica_form(const toml::table& root, const Case& c, Faults& faults)
                          load));
 }
 
+void check_calculix(const toml::table& root, const Case& c, bool load_is_right, Faults& faults) {
+  if (!c.options.calculix.program.has_filename())
+    faults.add(place_of(root, "models.calculix.program"),
+               "'program' must name a program, such as \"ccx\"");
+  if (!asks_for(c.mechanics, "calculix") || !load_is_right || c.load_path.empty()) return;
+  const std::string_view load = type(c.load_path.front());
+  if (load == SectionLoad::type || load == DeadLoad::type) return;
+  faults.add(place_of_id(root, "mechanics", "calculix"),
+             fmt::format("CalculiX takes the load types 'section' and 'dead', not '{}', which "
+                         "follows the current height: leave out 'calculix', or state the load as "
+                         "one of those",
+                         load));
+}
+
 void check_fields(const toml::table& root, const Case& c, bool cilium_is_right, Faults& faults) {
   if (c.fields.empty()) return;
   if (root.get("sensor") == nullptr)
@@ -118,9 +132,10 @@ void check_fields(const toml::table& root, const Case& c, bool cilium_is_right, 
   if (cilium_is_right && !magnetic)
     faults.add(place_of(root, "models.fields"),
                "'fields' need a magnet: no [[cilium.segment]] has a 'magnetization'");
-  if (asks_for(c.fields, "mesh") && !asks_for(c.mechanics, "solid"))
+  if (asks_for(c.fields, "mesh") && !asks_for(c.mechanics, "solid") &&
+      !asks_for(c.mechanics, "calculix"))
     faults.add(place_of_id(root, "fields", "mesh"),
-               "the field model 'mesh' is that of the solid's own magnet: add 'solid' to "
+               "the field model 'mesh' is that of a solid's own magnet: add 'solid' to "
                "'mechanics'");
 }
 
@@ -146,10 +161,19 @@ void check_material(const toml::table& root, const Case& c, Faults& faults) {
 void check_size(const toml::table& root, const Case& c, Faults& faults) {
   const std::size_t steps = c.load_path.size();
   const std::size_t sensors = c.sensors.size();
-  const std::size_t mesh_runs = asks_for(c.fields, "mesh") ? 1 : 0;
-  const std::size_t runs = (c.fields.size() - mesh_runs) * c.mechanics.size() + mesh_runs;
+  const std::size_t mesh_fields = asks_for(c.fields, "mesh") ? 1 : 0;
+  std::size_t bodies = 0;
+  std::size_t mechanics = c.mechanics.size();
+  std::size_t readings = 0;
+  for (const ExternalModel& model : c.external) {
+    if (!model.centreline_files.empty()) ++mechanics;
+    if (!model.readings_file.empty()) ++readings;
+  }
+  for (const std::string_view id : {"calculix", "solid"}) bodies += asks_for(c.mechanics, id);
+  const std::size_t runs =
+      (c.fields.size() - mesh_fields) * mechanics + mesh_fields * bodies + readings;
   const std::size_t rows =
-      5 * pairs(c.mechanics.size()) * steps + (runs + 6 * pairs(runs)) * sensors * (steps + 1);
+      5 * pairs(mechanics) * steps + (runs + 6 * pairs(runs)) * sensors * (steps + 1);
   if (rows > most_rows)
     faults.add(place_of(root, "sensor.position"),
                fmt::format("{} sensor points, {} steps and {} pairs of mechanics and field model "
@@ -170,6 +194,8 @@ void check_together(const toml::table& root, const Case& c, const RightTables& r
   if (right.cilium && right.load && right.models) check_contact(root, c, faults);
   if (right.cilium && right.load) check_section(root, c, faults);
   if (right.load && right.models) check_elastica_form(root, c, faults);
+  if (right.models) check_calculix(root, c, right.load, faults);
+  if (right.load && right.models) check_external(root, c, faults);
   if (right.models) check_material(root, c, faults);
   if (right.models) check_mesh(root, c, faults);
   if (right.models) check_fields(root, c, right.cilium, faults);

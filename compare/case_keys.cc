@@ -11,7 +11,7 @@
 namespace ciliaval::compare {
 namespace {
 
-constexpr std::array<std::string_view, 3> known_mechanics{"elastica", "beam", "solid"};
+constexpr std::array<std::string_view, 4> known_mechanics{"elastica", "beam", "calculix", "solid"};
 constexpr std::array<std::string_view, 5> known_fields{"dipole", "line", "volume", "mesh",
                                                        "potential"};
 
@@ -20,7 +20,7 @@ constexpr std::array<LaterKey, 2> known_later{{
     {"cilium.segment.density", "weight (it goes with [environment])"},
 }};
 
-const std::array<TextKey, 6> text_keys{{
+const std::array<TextKey, 10> text_keys{{
     {"case", "name", "text", "",
      "Name of the results' folder: letters, digits, `.`, `_`, `-`, not starting with `.` or `-`, "
      "at most 100."},
@@ -28,19 +28,30 @@ const std::array<TextKey, 6> text_keys{{
     {"cilium.segment", "name", "text", "", "Name of the segment, different from the others'."},
     {"load", "type", "`contact`, `flow`, `section`, `dead` or `probe`", "",
      "What the load is and does as the cilium bends."},
-    {"models", "mechanics", "list of `elastica`, `beam`, `solid`", "",
+    {"models", "mechanics", "list of `elastica`, `beam`, `calculix`, `solid`", "",
      "The mechanics models to run, at least one."},
     {"models", "fields", "list of `dipole`, `line`, `volume`, `mesh`, `potential`", "none",
-     "The field models to run on the deformation of each mechanics model; `mesh` takes `solid` "
-     "only."},
+     "The field models to run on the deformation of each mechanics model; `mesh` takes "
+     "`solid` and `calculix` only."},
+    {key::external_table, "name", "text", "",
+     "Name of an external model (docs/referees.md), not that of a model; a plain file name."},
+    {key::external_table, "centrelines", "list of file names", "none",
+     "CSV files with a centreline each, one for each load step, beside the case file unless "
+     "absolute; these or `readings`."},
+    {key::external_table, "readings", "file name", "none",
+     "CSV file with the readings of every load step and sensor."},
+    {key::external_table, "background", "file name", "none",
+     "CSV file with the ambient field at each azimuth, to be taken off the readings."},
 }};
 
-const std::array<const QuantityKey*, 19> quantity_keys{
-    &key::diameter,         &key::segment_length,   &key::young_modulus,     &key::poisson_ratio,
-    &key::magnetization,    &key::load_force,       &key::displacement,      &key::height,
-    &key::force_per_height, &key::velocity,         &key::density,           &key::drag_coefficient,
-    &key::arclength,        &key::force_per_length, &key::azimuth,           &key::position,
-    &key::plate_lower,      &key::plate_upper,      &key::plate_permeability};
+const std::array<const QuantityKey*, 21> quantity_keys{
+    &key::diameter,           &key::segment_length,   &key::young_modulus,
+    &key::poisson_ratio,      &key::magnetization,    &key::load_force,
+    &key::displacement,       &key::height,           &key::force_per_height,
+    &key::velocity,           &key::density,          &key::drag_coefficient,
+    &key::arclength,          &key::force_per_length, &key::azimuth,
+    &key::position,           &key::plate_lower,      &key::plate_upper,
+    &key::plate_permeability, &key::tip_uncertainty,  &key::field_uncertainty};
 
 /// A knob that is a double, an unsigned int, a bool or two doubles of the options of one model.
 template <typename Options, typename T>
@@ -182,6 +193,34 @@ void append_material(std::vector<Knob>& all) {
   yeoh.goes_with = "material = \"yeoh\"";
   yeoh.belongs = [](const ModelOptions& o) { return o.solid.material == Material::yeoh; };
   all.push_back(std::move(yeoh));
+}
+
+void append_calculix(std::vector<Knob>& all) {
+  using fem::CalculixOptions;
+  constexpr auto calculix = &ModelOptions::calculix;
+  all.push_back(number_knob(calculix, &CalculixOptions::refinement, "calculix", "refinement",
+                            quantity::number, {0, 3, false, "the solid has the meshes 0 to 3"},
+                            "Mesh: that of the solid with this refinement."));
+  all.push_back(number_knob(calculix, &CalculixOptions::error_estimate, "calculix",
+                            "error_estimate", quantity::number, any_bool,
+                            "Solve the next coarser mesh too, for `tip_uncertainty`."));
+  all.push_back(number_knob(calculix, &CalculixOptions::first_increment, "calculix",
+                            "first_increment", quantity::number,
+                            {1e-6, 1, false, "it is a part of the load"},
+                            "Part of the load that CalculiX tries first; it goes on by itself."));
+  all.push_back(number_knob(calculix, &CalculixOptions::threads, "calculix", "threads",
+                            quantity::number, {1, 1024, false, "a machine has no more"},
+                            "Threads of CalculiX."));
+  all.push_back(number_knob(calculix, &CalculixOptions::time_limit, "calculix", "time_limit",
+                            quantity::time, {1e-3, 1e7, false, key::unit_slip},
+                            "Of one run of CalculiX, of which each step takes one, or two with "
+                            "`error_estimate`; then it is ended, and the step has failed."));
+  all.push_back(file_knob(calculix, &CalculixOptions::program, "calculix", "program",
+                          "The program: a name that is looked for in PATH, or with a slash a "
+                          "file, beside the case file unless absolute."));
+  all.push_back(file_knob(calculix, &CalculixOptions::keep, "calculix", "keep",
+                          "Folder, beside the case file unless absolute, in which CalculiX's files "
+                          "stay, one subfolder for each run. Empty: they are removed."));
 }
 
 void append_solid(std::vector<Knob>& all) {
@@ -355,6 +394,7 @@ const std::vector<Knob>& knobs() {
     std::vector<Knob> list;
     append_elastica(list);
     append_beam(list);
+    append_calculix(list);
     append_solid(list);
     append_fields(list);
     append_potential(list);
@@ -410,6 +450,11 @@ std::string key_table() {
   for (const Knob& knob : knobs()) table += row(knob);
   for (const QuantityKey* k : quantity_keys)
     if (k->table == key::plate_table) table += row(*k);
+  for (const TextKey& k : text_keys)
+    if (k.table == key::external_table)
+      table += row(k.table, k.name, k.value, "", k.fallback, k.doc);
+  for (const QuantityKey* k : quantity_keys)
+    if (k->table == key::external_table) table += row(*k);
   return table;
 }
 

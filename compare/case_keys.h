@@ -169,6 +169,17 @@ inline constexpr QuantityKey plate_upper{
 inline constexpr QuantityKey plate_permeability{
     plate_table, "relative_permeability", quantity::number, permeability_range,
     "",          "The plate's μ_r."};
+inline constexpr std::string_view external_table = "models.external";
+inline constexpr QuantityKey tip_uncertainty{
+    external_table,   "tip_uncertainty",
+    quantity::length, {0, 100, false, unit_slip},
+    "not known",      "Uncertainty of the tip's position in each centreline."};
+inline constexpr QuantityKey field_uncertainty{external_table,
+                                               "field_uncertainty",
+                                               quantity::flux_density,
+                                               {0, 100, false, unit_slip},
+                                               "not known",
+                                               "Uncertainty of each component of each reading."};
 }  // namespace key
 
 /// A key whose value is text or a list of texts, for the table of keys.

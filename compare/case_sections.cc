@@ -342,6 +342,7 @@ bool read_models(Section& root, Case& c) {
   if (const toml::node* node = table.find("fields"))
     c.fields = read_ids(*node, "fields", field_ids(), {}, faults);
   read_knobs(table, c.options);
+  read_external(table, c.external);
   table.finish();
   return faults.size() == before;
 }

@@ -16,6 +16,11 @@ bool read_load(Section& root, Case& c);    ///< [load]; needs the diameter for `
 bool read_sensor(Section& root, Case& c);  ///< [sensor]
 bool read_models(Section& root, Case& c);  ///< [models], [models.<id>]
 
+/// [[models.external]], a part of [models]: the tables, not the files that they name.
+void read_external(Section& models, std::vector<ExternalModel>& external);
+/// Faults between these tables and the load and the sensors.
+void check_external(const toml::table& root, const Case& c, Faults& faults);
+
 /// The tables that had no fault by themselves.
 struct RightTables {
   bool cilium = false;

@@ -118,6 +118,22 @@ std::string sensor(const Case& c) {
                      points.size() == 1 ? points.front() : list(points));
 }
 
+std::string external(const ExternalModel& model) {
+  std::string text =
+      fmt::format("\n[[{}]]\nname = {}\n", key::external_table, toml_text(model.name));
+  std::vector<std::string> files;
+  for (const std::filesystem::path& file : model.centreline_files)
+    files.push_back(toml_text(file.string()));
+  if (!files.empty()) text += fmt::format("centrelines = {}\n", list(files));
+  if (!model.readings_file.empty())
+    text += fmt::format("readings = {}\n", toml_text(model.readings_file.string()));
+  if (!model.background_file.empty())
+    text += fmt::format("background = {}\n", toml_text(model.background_file.string()));
+  if (model.tip_uncertainty) text += line(key::tip_uncertainty, *model.tip_uncertainty);
+  if (model.field_uncertainty) text += line(key::field_uncertainty, *model.field_uncertainty);
+  return text;
+}
+
 std::string models(const Case& c) {
   const auto ids = [](const std::vector<std::string>& names) {
     std::vector<std::string> texts;
@@ -141,6 +157,7 @@ std::string models(const Case& c) {
     text += fmt::format("\n[[{}]]\n", key::plate_table) +
             corner(key::plate_lower, plate.box.min()) + corner(key::plate_upper, plate.box.max()) +
             line(key::plate_permeability, plate.relative_permeability);
+  for (const ExternalModel& model : c.external) text += external(model);
   return text;
 }
 

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The models that take seconds, which `--quick` leaves out.
-constexpr std::array<std::string_view, 2> slow_models{"solid", "potential"};
+constexpr std::array<std::string_view, 3> slow_models{"calculix", "solid", "potential"};
 
 /// Those of the case's models that are not run.
 std::vector<std::string> left_out_of(const Case& problem, bool quick) {

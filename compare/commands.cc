@@ -95,12 +95,13 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options) {
 }
 
 /// The part of the ranks beyond the first in a case: the solid and the potential, which share their
-/// work with them. For the potential each rank has the rods' deformations from its own solution,
-/// which is the same on all.
+/// work with them, and CalculiX, whose result they are given. For the potential each rank has the
+/// rods' deformations from its own solution, which is the same on all.
 void take_part(Case problem, const RunOptions& options) {
   std::erase_if(problem.fields, [](const std::string& id) { return id != "potential"; });
   if (problem.fields.empty())
-    std::erase_if(problem.mechanics, [](const std::string& id) { return id != "solid"; });
+    std::erase_if(problem.mechanics,
+                  [](const std::string& id) { return id != "solid" && id != "calculix"; });
   run(problem, mechanics_models(), field_models(), {}, checkpoint(options.directory, problem));
 }
 
@@ -162,6 +163,9 @@ void list() {
   std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
   for (const MechanicsEntry& entry : mechanics_models())
     text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
+  text += fmt::format(
+      "  {:<10} {}\n", "(external)",
+      "[[models.external]]: centrelines and readings from CSV files (docs/referees.md)");
   text += "\nField models\n";
   for (const FieldEntry& entry : field_models())
     text += fmt::format("  {:<10} {}\n", entry.id, entry.description);

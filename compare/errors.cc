@@ -205,9 +205,17 @@ void compare_component(const FieldPath& model, const FieldPath& reference, std::
   out.push_back(std::move(base));
 }
 
+/// The run that the fields belong to; readings belong to none.
 const MechanicsRun& mechanics_of(const FieldRun& run, const CaseResult& result) {
+  static const MechanicsRun none;
+  if (run.measured) return none;
   return *std::find_if(result.mechanics.begin(), result.mechanics.end(),
                        [&](const MechanicsRun& m) { return m.model == run.mechanics; });
+}
+
+/// Whether both fields are those of one deformation.
+bool same_deformation(const FieldRun& a, const FieldRun& b) {
+  return a.mechanics == b.mechanics && !a.measured && !b.measured;
 }
 
 void compare_fields(const CaseResult& result, std::vector<Comparison>& out) {
@@ -228,7 +236,7 @@ void compare_fields(const CaseResult& result, std::vector<Comparison>& out) {
             base.model = result.fields[a].name();
             base.reference = result.fields[b].name();
             compare_component(paths[a][quantity], paths[b][quantity], sensor, axis,
-                              result.fields[a].mechanics == result.fields[b].mechanics,
+                              same_deformation(result.fields[a], result.fields[b]),
                               vanishing_field * paths[b][0].largest[sensor], std::move(base), out);
           }
 }
@@ -253,13 +261,18 @@ std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& m
   const FieldStep& fields = *run.steps[step];
   const std::optional<Vector3>& value = change ? fields.dB[sensor] : fields.B[sensor];
   if (!value) return std::nullopt;
-  const Vector3& B = *fields.B[sensor];  // where ΔB is, B is
-  const std::optional<Vector3>& dB = fields.dB[sensor];
-  FieldValue result{*value, std::nullopt, carried_over(shape_of(mechanics, step), B, dB),
-                    rounding * B.norm()};
-  if (dB) result.rounding += rounding * (B - *dB).norm();
+  FieldValue result{*value, std::nullopt, std::nullopt, 0};
   const auto& uncertainty = change ? fields.dB_uncertainty[sensor] : fields.uncertainty[sensor];
   if (uncertainty) result.numerical = uncertainty->cwiseAbs();
+  if (run.measured) {
+    result.from_mechanics = 0;
+    return result;
+  }
+  const Vector3& B = *fields.B[sensor];  // where ΔB is, B is, but for readings
+  const std::optional<Vector3>& dB = fields.dB[sensor];
+  result.from_mechanics = carried_over(shape_of(mechanics, step), B, dB);
+  result.rounding = rounding * B.norm();
+  if (dB) result.rounding += rounding * (B - *dB).norm();
   return result;
 }
 

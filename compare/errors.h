@@ -78,7 +78,7 @@ struct FieldValue {
   double rounding;                       ///< what the deformation's rounding may make of it, T
 };
 /// B, or its change ΔB, of a pair of models at a step and sensor; empty if there is none.
-/// `mechanics` is the run that the fields belong to.
+/// `mechanics` is the run that the fields belong to; of readings it is not used.
 std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& mechanics,
                                       std::size_t step, std::size_t sensor, bool change);
 /// Uncertainty of the components of a − b, T: the sum of the field models', and of what both

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "problem/error.h"
 
@@ -177,6 +179,63 @@ void subtract(FieldStep& step, const FieldStep& undeformed) {
                                 undeformed.failure);
 }
 
+/// The horizontal force of a load whose shape is known from outside, N; NaN for a probe.
+double stated_force(const Load& load, const Cilium& cilium, const Vector3& tip) {
+  if (std::holds_alternative<ProbeLoad>(load)) return std::numeric_limits<double>::quiet_NaN();
+  if (std::holds_alternative<FlowLoad>(load)) return magnitude(load) * tip.z();
+  return magnitude(load) * (std::holds_alternative<DeadLoad>(load) ? cilium.length() : 1);
+}
+
+/// The centrelines of an external model as those of a mechanics model.
+MechanicsRun external_mechanics(const ExternalModel& model, const Case& problem) {
+  MechanicsRun run{model.name, {}};
+  run.result.undeformed.centreline = straight_centreline(problem.cilium.interfaces());
+  for (std::size_t i = 0; i < problem.load_path.size(); ++i) {
+    MechanicsStep step;
+    step.load = problem.load_path[i];
+    step.status = Status::converged;
+    step.message = model.remarks[i];
+    step.deformation = Deformation{model.centrelines[i], nullptr};
+    step.applied_force = stated_force(
+        step.load, problem.cilium, model.centrelines[i].at(model.centrelines[i].length()).position);
+    step.tip_uncertainty = model.tip_uncertainty;
+    check(step);
+    run.result.steps.push_back(std::move(step));
+  }
+  return run;
+}
+
+FieldStep external_step(const ExternalReading& reading, std::optional<double> uncertainty,
+                        bool undeformed_was_read) {
+  FieldStep step;
+  step.B = reading.B;
+  step.dB = reading.dB;
+  for (std::size_t s = 0; s < reading.B.size(); ++s) {
+    const auto spread = [&](const std::optional<Vector3>& value, double readings) {
+      return value && uncertainty
+                 ? std::optional<Vector3>(Vector3::Constant(readings * *uncertainty))
+                 : std::nullopt;
+    };
+    step.uncertainty.push_back(spread(step.B[s], 1));
+    step.dB_uncertainty.push_back(spread(step.dB[s], undeformed_was_read ? 2 : 1));
+  }
+  return step;
+}
+
+/// The readings of an external model as those of a field model.
+FieldRun external_fields(const ExternalModel& model, std::size_t sensors) {
+  FieldRun run;
+  run.mechanics = model.name;
+  run.field = "readings";
+  run.measured = true;
+  ExternalReading none{AtSensors(sensors), AtSensors(sensors)};
+  run.undeformed = external_step(model.undeformed.value_or(none), model.field_uncertainty, true);
+  for (const ExternalReading& reading : model.readings)
+    run.steps.emplace_back(
+        external_step(reading, model.field_uncertainty, model.undeformed.has_value()));
+  return run;
+}
+
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
                    const Case& problem, const Progress& progress) {
   FieldRun run;
@@ -202,8 +261,8 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
 }  // namespace
 
 bool FieldStep::any() const {
-  return std::any_of(B.begin(), B.end(),
-                     [](const std::optional<Vector3>& value) { return value.has_value(); });
+  const auto there = [](const std::optional<Vector3>& value) { return value.has_value(); };
+  return std::any_of(B.begin(), B.end(), there) || std::any_of(dB.begin(), dB.end(), there);
 }
 
 CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
@@ -217,6 +276,8 @@ CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
     result.mechanics.push_back(
         run_mechanics(id, *model, problem, progress, checkpoint_of(id, checkpoints)));
   }
+  for (const ExternalModel& model : problem.external)
+    if (!model.centrelines.empty()) result.mechanics.push_back(external_mechanics(model, problem));
   for (const MechanicsRun& mechanics_run : result.mechanics) {
     const Deformation& undeformed = mechanics_run.result.undeformed;
     if (undeformed.centreline.pieces().empty()) continue;
@@ -224,6 +285,9 @@ CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
       if (!model->needs_body() || undeformed.body)
         result.fields.push_back(run_field(id, *model, mechanics_run, problem, progress));
   }
+  for (const ExternalModel& model : problem.external)
+    if (!model.readings.empty())
+      result.fields.push_back(external_fields(model, problem.sensors.size()));
   return result;
 }
 

@@ -35,7 +35,7 @@ struct FieldStep {
   double seconds = 0;                     ///< wall time
   std::string failure;  ///< why a value of B or ΔB is missing, at which sensors; else empty
 
-  /// Whether there is B at any sensor.
+  /// Whether there is B or ΔB at any sensor.
   bool any() const;
 };
 
@@ -46,24 +46,28 @@ struct FieldRun {
   FieldStep undeformed;                         ///< its ΔB is zero
   std::vector<std::optional<FieldStep>> steps;  ///< none where the mechanics did not converge
 
+  bool measured = false;  ///< readings of an external model: of no deformation
+
   std::string name() const { return mechanics + "/" + field; }
 };
 
-/// Results of a case. Both lists are in the order of the registry, the less detailed model first;
-/// field runs go by mechanics first. In a comparison the later one is the reference.
+/// Results of a case. Both lists are in the order of the registry, the less detailed model first,
+/// then the case's external models; field runs go by mechanics first. In a comparison the later one
+/// is the reference.
 struct CaseResult {
   Case problem;
   std::vector<MechanicsRun> mechanics;
   std::vector<FieldRun> fields;
 };
 
-/// Runs the models that the case asks for: each mechanics model along the load path, then each
-/// field model on the undeformed cilium and on every converged step (a model that needs a body only
-/// where there is one). What one model throws, or a result that is not finite, is recorded as its
-/// failure and does not stop the others; where B diverges at one sensor, the rest are computed.
-/// A mechanics model that keeps a checkpoint goes on from it and keeps it in the folder
-/// `checkpoints.path`, under its id; without a path there is none. Throws InputError if the case
-/// names a model that is not among the entries, CheckpointError, RankFailure.
+/// Runs the models that the case asks for, and puts its external ones beside them: each mechanics
+/// model along the load path, then each field model on the undeformed cilium and on every converged
+/// step (a model that needs a body only where there is one). What one model throws, or a result
+/// that is not finite, is recorded as its failure and does not stop the others; where B diverges at
+/// one sensor, the rest are computed. A mechanics model that keeps a checkpoint goes on from it and
+/// keeps it in the folder `checkpoints.path`, under its id; without a path there is none. Throws
+/// InputError if the case names a model that is not among the entries, CheckpointError,
+/// RankFailure.
 CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress = {},
                const Checkpoint& checkpoints = {});

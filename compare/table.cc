@@ -110,9 +110,9 @@ std::optional<double> component(const std::optional<Vector3>& v, Eigen::Index ax
   return v ? std::optional((*v)[axis]) : std::nullopt;
 }
 
-/// Whether a pair has B at the sensor that is shown.
+/// Whether a pair has B or ΔB at the sensor that is shown.
 bool has_field(const FieldRun& run, std::size_t step) {
-  return run.steps[step] && run.steps[step]->B.front();
+  return run.steps[step] && (run.steps[step]->B.front() || run.steps[step]->dB.front());
 }
 
 std::string fields_table(const CaseResult& result, const std::vector<Comparison>& comparisons,

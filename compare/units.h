@@ -23,6 +23,8 @@ inline constexpr Quantity force_per_length{"a", "force per length", "N/m", "0.3 
 inline constexpr Quantity velocity{"a", "velocity", "m/s", "0.5 m/s"};
 inline constexpr Quantity density{"a", "density", "kg/m^3", "1000 kg/m^3"};
 inline constexpr Quantity angle{"an", "angle", "rad", "30 deg"};
+inline constexpr Quantity time{"a", "time", "s", "10 min"};
+inline constexpr Quantity flux_density{"a", "flux density", "T", "50 uT"};
 inline constexpr Quantity number{"a", "plain number", "", "0.49"};
 }  // namespace quantity
 

@@ -191,7 +191,7 @@ void check_differences(const CaseResult& result, CheckReport& report) {
       if (!run.steps[i]) continue;
       const FieldStep& step = *run.steps[i];
       for (std::size_t s = 0; s < step.dB.size(); ++s) {
-        if (!step.dB[s]) continue;
+        if (!step.dB[s] || (run.measured && !step.B[s])) continue;  // readings of ΔB alone
         const std::string id = fmt::format("steps/{}/fields/{}/dB/{}", i, run.name(), s);
         const bool complete =
             s < step.B.size() && step.B[s] && s < run.undeformed.B.size() && run.undeformed.B[s];

@@ -71,12 +71,13 @@ void add_mechanics(const MechanicsRun& run, Measurements& out) {
   }
 }
 
-/// The largest |B| of a pair at each sensor, over the undeformed cilium and the path, T.
+/// The largest |B| or |ΔB| of a pair at each sensor, over the undeformed cilium and the path, T.
 std::vector<double> largest_fields(const FieldRun& run) {
   std::vector<double> largest(run.undeformed.B.size(), 0);
   const auto look = [&](const FieldStep& step) {
     for (std::size_t s = 0; s < step.B.size() && s < largest.size(); ++s)
-      if (step.B[s] && step.B[s]->allFinite()) largest[s] = std::max(largest[s], step.B[s]->norm());
+      for (const auto& value : {step.B[s], step.dB[s]})  // readings may have ΔB alone
+        if (value && value->allFinite()) largest[s] = std::max(largest[s], value->norm());
   };
   look(run.undeformed);
   for (const auto& step : run.steps)

@@ -24,8 +24,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Two computations agree to rounding if they differ by less than this part of the scale: the
-/// solvers' tolerances, 1e-12 for rods and 1e-9 for the solid, leave as much.
+/// solvers' tolerances, 1e-12 for rods and 1e-9 for the solid, leave as much. CalculiX prints seven
+/// digits.
 double rounding_of(const std::string& model) {
+  if (model == "calculix") return 1e-6;
   return model == "solid" ? 1e-9 : 1e-11;
 }
 
@@ -130,6 +132,13 @@ const std::vector<Refinement>& refinements() {
        [](ModelOptions& options, unsigned int level) { options.beam.refinement = level; },
        [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
        "length of the elements, in segments", 0, 5, std::nullopt},
+      {"calculix", "refinement",
+       [](ModelOptions& options, unsigned int level) {
+         options.calculix.refinement = level;
+         options.calculix.error_estimate = false;
+       },
+       [](unsigned int level) { return fem::cylinder_mesh_options(level).finest_layer; },
+       "thickness of the finest layers, in diameters", 0, 3, std::nullopt},
       // The thickness of the layers at the singular rims, which govern (docs/solid.md): order 1.5
       // on the average, none formal.
       {"solid", "refinement",

@@ -254,6 +254,14 @@ shear_rigid = true
 tolerance = 1e-8
 max_iterations = 11
 max_cutbacks = 3
+[models.calculix]
+refinement = 3
+error_estimate = false
+first_increment = 0.1
+threads = 3
+time_limit = "10 min"
+program = "/opt/ccx"
+keep = "/somewhere"
 [models.solid]
 material = "yeoh"
 yeoh_ratios = [-0.2, 0.03]
@@ -326,6 +334,13 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(mooney.line.elements, 7U);
   EXPECT_EQ(mooney.volume.method, analytic::Method::uniform);
   EXPECT_EQ(mooney.volume.elements, 9U);
+  EXPECT_EQ(o.calculix.refinement, 3U);
+  EXPECT_FALSE(o.calculix.error_estimate);
+  EXPECT_EQ(o.calculix.first_increment, 0.1);
+  EXPECT_EQ(o.calculix.threads, 3U);
+  EXPECT_EQ(o.calculix.time_limit, 600);
+  EXPECT_EQ(o.calculix.program, "/opt/ccx");
+  EXPECT_EQ(o.calculix.keep, "/somewhere");
   EXPECT_EQ(o.solid.refinement, 2U);
   EXPECT_EQ(o.solid.solver, fem::SolverKind::iterative);
   EXPECT_EQ(o.solid.initial_guess, fem::InitialGuess::none);

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What this suite itself gives, taken for an external model: it must come back as it was.
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "compare/case.h"
+#include "compare/errors.h"
+#include "compare/registry.h"
+#include "compare/results.h"
+#include "compare/run.h"
+#include "compare/table.h"
+
+namespace ciliaval::compare {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* text = R"toml([case]
+name = "roundtrip"
+[cilium]
+diameter = "3 mm"
+[[cilium.segment]]
+name = "base"
+length = "3 mm"
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.49
+[[cilium.segment]]
+name = "magnet"
+length = "17 mm"
+young_modulus = "3 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+[load]
+type = "contact"
+force = ["1 mN", "4 mN"]
+height = "16 mm"
+azimuth = "30 deg"
+[sensor]
+position = [["-0.1 mm", "0.2 mm", "-1.55 mm"], ["5 mm", "0 mm", "-2 mm"]]
+[models]
+mechanics = ["elastica"]
+fields = ["line", "volume"]
+)toml";
+
+/// The earth's field and a sensor's offset at 0° and 60°, T; at 30° their mean.
+const Vector3 earth_0(20e-6, -3e-6, 44e-6);
+const Vector3 earth_60(8e-6, -13e-6, 44e-6);
+
+class ExternalRun : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+  }
+  CaseResult run_case(const std::string& more) const {
+    return run(read_case(text + more, (folder_ / "case.toml").string()), mechanics_models(),
+               field_models());
+  }
+  /// The centrelines as `ciliaval run` writes them.
+  void write_centrelines(const CaseResult& result) const {
+    for (std::size_t i = 0; i < 2; ++i)
+      write(fmt::format("elastica_{}.csv", i),
+            centreline_csv(result.mechanics[0].result.steps[i].deformation->centreline));
+  }
+  /// B of elastica/volume plus a background, as a bench would log it, in µT.
+  void write_readings(const FieldRun& fields, const Vector3& background, bool undeformed) const {
+    std::string csv = "step,sensor,Bx [uT],By [uT],Bz [uT]\n";
+    const auto add = [&](const std::string& step, const FieldStep& values) {
+      for (std::size_t s = 0; s < 2; ++s) {
+        const Vector3 B = 1e6 * (*values.B[s] + background);
+        csv += fmt::format("{},{},{},{},{}\n", step, s, B.x(), B.y(), B.z());
+      }
+    };
+    if (undeformed) add("undeformed", fields.undeformed);
+    for (std::size_t i = 0; i < 2; ++i) add(std::to_string(i), *fields.steps[i]);
+    write("readings.csv", csv);
+  }
+
+  const fs::path folder_ =
+      fs::path(testing::TempDir()) / ("external_run_" + std::to_string(getpid()));
+};
+
+/// The largest relative error of a model against a reference.
+double largest(const CaseResult& result, const std::string& model, const std::string& reference,
+               const std::string& quantity) {
+  double value = 0;
+  int count = 0;
+  for (const Comparison& c : compare_models(result))
+    if (c.model == model && c.reference == reference && c.quantity == quantity && c.relative &&
+        c.statistic != "rrmse" && c.statistic != "r2") {
+      value = std::max(value, std::abs(*c.relative));
+      ++count;
+    }
+  EXPECT_GT(count, 0) << model << ' ' << reference << ' ' << quantity;
+  return value;
+}
+
+constexpr const char* shapes = R"toml(
+[[models.external]]
+name = "copy"
+centrelines = ["elastica_0.csv", "elastica_1.csv"]
+)toml";
+
+// Oracle: the elastica itself. Its centreline at 201 points and more comes back to the
+// interpolation between them: 3.0e-9 of the tip's deflection, at the contact point, where the
+// curvature has a kink that the file does not tell (h³ Δκ'/20 = 2e-11 m for h = 0.1 mm). B, that
+// the ends of the magnet decide, comes back to rounding.
+TEST_F(ExternalRun, ACentrelineComesBackAndCarriesTheFieldModels) {
+  write_centrelines(run_case(""));
+  const CaseResult result = run_case(shapes);
+  ASSERT_EQ(result.mechanics.size(), 2U);
+  EXPECT_EQ(result.mechanics[1].model, "copy");
+  EXPECT_DOUBLE_EQ(result.mechanics[1].result.steps[1].applied_force, 4e-3);
+  for (const char* quantity : {"tip", "tip_angle"})
+    EXPECT_LT(largest(result, "elastica", "copy", quantity), 1e-13) << quantity;
+  EXPECT_LT(largest(result, "elastica", "copy", "centreline"), 1e-8);
+  for (const char* field : {"line", "volume"})
+    for (const char* quantity : {"B", "dB"})
+      EXPECT_LT(
+          largest(result, std::string("elastica/") + field, std::string("copy/") + field, quantity),
+          1e-11)
+          << field << ' ' << quantity;
+  for (const Comparison& c : compare_models(result))
+    if (c.statistic == "r2") {
+      EXPECT_NEAR(c.r2.value_or(0), 1, 1e-12);
+    }
+}
+
+// Oracle: the elastica. Without theta and S they are made from the points: by chords and tangents.
+TEST_F(ExternalRun, PointsAloneAreEnough) {
+  const CaseResult own = run_case("");
+  for (std::size_t i = 0; i < 2; ++i) {
+    std::string csv = "x [mm],y [mm],z [mm]\n";
+    const Centreline& line = own.mechanics[0].result.steps[i].deformation->centreline;
+    for (int k = 0; k <= 100; ++k) {
+      const Vector3 r = 1e3 * line.at(line.length() * k / 100).position;
+      csv += fmt::format("{},{},{}\n", r.x(), r.y(), r.z());
+    }
+    write(fmt::format("elastica_{}.csv", i), csv);
+  }
+  const CaseResult result = run_case(shapes);
+  EXPECT_THAT(result.mechanics[1].result.steps[0].message, HasSubstr("length along the points"));
+  EXPECT_LT(largest(result, "elastica", "copy", "tip"), 1e-13);
+  EXPECT_LT(largest(result, "elastica", "copy", "tip_angle"), 1e-3);
+  EXPECT_LT(largest(result, "elastica", "copy", "centreline"), 1e-3);
+  EXPECT_LT(largest(result, "elastica/volume", "copy/volume", "dB"), 5e-3);
+}
+
+constexpr const char* bench = R"toml(
+[[models.external]]
+name = "bench"
+readings = "readings.csv"
+field_uncertainty = "0.1 uT"
+)toml";
+
+// Oracle: elastica/volume itself: its B, logged in µT to 17 digits, and a planted background that
+// is taken off again to rounding, 1e-16 of 2.4 mT or 5e-12 of ΔB.
+TEST_F(ExternalRun, ReadingsComeBackAndAPlantedBackgroundIsRemoved) {
+  const CaseResult own = run_case("");
+  const FieldRun& volume = own.fields[1];
+  ASSERT_EQ(volume.name(), "elastica/volume");
+  write_readings(volume, Vector3::Zero(), true);
+  const CaseResult plain = run_case(bench);
+  ASSERT_EQ(plain.mechanics.size(), 1U);
+  ASSERT_EQ(plain.fields.size(), 3U);
+  EXPECT_EQ(plain.fields[2].name(), "bench/readings");
+  EXPECT_LT(largest(plain, "elastica/volume", "bench/readings", "B"), 1e-14);
+  EXPECT_LT(largest(plain, "elastica/volume", "bench/readings", "dB"), 1e-11);
+
+  write_readings(volume, (earth_0 + earth_60) / 2, true);
+  EXPECT_GT(largest(run_case(bench), "elastica/volume", "bench/readings", "B"), 1e-2);
+  std::string csv = "azimuth [deg],Bx [milligauss],By [milligauss],Bz [milligauss]\n";
+  for (const auto& [azimuth, B] : {std::pair{60, earth_60}, std::pair{0, earth_0}})
+    csv += fmt::format("{},{},{},{}\n", azimuth, 1e7 * B.x(), 1e7 * B.y(), 1e7 * B.z());
+  write("earth.csv", csv);
+  const CaseResult cleaned = run_case(std::string(bench) + "background = \"earth.csv\"\n");
+  EXPECT_LT(largest(cleaned, "elastica/volume", "bench/readings", "B"), 1e-14);
+  EXPECT_LT(largest(cleaned, "elastica/volume", "bench/readings", "dB"), 1e-11);
+}
+
+// A bench that took its offset off knows ΔB alone.
+TEST_F(ExternalRun, AChangeAloneIsComparedAsAChange) {
+  const CaseResult own = run_case("");
+  std::string csv = "step,sensor,dBx [T],dBy [T],dBz [T]\n";
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t s = 0; s < 2; ++s) {
+      const Vector3& dB = *own.fields[0].steps[i]->dB[s];
+      csv += fmt::format("{},{},{},{},{}\n", i, s, dB.x(), dB.y(), dB.z());
+    }
+  write("readings.csv", csv);
+  const CaseResult result = run_case(bench);
+  EXPECT_EQ(largest(result, "elastica/line", "bench/readings", "dB"), 0);
+  EXPECT_GT(largest(result, "elastica/volume", "bench/readings", "dB"), 0.03);
+  const auto comparisons = compare_models(result);
+  for (const Comparison& c : comparisons)
+    if (c.reference == "bench/readings") {
+      EXPECT_EQ(c.quantity, "dB");
+    }
+  EXPECT_THAT(table(result, comparisons), HasSubstr("bench/readings"));
+  const std::string json = summary_json(result, comparisons, {});
+  EXPECT_THAT(json, HasSubstr("\"bench/readings\""));
+}
+
+// A reading has its own uncertainty, and no deformation's: with a model that has one too, a
+// verdict.
+TEST_F(ExternalRun, UncertaintiesOfReadingsReachTheVerdicts) {
+  const CaseResult own = run_case("");
+  write_centrelines(own);
+  write_readings(own.fields[1], Vector3::Zero(), false);
+  std::string both = shapes;
+  both += "tip_uncertainty = \"0 um\"\nreadings = \"readings.csv\"\nfield_uncertainty = \"2 uT\"\n";
+  const CaseResult result = run_case(both);
+  ASSERT_EQ(result.fields.back().name(), "copy/readings");
+  EXPECT_FALSE(result.fields.back().steps[0]->dB[0].has_value());
+  int count = 0;
+  for (const Comparison& c : compare_models(result)) {
+    if (c.reference != "copy/readings" || c.statistic != "value") continue;
+    EXPECT_EQ(c.quantity, "B");
+    const bool model_known = c.model == "copy/volume";
+    if (!model_known) continue;
+    ++count;
+    ASSERT_TRUE(c.uncertainty.has_value());
+    EXPECT_NEAR(*c.uncertainty, 2e-6, 1e-9);
+    EXPECT_EQ(c.verdict, Verdict::below_uncertainty);
+  }
+  EXPECT_EQ(count, 2 * 2 * 3);
+}
+
+}  // namespace
+}  // namespace ciliaval::compare
