@@ -15,7 +15,7 @@ enum class ExitCode {
   usage = 2,         ///< the command line or a case file cannot be used
   solver = 3,        ///< a model did not converge; the results of the others are written
   input_output = 4,  ///< a file could not be read or written
-  undecided = 5      ///< `check`, `converge`: there was nothing to compare or refine
+  undecided = 5      ///< `check`, `converge`, `budget`: nothing could be compared, refined, judged
 };
 
 struct RunOptions {

@@ -255,6 +255,11 @@ std::string_view to_string(Verdict verdict) {
   return "inconclusive";
 }
 
+std::optional<double> tip_angle_uncertainty(const MechanicsRun& run, std::size_t step) {
+  const std::optional<Shape> shape = shape_of(run, step);
+  return shape ? angle_uncertainty(*shape) : std::nullopt;
+}
+
 std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& mechanics,
                                       std::size_t step, std::size_t sensor, bool change) {
   if (!run.steps[step]) return std::nullopt;

@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "compare/budget_command.h"
 #include "compare/check_command.h"
 #include "compare/commands.h"
 #include "compare/converge_command.h"
@@ -35,6 +36,7 @@ Examples:
   ciliaval run my.toml                   results in results/<case name>
   ciliaval check                         are the results of all shipped cases as accepted?
   ciliaval converge my.toml              how far are the results from the converged ones?
+  ciliaval budget my.toml                what does each assumption of the paper's model cost?
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
@@ -48,7 +50,7 @@ docs/meshes.md.
 
 Exit codes: 0 done, 1 `check`: a result is not as accepted, 2 wrong usage or case file, 3 a model
 did not converge (the results of the others are written), 4 a file could not be read or written,
-5 `check`, `converge`: there was nothing to compare or refine.)";
+5 `check`, `converge`, `budget`: nothing could be compared, refined or judged.)";
 
 /// A word as a POSIX shell reads it back: in single quotes if it holds anything special.
 std::string shell_word(std::string_view word) {
@@ -173,6 +175,30 @@ ExitCode execute(int argc, char** argv) {
           "--plot", converge_options.plot,
           "Plot the errors over the levels' sizes, with the fitted orders; SVG, by gnuplot")
       ->type_name("FILE.svg");
+  CLI::App* budget = app.add_subcommand(
+      "budget",
+      "Error budget: split what lies between the paper's model and the best one into the parts of\n"
+      "its assumptions, each with its numerical uncertainty, for tip, B, dB and dB/dF.");
+  std::filesystem::path budget_file;
+  ciliaval::compare::BudgetOptions budget_options;
+  budget->add_option("CASE", budget_file, "Case file (TOML); its lists of models do not matter")
+      ->required()
+      ->check(CLI::ExistingFile);
+  budget
+      ->add_option(
+          "--without", budget_options.without,
+          "Leave out beam, solid, volume, mesh, potential, dipole or sensitivity (dB/dF);\n"
+          "may be repeated. Without solid and potential it takes a second.")
+      ->type_name("MODEL")
+      ->expected(1)
+      ->take_all();
+  budget->add_option("--json", budget_options.json, "Write the budget as JSON too")
+      ->type_name("FILE");
+  budget->add_option("--csv", budget_options.csv, "Write the budget as CSV too")->type_name("FILE");
+  budget
+      ->add_option("--plot", budget_options.plot,
+                   "Plot tip and dB of the last step as a waterfall; SVG, by gnuplot")
+      ->type_name("FILE.svg");
   const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
 
   check_command(app, argc, argv);
@@ -189,6 +215,8 @@ ExitCode execute(int argc, char** argv) {
     return ciliaval::compare::check_cases(files, check_options);
   else if (converge->parsed())
     return ciliaval::compare::converge_case(converge_file, converge_options);
+  else if (budget->parsed())
+    return ciliaval::compare::budget_case(budget_file, budget_options);
   else if (mesh->parsed())
     ciliaval::compare::write_mesh(mesh_case, mesh_file, refinement, command_line(argc, argv));
   else

@@ -61,37 +61,6 @@ Checkpoint checkpoint_of(const std::string& id, const Checkpoint& checkpoints) {
   return result;
 }
 
-MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
-                           const Progress& progress, const Checkpoint& checkpoint) {
-  MechanicsRun run{id, {}};
-  std::string failure;
-  try {
-    Progress named;
-    if (progress) named = [&](const std::string& text) { progress(id + ": " + text); };
-    run.result = model.solve_from(problem.cilium, problem.load_path, checkpoint, named);
-    if (run.result.steps.size() != problem.load_path.size())
-      failure = "the model gave " + std::to_string(run.result.steps.size()) +
-                " steps for a path of " + std::to_string(problem.load_path.size());
-  } catch (const CheckpointError&) {
-    throw;
-  } catch (const RankFailure&) {
-    throw;
-  } catch (const std::exception& error) {
-    failure = error.what();
-  }
-  if (!failure.empty()) {
-    run.result = {};
-    for (const Load& load : problem.load_path) {
-      MechanicsStep step;
-      step.load = load;
-      fail(step, failure);
-      run.result.steps.push_back(std::move(step));
-    }
-  }
-  for (MechanicsStep& step : run.result.steps) check(step);
-  return run;
-}
-
 /// B and its uncertainty at some of the sensors; throws if they are not as many or not finite.
 Field checked_field(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
                     std::span<const Vector3> points) {
@@ -236,6 +205,44 @@ FieldRun external_fields(const ExternalModel& model, std::size_t sensors) {
   return run;
 }
 
+}  // namespace
+
+bool FieldStep::any() const {
+  const auto there = [](const std::optional<Vector3>& value) { return value.has_value(); };
+  return std::any_of(B.begin(), B.end(), there) || std::any_of(dB.begin(), dB.end(), there);
+}
+
+MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
+                           const Progress& progress, const Checkpoint& checkpoint) {
+  MechanicsRun run{id, {}};
+  std::string failure;
+  try {
+    Progress named;
+    if (progress) named = [&](const std::string& text) { progress(id + ": " + text); };
+    run.result = model.solve_from(problem.cilium, problem.load_path, checkpoint, named);
+    if (run.result.steps.size() != problem.load_path.size())
+      failure = "the model gave " + std::to_string(run.result.steps.size()) +
+                " steps for a path of " + std::to_string(problem.load_path.size());
+  } catch (const CheckpointError&) {
+    throw;
+  } catch (const RankFailure&) {
+    throw;
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  if (!failure.empty()) {
+    run.result = {};
+    for (const Load& load : problem.load_path) {
+      MechanicsStep step;
+      step.load = load;
+      fail(step, failure);
+      run.result.steps.push_back(std::move(step));
+    }
+  }
+  for (MechanicsStep& step : run.result.steps) check(step);
+  return run;
+}
+
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
                    const Case& problem, const Progress& progress) {
   FieldRun run;
@@ -256,13 +263,6 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
     subtract(*run.steps.back(), run.undeformed);
   }
   return run;
-}
-
-}  // namespace
-
-bool FieldStep::any() const {
-  const auto there = [](const std::optional<Vector3>& value) { return value.has_value(); };
-  return std::any_of(B.begin(), B.end(), there) || std::any_of(dB.begin(), dB.end(), there);
 }
 
 CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,

@@ -72,6 +72,16 @@ CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress = {},
                const Checkpoint& checkpoints = {});
 
+/// A part of run(): one mechanics model, which goes by the name `id` in messages and in the result,
+/// along the load path of a case. Throws CheckpointError, RankFailure.
+MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
+                           const Progress& progress = {}, const Checkpoint& checkpoint = {});
+
+/// A part of run(): one field model at the sensors of a case, on the undeformed cilium and on every
+/// converged step of a mechanics run, whatever the load path of the case.
+FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
+                   const Case& problem, const Progress& progress = {});
+
 /// A mechanics model of a case that keeps a checkpoint, and the steps that it holds.
 struct Kept {
   std::string model;  ///< id

@@ -1,0 +1,425 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/budget/budget.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "compare/budget/sensitivity.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+const std::array<std::string, 3> axis_names{"x", "y", "z"};
+
+template <class Entry>
+const Entry& entry_of(std::span<const Entry> entries, const std::string& id) {
+  const auto it =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; });
+  if (it == entries.end()) throw InputError("the error budget needs the model `" + id + "`");
+  return *it;
+}
+
+/// The fields of one station, and where the steps of the case are among them.
+struct StationFields {
+  const Station* station;
+  const MechanicsRun* mechanics;
+  const std::vector<std::size_t>* place;
+  FieldRun run;
+
+  std::optional<FieldValue> value(std::size_t step, std::size_t sensor, bool change) const {
+    if (run.steps.empty()) return std::nullopt;
+    return field_value(run, *mechanics, (*place)[step], sensor, change);
+  }
+};
+
+/// Everything that was computed.
+struct Computed {
+  SurroundedPath path;
+  std::vector<std::size_t> steps;              ///< 0, 1, …: the places in `alone`
+  std::map<std::string, MechanicsRun> around;  ///< by id, on the surrounded path
+  std::map<std::string, MechanicsRun> alone;   ///< the steps of the case only
+  std::vector<StationFields> chain;            ///< in the order of the stations
+  std::optional<StationFields> beside;
+};
+
+MechanicsRun steps_of(const MechanicsRun& run, const std::vector<std::size_t>& places) {
+  MechanicsRun result{run.model, {run.result.undeformed, {}}};
+  for (const std::size_t place : places) result.result.steps.push_back(run.result.steps[place]);
+  return result;
+}
+
+StationFields compute_fields(const Station& station, const Case& problem,
+                             std::span<const FieldEntry> entries, const Computed& computed,
+                             const Progress& progress) {
+  ModelOptions options = problem.options;
+  station.set(options);
+  const auto model = entry_of(entries, station.field).make(options);
+  const MechanicsRun& mechanics =
+      (station.sensitivity ? computed.around : computed.alone).at(station.mechanics);
+  StationFields result{
+      &station, &mechanics, station.sensitivity ? &computed.path.step : &computed.steps, {}};
+  if (!mechanics.result.undeformed.centreline.pieces().empty() &&
+      (!model->needs_body() || mechanics.result.undeformed.body))
+    result.run = run_field(station.field_name(), *model, mechanics, problem, progress);
+  return result;
+}
+
+void compute(const Case& problem, std::span<const MechanicsEntry> mechanics,
+             std::span<const FieldEntry> fields, const Chain& chain, const Progress& progress,
+             Computed& computed) {
+  const bool any = std::any_of(chain.stations.begin(), chain.stations.end(),
+                               [](const Station& station) { return station.sensitivity; });
+  computed.path = surround(problem.load_path, any && !problem.sensors.empty());
+  Case surrounded = problem;
+  surrounded.load_path = computed.path.loads;
+  for (std::size_t i = 0; i < problem.load_path.size(); ++i) computed.steps.push_back(i);
+  for (const std::string& id : chain.mechanics) {
+    if (progress) progress(id + ": starting");
+    const auto model = entry_of(mechanics, id).make(problem.options);
+    const MechanicsRun& run =
+        computed.around.emplace(id, run_mechanics(id, *model, surrounded, progress)).first->second;
+    computed.alone.emplace(id, steps_of(run, computed.path.step));
+  }
+  if (problem.sensors.empty()) return;
+  for (const Station& station : chain.stations)
+    computed.chain.push_back(compute_fields(station, problem, fields, computed, progress));
+  if (chain.beside)
+    computed.beside = compute_fields(*chain.beside, problem, fields, computed, progress);
+}
+
+// ------------------------------------------------------------------------------------------- rows
+
+/// A number of all stations of a chain, with the uncertainty of each difference.
+struct Numbers {
+  std::vector<std::string> names;             ///< of the stations
+  std::vector<std::optional<double>> values;  ///< none where a station has no value
+  std::function<std::optional<double>(std::size_t, std::size_t)> uncertainty;
+  std::function<std::string(std::size_t, std::size_t)> physics;
+};
+
+BudgetLink make_link(const Numbers& numbers, std::size_t from, std::size_t to) {
+  BudgetLink link{numbers.names[from], numbers.names[to], numbers.physics(from, to),
+                  *numbers.values[to] - *numbers.values[from], numbers.uncertainty(from, to)};
+  if (link.uncertainty && !std::isfinite(*link.uncertainty)) link.uncertainty.reset();
+  if (link.uncertainty)
+    link.verdict =
+        std::abs(link.value) > *link.uncertainty ? Verdict::resolved : Verdict::below_uncertainty;
+  return link;
+}
+
+/// Fills in the links; false if there is no link, or no value of the paper's model.
+bool fill(BudgetRow& row, const Numbers& numbers) {
+  if (numbers.values.empty() || !numbers.values.front()) return false;
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < numbers.values.size(); ++i) {
+    if (!numbers.values[i]) continue;
+    row.links.push_back(make_link(numbers, last, i));
+    last = i;
+  }
+  if (last == 0) return false;
+  row.paper = *numbers.values.front();
+  row.best = *numbers.values[last];
+  row.total = make_link(numbers, 0, last);
+  return true;
+}
+
+/// Tip and tip angle of the mechanics models in a row.
+class MechanicsRows {
+ public:
+  MechanicsRows(const Chain& chain, const Computed& computed) : chain_(chain) {
+    for (const std::string& id : chain.mechanics) runs_.push_back(&computed.alone.at(id));
+  }
+
+  void add(std::size_t step, std::vector<BudgetRow>& rows) const {
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      add(
+          step, "tip", axis_names[static_cast<std::size_t>(axis)], "m",
+          [axis](const CentrelinePoint& tip) { return tip.position[axis]; },
+          [step](const MechanicsRun& run) { return run.result.steps[step].tip_uncertainty; }, rows);
+    add(
+        step, "tip_angle", "", "rad", [](const CentrelinePoint& tip) { return tip.theta(); },
+        [step](const MechanicsRun& run) { return tip_angle_uncertainty(run, step); }, rows);
+  }
+
+ private:
+  void add(std::size_t step, const char* quantity, const std::string& component, const char* unit,
+           const std::function<double(const CentrelinePoint&)>& value,
+           const std::function<std::optional<double>(const MechanicsRun&)>& uncertainty,
+           std::vector<BudgetRow>& rows) const {
+    Numbers numbers{chain_.mechanics, {}, {}, {}};
+    for (const MechanicsRun* run : runs_) {
+      const Centreline& centreline = run->result.steps[step].deformation->centreline;
+      numbers.values.emplace_back(value(centreline.at(centreline.length())));
+    }
+    numbers.uncertainty = [&](std::size_t a, std::size_t b) -> std::optional<double> {
+      const auto ua = uncertainty(*runs_[a]);
+      const auto ub = uncertainty(*runs_[b]);
+      if (!ua || !ub) return std::nullopt;
+      return std::abs(*ua) + std::abs(*ub);
+    };
+    // The first stations of the chain are the mechanics models, in their order.
+    numbers.physics = [&](std::size_t a, std::size_t b) { return chain_.physics(a, b); };
+    BudgetRow row;
+    row.step = step;
+    row.quantity = quantity;
+    row.component = component;
+    row.unit = unit;
+    if (fill(row, numbers)) rows.push_back(std::move(row));
+  }
+
+  const Chain& chain_;
+  std::vector<const MechanicsRun*> runs_;
+};
+
+/// One vector of a field at a sensor at one step by all stations.
+class FieldRows {
+ public:
+  FieldRows(const Chain& chain, const Computed& computed, std::size_t step, std::size_t sensor)
+      : chain_(chain), computed_(computed), step_(step), sensor_(sensor) {}
+
+  void add(std::vector<BudgetRow>& rows) const {
+    add_field("B", false, rows);
+    add_field("dB", true, rows);
+    add_sensitivity(rows);
+  }
+
+ private:
+  using Uncertainty =
+      std::function<std::optional<Vector3>(const StationFields&, const StationFields&)>;
+  using Value = std::function<std::optional<Vector3>(const StationFields&)>;
+
+  std::optional<Vector3> pair(const StationFields& a, const StationFields& b, bool change) const {
+    const auto va = a.value(step_, sensor_, change);
+    const auto vb = b.value(step_, sensor_, change);
+    if (!va || !vb) return std::nullopt;
+    return combined_uncertainty(*va, *vb, a.station->mechanics == b.station->mechanics);
+  }
+
+  void add_field(const char* quantity, bool change, std::vector<BudgetRow>& rows) const {
+    add(
+        quantity, "T",
+        [&](const StationFields& fields) -> std::optional<Vector3> {
+          const auto value = fields.value(step_, sensor_, change);
+          return value ? std::optional(value->value) : std::nullopt;
+        },
+        [&](const StationFields& a, const StationFields& b) { return pair(a, b, change); }, rows);
+  }
+
+  std::optional<Sensitivity> derivative(const StationFields& fields) const {
+    if (!fields.station->sensitivity) return std::nullopt;
+    return sensitivity(fields.run, computed_.path, step_, sensor_);
+  }
+
+  /// Truncation error of b − a, plus the uncertainty of b − a in ΔB times |dB/dF|/|ΔB| of b.
+  std::optional<Vector3> sensitivity_uncertainty(const StationFields& a,
+                                                 const StationFields& b) const {
+    const auto discretisation = pair(a, b, true);
+    const auto change = b.value(step_, sensor_, true);
+    if (!discretisation || !(change->value.norm() > 0)) return std::nullopt;
+    const Sensitivity da = *derivative(a);
+    const Sensitivity db = *derivative(b);
+    const Vector3 truncation = ((db.value - da.value) - (db.plain - da.plain)).cwiseAbs();
+    return truncation + *discretisation * (db.value.norm() / change->value.norm());
+  }
+
+  void add_sensitivity(std::vector<BudgetRow>& rows) const {
+    const std::string_view unit = magnitude_unit(computed_.path.loads.front());
+    add(
+        "sensitivity", unit == "N/m" ? "T/(N/m)" : fmt::format("T/{}", unit),
+        [&](const StationFields& fields) -> std::optional<Vector3> {
+          const auto value = derivative(fields);
+          return value ? std::optional(value->value) : std::nullopt;
+        },
+        [&](const StationFields& a, const StationFields& b) {
+          return sensitivity_uncertainty(a, b);
+        },
+        rows);
+  }
+
+  void add(const char* quantity, const std::string& unit, const Value& value,
+           const Uncertainty& uncertainty, std::vector<BudgetRow>& rows) const {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const auto component = [axis](const std::optional<Vector3>& v) {
+        return v ? std::optional((*v)[axis]) : std::nullopt;
+      };
+      Numbers numbers;
+      for (const StationFields& fields : computed_.chain) {
+        numbers.names.push_back(fields.station->name());
+        numbers.values.push_back(component(value(fields)));
+      }
+      numbers.uncertainty = [&](std::size_t a, std::size_t b) {
+        return component(uncertainty(computed_.chain[a], computed_.chain[b]));
+      };
+      numbers.physics = [&](std::size_t a, std::size_t b) { return chain_.physics(a, b); };
+      BudgetRow row;
+      row.step = step_;
+      row.sensor = sensor_;
+      row.quantity = quantity;
+      row.component = axis_names[static_cast<std::size_t>(axis)];
+      row.unit = unit;
+      if (!fill(row, numbers)) continue;
+      if (computed_.beside) {
+        const StationFields& paper = computed_.chain.front();
+        const StationFields& beside = *computed_.beside;
+        Numbers two{{paper.station->name(), beside.station->name()},
+                    {numbers.values.front(), component(value(beside))},
+                    [&](std::size_t, std::size_t) { return component(uncertainty(paper, beside)); },
+                    [&](std::size_t, std::size_t) { return beside.station->physics; }};
+        if (two.values.back()) row.beside = make_link(two, 0, 1);
+      }
+      rows.push_back(std::move(row));
+    }
+  }
+
+  const Chain& chain_;
+  const Computed& computed_;
+  std::size_t step_;
+  std::size_t sensor_;
+};
+
+// ---------------------------------------------------------------------------------------- remarks
+
+std::string_view outcome(Status status) {
+  return status == Status::slipped_off ? "slipped off" : "failed";
+}
+
+/// Whether all mechanics models bear a step; says which do not.
+bool borne(const Computed& computed, const Chain& chain, std::size_t step, Budget& budget) {
+  bool all = true;
+  for (const std::string& id : chain.mechanics) {
+    const MechanicsStep& result = computed.alone.at(id).result.steps[step];
+    if (result.status == Status::converged) continue;
+    all = false;
+    budget.failed = budget.failed || result.status == Status::failed;
+    budget.remarks.push_back(fmt::format("step {}: no budget: {} {}{}{}", step + 1, id,
+                                         outcome(result.status), result.message.empty() ? "" : ": ",
+                                         result.message));
+  }
+  return all;
+}
+
+/// Says which neighbours of a step are missing, and so its dB/dF.
+void remark_neighbours(const Computed& computed, const Chain& chain, std::size_t step,
+                       Budget& budget) {
+  if (!computed.path.around[step]) {
+    if (magnitude(budget.load_path[step]) == 0)
+      budget.remarks.push_back(fmt::format("step {}: no dB/dF at a load of zero", step + 1));
+    return;
+  }
+  for (const std::string& id : chain.mechanics)
+    for (const std::size_t place : *computed.path.around[step]) {
+      const MechanicsStep& result = computed.around.at(id).result.steps[place];
+      if (result.status == Status::converged) continue;
+      budget.failed = budget.failed || result.status == Status::failed;
+      budget.remarks.push_back(
+          fmt::format("step {}: dB/dF is not known by all models: {} {} at {:g} of the load",
+                      step + 1, id, outcome(result.status),
+                      magnitude(computed.path.loads[place]) / magnitude(budget.load_path[step])));
+      break;
+    }
+}
+
+void remark_failures(const StationFields& fields, Budget& budget) {
+  std::vector<std::string> messages;
+  const auto add = [&](const FieldStep& step) {
+    if (!step.failure.empty() &&
+        std::find(messages.begin(), messages.end(), step.failure) == messages.end())
+      messages.push_back(step.failure);
+  };
+  if (fields.run.undeformed.B.empty()) return;  // its mechanics gave nothing, which is said
+  add(fields.run.undeformed);
+  for (const auto& step : fields.run.steps)
+    if (step) add(*step);
+  for (const std::string& message : messages) {
+    budget.failed = true;
+    budget.remarks.push_back(fmt::format("{}: {}", fields.run.name(), message));
+  }
+}
+
+/// dB/dF may end before the chain does.
+void remark_sensitivity(const Chain& chain, const Computed& computed, Budget& budget) {
+  if (computed.chain.empty() || !chain.stations.front().sensitivity) return;
+  const auto end = std::find_if(chain.stations.begin(), chain.stations.end(),
+                                [](const Station& station) { return !station.sensitivity; });
+  if (end != chain.stations.end())
+    budget.remarks.push_back(
+        fmt::format("dB/dF ends at {}: the numerical error of {} is too large for differences",
+                    std::prev(end)->name(), end->field));
+}
+
+}  // namespace
+
+bool Budget::decided() const {
+  return std::any_of(rows.begin(), rows.end(), [](const BudgetRow& row) {
+    return std::any_of(row.links.begin(), row.links.end(), [](const BudgetLink& link) {
+      return link.verdict != Verdict::inconclusive;
+    });
+  });
+}
+
+Budget error_budget(const Case& problem, std::span<const MechanicsEntry> mechanics,
+                    std::span<const FieldEntry> fields, const std::vector<std::string>& without,
+                    const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Budget budget;
+  budget.case_name = problem.name;
+  budget.load_path = problem.load_path;
+  budget.chain = make_chain(problem, without);
+  const Chain& chain = budget.chain;
+  Computed computed;
+  compute(problem, mechanics, fields, chain, progress, computed);
+  const MechanicsRows mechanics_rows(chain, computed);
+  for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
+    if (!borne(computed, chain, step, budget)) continue;
+    mechanics_rows.add(step, budget.rows);
+    if (chain.stations.front().sensitivity && !problem.sensors.empty())
+      remark_neighbours(computed, chain, step, budget);
+    if (computed.chain.empty()) continue;
+    for (std::size_t sensor = 0; sensor < problem.sensors.size(); ++sensor)
+      FieldRows(chain, computed, step, sensor).add(budget.rows);
+  }
+  for (const StationFields& station : computed.chain) remark_failures(station, budget);
+  if (computed.beside) remark_failures(*computed.beside, budget);
+  remark_sensitivity(chain, computed, budget);
+  budget.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return budget;
+}
+
+std::string fault(const BudgetRow& row) {
+  const std::string place = fmt::format("step {}, {}{}{}", row.step + 1, row.quantity,
+                                        row.component.empty() ? "" : " ", row.component);
+  if (row.links.empty()) return place + ": there are no links";
+  double sum = 0;
+  double size = std::abs(row.paper) + std::abs(row.best);
+  std::string at = row.total.from;
+  for (const BudgetLink& link : row.links) {
+    if (link.from != at)
+      return fmt::format("{}: the link to {} begins at {}, not at {}", place, link.to, link.from,
+                         at);
+    at = link.to;
+    sum += link.value;
+    size += std::abs(link.value);
+  }
+  if (at != row.total.to)
+    return fmt::format("{}: the links end at {}, not at {}", place, at, row.total.to);
+  // Each difference and each sum rounds by half an ε of numbers no larger than `size`.
+  const double rounding =
+      static_cast<double>(row.links.size() + 1) * std::numeric_limits<double>::epsilon() * size;
+  const double difference = row.best - row.paper;
+  for (const double total : {sum, row.total.value})
+    if (!(std::abs(total - difference) <= rounding))
+      return fmt::format("{}: the links add up to {}, the total is {}, and the models differ by {}",
+                         place, sum, row.total.value, difference);
+  return {};
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/budget/chain.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "problem/error.h"
+#include "problem/words.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using Set = std::function<void(ModelOptions&)>;
+
+void require_words(const std::vector<std::string>& without) {
+  const std::vector<std::string>& words = words_to_leave_out();
+  const std::vector<std::string_view> views(words.begin(), words.end());
+  for (const std::string& word : without) {
+    if (word == "elastica" || word == "line")
+      throw InputError(fmt::format(
+          "--without {0}: {0} is the paper's model, which the budget begins with", word));
+    if (std::find(words.begin(), words.end(), word) == words.end())
+      throw InputError(
+          fmt::format("--without {}: there is nothing of that name to leave out{}; "
+                      "there are {}",
+                      word, did_you_mean(word, views), fmt::join(words, ", ")));
+  }
+}
+
+void set_line(ModelOptions& options) {
+  options.line.push_forward = analytic::PushForward::F;
+}
+
+Set set_slices(analytic::VolumeOptions::Slices slices) {
+  return [slices](ModelOptions& options) { options.volume.slices = slices; };
+}
+
+Set set_mesh(analytic::PushForward push_forward) {
+  return [push_forward](ModelOptions& options) { options.mesh.push_forward = push_forward; };
+}
+
+Set set_potential(double relative_permeability, bool plates) {
+  return [=](ModelOptions& options) {
+    options.potential.push_forward = fem::MagnetPushForward::F;
+    options.potential.relative_permeability = relative_permeability;
+    if (!plates) options.potential.plates.clear();
+  };
+}
+
+/// The mechanics, with dipoles along the centreline.
+std::vector<Station> mechanics_stations() {
+  return {
+      {"elastica", "line", "", set_line, ""},
+      {"beam", "line", "", set_line, "shear and extension of the rod"},
+      {"solid", "line", "", set_line,
+       "three dimensions: bonded ends, near-incompressibility, a contact of some width"},
+  };
+}
+
+/// The fields on the best mechanics.
+std::vector<Station> field_stations(const Case& problem, const std::string& mechanics) {
+  using Slices = analytic::VolumeOptions::Slices;
+  std::vector<Station> stations{
+      {mechanics, "volume", "stacked", set_slices(Slices::stacked),
+       "the magnet's thickness, in flat slices (Eq. 8-9)"},
+      {mechanics, "volume", "wedge", set_slices(Slices::wedge),
+       "wedges in place of flat slices: Jacobian 1 - kappa*offset"},
+      {mechanics, "mesh", "R", set_mesh(analytic::PushForward::R),
+       "the solid's own sections, warped and stretched, with rotated moments"},
+      {mechanics, "mesh", "F", set_mesh(analytic::PushForward::F),
+       "moments carried along by F, in place of the rotation R"},
+      {mechanics, "potential", "mu_r = 1", set_potential(1, false),
+       "the same physics by another method: a potential by finite elements", false}};
+  const fem::PotentialOptions& potential = problem.options.potential;
+  const std::string permeability = fmt::format("mu_r = {:g}", potential.relative_permeability);
+  if (potential.relative_permeability != 1)
+    stations.push_back({mechanics, "potential", permeability,
+                        set_potential(potential.relative_permeability, false),
+                        "recoil permeability of the magnet", false});
+  if (!potential.plates.empty())
+    stations.push_back({mechanics, "potential", permeability + ", plates",
+                        set_potential(potential.relative_permeability, true), "permeable plates",
+                        false});
+  return stations;
+}
+
+}  // namespace
+
+const std::vector<std::string>& words_to_leave_out() {
+  static const std::vector<std::string> words{"beam",      "solid",  "volume",     "mesh",
+                                              "potential", "dipole", "sensitivity"};
+  return words;
+}
+
+std::string Chain::physics(std::size_t from, std::size_t to) const {
+  std::vector<std::string> words;
+  for (std::size_t i = from + 1; i <= to; ++i) words.push_back(stations[i].physics);
+  return fmt::format("{}", fmt::join(words, "; "));
+}
+
+Chain make_chain(const Case& problem, const std::vector<std::string>& without) {
+  require_words(without);
+  const auto is_left_out = [&](const std::string& word) {
+    return std::find(without.begin(), without.end(), word) != without.end();
+  };
+  Chain chain;
+  const auto add = [&](const Station& station, const std::string& missing) {
+    if (missing.empty())
+      chain.stations.push_back(station);
+    else
+      chain.not_run.push_back(fmt::format("{}: without {}", station.name(), missing));
+  };
+  for (const Station& station : mechanics_stations()) {
+    add(station, is_left_out(station.mechanics) ? station.mechanics : "");
+    if (!is_left_out(station.mechanics)) chain.mechanics.push_back(station.mechanics);
+  }
+  const std::string best = chain.mechanics.back();
+  for (Station& station : field_stations(problem, best)) {
+    std::string missing;
+    if (is_left_out(station.field))
+      missing = station.field;
+    else if (station.field == "mesh" && best != "solid")
+      missing = "solid";
+    if (is_left_out("sensitivity")) station.sensitivity = false;
+    add(station, missing);
+  }
+  if (is_left_out("sensitivity"))
+    for (Station& station : chain.stations) station.sensitivity = false;
+  Station dipole{"elastica",
+                 "dipole",
+                 "",
+                 [](ModelOptions&) {},
+                 "the whole magnet as one dipole at its centroid",
+                 !is_left_out("sensitivity")};
+  if (is_left_out("dipole"))
+    chain.not_run.push_back("elastica/dipole: without dipole");
+  else
+    chain.beside = std::move(dipole);
+  return chain;
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/case.h"
+
+namespace ciliaval::compare {
+
+/// A pair of models on the way from the paper's to the best one.
+struct Station {
+  std::string mechanics;                   ///< id
+  std::string field;                       ///< id
+  std::string variant;                     ///< of the field model: "stacked"; empty if it has none
+  std::function<void(ModelOptions&)> set;  ///< makes the variant
+  std::string physics;                     ///< what changes from the station before to this one
+  bool sensitivity = true;                 ///< whether dB/dF is computed here
+
+  std::string field_name() const { return variant.empty() ? field : field + ' ' + variant; }
+  std::string name() const { return mechanics + '/' + field_name(); }
+};
+
+/// The stations; from one to the next a single assumption changes.
+struct Chain {
+  std::vector<Station> stations;       ///< elastica/line, the paper's, first
+  std::optional<Station> beside;       ///< elastica/dipole: a model of its own, not on the way
+  std::vector<std::string> mechanics;  ///< ids, in the order in which they come
+  std::vector<std::string> not_run;    ///< what was asked to be left out, and what that takes along
+
+  /// What the links from one station to a later one change.
+  std::string physics(std::size_t from, std::size_t to) const;
+};
+
+/// elastica/line → beam/line → solid/line → solid/volume stacked → solid/volume wedge → solid/mesh
+/// R → solid/mesh F → solid/potential mu_r = 1 → the same with the case's μ_r, if it is another →
+/// with the case's plates, if it has any. The options are the case's but for those named; line and
+/// potential push forward by F. `without` names models to leave out: beam, solid (its fields then
+/// go with the beam, and mesh with it is left out), volume, mesh, potential, dipole. Throws
+/// InputError if one is not one of these.
+Chain make_chain(const Case& problem, const std::vector<std::string>& without);
+
+/// The words that `without` may have; "sensitivity" leaves out dB/dF.
+const std::vector<std::string>& words_to_leave_out();
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/budget/budget.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../run/synthetic.h"
+#include "compare/budget/report.h"
+#include "compare/budget/sensitivity.h"
+#include "problem/error.h"
+#include "problem/lagrange.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double L = 20e-3;
+
+/// A world of known answers. Mechanics: a straight cilium tilted by a·F, with an a of each model.
+/// Fields: B = c·(tip position), with a c of each variant.
+struct World {
+  std::map<std::string, double> tilt{{"elastica", 20}, {"beam", 22}, {"solid", 17}};  // rad/N
+  std::map<std::string, std::optional<double>> tip_uncertainty{
+      {"elastica", 0}, {"beam", 1e-9}, {"solid", 2e-6}};              // m
+  std::optional<Vector3> uncertainty = Vector3(1e-12, 1e-12, 1e-12);  // T
+  double slip_off = 1;                                                // N
+  std::string fails;                                                  // mechanics
+
+  static double factor(const ModelOptions& o, const std::string& id) {  // T/m
+    if (id == "dipole") return 0.7e-2;
+    if (id == "volume")
+      return o.volume.slices == analytic::VolumeOptions::Slices::stacked ? 1.1e-2 : 1.12e-2;
+    if (id == "mesh") return o.mesh.push_forward == analytic::PushForward::R ? 1.15e-2 : 1.14e-2;
+    if (id == "potential")
+      return 1.14e-2 + 1e-2 * (o.potential.relative_permeability - 1) +
+             1e-3 * static_cast<double>(o.potential.plates.size());
+    return 1e-2;
+  }
+
+  MechanicsStep solve(const std::string& id, const Load& load) const {
+    if (magnitude(load) > slip_off || id == fails) {
+      MechanicsStep step;
+      step.load = load;
+      step.status = id == fails ? Status::failed : Status::slipped_off;
+      step.message = "as planned";
+      return step;
+    }
+    MechanicsStep step = test::converged(
+        load, test::tilted(L, 3e-3, Vector3::UnitX(), tilt.at(id) * magnitude(load)),
+        tip_uncertainty.at(id));
+    if (id == "solid")
+      step.deformation->body = std::make_shared<SolidBody>(test::BentBricks::body());
+    return step;
+  }
+
+  std::vector<MechanicsEntry> mechanics() const {
+    std::vector<MechanicsEntry> entries;
+    for (const std::string id : {"elastica", "beam", "solid"})
+      entries.push_back(
+          test::mechanics_entry(id, [*this, id](const Load& load) { return solve(id, load); }));
+    return entries;
+  }
+
+  std::vector<FieldEntry> fields() const {
+    std::vector<FieldEntry> entries;
+    for (const std::string id : {"dipole", "line", "volume", "mesh", "potential"})
+      entries.push_back({id, "", [*this, id](const ModelOptions& options) {
+                           const double c = factor(options, id);
+                           return std::make_unique<test::FormulaField>(
+                               [c](const Deformation& d, const Vector3&) -> Vector3 {
+                                 return c * d.centreline.at(L).position;
+                               },
+                               uncertainty, id == "mesh");
+                         }});
+    return entries;
+  }
+
+  Budget budget(const std::vector<double>& forces,
+                const std::vector<std::string>& without = {}) const {
+    return error_budget(test::paper_case(forces), mechanics(), fields(), without);
+  }
+};
+
+const BudgetRow& row_of(const Budget& budget, std::size_t step, const std::string& quantity,
+                        const std::string& component) {
+  for (const BudgetRow& row : budget.rows)
+    if (row.step == step && row.quantity == quantity && row.component == component) return row;
+  throw std::out_of_range(quantity + " " + component);
+}
+
+void expect_no_fault(const Budget& budget) {
+  for (const BudgetRow& row : budget.rows) EXPECT_EQ(fault(row), "");
+}
+
+std::vector<std::string> names(const std::vector<Station>& stations) {
+  std::vector<std::string> result;
+  for (const Station& station : stations) result.push_back(station.name());
+  return result;
+}
+
+// Oracle: the known factors and tilts.
+TEST(Budget, ALinkIsTheNextModelLessThePreviousOne) {
+  const double F = 2e-3;
+  const Budget budget = World{}.budget({F});
+  EXPECT_THAT(names(budget.chain.stations),
+              ElementsAre("elastica/line", "beam/line", "solid/line", "solid/volume stacked",
+                          "solid/volume wedge", "solid/mesh R", "solid/mesh F",
+                          "solid/potential mu_r = 1", "solid/potential mu_r = 1.05"));
+  EXPECT_FALSE(budget.failed);
+  expect_no_fault(budget);
+  const auto x = [&](double a) { return L * std::sin(a * F); };
+  const BudgetRow& dB = row_of(budget, 0, "dB", "x");
+  const std::vector<double> expected{1e-2 * (x(22) - x(20)),
+                                     1e-2 * (x(17) - x(22)),
+                                     0.1e-2 * x(17),
+                                     0.02e-2 * x(17),
+                                     0.03e-2 * x(17),
+                                     -0.01e-2 * x(17),
+                                     0,
+                                     0.05e-2 * x(17)};
+  ASSERT_EQ(dB.links.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(dB.links[i].value, expected[i], 1e-16) << i;
+    EXPECT_EQ(dB.links[i].from, budget.chain.stations[i].name());
+    EXPECT_EQ(dB.links[i].to, budget.chain.stations[i + 1].name());
+  }
+  EXPECT_NEAR(dB.paper, 1e-2 * x(20), 1e-16);
+  EXPECT_NEAR(dB.best, 1.19e-2 * x(17), 1e-16);
+  EXPECT_NEAR(dB.total.value, 1.19e-2 * x(17) - 1e-2 * x(20), 1e-16);
+  const BudgetRow& tip = row_of(budget, 0, "tip", "x");
+  ASSERT_EQ(tip.links.size(), 2U);
+  EXPECT_NEAR(tip.links[0].value, x(22) - x(20), 1e-16);
+  EXPECT_NEAR(tip.links[1].value, x(17) - x(22), 1e-16);
+  EXPECT_EQ(tip.links[1].to, "solid");
+  EXPECT_NEAR(row_of(budget, 0, "tip_angle", "").total.value, (17 - 20) * F, 1e-12);
+}
+
+TEST(Budget, TheDipoleStandsBesideTheSum) {
+  const Budget budget = World{}.budget({2e-3});
+  const BudgetRow& dB = row_of(budget, 0, "dB", "x");
+  ASSERT_TRUE(dB.beside);
+  EXPECT_EQ(dB.beside->to, "elastica/dipole");
+  EXPECT_NEAR(dB.beside->value, -0.3e-2 * L * std::sin(20 * 2e-3), 1e-16);
+  for (const BudgetLink& link : dB.links) EXPECT_THAT(link.to, Not(HasSubstr("dipole")));
+  EXPECT_FALSE(row_of(budget, 0, "tip", "x").beside);
+  EXPECT_FALSE(row_of(World{}.budget({2e-3}, {"dipole"}), 0, "dB", "x").beside);
+}
+
+TEST(Budget, AWrongLinkIsCaught) {
+  const Budget budget = World{}.budget({2e-3});
+  for (const BudgetRow& right : budget.rows)
+    for (std::size_t i = 0; i < right.links.size(); ++i) {
+      BudgetRow row = right;
+      row.links[i].value += 1e-30 + 1e-12 * (std::abs(row.paper) + std::abs(row.best));
+      EXPECT_THAT(fault(row), HasSubstr("add up"));
+      row = right;
+      row.links[i].to = "elastica/dipole";
+      EXPECT_NE(fault(row), "");
+      row = right;
+      row.links.erase(row.links.begin() + static_cast<std::ptrdiff_t>(i));
+      EXPECT_NE(fault(row), "");
+    }
+  BudgetRow row = budget.rows.front();
+  row.total.value *= 1 + 1e-12;
+  EXPECT_NE(fault(row), "");
+  row = budget.rows.front();
+  row.links[0].value = std::nan("");
+  EXPECT_NE(fault(row), "");
+  row.links.clear();
+  EXPECT_NE(fault(row), "");
+}
+
+// 1e-12 T of each field model; ΔB has twice that, and a pair the sum of both.
+TEST(Budget, ModelsOnOneDeformationHaveTheFieldsUncertaintiesOnly) {
+  const Budget budget = World{}.budget({2e-3});
+  const BudgetRow& dB = row_of(budget, 0, "dB", "x");
+  for (std::size_t i = 2; i < dB.links.size(); ++i)
+    EXPECT_NEAR(*dB.links[i].uncertainty, 4e-12, 1e-20) << i;
+  EXPECT_EQ(dB.links[6].verdict, Verdict::below_uncertainty);  // the two are the same
+  EXPECT_EQ(dB.links[7].verdict, Verdict::resolved);
+  // Solid and beam differ by more than the 2 µm of their deformations carry into ΔB:
+  // |ΔB| u/|tip displacement| = c u in this world.
+  EXPECT_NEAR(*dB.links[1].uncertainty, 1e-2 * (2e-6 + 1e-9) + 4e-12, 1e-13);
+  EXPECT_EQ(dB.links[1].verdict, Verdict::resolved);
+  EXPECT_NEAR(*row_of(budget, 0, "tip", "x").links[1].uncertainty, 2.001e-6, 1e-18);
+}
+
+TEST(Budget, AnUnknownUncertaintyIsInconclusive) {
+  World world;
+  world.tip_uncertainty["solid"] = std::nullopt;
+  Budget budget = world.budget({2e-3});
+  for (const auto& [quantity, component] :
+       {std::pair("tip", "x"), {"tip_angle", ""}, {"dB", "x"}, {"B", "z"}, {"sensitivity", "x"}}) {
+    const BudgetRow& row = row_of(budget, 0, quantity, component);
+    EXPECT_NE(row.links[0].verdict, Verdict::inconclusive) << quantity;
+    EXPECT_EQ(row.links[1].verdict, Verdict::inconclusive) << quantity;
+    EXPECT_EQ(row.total.verdict, Verdict::inconclusive) << quantity;
+  }
+  EXPECT_TRUE(budget.decided());
+  world.uncertainty.reset();
+  world.tip_uncertainty["beam"] = std::nullopt;
+  budget = world.budget({2e-3});
+  EXPECT_FALSE(budget.decided());
+  EXPECT_THAT(budget_text(budget), HasSubstr("?"));
+}
+
+// Oracle: d/dF c L sin(a F) = c L a cos(a F); the truncation of the five-point formula is
+// h⁴ F⁴ a⁵/30: 2e-15 of it here, below rounding.
+TEST(Budget, SensitivityIsTheDerivativeByTheLoad) {
+  const double F = 2e-3;
+  const Budget budget = World{}.budget({F, 0});
+  const auto slope = [&](double c, double a) { return c * L * a * std::cos(a * F); };
+  const BudgetRow& row = row_of(budget, 0, "sensitivity", "x");
+  EXPECT_EQ(row.unit, "T/N");
+  EXPECT_NEAR(row.paper, slope(1e-2, 20), 1e-12 * slope(1e-2, 20));
+  EXPECT_NEAR(row.links[1].value, slope(1e-2, 17) - slope(1e-2, 22), 1e-12 * row.paper);
+  EXPECT_EQ(row.total.to, "solid/mesh F");
+  EXPECT_NEAR(row.best, slope(1.14e-2, 17), 1e-12 * row.paper);
+  EXPECT_THAT(budget.remarks, testing::Contains(HasSubstr("dB/dF ends at solid/mesh F")));
+  EXPECT_THAT(budget.remarks, testing::Contains(HasSubstr("step 2: no dB/dF at a load of zero")));
+  // The truncation of D(h) = h² F² a²/6 of the slope is in the uncertainty, with that of ΔB.
+  const double truncation = std::pow(sensitivity_step * F, 2) / 6 *
+                            (17 * 17 * slope(1e-2, 17) - 22 * 22 * slope(1e-2, 22));
+  const double relative = *row_of(budget, 0, "dB", "x").links[1].uncertainty /
+                          (1e-2 * 2 * L * std::sin(17 * F / 2));  // |ΔB|, of a chord
+  EXPECT_NEAR(*row.links[1].uncertainty, std::abs(truncation) + relative * 1e-2 * L * 17,
+              1e-6 * *row.links[1].uncertainty);
+}
+
+TEST(Budget, AStepThatSlipsOffHasNoRowsAndIsSaid) {
+  World world;
+  world.slip_off = 3e-3;
+  const Budget budget = world.budget({2e-3, 4e-3, 2.99e-3});
+  EXPECT_FALSE(budget.failed);
+  for (const BudgetRow& row : budget.rows) EXPECT_NE(row.step, 1U);
+  EXPECT_THAT(budget.remarks,
+              testing::Contains(HasSubstr("step 2: no budget: elastica slipped off")));
+  // A neighbour of the third step slips off.
+  EXPECT_THAT(budget.remarks,
+              testing::Contains(AllOf(HasSubstr("step 3: dB/dF"), HasSubstr("1.01 of the load"))));
+  EXPECT_THROW(row_of(budget, 2, "sensitivity", "x"), std::out_of_range);
+  EXPECT_EQ(row_of(budget, 2, "dB", "x").links.size(), 8U);
+  expect_no_fault(budget);
+}
+
+TEST(Budget, AModelThatFailsIsSaidAndCanBeLeftOut) {
+  World world;
+  world.fails = "solid";
+  Budget budget = world.budget({2e-3});
+  EXPECT_TRUE(budget.failed);
+  EXPECT_TRUE(budget.rows.empty());
+  EXPECT_THAT(budget.remarks, testing::Contains(HasSubstr("solid failed: as planned")));
+  budget = world.budget({2e-3}, {"solid"});
+  EXPECT_FALSE(budget.failed);
+  EXPECT_EQ(row_of(budget, 0, "dB", "x").total.to, "beam/potential mu_r = 1.05");
+  EXPECT_THAT(budget.chain.not_run,
+              ElementsAre("solid/line: without solid", "beam/mesh R: without solid",
+                          "beam/mesh F: without solid"));
+  expect_no_fault(budget);
+}
+
+// Where the wedges fail at one step, the link from slices to mesh holds both changes.
+TEST(Budget, LinksJoinOverAStationWithoutValue) {
+  const World world;
+  auto fields = world.fields();
+  const auto right = fields[2].make;
+  fields[2].make = [right](const ModelOptions& options) -> std::unique_ptr<FieldModel> {
+    if (options.volume.slices == analytic::VolumeOptions::Slices::stacked) return right(options);
+    return std::make_unique<test::FormulaField>(
+        [](const Deformation& d, const Vector3&) -> Vector3 {
+          if (d.centreline.at(L).position.x() > 1e-3) throw SolverError("too bent");
+          return 1.12e-2 * d.centreline.at(L).position;
+        },
+        Vector3::Constant(1e-12));
+  };
+  const Budget budget = error_budget(test::paper_case({1e-3, 4e-3}), world.mechanics(), fields, {});
+  EXPECT_TRUE(budget.failed);
+  EXPECT_THAT(budget.remarks, testing::Contains(HasSubstr("solid/volume wedge: too bent")));
+  EXPECT_EQ(row_of(budget, 0, "dB", "x").links.size(), 8U);
+  const BudgetRow& row = row_of(budget, 1, "dB", "x");
+  ASSERT_EQ(row.links.size(), 7U);
+  EXPECT_EQ(row.links[3].from, "solid/volume stacked");
+  EXPECT_EQ(row.links[3].to, "solid/mesh R");
+  EXPECT_THAT(row.links[3].physics, AllOf(HasSubstr("Jacobian"), HasSubstr("own sections")));
+  expect_no_fault(budget);
+  EXPECT_THAT(budget_text(budget), HasSubstr("-> solid/mesh R"));
+}
+
+TEST(Chain, FollowsTheCase) {
+  Case problem = test::paper_case({1e-3});
+  problem.options.potential.relative_permeability = 1;
+  EXPECT_EQ(make_chain(problem, {}).stations.back().name(), "solid/potential mu_r = 1");
+  problem.options.potential.plates.resize(1);
+  EXPECT_EQ(make_chain(problem, {}).stations.back().name(), "solid/potential mu_r = 1, plates");
+  problem.options.potential.relative_permeability = 1.1;
+  const Chain chain = make_chain(problem, {});
+  ASSERT_EQ(chain.stations.size(), 10U);
+  ModelOptions options = problem.options;
+  chain.stations[7].set(options);
+  EXPECT_EQ(options.potential.relative_permeability, 1);
+  EXPECT_TRUE(options.potential.plates.empty());
+  options = problem.options;
+  chain.stations[9].set(options);
+  EXPECT_EQ(options.potential.relative_permeability, 1.1);
+  EXPECT_EQ(options.potential.plates.size(), 1U);
+  EXPECT_THAT(names(make_chain(problem, {"beam", "solid", "volume", "potential"}).stations),
+              ElementsAre("elastica/line"));
+}
+
+TEST(Chain, RefusesWhatItDoesNotKnow) {
+  const Case problem = test::paper_case({1e-3});
+  const auto message = [&](const std::string& word) {
+    try {
+      make_chain(problem, {word});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(message("potentail"), HasSubstr("did you mean 'potential'?"));
+  EXPECT_THAT(message("line"), HasSubstr("the paper's model"));
+  EXPECT_THAT(message("elastica"), HasSubstr("the paper's model"));
+  EXPECT_THAT(message(""), HasSubstr("beam, solid"));
+  EXPECT_EQ(message("sensitivity"), "accepted");
+}
+
+// The texts hold what the budget holds.
+TEST(BudgetReport, JsonAndCsvGiveTheNumbersBack) {
+  Case problem = test::paper_case({2e-3});
+  problem.sensors.emplace_back(0, 0, -2e-3);
+  World world;
+  world.tip_uncertainty["solid"] = std::nullopt;
+  const Budget budget = error_budget(problem, world.mechanics(), world.fields(), {});
+  const auto json = nlohmann::json::parse(budget_json(budget));
+  std::istringstream csv(budget_csv(budget));
+  std::string line;
+  ASSERT_TRUE(std::getline(csv, line));
+  ASSERT_EQ(json["rows"].size(), budget.rows.size());
+  EXPECT_EQ(budget.rows.size(), 4U + 2 * 9);
+  const auto check = [&](const nlohmann::json& entry, const BudgetLink& link) {
+    EXPECT_EQ(entry["value"].get<double>(), link.value);
+    EXPECT_EQ(entry["to"], link.to);
+    EXPECT_EQ(entry["uncertainty"].is_null(), !link.uncertainty);
+    ASSERT_TRUE(std::getline(csv, line));
+    EXPECT_THAT(line, HasSubstr("\"" + link.from + "\",\"" + link.to + "\","));
+    const std::string rest = line.substr(line.find("\",\"") + link.to.size() + 5);
+    EXPECT_EQ(std::stod(rest), link.value) << line;
+    EXPECT_THAT(line, testing::EndsWith("," + std::string(to_string(link.verdict))));
+    if (link.uncertainty) {
+      EXPECT_EQ(std::stod(rest.substr(rest.find(',') + 1)), *link.uncertainty) << line;
+      EXPECT_EQ(entry["uncertainty"].get<double>(), *link.uncertainty);
+    } else {
+      EXPECT_THAT(line, HasSubstr(",,inconclusive"));
+    }
+  };
+  for (std::size_t i = 0; i < budget.rows.size(); ++i) {
+    const BudgetRow& row = budget.rows[i];
+    const auto& entry = json["rows"][i];
+    EXPECT_EQ(entry["paper"].get<double>(), row.paper);
+    EXPECT_EQ(entry["best"].get<double>(), row.best);
+    EXPECT_EQ(entry["sensor"].is_null(), !row.sensor);
+    for (std::size_t k = 0; k < row.links.size(); ++k) check(entry["links"][k], row.links[k]);
+    check(entry["total"], row.total);
+    if (row.beside) check(entry["beside"], *row.beside);
+  }
+  EXPECT_FALSE(std::getline(csv, line));
+}
+
+// Oracle: the known lengths in mm and µT.
+TEST(BudgetReport, TheTableIsInReadableUnitsAndMarksWhatIsNotResolved) {
+  const std::string text = budget_text(World{}.budget({2e-3}));
+  EXPECT_THAT(text, HasSubstr("tip                                x (mm)"));
+  EXPECT_THAT(text, testing::ContainsRegex("elastica +0.79979 "));  // 20 sin 0.04
+  EXPECT_THAT(text,
+              testing::ContainsRegex("-> beam/line +0.799 "));  // 200 (sin 0.044 − sin 0.04)
+  EXPECT_THAT(text, testing::ContainsRegex("-> solid/potential mu_r = 1 +0.000 .- +4e-06 ~"));
+  EXPECT_THAT(text, HasSubstr("one dipole at its centroid; not in the sum"));
+}
+
+TEST(Waterfall, DrawsBarsFromThePapersModelToTheBest) {
+  World world;
+  world.tip_uncertainty["solid"] = std::nullopt;
+  world.uncertainty = Vector3::Constant(1e-7);
+  const Waterfall drawing = waterfall(world.budget({1e-3, 2e-3}));
+  EXPECT_THAT(drawing.script, HasSubstr("paper, step 2 of 2"));
+  const std::string svg = plot::draw_svg(drawing.script, drawing.size);
+  for (const char* label : {"tip x, mm", "dB_x, ", "solid/volume wedge", "total"})
+    EXPECT_THAT(svg, HasSubstr(label));
+  EXPECT_THAT(svg, HasSubstr("rgb(170,  51, 119)"));  // inconclusive
+  EXPECT_THAT(svg, HasSubstr("rgb(170, 170, 170)"));  // below its uncertainty
+  EXPECT_EQ(waterfall(Budget{}).script, "");
+}
+
+// The paper's cilium by the rods. Oracle of dB/dF: the derivative of the polynomial through
+// fourteen Chebyshev points of B(F) over ±10 % of F, by the same two models run apart.
+TEST(Budget, RodsOfThePaperAddUpAndTheirSensitivityIsTheDerivative) {
+  Case problem = test::paper_case({1e-3, 4e-3});
+  const Budget budget =
+      error_budget(problem, mechanics_models(), field_models(), {"solid", "potential"});
+  EXPECT_FALSE(budget.failed);
+  EXPECT_EQ(budget.rows.size(), 2U * 13);
+  expect_no_fault(budget);
+  problem.load_path.clear();
+  const LagrangeBasis basis(chebyshev_points(15, 3.6e-3, 4.4e-3));
+  for (const double F : basis.nodes()) problem.load_path.emplace_back(ContactLoad{F, 16e-3, 0});
+  problem.mechanics = {"elastica"};
+  problem.fields = {"line"};
+  const CaseResult result = run(problem, mechanics_models(), field_models());
+  Vector3 slope = Vector3::Zero();
+  for (std::size_t i = 0; i < basis.size(); ++i)
+    slope += basis.slope(i, 7) * *result.fields.front().steps[i]->B[0];
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const BudgetRow& row = row_of(budget, 1, "sensitivity", std::string(1, "xyz"[axis]));
+    std::printf("dB/dF, relative error: %.1e\n", std::abs(row.paper - slope[axis]) / slope.norm());
+    EXPECT_NEAR(row.paper, slope[axis], 2e-6 * slope.norm());
+  }
+}
+
+// Everything on the coarsest solid, one load. Oracle: the models run apart by run().
+TEST(BudgetSlow, AllModelsOfThePapersCiliumAddUp) {
+  Case problem = test::paper_case({});
+  problem.load_path.emplace_back(ContactLoad{2e-3, 16e-3, std::numbers::pi / 6});
+  problem.options.solid.refinement = 0;
+  const Budget budget = error_budget(problem, mechanics_models(), field_models(), {});
+  EXPECT_FALSE(budget.failed);
+  ASSERT_EQ(budget.rows.size(), 13U);
+  expect_no_fault(budget);
+  const BudgetRow& dB = row_of(budget, 0, "dB", "x");
+  ASSERT_EQ(dB.links.size(), 8U);
+  // The potential at μ_r = 1 solves what the charged faces are the closed form of.
+  for (const char* axis : {"x", "y", "z"})
+    EXPECT_EQ(row_of(budget, 0, "dB", axis).links[6].verdict, Verdict::below_uncertainty) << axis;
+  problem.mechanics = {"elastica", "solid"};
+  problem.fields = {"line", "mesh"};
+  const CaseResult result = run(problem, mechanics_models(), field_models());
+  const double paper = result.fields.front().steps[0]->dB[0]->x();
+  const double mesh = result.fields.back().steps[0]->dB[0]->x();
+  EXPECT_EQ(result.fields.back().name(), "solid/mesh");
+  EXPECT_NEAR(dB.paper, paper, 1e-10 * std::abs(paper));
+  double at = dB.paper;
+  for (std::size_t i = 0; i < 6; ++i) at += dB.links[i].value;
+  EXPECT_NEAR(at, mesh, 1e-7 * std::abs(mesh));  // two solutions by Newton's method to 1e-9
+}
+
+}  // namespace
+}  // namespace ciliaval::compare
