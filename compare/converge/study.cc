@@ -61,6 +61,7 @@ void add_lengths(std::map<std::string, Quantity>& quantities) {
 LevelResult run_level(Case problem, const Refinement& refinement, unsigned int setting,
                       const Progress& progress, RefinementStudy& study) {
   problem.mechanics = {refinement.model};
+  problem.external.clear();  // the same at every level
   refinement.set(problem.options, setting);
   Progress named;
   if (progress)

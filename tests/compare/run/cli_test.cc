@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "synthetic.h"
 
@@ -131,6 +132,53 @@ TEST(CommandLine, AModelThatDoesNotConvergeIsExitCode3) {
 
 // `script` gives the program a terminal. The solid's coarse mesh takes longer than the 2 s after
 // which progress shows.
+/// The case under a section load, which CalculiX takes.
+fs::path write_section_case(const fs::path& folder, const std::string& models) {
+  std::string text = test::case_text({.name = "referee"}, models);
+  for (const auto& [old, with] : {std::pair<std::string, std::string>{"\"contact\"", "\"section\""},
+                                  std::pair<std::string, std::string>{"height", "arclength"}})
+    text.replace(text.find(old), old.size(), with);
+  std::ofstream(folder / "referee.toml") << text;
+  return folder / "referee.toml";
+}
+
+// Oracle: the contract of a model that cannot run.
+TEST(CommandLine, AMissingCalculixFailsAloneWithExitCode3) {
+  const TemporaryFolder folder;
+  write_section_case(folder.path(),
+                     "mechanics = [\"elastica\", \"calculix\"]\nfields = [\"line\"]\n"
+                     "[models.calculix]\nprogram = \"./no_ccx\"\n");
+  const Outcome run = ciliaval(folder.path(), "run referee.toml -o results");
+  EXPECT_EQ(run.code, 3);
+  EXPECT_THAT(run.out, HasSubstr("apt-get install calculix-ccx"));
+  const auto summary =
+      nlohmann::json::parse(read_text(folder.path() / "results" / "referee" / "summary.json"));
+  const auto& step = summary.at("steps").at(0);
+  EXPECT_EQ(step.at("mechanics").at("calculix").at("status"), "failed");
+  EXPECT_EQ(step.at("mechanics").at("elastica").at("status"), "converged");
+  EXPECT_TRUE(step.at("fields").contains("elastica/line"));
+}
+
+// What a run has written is taken back as an external model, through the files alone.
+TEST(CommandLine, TakesItsOwnCentrelineForAnExternalModel) {
+  const TemporaryFolder folder;
+  const std::string models = "mechanics = [\"elastica\"]\nfields = [\"line\"]\n";
+  write_section_case(folder.path(), models);
+  ASSERT_EQ(ciliaval(folder.path(), "run referee.toml -o own").code, 0);
+  write_section_case(folder.path(), models +
+                                        "[[models.external]]\nname = \"bench\"\ncentrelines = "
+                                        "[\"own/referee/elastica_0000.csv\"]\n");
+  const Outcome run = ciliaval(folder.path(), "run referee.toml -o again");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("elastica - bench"));
+  EXPECT_THAT(run.out, HasSubstr("bench/line"));
+  std::ofstream(folder.path() / "own" / "referee" / "elastica_0000.csv", std::ios::app) << "1,2\n";
+  const Outcome damaged = ciliaval(folder.path(), "run referee.toml -o third");
+  EXPECT_EQ(damaged.code, 2);
+  EXPECT_THAT(damaged.err, HasSubstr("the row has 2 cells and the header 6"));
+  EXPECT_FALSE(fs::exists(folder.path() / "third"));
+}
+
 TEST(CommandLineSlow, ShowsProgressOnATerminal) {
   const TemporaryFolder folder;
   write_case(folder.path(), "long", "mechanics = [\"solid\"]\n[models.solid]\nrefinement = 0\n");

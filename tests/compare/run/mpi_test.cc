@@ -107,6 +107,42 @@ tolerance = 1e-2
     EXPECT_NEAR(B[0].at(i).get<double>(), B[1].at(i).get<double>(), 1e-6 * scale);
 }
 
+// A program in CalculiX's place counts its runs and turns every node by 30°: one rank runs it, both
+// draw the field of what it gave.
+TEST(Mpi, OneRankRunsCalculixForBoth) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "fake") << R"(#!/bin/sh
+echo >> "$COUNT"
+awk -F, '/^\*/ { nodes = /^\*NODE, NSET/; next }
+  nodes { if (!n++) print " and time  0.1000000E+01"
+          printf "%10d %13.6E %13.6E %13.6E\n", $1, 0.866*$2 + 0.5*$4 - $2, 0, -0.5*$2 + 0.866*$4 - $4 }
+  ' cilium.inp > cilium.dat
+)";
+  fs::permissions(folder.path() / "fake", fs::perms::owner_all);
+  std::string text = test::case_text({.name = "mpi"}, R"(mechanics = ["calculix"]
+fields = ["mesh", "potential"]
+[models.calculix]
+program = "./fake"
+refinement = 0
+error_estimate = false
+[models.potential]
+tolerance = 1e-2
+)");
+  text.replace(text.find("\"contact\""), 9, "\"section\"");
+  text.replace(text.find("height"), 6, "arclength");
+  std::ofstream(folder.path() / "case.toml") << text;
+  setenv("COUNT", (folder.path() / "count").c_str(), 1);
+  ASSERT_EQ(run(folder.path(), 2, "two").code, 0) << read_text(folder.path() / "err.txt");
+  EXPECT_EQ(read_text(folder.path() / "count"), "\n");
+  const auto summary = nlohmann::json::parse(read_text(folder.path() / "two/mpi/summary.json"));
+  const auto& step = summary.at("steps").at(0);
+  EXPECT_NEAR(step.at("mechanics").at("calculix").at("tip").at(2).get<double>(), 0.866 * 20e-3,
+              1e-8);
+  const double mesh = step.at("fields").at("calculix/mesh").at("B").at(0).at(2).get<double>();
+  const double field = step.at("fields").at("calculix/potential").at("B").at(0).at(2).get<double>();
+  EXPECT_NEAR(field, mesh, 0.1 * std::abs(mesh));  // μ_r = 1.05 there, 1 here
+}
+
 // Oracle: the contract of the exit codes.
 TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
   const TemporaryFolder folder;

@@ -151,8 +151,8 @@ void check_theta(const Points& points, const CsvTable& table, const Cilium& cili
   constexpr double largest_shear = std::numbers::pi / 6;
   const Vector3 e = bending_direction(points, cilium.length(), load);
   const Vector3 across = Vector3::UnitZ().cross(e);
-  for (std::size_t i = 0; i < points.r.size(); ++i)
-    if (std::abs(points.r[i].dot(across)) > 1e-3 * cilium.length()) {
+  for (const Vector3& r : points.r)
+    if (std::abs(r.dot(across)) > 1e-3 * cilium.length()) {
       faults.add(table.header[4],
                  "'theta' goes with a plane centreline, and this one leaves the vertical plane of "
                  "its tip: leave the column out");
@@ -428,9 +428,10 @@ ExternalReading reading(const std::vector<std::optional<Vector3>>& rows,
   ExternalReading result;
   for (std::size_t s = 0; s < rows.size(); ++s) {
     result.B.push_back(change ? std::nullopt : rows[s]);
-    result.dB.push_back(change                     ? rows[s]
-                        : rows[s] && undeformed[s] ? std::optional<Vector3>(*rows[s] - *undeformed[s])
-                                                   : std::nullopt);
+    result.dB.push_back(change ? rows[s]
+                        : rows[s] && undeformed[s]
+                            ? std::optional<Vector3>(*rows[s] - *undeformed[s])
+                            : std::nullopt);
   }
   return result;
 }
