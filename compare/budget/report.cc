@@ -85,7 +85,7 @@ std::string percent(const Group& group, const std::vector<const BudgetLink*>& li
 
 std::string link_line(const Group& group, const std::string& label,
                       const std::vector<const BudgetLink*>& links, bool with_percent) {
-  std::string line = fmt::format("  {:<28}", label);
+  std::string line = fmt::format("  {:<32}", label);
   for (std::size_t i = 0; i < group.size(); ++i)
     line += link_cell(*links[i], shown_unit(group[i]->unit));
   if (with_percent) line += percent(group, links);
@@ -94,7 +94,7 @@ std::string link_line(const Group& group, const std::string& label,
 }
 
 std::string value_line(const Group& group, const std::string& label, bool best) {
-  std::string line = fmt::format("  {:<28}", label);
+  std::string line = fmt::format("  {:<32}", label);
   for (const BudgetRow* row : group)
     line += value_cell(best ? row->best : row->paper, shown_unit(row->unit));
   line.erase(line.find_last_not_of(' ') + 1);
@@ -104,7 +104,7 @@ std::string value_line(const Group& group, const std::string& label, bool best) 
 /// The paper's values, the links, their total, the best values, the model beside.
 std::string group_table(const Group& group, const std::string& title, bool is_field) {
   if (group.empty()) return {};
-  std::string text = fmt::format("\n  {:<28}", title);
+  std::string text = fmt::format("\n  {:<32}", title);
   for (const BudgetRow* row : group)
     text += fmt::format(
         "{:<{}}",
@@ -155,7 +155,7 @@ std::string chain_text(const Budget& budget) {
   std::string text =
       budget.case_name + ": from the paper's model to the best one, an assumption at a time\n\n";
   const auto line = [&](const std::string& label, const std::string& physics) {
-    text += fmt::format("  {:<28}{}\n", label, physics);
+    text += fmt::format("  {:<32}{}\n", label, physics);
   };
   for (const Station& station : budget.chain.stations)
     if (&station == &budget.chain.stations.front())

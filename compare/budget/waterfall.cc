@@ -105,7 +105,7 @@ std::string panel_script(const Budget& budget, const Panel& panel, bool first) {
   for (const BudgetLink& link : row.links) {
     const double next = at + link.value / panel.unit;
     const double u = link.uncertainty.value_or(0) / panel.unit;
-    text += joint(at, previous, line_of(budget, link.to));
+    if (previous > 0) text += joint(at, previous, line_of(budget, link.to));
     previous = line_of(budget, link.to);
     text += bar(at, next, line_of(budget, link.to), u, style_of(link.verdict));
     reach(next, u);
@@ -136,13 +136,13 @@ Waterfall waterfall(const Budget& budget) {
   const std::size_t step = budget.rows.back().step;
   const std::vector<Panel> panels = panels_of(budget, step);
   if (panels.empty()) return {};
-  const int left = 190;
+  const int left = 240;
   const int width = 230;
   const int count = static_cast<int>(panels.size());
   const plot::Size size{left + width * count + 20,
                         170 + 30 * static_cast<int>(budget.chain.stations.size())};
   std::string script = fmt::format(
-      "unset key\nset grid x\nset tics nomirror\nset xtics rotate by -40\n"
+      "unset key\nset samples 2\nset grid x\nset tics nomirror\nset xtics rotate by -40\n"
       "set label 1 {} at screen 0.5, screen 0.04 center\n"
       "set multiplot layout 1,{} title {} margins {},{},0.3,0.82 spacing 0.015\n",
       plot::quoted(
