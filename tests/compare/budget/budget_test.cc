@@ -425,7 +425,7 @@ TEST(Budget, RodsOfThePaperAddUpAndTheirSensitivityIsTheDerivative) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const BudgetRow& row = row_of(budget, 1, "sensitivity", std::string(1, "xyz"[axis]));
     std::printf("dB/dF, relative error: %.1e\n", std::abs(row.paper - slope[axis]) / slope.norm());
-    EXPECT_NEAR(row.paper, slope[axis], 2e-6 * slope.norm());
+    EXPECT_NEAR(row.paper, slope[axis], 1e-9 * slope.norm());  // measured: 2e-11
   }
 }
 
