@@ -206,6 +206,7 @@ std::vector<Layer> layers_of(const SolidSpace& space, const Fibres& fibres) {
     layer.cells.push_back(e);
   }
   std::vector<Layer> result;
+  result.reserve(layers.size());
   for (auto& [bottom, layer] : layers) result.push_back(std::move(layer));
   return result;
 }
@@ -245,6 +246,7 @@ Centreline centreline(const SolidSpace& space, const Fibres& fibres, const Solid
   const std::vector<Layer> layers = layers_of(space, fibres);
   const Extraction extraction{space, fibres, state, load};
   std::vector<Wrench> tops;
+  tops.reserve(layers.size());
   for (const Layer& layer : layers) tops.push_back(extraction.top_wrench(layer));
   return centreline(extraction, layers, tops);
 }
