@@ -157,7 +157,7 @@ std::string models(const Case& c) {
     text += fmt::format("\n[[{}]]\n", key::plate_table) +
             corner(key::plate_lower, plate.box.min()) + corner(key::plate_upper, plate.box.max()) +
             line(key::plate_permeability, plate.relative_permeability);
-  for (const ExternalModel& model : c.external) text += external(model);
+  for (const ExternalModel& given : c.external) text += external(given);
   return text;
 }
 

@@ -73,8 +73,19 @@ Field checked_field(const FieldModel& model, const Cilium& cilium, const Deforma
   return field;
 }
 
+/// Fails all the points of a set.
+void append_failures(std::size_t points, const std::string& message, FieldStep& step,
+                     std::vector<std::pair<std::size_t, std::string>>& failures) {
+  for (std::size_t i = 0; i < points; ++i) {
+    failures.emplace_back(step.B.size(), message);
+    step.B.emplace_back();
+    step.uncertainty.emplace_back();
+  }
+}
+
 /// Evaluates B at all the points and appends it to `step`. If the model refuses them, halves the
 /// set until the points at which it gives no B stand alone; each message is kept with the sensors.
+/// A model that solves one system for all points is not asked again if the solver failed.
 void append_field(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
                   std::span<const Vector3> points, FieldStep& step,
                   std::vector<std::pair<std::size_t, std::string>>& failures) {
@@ -86,17 +97,15 @@ void append_field(const FieldModel& model, const Cilium& cilium, const Deformati
       step.uncertainty.push_back(field.uncertainty.empty() ? std::nullopt
                                                            : std::optional(field.uncertainty[i]));
     }
+    return;
   } catch (const std::exception& error) {
-    if (points.size() <= 1) {
-      failures.emplace_back(step.B.size(), error.what());
-      step.B.resize(step.B.size() + points.size());
-      step.uncertainty.resize(step.B.size());
-      return;
-    }
-    const std::size_t half = points.size() / 2;
-    append_field(model, cilium, deformation, points.first(half), step, failures);
-    append_field(model, cilium, deformation, points.subspan(half), step, failures);
+    const bool refused = dynamic_cast<const InputError*>(&error) != nullptr;
+    if (points.size() <= 1 || !(model.pointwise() || refused))
+      return append_failures(points.size(), error.what(), step, failures);
   }
+  const std::size_t half = points.size() / 2;
+  append_field(model, cilium, deformation, points.first(half), step, failures);
+  append_field(model, cilium, deformation, points.subspan(half), step, failures);
 }
 
 /// "sensor 1: …; sensors 2, 4: …", or the message alone if it is that of every sensor.

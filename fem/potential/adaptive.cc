@@ -428,15 +428,14 @@ Vector3 PotentialCycle::estimate(std::size_t point) const {
 
 namespace {
 
-/// Whether B has moved from the last mesh but one by no more than twice what the two estimates
-/// foresee: a single small estimate may be luck.
+/// Whether B has moved from the last mesh but one by no more than the two estimates together, as it
+/// must if both hold: a single small estimate may be luck.
 bool agrees_with_last(const std::vector<PotentialCycle>& cycles) {
   if (cycles.size() < 2) return false;
   const PotentialCycle& last = cycles.back();
   const PotentialCycle& before = cycles[cycles.size() - 2];
   for (std::size_t i = 0; i < last.B.size(); ++i)
-    if ((last.B[i] - before.B[i]).norm() >
-        2 * (last.estimate(i).norm() + before.estimate(i).norm()))
+    if ((last.B[i] - before.B[i]).norm() > last.estimate(i).norm() + before.estimate(i).norm())
       return false;
   return true;
 }

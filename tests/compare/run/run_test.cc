@@ -125,6 +125,49 @@ TEST(Run, ASensorWhereTheFieldDivergesLeavesTheOthers) {
   EXPECT_FALSE(all_solved(result));  // exit code 3: values are missing
 }
 
+/// One system for all points: its solver fails, or it refuses the points at x = 3.
+class Coupled : public FieldModel {
+ public:
+  Coupled(bool fails, int& calls) : fails_(fails), calls_(calls) {}
+  bool pointwise() const override { return false; }
+  Field field(const Cilium&, const Deformation&, std::span<const Vector3> points) const override {
+    ++calls_;
+    if (fails_) throw SolverError("the accuracy is not reached");
+    for (const Vector3& x : points)
+      if (x.x() == 3) throw InputError("the sensor is in the magnet");
+    return {{points.begin(), points.end()}, {}};
+  }
+
+ private:
+  bool fails_;
+  int& calls_;
+};
+
+// Its solutions take long: after a failure of the solver it is asked no second time.
+TEST(Run, AModelOfOneSystemIsAskedAgainOnlyIfItRefusesSensors) {
+  Case c = paper_case({1e-3});
+  c.sensors = {Vector3(1, 0, 0), Vector3(3, 0, 0), Vector3(4, 0, 0)};
+  c.mechanics = {"bend"};
+  c.fields = {"coupled"};
+  const std::vector<MechanicsEntry> mechanics{bend("bend")};
+  int calls = 0;
+  const auto run_coupled = [&](bool fails) {
+    calls = 0;
+    const FieldEntry entry{"coupled", "", [&calls, fails](const ModelOptions&) {
+                             return std::make_unique<Coupled>(fails, calls);
+                           }};
+    return run(c, mechanics, std::vector<FieldEntry>{entry}).fields.at(0).steps.at(0).value();
+  };
+  const FieldStep failed = run_coupled(true);
+  EXPECT_EQ(calls, 2);  // the straight and the bent cilium
+  EXPECT_EQ(failed.B.size(), 3u);
+  EXPECT_FALSE(failed.any());
+  EXPECT_EQ(failed.failure, "the accuracy is not reached");
+  const FieldStep refused = run_coupled(false);
+  EXPECT_EQ(calls, 10);  // all, sensor 0, sensors 1 and 2, 1, 2, of both
+  EXPECT_TRUE(refused.B[0] && !refused.B[1] && refused.B[2]);
+}
+
 TEST(Run, TakesAFieldOrAShapeThatIsNotFiniteForAFailure) {
   Case c = paper_case({1e-3});
   c.mechanics = {"nan", "bend"};
