@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/converge_command.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "compare/case_files.h"
@@ -24,10 +23,7 @@ ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions&
         ": a mesh of the user has no levels of refinement: leave out models.solid.mesh");
   std::vector<RefinementStudy> studies;
   bool failed = false;
-  for (const Refinement& refinement : refinements()) {
-    if (std::find(problem.mechanics.begin(), problem.mechanics.end(), refinement.model) ==
-        problem.mechanics.end())
-      continue;
+  for (const Refinement& refinement : refinements(problem)) {
     ProgressLine line;
     studies.push_back(refinement_study(problem, refinement, options.levels, line.callback()));
     failed = failed || !studies.back().failure.empty();
@@ -35,7 +31,10 @@ ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions&
   if (options.json) replace_text(*options.json, study_json(problem.name, studies));
   if (options.csv) replace_text(*options.csv, study_csv(studies));
   if (studies.empty()) {
-    print("The case has no discretised model: the elastica is integrated to its tolerance.\n");
+    print(
+        "The case has no discretised model: the elastica is integrated to its tolerance, and so "
+        "are "
+        "the fields but for `method = \"uniform\"`.\n");
     return ExitCode::undecided;
   }
   print(study_text(studies));

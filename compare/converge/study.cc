@@ -58,9 +58,23 @@ void add_lengths(std::map<std::string, Quantity>& quantities) {
   for (Quantity& length : lengths) quantities.emplace(length.id, std::move(length));
 }
 
+/// The first in the order of the registry, the cheapest.
+std::string first_mechanics(const Case& problem) {
+  for (const MechanicsEntry& entry : mechanics_models())
+    if (std::find(problem.mechanics.begin(), problem.mechanics.end(), entry.id) !=
+        problem.mechanics.end())
+      return entry.id;
+  throw InputError("the refinement of a field model needs a mechanics model of the suite's own");
+}
+
 LevelResult run_level(Case problem, const Refinement& refinement, unsigned int setting,
                       const Progress& progress, RefinementStudy& study) {
-  problem.mechanics = {refinement.model};
+  if (refinement.is_field) {
+    problem.mechanics = {first_mechanics(problem)};
+    problem.fields = {refinement.model};
+  } else {
+    problem.mechanics = {refinement.model};
+  }
   problem.external.clear();  // the same at every level
   refinement.set(problem.options, setting);
   Progress named;
@@ -76,10 +90,15 @@ LevelResult run_level(Case problem, const Refinement& refinement, unsigned int s
       if (step.status == Status::failed && study.failure.empty())
         study.failure = fmt::format("{} {}: {}", refinement.knob, setting, step.message);
     }
+  if (refinement.is_field)
+    for (const FieldRun& run : result.fields)
+      for (const auto& step : run.steps)
+        if (step) seconds += step->seconds;
   study.seconds.push_back(seconds);
   LevelResult level{refinement.size(setting), {}};
   for (Quantity& quantity : measurements(result).quantities)
-    if (!quantity.id.ends_with("/tip_uncertainty"))
+    if (!quantity.id.ends_with("/tip_uncertainty") &&
+        (!refinement.is_field || quantity.id.find("/mechanics/") == std::string::npos))
       level.quantities.emplace(quantity.id, std::move(quantity));
   add_lengths(level.quantities);
   return level;
@@ -129,11 +148,11 @@ Json quantity_json(const ConvergedQuantity& quantity) {
 
 const std::vector<Refinement>& refinements() {
   static const std::vector<Refinement> all{
-      {"beam", "refinement",
+      {"beam", false, "refinement",
        [](ModelOptions& options, unsigned int level) { options.beam.refinement = level; },
        [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
        "length of the elements, in segments", 0, 5, std::nullopt},
-      {"calculix", "refinement",
+      {"calculix", false, "refinement",
        [](ModelOptions& options, unsigned int level) {
          options.calculix.refinement = level;
          options.calculix.error_estimate = false;
@@ -142,11 +161,35 @@ const std::vector<Refinement>& refinements() {
        "thickness of the finest layers, in diameters", 0, 3, std::nullopt},
       // The thickness of the layers at the singular rims, which govern (docs/solid.md): order 1.5
       // on the average, none formal.
-      {"solid", "refinement",
+      {"solid", false, "refinement",
        [](ModelOptions& options, unsigned int level) { options.solid.refinement = level; },
        [](unsigned int level) { return fem::cylinder_mesh_options(level).finest_layer; },
-       "thickness of the finest layers, in diameters", 0, 3, std::nullopt}};
+       "thickness of the finest layers, in diameters", 0, 3, std::nullopt},
+      // Midpoint rules.
+      {"line", true, "log2 of elements",
+       [](ModelOptions& options, unsigned int level) { options.line.elements = 1U << level; },
+       [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
+       "length of the pieces, in segments", 4, 12, 2.0},
+      {"volume", true, "log2 of elements",
+       [](ModelOptions& options, unsigned int level) { options.volume.elements = 1U << level; },
+       [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
+       "height of the slices, in segments", 4, 8, 2.0}};
   return all;
+}
+
+std::vector<Refinement> refinements(const Case& problem) {
+  const auto asked = [](const std::vector<std::string>& ids, const std::string& id) {
+    return std::find(ids.begin(), ids.end(), id) != ids.end();
+  };
+  std::vector<Refinement> result;
+  for (const Refinement& refinement : refinements()) {
+    if (!asked(refinement.is_field ? problem.fields : problem.mechanics, refinement.model))
+      continue;
+    const analytic::Method method =
+        refinement.model == "line" ? problem.options.line.method : problem.options.volume.method;
+    if (!refinement.is_field || method == analytic::Method::uniform) result.push_back(refinement);
+  }
+  return result;
 }
 
 RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,

@@ -14,7 +14,8 @@ namespace ciliaval::compare {
 
 /// How a model is refined.
 struct Refinement {
-  std::string model;  ///< id of the mechanics model
+  std::string model;  ///< id of the mechanics model, or of the field model
+  bool is_field;      ///< … which then runs on the first of the case's mechanics models
   std::string knob;   ///< of it, as in `[models.solid] refinement`
   std::function<void(ModelOptions&, unsigned int)> set;
   std::function<double(unsigned int)> size;  ///< h of a level
@@ -24,9 +25,13 @@ struct Refinement {
   std::optional<double> formal_order;
 };
 
-/// The discretised mechanics models: the beam's elements and the solid's meshes. The elastica is
-/// integrated to its tolerance and the field models to theirs: they have no levels.
+/// The discretised models: the beam's elements, the meshes of CalculiX and the solid, the dipoles
+/// of the paper's sums. The elastica is integrated to its tolerance and all other field models to
+/// theirs: they have no levels.
 const std::vector<Refinement>& refinements();
+
+/// Those of the models that the case asks for, with the method that it asks for.
+std::vector<Refinement> refinements(const Case& problem);
 
 /// One quantity of a case on all levels, finest first: those of compare/check/quantities.h, and
 /// made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and
@@ -48,10 +53,10 @@ struct RefinementStudy {
   std::string failure;  ///< why there is no study; else empty
 };
 
-/// Runs a case with one of its mechanics models, and the fields on it, on the `count` ≥ 3 levels
-/// from the coarsest on and extrapolates each quantity. A model that fails on a level leaves none
-/// with a study, a quantity that a level lacks has none. Throws InputError if there are not so many
-/// levels.
+/// Runs a case with one of its mechanics models, and the fields on it, or with one field model, on
+/// the `count` ≥ 3 levels from the coarsest on and extrapolates each quantity. A model that fails
+/// on a level leaves none with a study, a quantity that a level lacks has none. Throws InputError
+/// if there are not so many levels.
 RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,
                                  unsigned int count, const Progress& progress = {});
 

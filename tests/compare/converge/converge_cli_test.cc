@@ -88,6 +88,37 @@ TEST(Converge, PlotsTheOrders) {
   EXPECT_THAT(read_text(folder.path() / "err.txt"), HasSubstr("none/two.svg"));
 }
 
+// The paper's sums are midpoint rules: order 2. Oracle: the closed forms of the same integrals.
+TEST(Converge, ThePapersSumsConvergeWithOrderTwoToTheClosedForms) {
+  const TemporaryFolder folder;
+  const std::string models =
+      "mechanics = [\"elastica\", \"beam\"]\nfields = [\"line\", \"volume\"]\n";
+  const std::string uniform = "method = \"uniform\"\n";
+  write_case(folder.path(), models + "[models.line]\n" + uniform + "[models.volume]\n" + uniform);
+  ASSERT_EQ(ciliaval(folder.path(), "converge one.toml --levels 4 --json sums.json"), 0)
+      << read_text(folder.path() / "err.txt");
+  write_case(folder.path(), models);
+  ASSERT_EQ(ciliaval(folder.path(), "run one.toml"), 0);
+  const auto studies = nlohmann::json::parse(read_text(folder.path() / "sums.json"))["studies"];
+  const auto exact =
+      nlohmann::json::parse(read_text(folder.path() / "results/one/summary.json"))["steps"][0];
+  ASSERT_EQ(studies.size(), 3u);  // beam, line, volume
+  for (const std::size_t i : {1u, 2u}) {
+    const std::string pair = "elastica/" + studies[i]["model"].get<std::string>();
+    for (const std::size_t axis : {0u, 1u, 2u}) {
+      const std::string id = "steps/0/fields/" + pair + "/B/0/" + "xyz"[axis];
+      const auto& q = quantity(studies[i], id);
+      ASSERT_TRUE(q["conclusive"]) << id;
+      EXPECT_NEAR(q["order"].get<double>(), 2, 0.1) << id;
+      const double closed_form = exact["fields"][pair]["B"][0][axis];
+      EXPECT_LT(std::abs(q["limit"].get<double>() - closed_form), q["uncertainty"].get<double>())
+          << id;
+    }
+    for (const auto& q : studies[i]["quantities"])
+      EXPECT_EQ(q["id"].get<std::string>().find("/mechanics/"), std::string::npos);
+  }
+}
+
 TEST(Converge, WhatCannotBeRefinedIsSaid) {
   const TemporaryFolder folder;
   write_case(folder.path(), "mechanics = [\"elastica\"]\n");
