@@ -85,7 +85,8 @@ void write(vtkDataSet& data, const std::filesystem::path& file) {
   writer->SetFileName(file.c_str());
   writer->SetDataModeToAppended();
   writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1);  // a solid of 50,955 unknowns: 1 % larger than at 5, 0.45 s for 0.58
+  // A solid of 50,955 unknowns: 1 % larger than at the default of 5, 0.45 s in place of 0.58.
+  writer->SetCompressionLevel(1);
   const int written = writer->Write();
   const unsigned long error = writer->GetErrorCode();
   if (written == 1 && error == vtkErrorCode::NoError) return;
