@@ -2,14 +2,13 @@
 // `ciliaval budget` as a user calls it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "../run/synthetic.h"
+#include "../run/program.h"
 
 namespace ciliaval {
 namespace {
@@ -21,10 +20,7 @@ using testing::HasSubstr;
 
 int ciliaval(const fs::path& folder, const std::string& arguments,
              const std::string& environment = "") {
-  const std::string command = "cd '" + folder.string() + "' && " + environment +
-                              "'" CILIAVAL_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
-  const int status = std::system(command.c_str());
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return test::run_program(folder, arguments, environment).code;
 }
 
 void write_case(const fs::path& folder, const std::string& force, const std::string& options = "") {

@@ -2,7 +2,6 @@
 // `ciliaval check` as a user calls it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -10,28 +9,19 @@
 #include <regex>
 #include <string>
 
-#include "../run/synthetic.h"
+#include "../run/program.h"
 
 namespace ciliaval {
 namespace {
 
 namespace fs = std::filesystem;
+using test::Outcome;
 using test::read_text;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
 Outcome ciliaval(const fs::path& folder, const std::string& arguments) {
-  const std::string command =
-      "cd '" + folder.string() + "' && '" CILIAVAL_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out.txt"),
-          read_text(folder / "err.txt")};
+  return test::run_program(folder, arguments);
 }
 
 void write_case(const fs::path& folder, const std::string& force = R"("1 mN")",

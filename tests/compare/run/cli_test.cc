@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -9,30 +8,19 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "synthetic.h"
+#include "program.h"
 
 namespace ciliaval {
 namespace {
 
 namespace fs = std::filesystem;
+using test::Outcome;
 using test::read_text;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-struct Outcome {
-  int code = -1;
-  std::string out;
-  std::string err;
-};
-
-/// Runs the program; its stdout and stderr go to files, so neither is a terminal.
 Outcome ciliaval(const fs::path& folder, const std::string& arguments) {
-  const fs::path out = folder / "stdout.txt";
-  const fs::path err = folder / "stderr.txt";
-  const std::string command = "cd '" + folder.string() + "' && '" CILIAVAL_PROGRAM "' " +
-                              arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+  return test::run_program(folder, arguments);
 }
 
 /// A case that the rods solve in a moment.
