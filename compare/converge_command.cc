@@ -31,10 +31,7 @@ ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions&
   if (options.json) replace_text(*options.json, study_json(problem.name, studies));
   if (options.csv) replace_text(*options.csv, study_csv(studies));
   if (studies.empty()) {
-    print(
-        "The case has no discretised model: the elastica is integrated to its tolerance, and so "
-        "are "
-        "the fields but for `method = \"uniform\"`.\n");
+    print("The case has no model that can be refined: `dipole` is a closed form.\n");
     return ExitCode::undecided;
   }
   print(study_text(studies));

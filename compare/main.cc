@@ -155,8 +155,9 @@ ExitCode execute(int argc, char** argv) {
       ->type_name("FILE");
   CLI::App* converge = app.add_subcommand(
       "converge",
-      "Refinement study: refine each discretised model of a case, give the observed order, the\n"
-      "extrapolated value and its interval of each result, or say why there is none.");
+      "Refinement study: refine meshes, element degrees, sums and tolerances of each model of a\n"
+      "case; give the observed order, the extrapolated value and its interval of each result, or\n"
+      "say why there is none.");
   std::filesystem::path converge_file;
   ciliaval::compare::ConvergeOptions converge_options;
   converge->add_option("CASE", converge_file, "Case file (TOML)")
@@ -164,7 +165,8 @@ ExitCode execute(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   converge
       ->add_option("--levels", converge_options.levels,
-                   "How many levels, from the coarsest; the solid has 4")
+                   "How many levels of each refinement, from the coarsest, or as many as there\n"
+                   "are (solid 4, potential 3)")
       ->capture_default_str();
   converge->add_option("--json", converge_options.json, "Write the study as JSON too")
       ->type_name("FILE");

@@ -173,4 +173,23 @@ Extrapolation extrapolate(std::span<const Level> levels, std::optional<double> f
                            : grid_convergence(levels, formal_order, rounding);
 }
 
+Extrapolation kept_tolerances(std::span<const Level> levels, double scale) {
+  require_levels(levels, 3);
+  const Level& finest = levels.front();
+  for (const Level& level : levels.subspan(1)) {
+    const double moved = std::abs(level.value - finest.value);
+    if (!(moved <= (level.size + finest.size) * scale))
+      return inconclusive(levels, fmt::format("a tolerance of {:.3g} promises an error below "
+                                              "{:.2g}, but the finest value is {:.2g} away",
+                                              level.size, level.size * scale, moved));
+  }
+  Extrapolation result;
+  result.conclusive = true;
+  result.reason = "all levels are within their tolerances of the finest";
+  result.limit = finest.value;
+  result.uncertainty = finest.size * scale;
+  result.safety = 1;
+  return result;
+}
+
 }  // namespace ciliaval::compare

@@ -98,10 +98,10 @@ std::string panel(const RefinementStudy& study, std::size_t step, std::size_t st
   for (const Level& level : series_of(study, step).front().quantity->levels)
     sizes.push_back(level.size);
   return blocks +
-         fmt::format(
-             "set title {}\nset xlabel {} offset 0,0.7\nset xtics ({})\nplot \\\n{}\n",
-             plot::quoted(fmt::format("{}, load step {} of {}", study.model, step + 1, steps)),
-             plot::quoted("h: " + study.size_name), fmt::join(sizes, ", "), curves);
+         fmt::format("set title {}\nset xlabel {} offset 0,0.7\nset xtics ({})\nplot \\\n{}\n",
+                     plot::quoted(fmt::format("{}, {}, load step {} of {}", study.model, study.knob,
+                                              step + 1, steps)),
+                     plot::quoted("h: " + study.size_name), fmt::join(sizes, ", "), curves);
 }
 
 /// The last step with something to draw.

@@ -6,16 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "compare/check/quantities.h"
 #include "compare/registry.h"
 #include "compare/run.h"
-#include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -58,50 +57,106 @@ void add_lengths(std::map<std::string, Quantity>& quantities) {
   for (Quantity& length : lengths) quantities.emplace(length.id, std::move(length));
 }
 
-/// The first in the order of the registry, the cheapest.
-std::string first_mechanics(const Case& problem) {
-  for (const MechanicsEntry& entry : mechanics_models())
-    if (std::find(problem.mechanics.begin(), problem.mechanics.end(), entry.id) !=
-        problem.mechanics.end())
-      return entry.id;
-  throw InputError("the refinement of a field model needs a mechanics model of the suite's own");
+Progress named(const Progress& progress, const Refinement& refinement, double value) {
+  if (!progress) return {};
+  return [&progress, prefix = fmt::format("{} {:g}: ", refinement.knob, value)](
+             const std::string& text) { progress(prefix + text); };
 }
 
-LevelResult run_level(Case problem, const Refinement& refinement, unsigned int setting,
-                      const Progress& progress, RefinementStudy& study) {
-  if (refinement.is_field) {
-    problem.mechanics = {first_mechanics(problem)};
-    problem.fields = {refinement.model};
-  } else {
-    problem.mechanics = {refinement.model};
+/// The first of the case's mechanics models, the cheapest first, that gives the field model what it
+/// needs.
+MechanicsRun mechanics_for(const FieldModel& field, const Case& problem, const Progress& progress) {
+  for (const MechanicsEntry& entry : mechanics_models()) {
+    if (std::find(problem.mechanics.begin(), problem.mechanics.end(), entry.id) ==
+        problem.mechanics.end())
+      continue;
+    MechanicsRun run = run_mechanics(entry.id, *entry.make(problem.options), problem, progress, {});
+    const Deformation& undeformed = run.result.undeformed;
+    if (!undeformed.centreline.pieces().empty() && (!field.needs_body() || undeformed.body))
+      return run;
   }
-  problem.external.clear();  // the same at every level
-  refinement.set(problem.options, setting);
-  Progress named;
-  if (progress)
-    named = [&](const std::string& text) {
-      progress(fmt::format("{} {}: {}", refinement.knob, setting, text));
-    };
-  const CaseResult result = run(problem, mechanics_models(), field_models(), named);
-  double seconds = 0;
+  throw InputError("none of the case's own mechanics models gives what the field model needs");
+}
+
+/// What makes a study of this level impossible; else empty.
+std::string failure_of(const CaseResult& result, const Refinement& refinement) {
   for (const MechanicsRun& run : result.mechanics)
-    for (const MechanicsStep& step : run.result.steps) {
-      seconds += step.seconds;
-      if (step.status == Status::failed && study.failure.empty())
-        study.failure = fmt::format("{} {}: {}", refinement.knob, setting, step.message);
-    }
-  if (refinement.is_field)
-    for (const FieldRun& run : result.fields)
+    for (const MechanicsStep& step : run.result.steps)
+      if (step.status == Status::failed) return step.message;
+  if (!refinement.is_field) return {};
+  for (const FieldRun& run : result.fields)
+    for (const auto& step : run.steps)
+      if (step && !step->any()) return step->failure;
+  return {};
+}
+
+double seconds_of(const CaseResult& result, bool is_field) {
+  double seconds = 0;
+  if (is_field)
+    for (const FieldRun& run : result.fields) {
+      seconds += run.undeformed.seconds;
       for (const auto& step : run.steps)
         if (step) seconds += step->seconds;
-  study.seconds.push_back(seconds);
-  LevelResult level{refinement.size(setting), {}};
+    }
+  else
+    for (const MechanicsRun& run : result.mechanics)
+      for (const MechanicsStep& step : run.result.steps) seconds += step.seconds;
+  return seconds;
+}
+
+/// Runs a mechanics model, and the fields on it, at each value of its knob.
+std::vector<CaseResult> run_mechanics_levels(Case problem, const Refinement& refinement,
+                                             std::span<const double> values,
+                                             const Progress& progress) {
+  std::vector<CaseResult> results;
+  problem.mechanics = {refinement.model};
+  problem.external.clear();  // the same at every level
+  if (refinement.law == Refinement::Law::tolerance) problem.fields.clear();
+  for (const double value : values) {
+    refinement.set(problem.options, value);
+    results.push_back(
+        run(problem, mechanics_models(), field_models(), named(progress, refinement, value)));
+  }
+  return results;
+}
+
+/// Runs a field model at each value of its knob, on one deformation.
+std::vector<CaseResult> run_field_levels(Case problem, const Refinement& refinement,
+                                         std::span<const double> values, const Progress& progress) {
+  const auto entry = std::find_if(field_models().begin(), field_models().end(),
+                                  [&](const FieldEntry& e) { return e.id == refinement.model; });
+  std::vector<CaseResult> results;
+  std::optional<MechanicsRun> mechanics;
+  for (const double value : values) {
+    refinement.set(problem.options, value);
+    const auto field = entry->make(problem.options);
+    if (!mechanics) mechanics = mechanics_for(*field, problem, progress);
+    results.push_back({problem,
+                       {*mechanics},
+                       {run_field(refinement.model, *field, *mechanics, problem,
+                                  named(progress, refinement, value))}});
+  }
+  return results;
+}
+
+LevelResult level_of(const CaseResult& result, const Refinement& refinement, double value) {
+  LevelResult level{refinement.size(value), {}};
   for (Quantity& quantity : measurements(result).quantities)
     if (!quantity.id.ends_with("/tip_uncertainty") &&
         (!refinement.is_field || quantity.id.find("/mechanics/") == std::string::npos))
       level.quantities.emplace(quantity.id, std::move(quantity));
   add_lengths(level.quantities);
   return level;
+}
+
+Extrapolation extrapolation_of(const std::vector<Level>& levels, const Quantity& finest,
+                               const Refinement& refinement) {
+  if (refinement.law == Refinement::Law::power)
+    return extrapolate(levels, refinement.formal_order,
+                       rounding_of(refinement.model) * finest.scale);
+  // ΔB is the difference of two fields, each within the tolerance.
+  const double parts = finest.id.find("/dB/") == std::string::npos ? 1 : 2;
+  return kept_tolerances(levels, parts * finest.scale);
 }
 
 /// The quantities that every level has.
@@ -116,8 +171,7 @@ void extrapolate_all(const std::vector<LevelResult>& levels, const Refinement& r
       if (everywhere) quantity.levels.push_back({level.size, found->second.value});
     }
     if (everywhere)
-      quantity.extrapolation = extrapolate(quantity.levels, refinement.formal_order,
-                                           rounding_of(refinement.model) * finest.scale);
+      quantity.extrapolation = extrapolation_of(quantity.levels, finest, refinement);
     else
       quantity.extrapolation.reason = "not every level has it";
     study.quantities.push_back(std::move(quantity));
@@ -146,65 +200,24 @@ Json quantity_json(const ConvergedQuantity& quantity) {
 
 }  // namespace
 
-const std::vector<Refinement>& refinements() {
-  static const std::vector<Refinement> all{
-      {"beam", false, "refinement",
-       [](ModelOptions& options, unsigned int level) { options.beam.refinement = level; },
-       [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
-       "length of the elements, in segments", 0, 5, std::nullopt},
-      {"calculix", false, "refinement",
-       [](ModelOptions& options, unsigned int level) {
-         options.calculix.refinement = level;
-         options.calculix.error_estimate = false;
-       },
-       [](unsigned int level) { return fem::cylinder_mesh_options(level).finest_layer; },
-       "thickness of the finest layers, in diameters", 0, 3, std::nullopt},
-      // The thickness of the layers at the singular rims, which govern (docs/solid.md): order 1.5
-      // on the average, none formal.
-      {"solid", false, "refinement",
-       [](ModelOptions& options, unsigned int level) { options.solid.refinement = level; },
-       [](unsigned int level) { return fem::cylinder_mesh_options(level).finest_layer; },
-       "thickness of the finest layers, in diameters", 0, 3, std::nullopt},
-      // Midpoint rules.
-      {"line", true, "log2 of elements",
-       [](ModelOptions& options, unsigned int level) { options.line.elements = 1U << level; },
-       [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
-       "length of the pieces, in segments", 4, 12, 2.0},
-      {"volume", true, "log2 of elements",
-       [](ModelOptions& options, unsigned int level) { options.volume.elements = 1U << level; },
-       [](unsigned int level) { return std::ldexp(1.0, -static_cast<int>(level)); },
-       "height of the slices, in segments", 4, 8, 2.0}};
-  return all;
-}
-
-std::vector<Refinement> refinements(const Case& problem) {
-  const auto asked = [](const std::vector<std::string>& ids, const std::string& id) {
-    return std::find(ids.begin(), ids.end(), id) != ids.end();
-  };
-  std::vector<Refinement> result;
-  for (const Refinement& refinement : refinements()) {
-    if (!asked(refinement.is_field ? problem.fields : problem.mechanics, refinement.model))
-      continue;
-    const analytic::Method method =
-        refinement.model == "line" ? problem.options.line.method : problem.options.volume.method;
-    if (!refinement.is_field || method == analytic::Method::uniform) result.push_back(refinement);
-  }
-  return result;
-}
-
 RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,
                                  unsigned int count, const Progress& progress) {
   RefinementStudy study{refinement.model, refinement.knob, refinement.size_name, {}, {}, {}, {}};
-  if (count < 3 || count > refinement.finest - refinement.coarsest + 1)
-    throw InputError(fmt::format("{} has 3 to {} levels of refinement, not {}", refinement.model,
-                                 refinement.finest - refinement.coarsest + 1, count));
+  if (count < 3)
+    throw InputError(fmt::format("a study needs 3 levels of refinement or more, not {}", count));
+  const auto values =
+      std::span(refinement.values).first(std::min<std::size_t>(count, refinement.values.size()));
+  const std::vector<CaseResult> results =
+      refinement.is_field ? run_field_levels(problem, refinement, values, progress)
+                          : run_mechanics_levels(problem, refinement, values, progress);
   std::vector<LevelResult> levels;
-  for (unsigned int setting = refinement.coarsest; setting < refinement.coarsest + count;
-       ++setting) {
-    study.settings.insert(study.settings.begin(), setting);
-    levels.insert(levels.begin(), run_level(problem, refinement, setting, progress, study));
+  for (std::size_t i = results.size(); i-- > 0;) {
+    study.settings.push_back(values[i]);
+    study.seconds.push_back(seconds_of(results[i], refinement.is_field));
+    levels.push_back(level_of(results[i], refinement, values[i]));
+    if (const std::string failure = failure_of(results[i], refinement); !failure.empty())
+      study.failure = fmt::format("{} {:g}: {}", refinement.knob, values[i], failure);
   }
-  std::reverse(study.seconds.begin(), study.seconds.end());
   if (study.failure.empty()) extrapolate_all(levels, refinement, study);
   return study;
 }
@@ -212,7 +225,7 @@ RefinementStudy refinement_study(const Case& problem, const Refinement& refineme
 std::string study_text(const std::vector<RefinementStudy>& studies) {
   std::string text;
   for (const RefinementStudy& study : studies) {
-    text += fmt::format("{}, {} {} ({:.3g} s)\n", study.model, study.knob,
+    text += fmt::format("{}, {} {:g} ({:.3g} s)\n", study.model, study.knob,
                         fmt::join(study.settings, ", "), fmt::join(study.seconds, ", "));
     if (!study.failure.empty()) {
       text += fmt::format("  inconclusive: {}\n", study.failure);
@@ -264,9 +277,10 @@ std::string study_csv(const std::vector<RefinementStudy>& studies) {
       const auto number = [&](double value) {
         return e.conclusive ? fmt::format("{}", value) : std::string();
       };
-      text += fmt::format("{},{},{},{},{},{},{},{},\"{}\"", study.model, quantity.id, quantity.unit,
-                          e.conclusive ? 1 : 0, e.order ? fmt::format("{}", *e.order) : "",
-                          number(e.limit), number(e.uncertainty), number(e.safety), e.reason);
+      text += fmt::format("{},{},{},{},{},{},{},{},{},\"{}\"", study.model, study.knob, quantity.id,
+                          quantity.unit, e.conclusive ? 1 : 0,
+                          e.order ? fmt::format("{}", *e.order) : "", number(e.limit),
+                          number(e.uncertainty), number(e.safety), e.reason);
       for (const Level& level : quantity.levels)
         text += fmt::format(",{},{}", level.size, level.value);
       text += '\n';

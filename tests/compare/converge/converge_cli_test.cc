@@ -38,9 +38,8 @@ const nlohmann::json& quantity(const nlohmann::json& study, const std::string& i
 // and the same beam at the default degree 6.
 TEST(Converge, ABeamOfDegreeTwoConvergesWithOrderFourToTheBeamOfDegreeSix) {
   const TemporaryFolder folder;
-  write_case(
-      folder.path(),
-      "mechanics = [\"elastica\", \"beam\"]\nfields = [\"volume\"]\n[models.beam]\ndegree = 2\n");
+  write_case(folder.path(),
+             "mechanics = [\"beam\"]\nfields = [\"volume\"]\n[models.beam]\ndegree = 2\n");
   ASSERT_EQ(ciliaval(folder.path(), "converge one.toml --levels 5 --json two.json --csv two.csv"),
             0)
       << read_text(folder.path() / "err.txt");
@@ -58,7 +57,8 @@ TEST(Converge, ABeamOfDegreeTwoConvergesWithOrderFourToTheBeamOfDegreeSix) {
     EXPECT_LT(std::abs(finest - reference), q["uncertainty"].get<double>()) << id;
     EXPECT_LT(std::abs(q["limit"].get<double>() - reference), std::abs(finest - reference)) << id;
   }
-  EXPECT_THAT(read_text(folder.path() / "two.csv"), HasSubstr("beam,steps/0/mechanics/beam/tip/x"));
+  EXPECT_THAT(read_text(folder.path() / "two.csv"),
+              HasSubstr("beam,refinement,steps/0/mechanics/beam/tip/x"));
 }
 
 // The plot comes last: without gnuplot everything else is there.
@@ -72,7 +72,7 @@ TEST(Converge, PlotsTheOrders) {
   EXPECT_THAT(svg, testing::StartsWith("<?xml"));
   EXPECT_THAT(svg, testing::ContainsRegex("tip: order (3.9|4.0)"));
   EXPECT_THAT(svg, testing::ContainsRegex("dB. beam/volume: order (3.9|4.0)"));
-  EXPECT_THAT(svg, HasSubstr("beam, load step 1 of 1"));
+  EXPECT_THAT(svg, HasSubstr("beam, refinement, load step 1 of 1"));
   EXPECT_EQ(
       ciliaval(folder.path(), "converge one.toml --json two.json --plot two.svg", "PATH=/nowhere "),
       4);
@@ -98,8 +98,9 @@ TEST(Converge, ThePapersSumsConvergeWithOrderTwoToTheClosedForms) {
   const auto studies = nlohmann::json::parse(read_text(folder.path() / "sums.json"))["studies"];
   const auto exact =
       nlohmann::json::parse(read_text(folder.path() / "results/one/summary.json"))["steps"][0];
-  ASSERT_EQ(studies.size(), 3u);  // beam, line, volume
-  for (const std::size_t i : {1u, 2u}) {
+  ASSERT_EQ(studies.size(), 5u);  // elastica, beam twice, line, volume
+  for (const std::size_t i : {3u, 4u}) {
+    EXPECT_EQ(studies[i]["settings"], nlohmann::json({128.0, 64.0, 32.0, 16.0}));
     const std::string pair = "elastica/" + studies[i]["model"].get<std::string>();
     for (const std::size_t axis : {0u, 1u, 2u}) {
       const std::string id = "steps/0/fields/" + pair + "/B/0/" + "xyz"[axis];
@@ -115,17 +116,73 @@ TEST(Converge, ThePapersSumsConvergeWithOrderTwoToTheClosedForms) {
   }
 }
 
+const nlohmann::json& study_of(const nlohmann::json& studies, const std::string& model,
+                               const std::string& knob) {
+  for (const auto& study : studies)
+    if (study["model"] == model && study["knob"] == knob) return study;
+  throw std::out_of_range(model + " " + knob);
+}
+
+// Degrees converge exponentially, tolerances are kept. Oracles: the beam on 32 elements a segment
+// (`refinement`), and the closed form for the quadratures of the same integrals.
+TEST(Converge, DegreesAndTolerancesAreRefinedToo) {
+  const TemporaryFolder folder;
+  const std::string models =
+      "mechanics = [\"elastica\", \"beam\"]\nfields = [\"line\", \"volume\"]\n";
+  const std::string quadrature = "method = \"quadrature\"\n";
+  write_case(folder.path(),
+             models + "[models.line]\n" + quadrature + "[models.volume]\n" + quadrature);
+  ASSERT_EQ(ciliaval(folder.path(), "converge one.toml --levels 6 --json all.json"), 0)
+      << read_text(folder.path() / "err.txt");
+  const auto studies = nlohmann::json::parse(read_text(folder.path() / "all.json"))["studies"];
+  const auto value = [](const auto& q, std::size_t level) {
+    return q["levels"][level]["value"].template get<double>();
+  };
+  const auto& degrees = study_of(studies, "beam", "degree");
+  EXPECT_EQ(degrees["settings"], nlohmann::json({6.0, 5.0, 4.0, 3.0, 2.0}));
+  const std::string tip = "steps/0/mechanics/beam/tip/x";
+  const double finest_mesh = value(quantity(study_of(studies, "beam", "refinement"), tip), 0);
+  EXPECT_NEAR(value(quantity(degrees, tip), 0), finest_mesh, 1e-12);
+  EXPECT_GT(std::abs(value(quantity(degrees, tip), 4) - finest_mesh), 1e-10);
+  const auto& elastica = study_of(studies, "elastica", "tolerance");
+  EXPECT_EQ(elastica["settings"], nlohmann::json({1e-12, 1e-10, 1e-8, 1e-6, 1e-4}));
+  for (const auto& q : elastica["quantities"]) {
+    EXPECT_TRUE(q["conclusive"]) << q;
+    EXPECT_EQ(q["id"].get<std::string>().find("/fields/"), std::string::npos);
+  }
+  write_case(folder.path(), models);
+  ASSERT_EQ(ciliaval(folder.path(), "run one.toml"), 0);
+  const auto exact =
+      nlohmann::json::parse(read_text(folder.path() / "results/one/summary.json"))["steps"][0];
+  for (const std::string model : {"line", "volume"}) {
+    const auto& study = study_of(studies, model, "tolerance");
+    const std::string pair = "elastica/" + model;
+    for (const auto& q : study["quantities"]) EXPECT_TRUE(q["conclusive"]) << q;
+    for (const std::size_t axis : {0u, 1u, 2u}) {
+      const auto& q = quantity(study, "steps/0/fields/" + pair + "/B/0/" + "xyz"[axis]);
+      const double closed_form = exact["fields"][pair]["B"][0][axis];
+      EXPECT_LT(std::abs(q["limit"].get<double>() - closed_form), q["uncertainty"].get<double>());
+      EXPECT_GT(std::abs(value(q, 4) - closed_form), 0) << "the knob does nothing";
+    }
+  }
+}
+
 TEST(Converge, WhatCannotBeRefinedIsSaid) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "mechanics = [\"elastica\"]\n");
-  EXPECT_EQ(ciliaval(folder.path(), "converge one.toml"), 5);
-  EXPECT_THAT(read_text(folder.path() / "out.txt"), HasSubstr("no discretised model"));
   write_case(folder.path(), "mechanics = [\"beam\"]\n");
   EXPECT_EQ(ciliaval(folder.path(), "converge one.toml --levels 2"), 2);
-  EXPECT_THAT(read_text(folder.path() / "err.txt"), HasSubstr("beam has 3 to 6 levels"));
+  EXPECT_THAT(read_text(folder.path() / "err.txt"),
+              HasSubstr("3 levels of refinement or more, not 2"));
   write_case(folder.path(), "mechanics = [\"beam\"]\n[models.beam]\nmax_iterations = 1\n");
   EXPECT_EQ(ciliaval(folder.path(), "converge one.toml"), 3);
   EXPECT_THAT(read_text(folder.path() / "out.txt"), HasSubstr("inconclusive: refinement 0:"));
+  // A field that fails on a level: the sensor is on the end face's rim.
+  std::ofstream(folder.path() / "rim.toml")
+      << test::case_text({.name = "rim", .sensor = "[\"1.5 mm\", \"0 mm\", \"3 mm\"]"},
+                         "mechanics = [\"elastica\"]\nfields = [\"volume\"]\n"
+                         "[models.volume]\nmethod = \"quadrature\"\n");
+  EXPECT_EQ(ciliaval(folder.path(), "converge rim.toml"), 3);
+  EXPECT_THAT(read_text(folder.path() / "out.txt"), HasSubstr("inconclusive: tolerance 0.01:"));
 }
 
 }  // namespace

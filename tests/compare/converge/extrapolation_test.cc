@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/converge/extrapolation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -120,6 +121,28 @@ TEST(GridConvergence, BadLevelsAreInputErrors) {
   EXPECT_THROW(grid_convergence(levels(nan, 1, 1, {1, 2, 4})), InputError);
   EXPECT_THROW(least_squares_convergence(levels(1, 1, 1, {1, 2, 4})), InputError);
   EXPECT_EQ(extrapolate(levels(1, 1, 1, {1, 2, 4}), 1).safety, 1.25);
+}
+
+// A tolerance that is kept, one that is not, and one whose finest level alone is off.
+TEST(KeptTolerances, HoldWhereEachLevelIsWithinItsOwnOfTheFinest) {
+  const std::vector<Level> kept{{1e-8, 5.0}, {1e-6, 5.0 - 1.9e-6}, {1e-4, 5.0 + 1.9e-4}};
+  const Extrapolation good = kept_tolerances(kept, 2);
+  EXPECT_TRUE(good.conclusive);
+  EXPECT_EQ(good.limit, 5);
+  EXPECT_DOUBLE_EQ(good.uncertainty, 2e-8);
+  EXPECT_FALSE(good.order);
+  EXPECT_FALSE(kept_tolerances(kept, 1).conclusive);
+  std::vector<Level> broken = kept;
+  broken[1].value = 5.0 - 2.1e-6;
+  const Extrapolation bad = kept_tolerances(broken, 2);
+  EXPECT_FALSE(bad.conclusive);
+  EXPECT_THAT(bad.reason, testing::HasSubstr("a tolerance of 1e-06 promises an error below 2e-06"));
+  std::vector<Level> off = kept;
+  off[0].value = 5.001;
+  EXPECT_FALSE(kept_tolerances(off, 2).conclusive);
+  EXPECT_THROW(kept_tolerances(std::span(kept).first(2), 1), InputError);
+  off[0].value = std::nan("");
+  EXPECT_THROW(kept_tolerances(off, 2), InputError);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ RefinementStudy study() {
 TEST(ConvergencePlot, ShowsTheLastStepsTipAndFieldsWithOrdersOrWhyThereAreNone) {
   const Case problem = test::paper_case({1e-3, 2e-3});
   const ConvergencePlot drawing = convergence_plot(problem, {study()});
-  EXPECT_THAT(drawing.script, HasSubstr("solid, load step 2 of 2"));
+  EXPECT_THAT(drawing.script, HasSubstr("solid, refinement, load step 2 of 2"));
   EXPECT_THAT(drawing.script, HasSubstr("tip: order 2.00"));
   EXPECT_THAT(drawing.script, HasSubstr("'|dB| solid/mesh: inconclusive: the convergence is not"));
   EXPECT_THAT(drawing.script, Not(HasSubstr("solid/line")));

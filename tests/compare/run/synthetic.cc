@@ -48,9 +48,8 @@ force = )" +
          text.force + "\nheight = \"" + text.height + R"("
 azimuth = "30 deg"
 [sensor]
-position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
-[models]
-)" + models;
+position = )" +
+         text.sensor + "\n[models]\n" + models;
 }
 
 std::string read_text(const std::filesystem::path& file) {

@@ -32,6 +32,7 @@ struct ContactCaseText {
   std::string magnet_length = "17 mm";
   std::string force = R"("1 mN")";  ///< a TOML value: a string or a list of them
   std::string height = "16 mm";
+  std::string sensor = R"(["-0.1 mm", "0.2 mm", "-1.55 mm"])";
 };
 /// `models` are the lines that follow `[models]`.
 std::string case_text(const ContactCaseText& text, const std::string& models);
