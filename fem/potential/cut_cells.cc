@@ -2,10 +2,12 @@
 #include "fem/potential/cut_cells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "fem/parallel.h"
+#include "fem/potential/block_cut.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {
@@ -14,6 +16,19 @@ namespace {
 LagrangeBasis gauss_points(std::size_t n) {
   return LagrangeBasis(gauss_legendre(n, 0, 1).nodes);
 }
+
+/// Values of a rule's Lagrange polynomials at a coordinate, on the stack.
+class Weights {
+ public:
+  Weights(const LagrangeBasis& rule, double x) {
+    rule.values(x, std::span(values_).first(rule.size()));
+  }
+  double operator[](std::size_t i) const { return values_[i]; }
+  Eigen::Map<const Eigen::VectorXd> vector(Eigen::Index n) const { return {values_.data(), n}; }
+
+ private:
+  std::array<double, 16> values_;
+};
 
 /// One-dimensional products on a rule: row g holds f_i(x_g) f_j(x_g) for all i, j.
 struct Products {
@@ -66,21 +81,39 @@ CutCells::CutCells(const Octree& octree, unsigned int max_degree)
 void CutCells::add_permeability(int cell, const Vector3& unit, double susceptibility,
                                 double volume) {
   Moments& moments = moments_[cell];
-  const Eigen::VectorXd shape = shape_values(permeability_rule_, unit);
-  if (moments.permeability.size() == 0) moments.permeability.setZero(shape.size());
-  moments.permeability += susceptibility * volume * shape;
+  const auto n = static_cast<Eigen::Index>(permeability_rule_.size());
+  if (moments.permeability.size() == 0) moments.permeability.setZero(n * n * n);
   moments.susceptibility = susceptibility;
+  const Weights x(permeability_rule_, unit[0]);
+  const Weights y(permeability_rule_, unit[1]);
+  const Weights z(permeability_rule_, unit[2]);
+  double* weight = moments.permeability.data();
+  for (std::size_t k = 0; k < permeability_rule_.size(); ++k) {
+    for (std::size_t j = 0; j < permeability_rule_.size(); ++j) {
+      Eigen::Map<Eigen::VectorXd>(weight, n) += susceptibility * volume * z[k] * y[j] * x.vector(n);
+      weight += n;
+    }
+  }
 }
 
 void CutCells::add_source(int cell, const Vector3& unit, const Vector3& moment) {
   auto& moments = moments_[cell].source;
-  const Eigen::VectorXd shape = shape_values(source_rule_, unit);
-  if (moments.size() == 0) moments.setZero(3, shape.size());
-  moments += moment * shape.transpose();
+  const auto n = static_cast<Eigen::Index>(source_rule_.size());
+  if (moments.size() == 0) moments.setZero(3, n * n * n);
+  const Weights x(source_rule_, unit[0]);
+  const Weights y(source_rule_, unit[1]);
+  const Weights z(source_rule_, unit[2]);
+  Eigen::Index point = 0;
+  for (std::size_t k = 0; k < source_rule_.size(); ++k)
+    for (std::size_t j = 0; j < source_rule_.size(); ++j)
+      for (std::size_t i = 0; i < source_rule_.size(); ++i)
+        moments.col(point++) += x[i] * y[j] * z[k] * moment;
 }
 
 void CutCells::add(const Magnet& magnet, double relative_permeability, const Sampling& sampling) {
+  const BlockCut block_cut(sampling.block_points, sampling.piece_points);
   std::vector<Magnet::Block> stack = magnet.blocks();
+  std::vector<MagnetSample> gauss;
   std::vector<MagnetSample> points;
   double outside = 0;
   while (!stack.empty()) {
@@ -89,15 +122,17 @@ void CutCells::add(const Magnet& magnet, double relative_permeability, const Sam
     const Magnet::Extent extent = magnet.extent(block);
     if (!octree_.meets_own(extent.box)) continue;
     Eigen::Index longest = 0;
-    if (extent.lengths.maxCoeff(&longest) >
-        sampling.block_size * octree_.smallest_size(extent.box)) {
+    const double leaf = octree_.smallest_size(extent.box);
+    if (extent.lengths.maxCoeff(&longest) > sampling.block_size * leaf) {
       for (const Magnet::Block& half : halves(block, longest)) stack.push_back(half);
       continue;
     }
+    gauss.clear();
+    magnet.sample(block, sampling.block_points, gauss);
     points.clear();
-    magnet.sample(block, sampling.block_points, points);
+    block_cut.cut(gauss, {octree_.root().lower, leaf}, points);
     for (const MagnetSample& point : points) {
-      const Octree::Place place = octree_.locate(point.position);
+      const Octree::Place place = octree_.locate(point.position, leaf);
       if (place.cell == Octree::outside) outside = 1;
       if (place.cell < 0) continue;
       ++samples_;

@@ -13,10 +13,11 @@
 
 namespace ciliaval::fem {
 
-/// How densely a body is sampled.
+/// How densely the magnet is sampled.
 struct Sampling {
   double block_size = 1;         ///< largest length of a block over the edge of the local leaf
-  std::size_t block_points = 4;  ///< Gauss points of a block in each direction
+  std::size_t block_points = 4;  ///< points in each direction that a block is known by
+  std::size_t piece_points = 2;  ///< Gauss points of its pieces between the faces of leaves
 };
 
 /// What the bodies put into the leaves of an octree that they meet: the integrals

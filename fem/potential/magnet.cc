@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "problem/error.h"
@@ -19,6 +20,11 @@ namespace {
 Matrix3 rotation_of(const Matrix3& F) {
   const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return svd.matrixU() * svd.matrixV().transpose();
+}
+
+/// Of a point of a rod's section from its centre.
+Vector3 on_section(const CentrelinePoint& section, double r, double phi) {
+  return section.rotation * Vector3(r * std::cos(phi), r * std::sin(phi), 0);
 }
 
 Eigen::AlignedBox3d box_of(double a0, double a1, double b0, double b1, double c0, double c1) {
@@ -81,7 +87,7 @@ Magnet::Magnet(std::shared_ptr<const SolidBody> body, MagnetPushForward push_for
 /// are those per dS dr dφ: the section's element is r dr dφ.
 MagnetSample Magnet::on_rod(const RodPart& part, const CentrelinePoint& section, double r,
                             double phi) const {
-  const Vector3 offset = section.rotation * Vector3(r * std::cos(phi), r * std::sin(phi), 0);
+  const Vector3 offset = on_section(section, r, phi);
   const Vector3 fibre = section.derivative + section.curvature.cross(offset);
   const Vector3 normal = section.normal();
   const double J = normal.dot(fibre);
@@ -126,23 +132,52 @@ void Magnet::sample(const Block& block, std::size_t n, std::vector<MagnetSample>
   }
 }
 
-Magnet::Extent Magnet::extent(const Block& block) const {
-  std::array<std::array<std::array<Vector3, 3>, 3>, 3> x;
-  Extent result{Vector3::Zero(), {}};
-  for (std::size_t i = 0; i < 3; ++i) {
+/// Positions alone cost a small part of what the samples do: a section is read once for all its
+/// points, and a cell's polynomial is taken at the three coordinates of each direction in turn.
+Magnet::Corners Magnet::corners(const Block& block) const {
+  const auto coordinate = [&](std::size_t i, Eigen::Index d) {
+    return block.range.min()[d] + static_cast<double>(i) / 2 * block.range.sizes()[d];
+  };
+  Corners x;
+  if (!body_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const CentrelinePoint section = centreline_.at(coordinate(i, 0), rod_[block.part].piece);
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t k = 0; k < 3; ++k)
+          x[i][j][k] = section.position + on_section(section, coordinate(j, 1), coordinate(k, 2));
+    }
+    return x;
+  }
+  const std::vector<Vector3>& nodes = body_->cells[cells_[block.part]].current;
+  const auto n = static_cast<Eigen::Index>(body_->nodes.size());
+  std::array<Eigen::MatrixXd, 3> shape;
+  for (Eigen::Index d = 0; d < 3; ++d) {
+    Eigen::MatrixXd& s = shape[static_cast<std::size_t>(d)];
+    s.resize(n, 3);
+    for (Eigen::Index i = 0; i < 3; ++i)
+      body_->nodes.values(coordinate(static_cast<std::size_t>(i), d),
+                          std::span(s.col(i).data(), body_->nodes.size()));
+  }
+  const Eigen::Map<const Eigen::MatrixXd> all(nodes.front().data(), 3 * n * n, n);
+  const Eigen::MatrixXd along_c = all * shape[2];  // (3, n, n) × 3
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::MatrixXd along_b =
+        along_c.col(static_cast<Eigen::Index>(k)).reshaped(3 * n, n) * shape[1];
     for (std::size_t j = 0; j < 3; ++j) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Vector3 part =
-            Vector3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)) / 2;
-        const Vector3 xi = block.range.min() + part.cwiseProduct(block.range.sizes());
-        x[i][j][k] = body_ ? in_cell(body_->cells[cells_[block.part]], xi).position
-                           : on_rod(rod_[block.part], centreline_.at(xi[0], rod_[block.part].piece),
-                                    xi[1], xi[2])
-                                 .position;
-        result.box.extend(x[i][j][k]);
-      }
+      const Eigen::MatrixXd along_a =
+          along_b.col(static_cast<Eigen::Index>(j)).reshaped(3, n) * shape[0];
+      for (std::size_t i = 0; i < 3; ++i) x[i][j][k] = along_a.col(static_cast<Eigen::Index>(i));
     }
   }
+  return x;
+}
+
+Magnet::Extent Magnet::extent(const Block& block) const {
+  const Corners x = corners(block);
+  Extent result{Vector3::Zero(), {}};
+  for (const auto& plane : x)
+    for (const auto& row : plane)
+      for (const Vector3& point : row) result.box.extend(point);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const auto length = [](const Vector3& p, const Vector3& q, const Vector3& r) {

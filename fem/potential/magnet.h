@@ -69,6 +69,9 @@ class Magnet {
   MagnetSample on_rod(const RodPart& part, const CentrelinePoint& section, double r,
                       double phi) const;
   MagnetSample in_cell(const SolidCell& cell, const Vector3& xi) const;
+  /// Positions of 3³ points of a block, its corners and the points half-way between.
+  using Corners = std::array<std::array<std::array<Vector3, 3>, 3>, 3>;
+  Corners corners(const Block& block) const;
 
   MagnetPushForward push_forward_ = MagnetPushForward::F;
   double radius_ = 0;

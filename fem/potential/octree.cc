@@ -144,11 +144,12 @@ void Octree::refine_largest(const std::vector<double>& indicators, double fracti
   refine(flags);
 }
 
-Octree::Place Octree::locate(const Vector3& point) const {
+Octree::Place Octree::locate(const Vector3& point, double smallest) const {
   Place place;
   const Vector3 part = (point - root_.lower) / root_.size;
   if (!(part.minCoeff() >= 0 && part.maxCoeff() < 1)) return place;
-  for (int level = 0; level <= finest_level; ++level) {
+  for (auto level = static_cast<int>(std::lround(std::log2(root_.size / smallest))); level >= 0;
+       --level) {
     const Vector3 scaled(std::ldexp(part[0], level), std::ldexp(part[1], level),
                          std::ldexp(part[2], level));
     const Node node{level, static_cast<std::uint64_t>(scaled[0]),

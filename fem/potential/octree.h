@@ -58,7 +58,8 @@ class Octree {
     int cell = outside;
     Vector3 unit = Vector3::Zero();
   };
-  Place locate(const Vector3& point) const;
+  /// The search begins with leaves of the size `smallest` (m): no smaller one may hold the point.
+  Place locate(const Vector3& point, double smallest) const;
 
   /// Edge of the smallest leaf that meets the box, m; 0 if none does.
   double smallest_size(const Eigen::AlignedBox3d& box) const;

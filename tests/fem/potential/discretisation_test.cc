@@ -5,6 +5,7 @@
 
 #include "bodies.h"
 #include "fem/parallel.h"
+#include "fem/potential/block_cut.h"
 #include "fem/potential/functional.h"
 #include "fem/potential/operator.h"
 
@@ -205,11 +206,16 @@ TEST(CutCells, GaussWeightsGiveTheSumsOverTheSamples) {
   const Magnet magnet(test::paper_cilium(), test::arc(60), MagnetPushForward::F);
   Octree octree(Vector3(1e-3, 0, 9e-3), 0.1);  // one leaf, so large that no block is cut
   CutCells bodies(octree, 3);
-  const Sampling sampling{1, 3};
+  const Sampling sampling{1, 3, 2};
   bodies.add(magnet, 1.4, sampling);
   const PotentialSpace space(octree, 3);
+  const BlockCut cut(sampling.block_points, sampling.piece_points);
   std::vector<MagnetSample> samples;
-  for (const Magnet::Block& block : magnet.blocks()) magnet.sample(block, 3, samples);
+  for (const Magnet::Block& block : magnet.blocks()) {
+    std::vector<MagnetSample> gauss;
+    magnet.sample(block, sampling.block_points, gauss);
+    cut.cut(gauss, {octree.root().lower, octree.root().size}, samples);
+  }
   ASSERT_EQ(bodies.samples(), samples.size());
   Eigen::VectorXd source = Eigen::VectorXd::Zero(64);
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(64, 64);
@@ -222,6 +228,36 @@ TEST(CutCells, GaussWeightsGiveTheSumsOverTheSamples) {
   }
   EXPECT_LT((bodies.source(0, space.basis()) - source).norm() / source.norm(), 1e-12);
   EXPECT_LT((bodies.stiffness(0, space.basis()) - stiffness).norm() / stiffness.norm(), 1e-12);
+}
+
+// Oracle: a leaf wholly inside of the straight magnet has its μ_r, whatever the blocks that its
+// faces cut. Measured 3.5e-3 of μ_r − 1 in the mean square over 88 leaves; Gauss points of whole
+// blocks give 0.1.
+TEST(CutCells, LeavesInsideOfTheMagnetAreFull) {
+  start_mpi();
+  const Magnet magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
+  Octree octree(Vector3(0.13e-3, 0.07e-3, 11.3e-3), 12e-3);
+  const Eigen::AlignedBox3d around(Vector3(-1.5e-3, -1.5e-3, 3e-3), Vector3(1.5e-3, 1.5e-3, 20e-3));
+  while (octree.refine(
+      [&](const Cube& cube) { return cube.size > 0.8e-3 && cube.box().intersects(around); })) {
+  }
+  CutCells bodies(octree, 3);
+  bodies.add(magnet, 1.4);
+  int inside = 0;
+  double sum = 0;
+  for (const int cell : bodies.cells()) {
+    const Eigen::AlignedBox3d box = octree.cubes()[static_cast<std::size_t>(cell)].box();
+    const double rim =
+        box.min().head<2>().cwiseAbs().cwiseMax(box.max().head<2>().cwiseAbs()).norm();
+    if (rim > 1.5e-3 || box.min()[2] < 3e-3 || box.max()[2] > 20e-3) continue;
+    const double error = (bodies.mean_permeability(cell) - 1.4) / 0.4;
+    EXPECT_LT(std::abs(error), 1e-2);
+    sum += error * error;
+    ++inside;
+  }
+  ASSERT_GT(inside, 20);
+  std::printf("%d leaves inside, mean square error of mu_r - 1: %.1e of it\n", inside,
+              std::sqrt(sum / inside));
 }
 
 // Oracle: a plate that fills whole leaves adds (μ_r − 1) times the leaf's own matrix; one that

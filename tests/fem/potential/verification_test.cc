@@ -12,6 +12,7 @@
 #include "derby_olbert.h"
 #include "fem/potential/adaptive.h"
 #include "fem/potential/potential.h"
+#include "permeable_cylinder.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -97,6 +98,16 @@ TEST(StraightCilium, FieldIsDerbyAndOlbertsAtThePapersSensor) {
   // What the outer boundary adds is far below: a bound, at most a tenth of the estimate.
   const PotentialCycle& last = result.cycles.back();
   EXPECT_LT(last.truncation, 0.1 * last.difference.front().norm());
+}
+
+// Oracle: an integral equation for the charge on the magnet's surface (permeable_cylinder.h), to
+// eleven digits.
+TEST(PermeableStraightCilium, FieldIsThatOfItsSurfaceCharge) {
+  const std::vector<Vector3> points{test::paper_sensor()};
+  const std::vector<Vector3> exact{
+      oracle::PermeableCylinder(75e3, 1.05, R, 3e-3, 20e-3, {}).B(points[0])};
+  const Magnet magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
+  check("straight, 1.05", solve(magnet, 1.05, points, 3e-4), exact, 0, 3e-4);
 }
 
 // Oracle: the two charged discs of the bent rod's true volume (docs/fields.md), another code; and
