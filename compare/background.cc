@@ -40,6 +40,21 @@ std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, 
   return sensor;
 }
 
+void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
+                             Faults& faults) {
+  const auto count = [&](std::size_t first) {
+    int n = 0;
+    for (std::size_t c = first; c < first + 3; ++c) n += table.has(c) ? 1 : 0;
+    return n;
+  };
+  const int fields = count(field);
+  const int changes = count(change);
+  if (fields + changes != 3 || (fields != 0 && changes != 0))
+    faults.add({},
+               "the columns must be either Bx, By, Bz, or dBx, dBy, dBz for the change against "
+               "the undeformed cilium");
+}
+
 double apart(double a, double b) {
   return std::abs(std::remainder(a - b, turn));
 }

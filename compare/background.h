@@ -22,6 +22,11 @@ std::optional<std::size_t> index_in(const std::string& text, std::size_t bound);
 std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, std::size_t row,
                                      std::size_t sensors, Faults& faults);
 
+/// Adds a fault unless the table has the three columns from `field` on (B) or those from `change` on
+/// (ΔB), and no others of the six.
+void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
+                             Faults& faults);
+
 /// Distance of two azimuths on the circle, rad.
 double apart(double a, double b);
 

@@ -233,17 +233,7 @@ CsvTable readings_table(std::string_view text, std::size_t sensors, Faults& faul
   CsvTable table = read_csv(text, columns, {}, faults);
   if (!faults.empty()) return table;
   require_sensor_column(table, sensor_column, sensors, faults);
-  const auto count = [&](std::size_t first) {
-    int n = 0;
-    for (std::size_t c = first; c < first + 3; ++c) n += table.has(c) ? 1 : 0;
-    return n;
-  };
-  const int fields = count(field_column);
-  const int changes = count(change_column);
-  if (fields + changes != 3 || (fields != 0 && changes != 0))
-    faults.add({},
-               "the columns must be either Bx, By, Bz, or dBx, dBy, dBz for the change against "
-               "the undeformed cilium");
+  require_field_or_change(table, field_column, change_column, faults);
   return table;
 }
 

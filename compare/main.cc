@@ -22,6 +22,7 @@
 #include "compare/check_command.h"
 #include "compare/commands.h"
 #include "compare/converge_command.h"
+#include "compare/sense_command.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 
@@ -37,6 +38,7 @@ Examples:
   ciliaval check                         are the results of all shipped cases as accepted?
   ciliaval converge my.toml              how far are the results from the converged ones?
   ciliaval budget my.toml                what does each assumption of the paper's model cost?
+  ciliaval sense my.toml readings.csv    which load did the sensor read?
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
@@ -50,7 +52,7 @@ docs/meshes.md.
 
 Exit codes: 0 done, 1 `check`: a result is not as accepted, 2 wrong usage or case file, 3 a model
 did not converge (the results of the others are written), 4 a file could not be read or written,
-5 `check`, `converge`, `budget`: nothing could be compared, refined or judged.)";
+5 `check`, `converge`, `budget`, `sense`: nothing could be compared, refined, judged or found.)";
 
 /// A word as a POSIX shell reads it back: in single quotes if it holds anything special.
 std::string shell_word(std::string_view word) {
@@ -95,6 +97,52 @@ ExitCode print_parse_result(const CLI::App& app, const CLI::ParseError& error) {
 bool is_located(const std::string& message) {
   static const std::regex located("^[^\n]+:[0-9]+:[0-9]+: ");
   return std::regex_search(message, located, std::regex_constants::match_continuous);
+}
+
+constexpr const char* sense_help = R"(
+READINGS.csv has a header with units and a row for each reading:
+
+  sample, Bx [uT], By [uT], Bz [uT]
+  unloaded, 12.1, -33.0, 2231.5          the straight cilium; several rows: their mean
+  first, 71.4, -1.2, 2230.9
+  second, 100.2, 14.8, 2226.0
+
+or dBx, dBy, dBz, what the load has changed. The load found is the least-squares solution with the
+chosen pair of models, its interval that of the noise. `nothing`: the interval holds zero; `misfit`:
+no load explains the reading; `beyond range`: see --largest (docs/sense.md).)";
+
+CLI::App* add_sense(CLI::App& app, std::filesystem::path& file, std::filesystem::path& readings,
+                    ciliaval::compare::SenseOptions& options) {
+  CLI::App* sense = app.add_subcommand(
+      "sense",
+      "From what the sensors read to the load: force or flow speed and direction of each reading,\n"
+      "with intervals of 95 %.");
+  sense->footer(sense_help);
+  sense->add_option("CASE", file, "Case file (TOML): cilium, kind of load, sensors")
+      ->required()
+      ->check(CLI::ExistingFile);
+  sense->add_option("READINGS", readings, "Readings (CSV with units)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  sense
+      ->add_option("--background", options.background,
+                   "The ambient field at each azimuth of the stage (CSV: azimuth, Bx, By, Bz),\n"
+                   "taken off the readings, which then have a column `azimuth`")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
+  sense->add_option("--models", options.models, "The pair of models to invert, such as solid/mesh")
+      ->type_name("MECHANICS/FIELD")
+      ->capture_default_str();
+  sense->add_option("--noise", options.noise, "Standard deviation of a component of a reading")
+      ->type_name("QUANTITY")
+      ->capture_default_str();
+  sense
+      ->add_option("--largest", options.largest,
+                   "The largest load to look for; left out: 1.25 times the case's largest")
+      ->type_name("QUANTITY");
+  sense->add_option("--json", options.json, "Write the loads as JSON too")->type_name("FILE");
+  sense->add_option("--csv", options.csv, "Write the loads as CSV too")->type_name("FILE");
+  return sense;
 }
 
 ExitCode execute(int argc, char** argv) {
@@ -201,6 +249,10 @@ ExitCode execute(int argc, char** argv) {
       ->add_option("--plot", budget_options.plot,
                    "Plot tip and dB of the last step as a waterfall; SVG, by gnuplot")
       ->type_name("FILE.svg");
+  std::filesystem::path sense_file;
+  std::filesystem::path sense_readings;
+  ciliaval::compare::SenseOptions sense_options;
+  const CLI::App* sense = add_sense(app, sense_file, sense_readings, sense_options);
   const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
 
   check_command(app, argc, argv);
@@ -219,6 +271,8 @@ ExitCode execute(int argc, char** argv) {
     return ciliaval::compare::converge_case(converge_file, converge_options);
   else if (budget->parsed())
     return ciliaval::compare::budget_case(budget_file, budget_options);
+  else if (sense->parsed())
+    return ciliaval::compare::sense_readings(sense_file, sense_readings, sense_options);
   else if (mesh->parsed())
     ciliaval::compare::write_mesh(mesh_case, mesh_file, refinement, command_line(argc, argv));
   else

@@ -62,8 +62,8 @@ TEST(Response, ItsDerivativeIsThatOfTheChange) {
   const Response response(problem, "line", shapes_up_to(problem, "elastica", 3e-3),
                           problem.sensors);
   constexpr double h = 1e-7;
-  for (const Vector2& p :
-       {polar(2e-3, 0.4), polar(0.1e-3, -2.5), polar(0, 0), polar(1.5e-3, 0.2), polar(2.9e-3, 1.6)}) {
+  for (const Vector2& p : {polar(2e-3, 0.4), polar(0.1e-3, -2.5), polar(0, 0), polar(1.5e-3, 0.2),
+                           polar(2.9e-3, 1.6)}) {
     const Eigen::MatrixX2d derivative = response.derivative(p);
     for (int axis : {0, 1}) {
       const Vector2 step = h * Vector2::Unit(axis);

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/sense_command.h"
+
+#include <algorithm>
+
+#include "compare/case_files.h"
+#include "compare/results.h"
+#include "compare/sense/sensing.h"
+#include "compare/terminal.h"
+#include "compare/units.h"
+#include "fem/parallel.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+void require_one_rank() {
+  if (fem::rank_count() > 1)
+    throw InputError("`ciliaval sense` runs on one rank: start it without mpirun");
+}
+
+const Quantity& load_quantity(const Load& load) {
+  const std::string_view unit = magnitude_unit(load);
+  if (unit == "N") return quantity::force;
+  return unit == "m" ? quantity::length : quantity::force_per_length;
+}
+
+/// The largest load to be found.
+double largest_load(const Case& problem, const SenseOptions& options) {
+  if (options.largest)
+    return parse_quantity(*options.largest, load_quantity(problem.load_path.front()));
+  double largest = 0;
+  for (const Load& load : problem.load_path) largest = std::max(largest, magnitude(load));
+  if (!(largest > 0)) throw InputError("the case has no load but zero: say --largest");
+  return 1.25 * largest;
+}
+
+ExitCode exit_code(const Sensing& sensing) {
+  bool any = false;
+  for (const auto& [name, sensed] : sensing.samples) {
+    const SenseStatus status = status_of(sensed);
+    if (status == SenseStatus::failed) return ExitCode::solver;
+    any = any || status == SenseStatus::found || status == SenseStatus::nothing;
+  }
+  return any ? ExitCode::pass : ExitCode::undecided;
+}
+
+}  // namespace
+
+ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem::path& readings,
+                        const SenseOptions& options) {
+  require_one_rank();
+  const Case problem = read_cases({file}).front();
+  if (problem.sensors.empty()) throw InputError(file.string() + ": the case has no sensor");
+  Sensing sensing;
+  sensing.case_name = problem.name;
+  sensing.models = parse_pair(options.models);
+  sensing.noise = Vector3::Constant(parse_quantity(options.noise, quantity::flux_density));
+  sensing.unit = magnitude_unit(problem.load_path.front());
+  sensing.largest = largest_load(problem, options);
+  sensing.flow = flow_law(problem);
+  ProgressLine line;
+  const Shapes shapes =
+      shapes_up_to(problem, sensing.models.mechanics, sensing.largest, line.callback());
+  const Response response(problem, sensing.models.field, shapes, problem.sensors);
+  sensing.interpolation_error = response.interpolation_error();
+  sensing.largest_change = response.largest_change();
+  const SensorReadings read =
+      read_sensor_readings(readings, options.background, response.undeformed());
+  const Inversion invert(response, read.noise_factor * sensing.noise);
+  sensing.measured_offset = read.measured_offset;
+  for (const Sample& sample : read.samples)
+    sensing.samples.emplace_back(sample.name, invert(sample.change));
+  print(sensing_text(sensing));
+  if (options.json) replace_text(*options.json, sensing_json(sensing));
+  if (options.csv) replace_text(*options.csv, sensing_csv(sensing));
+  return exit_code(sensing);
+}
+
+}  // namespace ciliaval::compare

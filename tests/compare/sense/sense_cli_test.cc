@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// `ciliaval sense CASE READINGS` as a user calls it.
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "../run/program.h"
+
+namespace ciliaval {
+namespace {
+
+using test::read_text;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+constexpr double degree = std::numbers::pi / 180;
+
+/// A case under forces of one azimuth, and what `ciliaval run` says the sensor reads.
+class Sense : public testing::Test {
+ protected:
+  void SetUp() override {
+    write("one.toml", test::case_text({.name = "one", .force = R"(["1 mN", "2.5 mN", "4 mN"])"},
+                                      "mechanics = [\"beam\"]\nfields = [\"line\"]\n"));
+    ASSERT_EQ(ciliaval("run one.toml"), 0);
+    summary_ = nlohmann::json::parse(read_text(folder_.path() / "results/one/summary.json"));
+  }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.path() / name) << text;
+  }
+  int ciliaval(const std::string& arguments) {
+    const test::Outcome outcome = test::run_program(folder_.path(), arguments);
+    err_ = outcome.err;
+    out_ = outcome.out;
+    return outcome.code;
+  }
+  /// Bx, By, Bz of a step in T, with an offset.
+  std::string row(const std::string& name, const nlohmann::json& B, const std::string& more = "",
+                  const Vector3& offset = Vector3::Zero()) const {
+    return fmt::format("{}{},{:.17g},{:.17g},{:.17g}\n", name, more,
+                       B[0][0].get<double>() + offset.x(), B[0][1].get<double>() + offset.y(),
+                       B[0][2].get<double>() + offset.z());
+  }
+  const nlohmann::json& field(std::size_t step, const char* what) const {
+    return summary_["steps"][step]["fields"]["beam/line"][what];
+  }
+  void expect_the_forces(double offset_azimuth = 0) {
+    const auto json = nlohmann::json::parse(read_text(folder_.path() / "found.json"));
+    ASSERT_EQ(json["samples"].size(), 3u);
+    const double forces[] = {1e-3, 2.5e-3, 4e-3};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& sample = json["samples"][i];
+      EXPECT_EQ(sample["status"], "found");
+      EXPECT_NEAR(sample["magnitude"].get<double>(), forces[i], 1e-8 * forces[i]);
+      EXPECT_NEAR(sample["azimuth"].get<double>(), 30 * degree + offset_azimuth, 1e-7);
+      EXPECT_LT(sample["magnitude_interval"].get<double>(), 0.1 * forces[i]);
+    }
+  }
+
+  TemporaryFolder folder_;
+  nlohmann::json summary_;
+  std::string out_;
+  std::string err_;
+};
+
+// Oracle: the forces with which `run` has made the readings.
+TEST_F(Sense, FindsTheForcesBehindReadingsWithTheOffsetOfTheEarthAndTheMagnet) {
+  const Vector3 earth(20e-6, -3e-6, -43e-6);
+  std::string text = "sample,Bx [T],By [T],Bz [T]\n";
+  const auto& straight = summary_["undeformed"]["fields"]["beam/line"]["B"];
+  text += row("unloaded", straight, "", earth + Vector3(1e-6, 0, 0));
+  text += row("unloaded", straight, "", earth - Vector3(1e-6, 0, 0));
+  for (std::size_t i = 0; i < 3; ++i) text += row(fmt::format("{}", i), field(i, "B"), "", earth);
+  write("readings.csv", text);
+  ASSERT_EQ(ciliaval("sense one.toml readings.csv --models beam/line --json found.json --csv "
+                     "found.csv"),
+            0)
+      << err_;
+  expect_the_forces();
+  EXPECT_THAT(out_, HasSubstr("2.5 "));
+  // The mean of two unloaded readings adds its noise: √(1 + 1/2).
+  const auto interval = [&](const std::string& file) {
+    return nlohmann::json::parse(
+               read_text(folder_.path() / file))["samples"][1]["magnitude_interval"]
+        .get<double>();
+  };
+  std::string change = "sample,dBx [T],dBy [T],dBz [T]\n";
+  for (std::size_t i = 0; i < 3; ++i) change += row(fmt::format("{}", i), field(i, "dB"));
+  write("change.csv", change);
+  ASSERT_EQ(ciliaval("sense one.toml change.csv --models beam/line --json change.json"), 0);
+  EXPECT_NEAR(interval("found.json") / interval("change.json"), std::sqrt(1.5), 1e-6);
+  EXPECT_THAT(read_text(folder_.path() / "found.csv"), HasSubstr("\"1\",found,"));
+}
+
+// The stage turns, and with it the ambient field that the sensor sees.
+TEST_F(Sense, TakesTheBackgroundOffAtEachAzimuth) {
+  const Vector3 earth(20e-6, -3e-6, -43e-6);
+  const auto seen = [&](double azimuth) {
+    return Vector3(Eigen::AngleAxisd(-azimuth, Vector3::UnitZ()) * earth);
+  };
+  std::string background = "azimuth [deg],Bx [T],By [T],Bz [T]\n";
+  for (int a = 0; a < 360; a += 30)
+    background += fmt::format("{},{:.17g},{:.17g},{:.17g}\n", a, seen(a * degree).x(),
+                              seen(a * degree).y(), seen(a * degree).z());
+  write("background.csv", background);
+  const auto& straight = summary_["undeformed"]["fields"]["beam/line"]["B"];
+  std::string text = "sample,azimuth [deg],Bx [T],By [T],Bz [T]\n" +
+                     row("unloaded", straight, ",60", seen(60 * degree));
+  for (std::size_t i = 0; i < 3; ++i)
+    text += row(fmt::format("{}", i), field(i, "B"), fmt::format(",{}", 90 * i),
+                seen(90 * degree * static_cast<double>(i)));
+  write("readings.csv", text);
+  ASSERT_EQ(ciliaval("sense one.toml readings.csv --background background.csv --models beam/line "
+                     "--json found.json"),
+            0)
+      << err_;
+  expect_the_forces();
+}
+
+// Changes need no offset. Readings that no model of a load makes are said to be so.
+TEST_F(Sense, ReadsChangesAndSaysWhatIsNoLoad) {
+  std::string text = "time [s],dBx [T],dBy [T],dBz [T]\n";
+  for (std::size_t i = 0; i < 3; ++i) text += row("0", field(i, "dB"));
+  write("readings.csv", text);
+  ASSERT_EQ(ciliaval("sense one.toml readings.csv --models beam/line --json found.json"), 0);
+  expect_the_forces();
+  write("odd.csv", "sample,dBx [uT],dBy [uT],dBz [uT]\nnone,0.1,0,0\nodd,0,0,500\nhuge,900,0,0\n");
+  ASSERT_EQ(ciliaval("sense one.toml odd.csv --models beam/line --json odd.json"), 0);
+  const auto odd = nlohmann::json::parse(read_text(folder_.path() / "odd.json"))["samples"];
+  EXPECT_EQ(odd[0]["status"], "nothing");
+  EXPECT_EQ(odd[1]["status"], "misfit");
+  EXPECT_EQ(odd[2]["status"], "beyond range");
+  write("odd.csv", "sample,dBx [uT],dBy [uT],dBz [uT]\nodd,0,0,500\n");
+  EXPECT_EQ(ciliaval("sense one.toml odd.csv --models beam/line"), 5);
+}
+
+// A flow: the speed, with an interval that does not fall below zero. Oracle: the case's velocities.
+TEST_F(Sense, FindsTheSpeedOfAFlow) {
+  std::string flow =
+      test::case_text({.name = "flow"}, "mechanics = [\"elastica\"]\nfields = [\"volume\"]\n");
+  const std::size_t load = flow.find("[load]");
+  flow =
+      flow.substr(0, load) +
+      "[load]\ntype = \"flow\"\nvelocity = [\"0.01 m/s\", \"0.3 m/s\"]\nazimuth = \"200 deg\"\n" +
+      flow.substr(flow.find("[sensor]"));
+  write("flow.toml", flow);
+  ASSERT_EQ(ciliaval("run flow.toml"), 0) << err_;
+  const auto summary =
+      nlohmann::json::parse(read_text(folder_.path() / "results/flow/summary.json"));
+  std::string text = "dBx [T],dBy [T],dBz [T]\n";
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& dB = summary["steps"][i]["fields"]["elastica/volume"]["dB"][0];
+    text += fmt::format("{:.17g},{:.17g},{:.17g}\n", dB[0].get<double>(), dB[1].get<double>(),
+                        dB[2].get<double>());
+  }
+  write("readings.csv", text);
+  ASSERT_EQ(ciliaval("sense flow.toml readings.csv --noise '0.5 uT' --json found.json"), 0) << err_;
+  const auto samples = nlohmann::json::parse(read_text(folder_.path() / "found.json"))["samples"];
+  EXPECT_NEAR(samples[0]["velocity"].get<double>(), 0.01, 1e-5);
+  EXPECT_NEAR(samples[1]["velocity"].get<double>(), 0.3, 1e-7);
+  EXPECT_NEAR(samples[1]["azimuth"].get<double>(), -160 * degree, 1e-6);
+  EXPECT_EQ(samples[0]["velocity_interval"][0], 0.0);
+  EXPECT_GT(samples[0]["velocity_interval"][1].get<double>(), 0.01);
+  EXPECT_THAT(out_, HasSubstr("v (m/s)"));
+}
+
+TEST_F(Sense, BadReadingsAndOptionsAreRefusedWithTheirPlace) {
+  const auto expect_error = [&](const std::string& text, const std::string& message,
+                                const std::string& more = "") {
+    write("bad.csv", text);
+    EXPECT_EQ(ciliaval("sense one.toml bad.csv " + more), 2) << text;
+    EXPECT_THAT(err_, HasSubstr(message)) << text;
+  };
+  const std::string header = "sample,Bx [uT],By [uT],Bz [uT]\n";
+  expect_error("sample,Bx [uT],By [uT]\na,1,2\n", "either Bx, By, Bz, or dBx, dBy, dBz");
+  expect_error(header + "a,1,2\n", "bad.csv:2");
+  expect_error(header + "a,1,2,nan\n", "bad.csv:2");
+  expect_error("sample,Bx [mm],By [uT],Bz [uT]\na,1,2,3\n", "bad.csv:1");
+  expect_error(header + "a,1,2,3\na,1,2,3\n", "a second row of sample 'a'");
+  expect_error(header + "unloaded,1,2,3\n", "no reading but of the unloaded cilium");
+  expect_error("sample,dBx [uT],dBy [uT],dBz [uT]\nunloaded,1,2,3\na,1,2,3\n",
+               "leave its rows out");
+  const std::string good = header + "a,1,2,3\n";
+  expect_error(good, "flux density", "--noise '1 mm'");
+  expect_error(good, "finite and positive", "--noise '0 uT'");
+  expect_error(good, "elastica/volume", "--models volume");
+  expect_error(good, "force", "--largest '4 mm'");
+  write("background.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n0,1,2,3\n");
+  expect_error(good, "need a column 'azimuth'", "--background background.csv");
+  expect_error("azimuth [deg],Bx [uT],By [uT],Bz [uT]\n10,1,2,3\n", "a single azimuth",
+               "--background background.csv");
+  EXPECT_EQ(ciliaval("sense one.toml bad.csv --largest '9 mN'"), 3);
+  EXPECT_THAT(err_, HasSubstr("within the range of loads up to 0.009 N"));
+}
+
+// Two sensors: a row for each in a sample. Oracle: the force of `run`.
+TEST_F(Sense, TakesTheReadingsOfSeveralSensorsTogether) {
+  write(
+      "two.toml",
+      test::case_text({.name = "two",
+                       .force = R"("3 mN")",
+                       .sensor = R"([["1 mm", "0 mm", "-1.5 mm"], ["0 mm", "-2 mm", "-1.5 mm"]])"},
+                      "mechanics = [\"elastica\"]\nfields = [\"volume\"]\n"));
+  ASSERT_EQ(ciliaval("run two.toml"), 0) << err_;
+  const auto dB = nlohmann::json::parse(read_text(
+      folder_.path() / "results/two/summary.json"))["steps"][0]["fields"]["elastica/volume"]["dB"];
+  std::string text = "sample,sensor,dBx [T],dBy [T],dBz [T]\n";
+  for (const std::size_t s : {1u, 0u})
+    text += fmt::format("a,{},{:.17g},{:.17g},{:.17g}\n", s, dB[s][0].get<double>(),
+                        dB[s][1].get<double>(), dB[s][2].get<double>());
+  write("readings.csv", text);
+  ASSERT_EQ(ciliaval("sense two.toml readings.csv --json found.json"), 0) << err_;
+  const auto sample = nlohmann::json::parse(read_text(folder_.path() / "found.json"))["samples"][0];
+  EXPECT_NEAR(sample["magnitude"].get<double>(), 3e-3, 1e-9);
+  write("readings.csv", text.substr(0, text.rfind("a,")));
+  EXPECT_EQ(ciliaval("sense two.toml readings.csv"), 2);
+  EXPECT_THAT(err_, HasSubstr("no row of sample 'a', sensor 0"));
+}
+
+}  // namespace
+}  // namespace ciliaval
