@@ -203,8 +203,9 @@ class Adaptive {
   double boundary_value(const Vector3& x) const;
   void update_induced();
   double truncation() const;
-  double set_indicators();
-  std::vector<Vector3> B_at_points(const Solution& solution) const;
+  void set_indicators();
+  std::vector<Vector3> kinks() const;
+  std::vector<Vector3> B_at_points(const PotentialSpace& space, const PotentialVector& psi) const;
   std::vector<std::vector<Vector3>> dual_directions() const;
 
   const PotentialProblem& problem_;
@@ -288,8 +289,9 @@ double Adaptive::truncation() const {
   return 3 * vacuum_permeability * delta / (L - layout_.radius);
 }
 
-std::vector<Vector3> Adaptive::B_at_points(const Solution& solution) const {
-  std::vector<Vector3> B = SensorFunctional(solution.space, layout_.balls).gradients(solution.psi);
+std::vector<Vector3> Adaptive::B_at_points(const PotentialSpace& space,
+                                           const PotentialVector& psi) const {
+  std::vector<Vector3> B = SensorFunctional(space, layout_.balls).gradients(psi);
   for (Vector3& value : B) value *= -vacuum_permeability;
   return B;
 }
@@ -315,12 +317,13 @@ PotentialCycle Adaptive::solve() {
   cycle.unknowns = low_->space.unknowns();
   cycle.iterations = low_->iterations;
   cycle.check_iterations = high_->iterations;
-  cycle.B = B_at_points(*low_);
-  B_ = B_at_points(*high_);
+  cycle.B = B_at_points(low_->space, low_->psi);
+  B_ = B_at_points(high_->space, high_->psi);
   for (std::size_t i = 0; i < B_.size(); ++i) cycle.difference.push_back(B_[i] - cycle.B[i]);
   update_induced();
   cycle.truncation = truncation();
-  cycle.kinks = set_indicators();
+  cycle.kinks = kinks();
+  set_indicators();
   for (const Vector3& B : B_)
     if (!B.allFinite()) throw SolverError("the potential is not finite");
   cycle.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -364,15 +367,37 @@ std::shared_ptr<const FieldMesh> Adaptive::mesh() const {
   return result;
 }
 
+/// What the permeable bodies contribute to the difference of the degrees, T. With ψ_p and z_p of
+/// the degree p, ∂J(ψ_p)/∂μ_r = −∫ ∇ψ_p·∇z_p over the body, so that it is about −∫ (μ_r − 1) ∇(ψ₃ −
+/// ψ₂)·∇z. The duals z need not be known for it: it is J(w) with a(w, φ) = −∫ (μ_r − 1) ∇(ψ₃ −
+/// ψ₂)·∇φ.
+std::vector<Vector3> Adaptive::kinks() const {
+  const PotentialSpace& space = low_->space;
+  const Eigen::MatrixXd raise = interpolation(space.basis(), high_->space.basis());
+  Eigen::VectorXd u(space.nodes());
+  Eigen::VectorXd v(high_->space.nodes());
+  PotentialVector load = space.vector();
+  for (const int cell : bodies_->cells()) {
+    if (!bodies_->has_permeability(cell)) continue;
+    space.read(cell, low_->psi, u);
+    high_->space.read(cell, high_->psi, v);
+    v = raise * u - v;
+    space.add_free(cell, raise.transpose() * high_->matrix.bodies_part(cell, v), load);
+  }
+  load.compress(dealii::VectorOperation::add);
+  PotentialVector w = space.vector();
+  if (load.l2_norm() > 0) fem::solve(low_->matrix, low_->multigrid, load, dual_tolerance, w);
+  PotentialVector complete = space.vector();
+  space.add_free_values(w, complete);
+  space.complete(complete);
+  return B_at_points(space, complete);
+}
+
 /// Indicator of a leaf: the energy norms of the errors of ψ and of the duals on it multiplied. That
 /// of ψ is the difference of the two degrees; that of a dual z is foreseen from the energies of
 /// its trilinear part s₁ and of the rest s₂ as s₂²/s₁, plus the kink that a permeable body's
 /// surface puts into z, which no polynomial of the leaf follows.
-///
-/// Returns what the error of ψ in the permeable bodies, a kink as well, is worth at the points,
-/// relative to |B|: ∫ (μ_r − 1) ∇(error of ψ)·∇z. It is one part of the difference of the degrees,
-/// and may by chance be of the opposite sign as the rest.
-double Adaptive::set_indicators() {
+void Adaptive::set_indicators() {
   const PotentialSpace& space = low_->space;
   const auto cells = static_cast<int>(octree_.cells().size());
   const auto count = static_cast<std::size_t>(cells);
@@ -389,17 +414,12 @@ double Adaptive::set_indicators() {
   };
   indicators_.assign(count, 0);
   const SensorFunctional functional(space, layout_.balls);
-  Vector3 kinks = Vector3::Zero();
-  const std::vector<std::vector<Vector3>> directions = dual_directions();
-  for (Eigen::Index d = 0; d < 3; ++d) {
+  for (const std::vector<Vector3>& direction : dual_directions()) {
     PotentialVector z = space.vector();
-    fem::solve(low_->matrix, low_->multigrid,
-               functional.load(directions[static_cast<std::size_t>(d)]), dual_tolerance, z);
+    fem::solve(low_->matrix, low_->multigrid, functional.load(direction), dual_tolerance, z);
     z.update_ghost_values();
     for (int c = 0; c < cells; ++c) {
-      if (bodies_->has_permeability(c)) error_of_psi(c);
       space.read_free(c, z, u);
-      if (bodies_->has_permeability(c)) kinks[d] += high_->matrix.bodies_part(c, v, raise * u);
       const Eigen::VectorXd trilinear = from_linear * (to_linear * u);
       const double s1 = low_->matrix.energy(c, trilinear);
       const double s2 = low_->matrix.energy(c, u - trilinear);
@@ -413,16 +433,13 @@ double Adaptive::set_indicators() {
     double& indicator = indicators_[static_cast<std::size_t>(c)];
     indicator = std::sqrt(indicator * high_->matrix.energy(c, v));
   }
-  sum_over_ranks(std::span(kinks.data(), 3));
-  return vacuum_permeability * kinks.norm();
 }
 
 }  // namespace
 
 Vector3 PotentialCycle::estimate(std::size_t point) const {
-  const Vector3& d = difference[point];
-  const double norm = std::max(d.norm(), kinks * B[point].norm());
-  const Vector3 shared = (d.array().square() / 2 + (norm * norm - d.squaredNorm() / 2) / 3).sqrt();
+  const Vector3 error = difference[point] + 2 * kinks[point];
+  const Vector3 shared = (error.array().square() / 2 + error.squaredNorm() / 6).sqrt();
   return shared.array() + truncation;
 }
 

@@ -38,13 +38,13 @@ struct PotentialCycle {
   unsigned int check_iterations = 0;  ///< for the solution one degree higher
   std::vector<Vector3> B;             ///< T
   std::vector<Vector3> difference;    ///< B one degree higher − B, T
-  double kinks = 0;       ///< part of the difference from permeable bodies, relative to |B|
-  double truncation = 0;  ///< bound of the error that the outer boundary makes, T
+  std::vector<Vector3> kinks;         ///< share of the permeable bodies in the difference, T
+  double truncation = 0;              ///< bound of the error that the outer boundary makes, T
   double seconds = 0;
 
-  /// Estimate of the error of each component of B: the norm of the difference, or that of its part
-  /// from permeable bodies if it is larger, shared out between the components so that none that
-  /// happens to be small is trusted; and the truncation.
+  /// Estimate of the error of each component of B: the norm of difference + 2 kinks
+  /// (docs/potential.md), shared out between the components so that none that happens to be small
+  /// is trusted; and the truncation.
   Vector3 estimate(std::size_t point) const;
 };
 

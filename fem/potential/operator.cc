@@ -75,10 +75,9 @@ double PotentialOperator::energy(int cell, const Eigen::Ref<const Eigen::VectorX
   return space_.octree().cubes()[static_cast<std::size_t>(cell)].size * u.dot(unit_ * u);
 }
 
-double PotentialOperator::bodies_part(int cell, const Eigen::Ref<const Eigen::VectorXd>& u,
-                                      const Eigen::Ref<const Eigen::VectorXd>& v) const {
-  const auto body = bodies_.find(cell);
-  return body == bodies_.end() ? 0 : u.dot(body->second * v);
+Eigen::VectorXd PotentialOperator::bodies_part(int cell,
+                                               const Eigen::Ref<const Eigen::VectorXd>& u) const {
+  return bodies_.at(cell) * u;
 }
 
 PotentialVector PotentialOperator::inverse_diagonal() const {

@@ -39,9 +39,8 @@ class PotentialOperator : public dealii::Subscriptor {
   PotentialVector inverse_diagonal() const;
   /// A leaf's matrix, m.
   Eigen::MatrixXd cell_matrix(int cell) const;
-  /// uᵀ S v of a leaf with its bodies' part S of the matrix alone.
-  double bodies_part(int cell, const Eigen::Ref<const Eigen::VectorXd>& u,
-                     const Eigen::Ref<const Eigen::VectorXd>& v) const;
+  /// S u of a leaf with its bodies' part S of the matrix alone; the leaf must have one.
+  Eigen::VectorXd bodies_part(int cell, const Eigen::Ref<const Eigen::VectorXd>& u) const;
   /// uᵀ A u of a leaf for values u at its nodes, without the bodies' part.
   double energy(int cell, const Eigen::Ref<const Eigen::VectorXd>& u) const;
 

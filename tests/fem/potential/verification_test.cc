@@ -19,10 +19,10 @@ namespace {
 
 constexpr double R = 1.5e-3;
 
-/// Checks every mesh of the sequence from the given one on: the error of the vector B at each point
-/// over |B| is its estimate within a factor of three either way.
+/// Checks every mesh of the sequence: the error of the vector B at each point
+/// over |B| is its estimate within a factor of two either way (measured 0.79 to 1.38).
 void check(const char* name, const PotentialResult& result, const std::vector<Vector3>& exact,
-           std::size_t first, double tolerance) {
+           double tolerance) {
   for (std::size_t c = 0; c < result.cycles.size(); ++c) {
     const PotentialCycle& cycle = result.cycles[c];
     for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -31,9 +31,8 @@ void check(const char* name, const PotentialResult& result, const std::vector<Ve
       std::printf("%s: %7zu unknowns, error %.1e, estimate %.1e, effectivity %.2f\n", name,
                   cycle.unknowns, error / exact[i].norm(), estimate / exact[i].norm(),
                   estimate / error);
-      if (c < first) continue;
-      EXPECT_GT(estimate / error, 0.3);
-      EXPECT_LT(estimate / error, 3);
+      EXPECT_GT(estimate / error, 0.5);
+      EXPECT_LT(estimate / error, 2);
     }
   }
   for (std::size_t i = 0; i < exact.size(); ++i)
@@ -62,29 +61,29 @@ TEST(MagnetisedBall, FieldIsThatOfItsDipole) {
   for (const Vector3& x : around_ball)
     exact.push_back(test::dipole_field(ball_volume * ball_magnetization, x));
   const Magnet magnet(test::ball(R, ball_magnetization), MagnetPushForward::F);
-  check("ball", solve(magnet, 1, around_ball, 1e-3), exact, 1, 1e-3);
+  check("ball", solve(magnet, 1, around_ball, 1e-3), exact, 1e-3);
 }
 
 // Oracle: a ball of remanent m and recoil permeability μ_r has inside H = −m/(μ_r + 2) (the
 // demagnetising factor is 1/3), so that outside it is the dipole 3V m/(μ_r + 2).
-TEST(MagnetisedBallSlow, RecoilPermeabilityWeakensTheDipole) {
+TEST(MagnetisedBall, RecoilPermeabilityWeakensTheDipole) {
   std::vector<Vector3> exact;
   for (const Vector3& x : around_ball)
     exact.push_back(test::dipole_field(3 * ball_volume / 3.05 * ball_magnetization, x));
   const Magnet magnet(test::ball(R, ball_magnetization), MagnetPushForward::F);
-  check("ball, 1.05", solve(magnet, 1.05, around_ball, 2e-3), exact, 1, 2e-3);
+  check("ball, 1.05", solve(magnet, 1.05, around_ball, 2e-3), exact, 2e-3);
 }
 
 // Oracle: a permeable ball in a uniform field B₀ is the dipole 4πR³ (μ_r − 1)/(μ_r + 2) B₀/μ₀. Its
 // own magnetisation here is 1e-9 of the induced one.
-TEST(PermeableBallSlow, DisturbsAUniformFieldByADipole) {
+TEST(PermeableBall, DisturbsAUniformFieldByADipole) {
   const Vector3 B0(2e-3, 1e-3, -3e-3);
   constexpr double mu = 5;
   const Vector3 dipole = 3 * ball_volume * (mu - 1) / (mu + 2) / vacuum_permeability * B0;
   std::vector<Vector3> exact;
   for (const Vector3& x : around_ball) exact.emplace_back(B0 + test::dipole_field(dipole, x));
   const Magnet magnet(test::ball(R, Vector3(0, 0, 1e-6)), MagnetPushForward::F);
-  check("permeable ball", solve(magnet, mu, around_ball, 1e-2, B0), exact, 0, 2e-2);
+  check("permeable ball", solve(magnet, mu, around_ball, 1e-2, B0), exact, 1e-2);
 }
 
 // Oracle: Derby & Olbert in 50 digits.
@@ -94,7 +93,7 @@ TEST(StraightCilium, FieldIsDerbyAndOlbertsAtThePapersSensor) {
       oracle::derby_olbert(75e3, R, 3e-3, 20e-3, test::paper_sensor())};
   const Magnet magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
   const PotentialResult result = solve(magnet, 1, points, 4e-4);
-  check("straight", result, exact, 1, 4e-4);
+  check("straight", result, exact, 4e-4);
   // What the outer boundary adds is far below: a bound, at most a tenth of the estimate.
   const PotentialCycle& last = result.cycles.back();
   EXPECT_LT(last.truncation, 0.1 * last.difference.front().norm());
@@ -107,7 +106,7 @@ TEST(PermeableStraightCilium, FieldIsThatOfItsSurfaceCharge) {
   const std::vector<Vector3> exact{
       oracle::PermeableCylinder(75e3, 1.05, R, 3e-3, 20e-3, {}).B(points[0])};
   const Magnet magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
-  check("straight, 1.05", solve(magnet, 1.05, points, 3e-4), exact, 0, 3e-4);
+  check("straight, 1.05", solve(magnet, 1.05, points, 3e-4), exact, 3e-4);
 }
 
 // Oracle: the two charged discs of the bent rod's true volume (docs/fields.md), another code; and
@@ -118,19 +117,19 @@ TEST(BentCilium, FieldIsThatOfTwoDiscsAsRodAndAsSolid) {
   const std::vector<Vector3> exact =
       analytic::VolumeField(analytic::VolumeOptions{}).field(test::paper_cilium(), bent, points).B;
   const Magnet rod(test::paper_cilium(), bent, MagnetPushForward::F);
-  check("bent rod", solve(rod, 1, points, 1e-3), exact, 1, 1e-3);
+  check("bent rod", solve(rod, 1, points, 1e-3), exact, 1e-3);
 
   const auto map = [&](const Vector3& X) {
     const CentrelinePoint section = bent.centreline.at(X[2]);
     return Vector3(section.position + section.rotation * Vector3(X[0], X[1], 0));
   };
   const Magnet solid(oracle::CylinderBody{}.moved(map), MagnetPushForward::F);
-  check("bent solid", solve(solid, 1, points, 1e-3), exact, 1, 1e-3);
+  check("bent solid", solve(solid, 1, points, 1e-3), exact, 1e-3);
 }
 
 // The error that a narrow box makes is below its bound, and the bound of the usual box is nothing
 // beside the estimate.
-TEST(OuterBoundarySlow, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
+TEST(OuterBoundary, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
   const std::vector<Vector3> points{test::paper_sensor()};
   const Vector3 exact = oracle::derby_olbert(75e3, R, 3e-3, 20e-3, test::paper_sensor());
   PotentialProblem problem;
@@ -156,7 +155,7 @@ TEST(OuterBoundarySlow, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
 // What the estimate does not see, the sampling of the magnet, the quadrature of the sensor's ball
 // and the outer boundary, is far below it: the error that is left one degree higher. Oracle: the
 // two charged discs; measured below 0.1 of the estimate.
-TEST(SamplingSlow, OfTheMagnetIsFarBelowTheEstimate) {
+TEST(Sampling, OfTheMagnetIsFarBelowTheEstimate) {
   const Deformation bent = test::arc(60);
   const std::vector<Vector3> points{test::paper_sensor()};
   const Vector3 exact = analytic::VolumeField(analytic::VolumeOptions{})
@@ -171,7 +170,7 @@ TEST(SamplingSlow, OfTheMagnetIsFarBelowTheEstimate) {
 
 // Oracle: the image of a magnet in a permeable half-space, −m mirrored, times (μ_r − 1)/(μ_r + 1).
 // A plate of 100 × 100 × 40 mm stands for the half-space; its finite size is worth less than 0.5 %.
-TEST(PlateSlow, ActsLikeTheImageOfTheMagnet) {
+TEST(Plate, ActsLikeTheImageOfTheMagnet) {
   constexpr double mu = 4;
   const Vector3 centre(0, 0, 4e-3);
   PotentialProblem problem;
@@ -191,7 +190,7 @@ TEST(PlateSlow, ActsLikeTheImageOfTheMagnet) {
   const Vector3 image = (mu - 1) / (mu + 1) * Vector3(-m[0], -m[1], m[2]);
   const std::vector<Vector3> exact{test::dipole_field(m, problem.points[0] - centre) +
                                    test::dipole_field(image, problem.points[0] + centre)};
-  check("plate", result, exact, result.cycles.size(), 1.5e-2);
+  check("plate", result, exact, 1e-2);
 }
 
 }  // namespace
