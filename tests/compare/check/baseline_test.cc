@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -102,6 +103,19 @@ TEST(Baseline, RoundingIsNoChange) {
   const Baseline candidate = make_baseline(any_case(), now, origin, &old);
   EXPECT_TRUE(candidate.changes.empty());
   EXPECT_EQ(candidate.quantities[0].value, old.quantities[0].value);
+}
+
+// Two meshes of the potential are as far apart as its estimate says; its place in the id, not a
+// mechanics model's or a sensor's, decides.
+TEST(Baseline, ThePotentialIsHeldToItsOwnEstimate) {
+  const auto tolerance = [](const char* id, std::optional<double> uncertainty) {
+    return regression_tolerance({id, "elastica", "T", 1e-3, 2e-3, uncertainty});
+  };
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 3e-6).absolute, 3e-6);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 3e-6).relative, 1e-10);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 1e-16).absolute, 2e-13);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", {}).absolute, 2e-13);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/line/B/0/x", 3e-6).absolute, 2e-13);
 }
 
 TEST(Baseline, IsNotMadeOfWhatFailed) {
