@@ -9,7 +9,11 @@ if [ "${1:-}" = --help ] || [ "${1:-}" = -h ]; then
   echo "usage: ./run.sh [CASE.toml …]   (default: every case in cases/paper/)"
   exit 0
 fi
-[ $# -gt 0 ] || set -- cases/paper/*.toml
+if [ $# -eq 0 ]; then
+  for file in cases/paper/*.toml; do
+    [[ $file == *.study.toml ]] || set -- "$@" "$file" # studies are no cases
+  done
+fi
 
 install_packages
 build release

@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/case.h"
 
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <system_error>
-
 #include "compare/case_sections.h"
 #include "compare/case_syntax.h"
 #include "compare/external_files.h"
@@ -17,31 +8,6 @@
 
 namespace ciliaval::compare {
 namespace {
-
-constexpr std::uintmax_t largest_file = 1'000'000;  ///< bytes
-
-/// The text of a regular file. Throws InputError.
-std::string read_file(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status))
-    throw InputError(fmt::format("{}: the case file does not exist", name));
-  if (std::filesystem::is_directory(status))
-    throw InputError(fmt::format("{}: is a folder, not a case file", name));
-  if (!std::filesystem::is_regular_file(status))
-    throw InputError(fmt::format("{}: is not a regular file", name));
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!error && size > largest_file)
-    throw InputError(fmt::format("{}: {} bytes are too large for a case file (at most {})", name,
-                                 size, largest_file));
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in.is_open() || in.bad())
-    throw InputError(
-        fmt::format("{}: the case file cannot be read: {}", name, std::strerror(errno)));
-  return text;
-}
 
 /// A file name that the case states is that of a file beside the case file, unless absolute.
 void put_beside(std::string_view case_file, std::filesystem::path& file) {
@@ -96,7 +62,7 @@ Case read_case(std::string_view text, std::string_view file) {
 }
 
 Case read_case(const std::filesystem::path& file) {
-  return read_case(read_file(file), file.string());
+  return read_case(read_toml_file(file, "case"), file.string());
 }
 
 }  // namespace ciliaval::compare

@@ -12,10 +12,14 @@ namespace ciliaval::compare {
 /// Prints what is odd about the users' meshes.
 std::vector<Case> read_cases(const std::vector<std::filesystem::path>& files);
 
-/// The cases that come with the program.
+/// Whether a file is called like a study (docs/study.md), NAME.study.toml.
+bool is_study_file(const std::filesystem::path& file);
+
+/// The cases and studies that come with the program.
 struct ShippedCases {
   std::filesystem::path folder;
   std::vector<std::filesystem::path> files;  ///< in alphabetical order; none if they are not found
+  std::vector<std::filesystem::path> studies;  ///< NAME.study.toml, which are no cases
 };
 
 /// Those installed beside the program, or the build tree's sources.

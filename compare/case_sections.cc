@@ -24,28 +24,6 @@ bool has_control_character(std::string_view text) {
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
-/// A text for people: a line, not empty, not too long. Adds a fault otherwise.
-std::optional<std::string> read_line(const toml::node& node, std::string_view name,
-                                     std::size_t longest, Faults& faults) {
-  std::optional<std::string> text = read_text(node, name, faults);
-  if (!text) return std::nullopt;
-  std::string_view fault;
-  if (text->find_first_not_of(' ') == std::string::npos) fault = "must not be empty";
-  if (has_control_character(*text)) fault = "must not have line breaks or control characters";
-  if (text->size() > longest) fault = "is too long";
-  if (fault.empty()) return text;
-  faults.add(place(node), fmt::format("'{}' {} (at most {} bytes)", name, fault, longest));
-  return std::nullopt;
-}
-
-/// A table that must be there.
-Section require_section(Section& root, std::string_view key) {
-  Section section = root.section(key);
-  if (!section.exists() && root.find(key) == nullptr)
-    root.faults().add({}, fmt::format("the table [{}] is missing", key));
-  return section;
-}
-
 void read_segment(Section& table, Segment& segment) {
   Faults& faults = table.faults();
   const auto value = [&](const QuantityKey& k, bool required) {
@@ -264,24 +242,48 @@ bool is_plain_file_name(std::string_view name) {
          });
 }
 
-bool read_header(Section& root, Case& c) {
-  Faults& faults = root.faults();
-  const std::size_t before = faults.size();
-  Section table = require_section(root, "case");
+std::optional<std::string> read_line(const toml::node& node, std::string_view name,
+                                     std::size_t longest, Faults& faults) {
+  std::optional<std::string> text = read_text(node, name, faults);
+  if (!text) return std::nullopt;
+  std::string_view fault;
+  if (text->find_first_not_of(' ') == std::string::npos) fault = "must not be empty";
+  if (has_control_character(*text)) fault = "must not have line breaks or control characters";
+  if (text->size() > longest) fault = "is too long";
+  if (fault.empty()) return text;
+  faults.add(place(node), fmt::format("'{}' {} (at most {} bytes)", name, fault, longest));
+  return std::nullopt;
+}
+
+Section require_section(Section& root, std::string_view key) {
+  Section section = root.section(key);
+  if (!section.exists() && root.find(key) == nullptr)
+    root.faults().add({}, fmt::format("the table [{}] is missing", key));
+  return section;
+}
+
+void read_name_and_title(Section& table, std::string& name, std::string& title) {
+  Faults& faults = table.faults();
   if (const toml::node* node = table.require("name")) {
-    c.name = read_text(*node, "name", faults).value_or("unknown");
-    if (!is_plain_file_name(c.name))
+    name = read_text(*node, "name", faults).value_or("unknown");
+    if (!is_plain_file_name(name))
       faults.add(place(*node),
-                 fmt::format("the case name {} must be a plain file name, because the results go "
+                 fmt::format("the {} name {} must be a plain file name, because the results go "
                              "to a folder of that name: letters, digits, '.', '_' and '-', not "
                              "starting with '.' or '-', 1 to {} characters",
-                             in_quotes(c.name), longest_name));
+                             table.path(), in_quotes(name), longest_name));
   }
-  c.title = c.name;
+  title = name;
   if (const toml::node* node = table.find("title"))
-    c.title = read_line(*node, "title", longest_title, faults).value_or("");
+    title = read_line(*node, "title", longest_title, faults).value_or("");
+}
+
+bool read_header(Section& root, Case& c) {
+  const std::size_t before = root.faults().size();
+  Section table = require_section(root, "case");
+  read_name_and_title(table, c.name, c.title);
   table.finish();
-  return faults.size() == before;
+  return root.faults().size() == before;
 }
 
 bool read_cilium(Section& root, Case& c) {

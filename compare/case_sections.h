@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "compare/case.h"
 #include "compare/case_toml.h"
 
@@ -37,6 +43,16 @@ void check_together(const toml::table& root, const Case& c, const RightTables& r
 /// Puts a section that lies within rounding of a segment's end exactly there, so that "20 mm" is
 /// the tip of 3 mm + 17 mm.
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
+
+/// A text for people: a line, not empty, of at most `longest` bytes. Adds a fault otherwise.
+std::optional<std::string> read_line(const toml::node& node, std::string_view name,
+                                     std::size_t longest, Faults& faults);
+
+/// A table that must be there: one that is missing is a fault.
+Section require_section(Section& root, std::string_view key);
+
+/// `name`, which names a folder of results, and `title`, by default the name.
+void read_name_and_title(Section& table, std::string& name, std::string& title);
 
 /// Whether the name is a plain file name: [A-Za-z0-9._-], 1 to 100 long, not starting with '.' or
 /// '-'.

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <system_error>
 
@@ -15,7 +19,8 @@
 namespace ciliaval::compare {
 namespace {
 
-constexpr int deepest_key = 32;  ///< parts of a dotted key
+constexpr std::uintmax_t largest_file = 1'000'000;  ///< bytes
+constexpr int deepest_key = 32;                     ///< parts of a dotted key
 constexpr std::size_t none = std::string_view::npos;
 
 /// Whether the byte starts a character: bytes 10xxxxxx continue one.
@@ -149,6 +154,28 @@ toml::table parse_toml(std::string_view text, std::string_view file) {
     throw InputError(fmt::format("{}:{}:{}: {}{}", file, where.line, where.column,
                                  error.description(), advice(value)));
   }
+}
+
+std::string read_toml_file(const std::filesystem::path& file, std::string_view kind) {
+  const std::string name = file.string();
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status))
+    throw InputError(fmt::format("{}: the {} file does not exist", name, kind));
+  if (std::filesystem::is_directory(status))
+    throw InputError(fmt::format("{}: is a folder, not a {} file", name, kind));
+  if (!std::filesystem::is_regular_file(status))
+    throw InputError(fmt::format("{}: is not a regular file", name));
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!error && size > largest_file)
+    throw InputError(fmt::format("{}: {} bytes are too large for a {} file (at most {})", name,
+                                 size, kind, largest_file));
+  std::ifstream in(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in.is_open() || in.bad())
+    throw InputError(
+        fmt::format("{}: the {} file cannot be read: {}", name, kind, std::strerror(errno)));
+  return text;
 }
 
 }  // namespace ciliaval::compare

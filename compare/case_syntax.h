@@ -3,9 +3,15 @@
 
 #include <toml++/toml.h>
 
+#include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace ciliaval::compare {
+
+/// The text of a regular file of at most 1 MB, of a `kind` ("case", "study") that messages name.
+/// Throws InputError.
+std::string read_toml_file(const std::filesystem::path& file, std::string_view kind);
 
 /// The TOML text as a table. Throws InputError `file:line:column: what is wrong` at the first fault
 /// of its syntax, with an advice where the text tells what was meant; a dotted key of more than 32

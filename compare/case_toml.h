@@ -28,6 +28,8 @@ class Faults {
   void add(Place where, std::string what) { faults_.push_back({where, std::move(what)}); }
   std::size_t size() const { return faults_.size(); }
   bool empty() const { return faults_.empty(); }
+  /// What the first fault that was added says.
+  const std::string& first() const { return faults_.front().what; }
   /// `file:line:column: what`, a line each, in the order of the file; of very many the first.
   std::string report(std::string_view file) const;
 

@@ -18,6 +18,7 @@
 #include "compare/registry.h"
 #include "compare/results.h"
 #include "compare/run.h"
+#include "compare/study/study.h"
 #include "compare/table.h"
 #include "compare/terminal.h"
 #include "compare/vtk/output.h"
@@ -107,7 +108,7 @@ void take_part(Case problem, const RunOptions& options) {
 
 std::string title_of(const fs::path& file) {
   try {
-    return read_case(file).title;
+    return is_study_file(file) ? study::read_study(file).title : read_case(file).title;
   } catch (const Error&) {
     return "(cannot be read: see `ciliaval validate`)";
   }
@@ -118,6 +119,11 @@ std::string list_of_cases() {
   if (shipped.files.empty()) return "Shipped cases: none found beside the program\n";
   std::string text = fmt::format("Shipped cases, in {}\n", shipped.folder.string());
   for (const fs::path& file : shipped.files)
+    text += fmt::format("  {:<28} {}\n", file.lexically_relative(shipped.folder).string(),
+                        title_of(file));
+  if (!shipped.studies.empty())
+    text += fmt::format("\nShipped studies, in {}\n", shipped.folder.string());
+  for (const fs::path& file : shipped.studies)
     text += fmt::format("  {:<28} {}\n", file.lexically_relative(shipped.folder).string(),
                         title_of(file));
   return text;
@@ -144,7 +150,17 @@ ExitCode run_cases(const std::vector<fs::path>& files, const RunOptions& options
   return code;
 }
 
-void validate_cases(const std::vector<fs::path>& files) {
+void validate_cases(const std::vector<fs::path>& all_files) {
+  std::vector<fs::path> files;
+  for (const fs::path& file : all_files) {
+    if (!is_study_file(file)) {
+      files.push_back(file);
+      continue;
+    }
+    const study::Study study = study::read_study(file);
+    print(fmt::format("{}: study \"{}\" is valid: {} points, {} pairs of models\n", file.string(),
+                      study.name, study.point_count(), study.pairs.size()));
+  }
   const std::vector<Case> cases = read_cases(files);
   for (std::size_t i = 0; i < cases.size(); ++i)
     print(

@@ -30,8 +30,8 @@ struct RunOptions {
 /// and FileError.
 ExitCode run_cases(const std::vector<std::filesystem::path>& files, const RunOptions& options);
 
-/// `ciliaval validate`: reads and checks, and says so on stdout. Throws InputError with the faults
-/// of all files, FileError.
+/// `ciliaval validate`: reads and checks cases and studies, and says so on stdout. Throws
+/// InputError with the faults of all files, FileError.
 void validate_cases(const std::vector<std::filesystem::path>& files);
 
 /// `ciliaval mesh`: writes the solid's mesh of a case to a `.msh` or `.vtu` file and a line about
@@ -39,7 +39,7 @@ void validate_cases(const std::vector<std::filesystem::path>& files);
 void write_mesh(const std::filesystem::path& file, const std::filesystem::path& output,
                 std::optional<unsigned int> refinement, const std::string& command);
 
-/// `ciliaval list`: models, loads and shipped cases, to stdout.
+/// `ciliaval list`: models, loads, shipped cases and studies, to stdout.
 void list();
 
 /// "ciliaval 0.1.0 (git …)"

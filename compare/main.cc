@@ -23,6 +23,7 @@
 #include "compare/commands.h"
 #include "compare/converge_command.h"
 #include "compare/sense_command.h"
+#include "compare/study_command.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 
@@ -39,20 +40,22 @@ Examples:
   ciliaval converge my.toml              how far are the results from the converged ones?
   ciliaval budget my.toml                what does each assumption of the paper's model cost?
   ciliaval sense my.toml readings.csv    which load did the sensor read?
+  ciliaval study my.study.toml           how does the signal change with stiffness, size, load?
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
 
-A run that was killed goes on where it was when the same command is given again; --fresh starts anew
-(docs/restart.md).
+A run or study that was killed goes on where it was when the same command is given again; --fresh
+starts anew (docs/restart.md).
 
 A case file states the cilium, its load, the sensors and the models, each quantity with its unit
 (docs/cases.md). The results are explained in docs/results.md, meshes of one's own in
 docs/meshes.md.
 
 Exit codes: 0 done, 1 `check`: a result is not as accepted, 2 wrong usage or case file, 3 a model
-did not converge (the results of the others are written), 4 a file could not be read or written,
-5 `check`, `converge`, `budget`, `sense`: nothing could be compared, refined, judged or found.)";
+did not converge (the results of the others are written; `study`: every point failed), 4 a file
+could not be read or written, 5 `check`, `converge`, `budget`, `sense`: nothing could be compared,
+refined, judged or found.)";
 
 /// A word as a POSIX shell reads it back: in single quotes if it holds anything special.
 std::string shell_word(std::string_view word) {
@@ -145,6 +148,48 @@ CLI::App* add_sense(CLI::App& app, std::filesystem::path& file, std::filesystem:
   return sense;
 }
 
+constexpr const char* study_help = R"(
+A study file names a case, the numbers of it to vary, and the pairs of models to run:
+
+  [study]
+  name = "my-study"                      # results in DIR/my-study
+  case = "my.toml"                       # beside the study file
+  pairs = ["elastica/line", "beam/volume"]
+  outputs = ["dB_norm", "sensitivity", "range"]
+
+  [fixed]                                # numbers of the case that differ from it
+  load.force = "1 mN"
+
+  [[parameter]]                          # one or more: every combination is a point
+  path = "cilium.segment.base.young_modulus"
+  from = "0.1 MPa"
+  to = "3 MPa"
+  count = 40
+  spacing = "logarithmic"
+
+Each point is kept as soon as it is solved: a study that was killed goes on where it was when the
+same command is given again. All keys and outputs: docs/study.md; examples: `ciliaval list`.)";
+
+CLI::App* add_study(CLI::App& app, std::filesystem::path& file,
+                    ciliaval::compare::StudyOptions& options) {
+  CLI::App* study = app.add_subcommand(
+      "study",
+      "Parameter study: vary numbers of a case, alone or together, run pairs of models at each\n"
+      "point, and write tables and plots of the signal, its sensitivity and its range.");
+  study->footer(study_help);
+  study->add_option("STUDY", file, "Study file (TOML)")->required()->check(CLI::ExistingFile);
+  study
+      ->add_option("-o,--output", options.directory,
+                   "Folder for the results: study.csv, study.json, plots and the journal of what\n"
+                   "is solved, in a subfolder of the study's name")
+      ->type_name("DIR")
+      ->capture_default_str();
+  study->add_option("--json", options.json, "Write study.json to this file too")->type_name("FILE");
+  study->add_flag("--fresh", options.fresh,
+                  "Start anew: forget what an earlier run of the study has solved");
+  return study;
+}
+
 ExitCode execute(int argc, char** argv) {
   CLI::App app{
       "Cross-validation of models of magnetic-cilium tactile sensors: runs several models of\n"
@@ -166,7 +211,9 @@ ExitCode execute(int argc, char** argv) {
   run->add_flag("--fresh", options.fresh,
                 "Start anew: delete the checkpoint of a run that was killed or did not converge");
   CLI::App* validate = app.add_subcommand("validate", "Read and check case files, run nothing");
-  validate->add_option("CASE", files, "Case files (TOML)")->required()->check(CLI::ExistingFile);
+  validate->add_option("CASE", files, "Case and study files (TOML)")
+      ->required()
+      ->check(CLI::ExistingFile);
   CLI::App* mesh = app.add_subcommand(
       "mesh",
       "Write the solid's mesh of a case to a file: FILE.msh for Gmsh, with the names of the\n"
@@ -253,7 +300,11 @@ ExitCode execute(int argc, char** argv) {
   std::filesystem::path sense_readings;
   ciliaval::compare::SenseOptions sense_options;
   const CLI::App* sense = add_sense(app, sense_file, sense_readings, sense_options);
-  const CLI::App* list = app.add_subcommand("list", "List models, loads and shipped cases");
+  std::filesystem::path study_file;
+  ciliaval::compare::StudyOptions study_options;
+  study_options.command = options.command;
+  const CLI::App* study = add_study(app, study_file, study_options);
+  const CLI::App* list = app.add_subcommand("list", "List models, loads, shipped cases, studies");
 
   check_command(app, argc, argv);
   try {
@@ -273,6 +324,8 @@ ExitCode execute(int argc, char** argv) {
     return ciliaval::compare::budget_case(budget_file, budget_options);
   else if (sense->parsed())
     return ciliaval::compare::sense_readings(sense_file, sense_readings, sense_options);
+  else if (study->parsed())
+    return ciliaval::compare::run_study(study_file, study_options);
   else if (mesh->parsed())
     ciliaval::compare::write_mesh(mesh_case, mesh_file, refinement, command_line(argc, argv));
   else

@@ -142,14 +142,6 @@ Json comparison_json(const Comparison& c) {
   return json;
 }
 
-/// A CSV field, quoted if it must be (RFC 4180).
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
-
 template <class T>
 std::string csv(const std::optional<T>& value) {
   return value ? fmt::format("{}", *value + T{}) : std::string();  // −0.0 + 0.0 = 0.0
@@ -167,6 +159,13 @@ std::string_view to_string(Status status) {
       break;
   }
   return "failed";
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
 }
 
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension) {
@@ -216,7 +215,7 @@ std::string errors_csv(const std::vector<Comparison>& comparisons) {
         fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv(c.step), csv(c.sensor),
                     c.quantity, c.component, c.statistic, c.model, c.reference, csv(c.difference),
                     csv(c.relative), csv(c.scale), c.unit, csv(c.uncertainty), to_string(c.verdict),
-                    csv(c.r2), csv(c.correlation), quoted(c.note));
+                    csv(c.r2), csv(c.correlation), csv_field(c.note));
   return text;
 }
 

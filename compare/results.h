@@ -16,6 +16,9 @@ namespace ciliaval::compare {
 /// "converged", "slipped_off" or "failed".
 std::string_view to_string(Status status);
 
+/// A CSV field, quoted if it must be (RFC 4180).
+std::string csv_field(const std::string& text);
+
 /// `elastica_0002.csv`: file of a series at a step.
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension);
 

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/study/evaluate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <memory>
+
+#include "compare/budget/sensitivity.h"
+#include "compare/run.h"
+#include "compare/study/range.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare::study {
+namespace {
+
+template <class Entry>
+auto make_model(std::span<const Entry> entries, const std::string& id,
+                const ModelOptions& options) {
+  const auto entry =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; });
+  if (entry == entries.end())
+    throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
+  return entry->make(options);
+}
+
+void append(std::string& message, const std::string& text) {
+  if (!text.empty()) message += (message.empty() ? "" : "; ") + text;
+}
+
+/// d|ΔB|/dF = ΔB·(dB/dF)/|ΔB|; none without both.
+std::optional<double> slope_of_norm(const FieldRun& run, const SurroundedPath& path,
+                                    const Vector3& dB) {
+  const auto slope = sensitivity(run, path, 0, 0);
+  if (!slope || dB.norm() == 0) return std::nullopt;
+  return dB.dot(slope->value) / dB.norm();
+}
+
+/// The outputs of one pair, but for the range, which is of its mechanics model alone.
+PairResult result_of(const Study& study, const MechanicsStep& step, const FieldRun& run,
+                     const SurroundedPath& path) {
+  PairResult result{step.status, step.message, {}};
+  result.values.resize(study.outputs.size());
+  if (step.status != Status::converged) return result;
+  const FieldStep& field = run.steps[path.step.front()].value();
+  if (!field.dB.front()) {
+    result.status = Status::failed;
+    result.message = field.failure;
+    return result;
+  }
+  const Vector3 dB = *field.dB.front();
+  const bool needs_slope =
+      study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution);
+  const auto slope = needs_slope ? slope_of_norm(run, path, dB) : std::nullopt;
+  if (needs_slope && !slope)
+    append(result.message, path.around.front()
+                               ? "sensitivity: a load 2 % higher or lower has no field"
+                               : "sensitivity: the load is zero");
+  for (std::size_t i = 0; i < study.outputs.size(); ++i) {
+    std::optional<double>& value = result.values[i];
+    switch (study.outputs[i]) {
+      case Output::dB_x:
+        value = dB.x();
+        break;
+      case Output::dB_y:
+        value = dB.y();
+        break;
+      case Output::dB_z:
+        value = dB.z();
+        break;
+      case Output::dB_norm:
+        value = dB.norm();
+        break;
+      case Output::sensitivity:
+        value = slope;
+        break;
+      case Output::resolution:
+        if (slope && *slope != 0) value = *study.noise / std::abs(*slope);
+        break;
+      case Output::range:
+        break;
+    }
+  }
+  return result;
+}
+
+/// The range as the mechanics model has it, into all results.
+void add_range(const Study& study, const Case& c, const MechanicsModel& model,
+               const MechanicsStep& step, const Progress& progress,
+               std::vector<PairResult>& results) {
+  const auto output = std::find(study.outputs.begin(), study.outputs.end(), Output::range);
+  if (output == study.outputs.end()) return;
+  std::optional<double> range;
+  std::string failure;
+  try {
+    range = study.rotation
+                ? magnitude_at_rotation(model, c.cilium, step.load, *study.rotation, progress)
+                : slip_off(model, c.cilium, step, c.options.elastica, progress);
+    if (!std::isfinite(*range)) throw SolverError("range: it is not finite");
+  } catch (const CheckpointError&) {
+    throw;
+  } catch (const RankFailure&) {
+    throw;
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  for (PairResult& result : results) {
+    if (result.status == Status::failed) continue;
+    result.values[static_cast<std::size_t>(output - study.outputs.begin())] = range;
+    append(result.message, failure);
+  }
+}
+
+}  // namespace
+
+std::vector<PairResult> evaluate(const Study& study, std::size_t point,
+                                 const std::string& mechanics,
+                                 std::span<const MechanicsEntry> mechanics_models,
+                                 std::span<const FieldEntry> field_models,
+                                 const Progress& progress) {
+  Case c = study.case_at(point);
+  const SurroundedPath path = surround(
+      c.load_path, study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution));
+  c.load_path = path.loads;
+  const auto model = make_model(mechanics_models, mechanics, c.options);
+  const MechanicsRun run = run_mechanics(mechanics, *model, c, progress);
+  const MechanicsStep& step = run.result.steps[path.step.front()];
+  std::vector<PairResult> results;
+  for (const Pair& pair : study.pairs) {
+    if (pair.mechanics != mechanics) continue;
+    if (step.status != Status::converged) {
+      results.push_back(result_of(study, step, {}, path));
+      continue;
+    }
+    const auto field = make_model(field_models, pair.field, c.options);
+    results.push_back(
+        result_of(study, step, run_field(pair.field, *field, run, c, progress), path));
+  }
+  add_range(study, c, *model, step, progress, results);
+  return results;
+}
+
+}  // namespace ciliaval::compare::study

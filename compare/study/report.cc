@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/study/report.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <variant>
+
+#include "compare/results.h"
+#include "compare/units.h"
+
+namespace ciliaval::compare::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_rows = 25;
+
+/// The unit of the load's magnitude for people.
+OutputUnit load_unit(const Study& study) {
+  const std::string_view unit = magnitude_unit(study.base.load_path.front());
+  if (unit == "N") return {"mN", 1e-3};
+  if (unit == "m") return {"mm", 1e-3};
+  return {std::string(unit), 1};
+}
+
+/// A unit as a divisor: "N/m" in brackets.
+std::string divisor(const std::string& unit) {
+  return unit.find('/') == std::string::npos ? unit : "(" + unit + ")";
+}
+
+/// As many rows as fit a screen, evenly chosen, the first and the last among them.
+std::vector<std::size_t> shown_points(std::size_t count) {
+  std::vector<std::size_t> points;
+  const std::size_t rows = std::min(count, most_rows);
+  for (std::size_t i = 0; i < rows; ++i)
+    points.push_back(rows < 2 ? 0 : (i * (count - 1) + (rows - 1) / 2) / (rows - 1));
+  return points;
+}
+
+std::string cell(const PairResult& result, std::size_t output, double unit) {
+  if (result.values[output]) return fmt::format("{:.5g}", *result.values[output] / unit);
+  return result.status == Status::converged ? "-" : std::string(to_string(result.status));
+}
+
+/// A text padded to the right end of a column; `width` counts characters of ASCII.
+std::string right(const std::string& text, std::size_t width) {
+  return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
+}
+
+/// Rows of cells, the columns as wide as they must be.
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> width(rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) text += "  " + right(row[i], width[i]);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string point_table(const StudyResult& result, std::size_t pair) {
+  const Study& study = result.study;
+  std::vector<std::vector<std::string>> rows(1);
+  for (const Parameter& p : study.parameters)
+    rows[0].push_back(p.unit.empty() ? p.name : fmt::format("{}({})", p.name, p.unit));
+  for (const Output output : study.outputs)
+    rows[0].push_back(fmt::format("{}({})", symbol(output), unit_of(output, study).name));
+  for (const std::size_t point : shown_points(study.point_count())) {
+    std::vector<std::string>& row = rows.emplace_back();
+    const std::vector<double> values = study.values_at(point);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      row.push_back(fmt::format("{:.5g}", values[i] / study.parameters[i].unit_size));
+    for (std::size_t o = 0; o < study.outputs.size(); ++o)
+      row.push_back(cell(result.points[point][pair], o, unit_of(study.outputs[o], study).size));
+  }
+  return aligned(rows);
+}
+
+/// What the outputs do along the parameter.
+std::string trend_text(const StudyResult& result, std::size_t pair, std::size_t output) {
+  const Study& study = result.study;
+  const Parameter& p = study.parameters.front();
+  const Trend t = trend(result, pair, output);
+  const double unit = unit_of(study.outputs[output], study).size;
+  const std::string from_to = fmt::format("from {:.5g} to {:.5g}", t.first / unit, t.last / unit);
+  const std::string at =
+      fmt::format("{:.5g} at {} = {}", t.largest / unit, p.name, format_value(p, t.extreme_at));
+  const double factor = t.last / t.first;
+  const std::string ratio =
+      factor > 0 ? fmt::format(" ({:.4g} times)", factor > 1 ? factor : 1 / factor) : "";
+  const std::string settled = fmt::format("; 95 % of it by {}", format_value(p, t.settled_at));
+  switch (t.kind) {
+    case Trend::Kind::none:
+      return "too few values";
+    case Trend::Kind::constant:
+      return fmt::format("constant, {:.5g}", t.first / unit);
+    case Trend::Kind::rising:
+      return "rises " + from_to + ratio + settled;
+    case Trend::Kind::falling:
+      return "falls " + from_to + ratio + settled;
+    case Trend::Kind::peak:
+      return "peak " + at;
+    case Trend::Kind::trough:
+      return "trough " + at;
+    case Trend::Kind::other:
+      break;
+  }
+  return from_to + ", neither monotone nor with one peak";
+}
+
+std::string trends(const StudyResult& result) {
+  const Study& study = result.study;
+  if (study.parameters.size() > 1 && !study.is_zipped) return {};
+  std::vector<std::vector<std::string>> rows;
+  std::string text = fmt::format("\nAlong {}:\n", study.parameters.front().name);
+  for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
+    for (std::size_t o = 0; o < study.outputs.size(); ++o)
+      text += fmt::format("  {:<18} {:<11} {:<8} {}\n", study.pairs[pair].name(),
+                          symbol(study.outputs[o]), unit_of(study.outputs[o], study).name,
+                          trend_text(result, pair, o));
+  return text;
+}
+
+/// How many points of each pair slipped off or failed, and why the first one did.
+std::string exceptions(const StudyResult& result) {
+  std::string text;
+  for (std::size_t pair = 0; pair < result.study.pairs.size(); ++pair)
+    for (const Status status : {Status::slipped_off, Status::failed}) {
+      std::size_t count = 0;
+      std::size_t first = 0;
+      for (std::size_t point = 0; point < result.points.size(); ++point)
+        if (result.points[point][pair].status == status && count++ == 0) first = point;
+      if (count > 0)
+        text += fmt::format("{}: {} at {} of {} points, first at {}: {}\n",
+                            result.study.pairs[pair].name(), to_string(status), count,
+                            result.points.size(), result.study.describe(first),
+                            result.points[first][pair].message);
+    }
+  return text.empty() ? text : "\n" + text;
+}
+
+Json optional(const std::optional<double>& value) {
+  return value ? Json(*value + 0.0) : Json(nullptr);
+}
+
+}  // namespace
+
+std::string_view symbol(Output output) {
+  switch (output) {
+    case Output::dB_norm:
+      return "|dB|";
+    case Output::sensitivity:
+      return "d|dB|/dF";
+    default:
+      return id(output);
+  }
+}
+
+OutputUnit unit_of(Output output, const Study& study) {
+  const OutputUnit load = load_unit(study);
+  switch (output) {
+    case Output::sensitivity:
+      return {"uT/" + divisor(load.name), 1e-6 / load.size};
+    case Output::range:
+    case Output::resolution:
+      return load;
+    default:
+      return {"uT", 1e-6};
+  }
+}
+
+std::string si_unit(Output output, const Study& study) {
+  const std::string load(magnitude_unit(study.base.load_path.front()));
+  switch (output) {
+    case Output::sensitivity:
+      return "T/" + divisor(load);
+    case Output::range:
+    case Output::resolution:
+      return load;
+    default:
+      return "T";
+  }
+}
+
+std::string text(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string text = fmt::format("Study \"{}\": {}\n", study.name, study.title);
+  const std::size_t count = study.point_count();
+  if (count > most_rows)
+    text += fmt::format("{} points, {} of them below; all are in study.csv\n", count, most_rows);
+  for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
+    text += fmt::format("\n{}\n{}", study.pairs[pair].name(), point_table(result, pair));
+  return text + trends(result) + exceptions(result);
+}
+
+std::string csv(const StudyResult& result) {
+  const Study& study = result.study;
+  std::vector<std::string> units;
+  std::vector<std::string> names{"point"};
+  for (const Parameter& p : study.parameters) {
+    names.push_back(csv_field(p.number.path));
+    if (!p.number.quantity.unit.empty())
+      units.push_back(fmt::format("{} {}", p.number.path, p.number.quantity.unit));
+  }
+  names.insert(names.end(), {"pair", "status"});
+  for (const Output output : study.outputs) {
+    names.emplace_back(id(output));
+    units.push_back(fmt::format("{} {}", id(output), si_unit(output, study)));
+  }
+  names.emplace_back("message");
+  std::string text =
+      fmt::format("# units: {}\n{}\n", fmt::join(units, ", "), fmt::join(names, ","));
+  for (std::size_t point = 0; point < result.points.size(); ++point)
+    for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
+      const PairResult& r = result.points[point][pair];
+      text += fmt::format("{}", point);
+      for (const double v : study.values_at(point)) text += fmt::format(",{}", v);
+      text += fmt::format(",{},{}", study.pairs[pair].name(), to_string(r.status));
+      for (const auto& value : r.values) text += value ? fmt::format(",{}", *value + 0.0) : ",";
+      text += fmt::format(",{}\n", csv_field(r.message));
+    }
+  return text;
+}
+
+std::string json(const StudyResult& result, const Provenance& provenance) {
+  const Study& study = result.study;
+  Json json{{"schema", 1},
+            {"study", study.name},
+            {"title", study.title},
+            {"case", study.base.name},
+            {"provenance",
+             {{"version", provenance.version},
+              {"git", provenance.git},
+              {"libraries", provenance.libraries}}},
+            {"resolved", resolved(study)},
+            {"parameters", Json::array()},
+            {"outputs", Json::array()},
+            {"pairs", Json::array()},
+            {"points", Json::array()}};
+  for (const Parameter& p : study.parameters)
+    json["parameters"].push_back({{"path", p.number.path},
+                                  {"name", p.name},
+                                  {"unit", p.number.quantity.unit},
+                                  {"values", p.values}});
+  for (const Output output : study.outputs)
+    json["outputs"].push_back({{"id", id(output)}, {"unit", si_unit(output, study)}});
+  for (const Pair& pair : study.pairs) json["pairs"].push_back(pair.name());
+  for (std::size_t point = 0; point < result.points.size(); ++point) {
+    Json entry{{"point", point}, {"parameters", Json::object()}, {"pairs", Json::object()}};
+    const std::vector<double> values = study.values_at(point);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      entry["parameters"][study.parameters[i].number.path] = values[i];
+    for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
+      const PairResult& r = result.points[point][pair];
+      Json& of_pair = entry["pairs"][study.pairs[pair].name()];
+      of_pair = {{"status", to_string(r.status)}, {"message", r.message}};
+      for (std::size_t o = 0; o < study.outputs.size(); ++o)
+        of_pair[std::string(id(study.outputs[o]))] = optional(r.values[o]);
+    }
+    json["points"].push_back(std::move(entry));
+  }
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace ciliaval::compare::study

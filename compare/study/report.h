@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "compare/plot/gnuplot.h"
+#include "compare/provenance.h"
+#include "compare/study/sweep.h"
+
+namespace ciliaval::compare::study {
+
+/// The unit in which people read an output, and its size in SI units.
+struct OutputUnit {
+  std::string name;  ///< "uT", "uT/mN"
+  double size = 1;
+};
+OutputUnit unit_of(Output output, const Study& study);
+/// The SI unit of an output: "T", "T/N".
+std::string si_unit(Output output, const Study& study);
+/// "|dB|", "d|dB|/dF": what an output is, in a word.
+std::string_view symbol(Output output);
+
+/// For a terminal: a table of the points, thinned to some 25 of them, then what each output does
+/// along the parameter if there is one alone: monotone, or its peak.
+std::string text(const StudyResult& result);
+
+/// study.csv: a comment line with the units, a header, a line for each point and pair in their
+/// order, SI units; what is undefined is empty.
+std::string csv(const StudyResult& result);
+
+/// study.json (docs/study.md), SI units. Nothing in it says when or how often the program ran.
+std::string json(const StudyResult& result, const Provenance& provenance);
+
+/// How an output of a pair runs along the only parameter (or those that are zipped).
+struct Trend {
+  enum class Kind { none, constant, rising, falling, peak, trough, other };
+  Kind kind = Kind::none;   ///< none: fewer than three values
+  double first = 0;         ///< value at the first point that has one
+  double last = 0;          ///< … at the last
+  double largest = 0;       ///< its extreme: of a peak or trough that of the parabola through
+  double extreme_at = 0;    ///< … the three points around, and where it is (parameter, SI)
+  double settled_at = 0;    ///< rising, falling: where 95 % of the change is done (parameter, SI)
+  std::size_t missing = 0;  ///< points without a value
+};
+Trend trend(const StudyResult& result, std::size_t pair, std::size_t output);
+
+/// A drawing of one output over the first parameter, a curve for each pair and for each
+/// combination of the others' values, of many some.
+struct StudyPlot {
+  std::string name;    ///< of the file: "dB_norm.svg"
+  std::string script;  ///< for gnuplot (compare/plot/gnuplot.h)
+  plot::Size size;
+};
+/// One for each output that has a value somewhere.
+std::vector<StudyPlot> plots(const StudyResult& result);
+
+}  // namespace ciliaval::compare::study

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/study/study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "compare/units.h"
+#include "fem/checkpoint_file.h"
+
+namespace ciliaval::compare::study {
+namespace {
+
+constexpr std::array<Output, 7> outputs{Output::dB_x,      Output::dB_y,        Output::dB_z,
+                                        Output::dB_norm,   Output::sensitivity, Output::range,
+                                        Output::resolution};
+
+/// Checksum of a file that the case names; the results depend on its content.
+std::uint32_t checksum_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  return fem::checksum(bytes);
+}
+
+std::string numbers(const std::vector<double>& values) {
+  std::vector<std::string> texts;
+  texts.reserve(values.size());
+  for (const double v : values) texts.push_back(format_number(v));
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+}  // namespace
+
+std::string_view id(Output output) {
+  switch (output) {
+    case Output::dB_x:
+      return "dB_x";
+    case Output::dB_y:
+      return "dB_y";
+    case Output::dB_z:
+      return "dB_z";
+    case Output::dB_norm:
+      return "dB_norm";
+    case Output::sensitivity:
+      return "sensitivity";
+    case Output::range:
+      return "range";
+    case Output::resolution:
+      break;
+  }
+  return "resolution";
+}
+
+std::span<const Output> all_outputs() {
+  return outputs;
+}
+
+std::size_t Study::point_count() const {
+  std::size_t count = 1;
+  for (const Parameter& p : parameters)
+    count = is_zipped ? p.values.size() : count * p.values.size();
+  return count;
+}
+
+std::vector<double> Study::values_at(std::size_t point) const {
+  std::vector<double> values(parameters.size());
+  for (std::size_t i = parameters.size(); i-- > 0;) {
+    const std::vector<double>& all = parameters[i].values;
+    values[i] = all[is_zipped ? point : point % all.size()];
+    point = is_zipped ? point : point / all.size();
+  }
+  return values;
+}
+
+Case Study::case_at(std::size_t point) const {
+  std::vector<Setting> settings = fixed;
+  const std::vector<double> values = values_at(point);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    settings.push_back({parameters[i].number, values[i]});
+  return with_settings(base, settings);
+}
+
+std::string Study::describe(std::size_t point) const {
+  const std::vector<double> values = values_at(point);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    texts.push_back(
+        fmt::format("{} = {}", parameters[i].name, format_value(parameters[i], values[i])));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::vector<std::string> Study::mechanics() const {
+  std::vector<std::string> ids;
+  for (const Pair& pair : pairs)
+    if (std::find(ids.begin(), ids.end(), pair.mechanics) == ids.end())
+      ids.push_back(pair.mechanics);
+  return ids;
+}
+
+bool Study::asks_for(Output output) const {
+  return std::find(outputs.begin(), outputs.end(), output) != outputs.end();
+}
+
+std::string format_value(const Parameter& parameter, double value) {
+  const std::string text = fmt::format("{:.6g}", value / parameter.unit_size);
+  return parameter.unit.empty() ? text : fmt::format("{} {}", text, parameter.unit);
+}
+
+std::vector<std::string> resolved(const Study& study) {
+  std::vector<std::string> lines;
+  Case base = study.base;
+  base.name = study.name;
+  base.title = study.name;
+  std::istringstream text(to_toml(base));
+  for (std::string line; std::getline(text, line);)
+    if (!line.empty()) lines.push_back(line);
+  const std::filesystem::path& mesh = base.options.solid.mesh;
+  if (!mesh.empty()) lines.push_back(fmt::format("mesh file: checksum {:08x}", checksum_of(mesh)));
+  for (const Setting& s : study.fixed)
+    lines.push_back(fmt::format("fixed: {} = {}", s.number.path, format_number(s.value)));
+  for (const Parameter& p : study.parameters)
+    lines.push_back(fmt::format("parameter: {} = {}", p.number.path, numbers(p.values)));
+  lines.emplace_back(study.is_zipped ? "combine: zip" : "combine: product");
+  for (const Pair& pair : study.pairs) lines.push_back(fmt::format("pair: {}", pair.name()));
+  for (const Output output : study.outputs) lines.push_back(fmt::format("output: {}", id(output)));
+  if (study.noise) lines.push_back(fmt::format("noise: {}", format_number(*study.noise)));
+  if (study.rotation) lines.push_back(fmt::format("rotation: {}", format_number(*study.rotation)));
+  return lines;
+}
+
+}  // namespace ciliaval::compare::study

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/case.h"
+#include "compare/study/case_number.h"
+
+namespace ciliaval::compare::study {
+
+/// What a study computes for each pair of models at each point.
+enum class Output {
+  dB_x,         ///< ΔB at the sensor, T
+  dB_y,         ///< …
+  dB_z,         ///< …
+  dB_norm,      ///< |ΔB|, T
+  sensitivity,  ///< d|ΔB|/dF, F the load's magnitude: T/N, T m/N (force per length) or T/m (probe)
+  range,        ///< the largest F: where the contact slips off, or the tip's rotation is `rotation`
+  resolution    ///< the change of F that the sensor's noise hides: noise / |sensitivity|
+};
+std::string_view id(Output output);
+std::span<const Output> all_outputs();
+
+/// One parameter of a study and its values, SI units.
+struct Parameter {
+  CaseNumber number;
+  std::string name;      ///< for people; the last part of the path unless the study says
+  std::string unit;      ///< in which it is shown, as the study states it; empty: a plain number
+  double unit_size = 1;  ///< SI value of that unit
+  std::vector<double> values;
+  bool is_logarithmic = false;
+};
+
+struct Pair {
+  std::string mechanics;
+  std::string field;
+  std::string name() const { return mechanics + "/" + field; }
+};
+
+/// A study, as its file states it (docs/study.md).
+struct Study {
+  std::string name;  ///< a plain file name: the results go to DIR/name
+  std::string title;
+  Case base;  ///< of one load step and one sensor, with the models of the pairs
+  std::vector<Setting> fixed;
+  std::vector<Parameter> parameters;
+  bool is_zipped = false;  ///< the parameters' values go together; else every combination
+  std::vector<Pair> pairs;
+  std::vector<Output> outputs;
+  std::optional<double> noise;     ///< standard deviation of a reading, T, for `resolution`
+  std::optional<double> rotation;  ///< rad, for the `range` of a load that has no slip-off
+
+  std::size_t point_count() const;
+  /// The parameters' values at a point; of a product the last parameter runs fastest.
+  std::vector<double> values_at(std::size_t point) const;
+  Case case_at(std::size_t point) const;
+  /// "E1 = 0.1 MPa, d = 3 mm"
+  std::string describe(std::size_t point) const;
+  /// The mechanics models of the pairs, each once, in their order.
+  std::vector<std::string> mechanics() const;
+  bool asks_for(Output output) const;
+};
+
+/// A value in the parameter's unit: "0.1 MPa".
+std::string format_value(const Parameter& parameter, double value);
+
+/// Reads and checks a study file, its case and every point. Throws InputError with every fault
+/// found, a line each: `file:line:column: what is wrong; did you mean …?`.
+Study read_study(const std::filesystem::path& file);
+
+/// The study with everything that its results depend on, line by line, in SI units and full
+/// precision: two studies with the same lines have the same results. Names, titles and units of
+/// display are not among them.
+std::vector<std::string> resolved(const Study& study);
+
+}  // namespace ciliaval::compare::study

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A study that is killed and started again.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "study_texts.h"
+
+namespace ciliaval {
+namespace {
+
+namespace fs = std::filesystem;
+using test::read_text;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+using Seconds = std::chrono::duration<double>;
+
+/// Some hundred points with a range: a second or so.
+void write_files(const fs::path& folder) {
+  test::write_study_case(folder);
+  test::write_study(folder, test::study_text(R"(pairs = ["elastica/line", "beam/volume"]
+outputs = ["dB_x", "dB_norm", "sensitivity", "range"])",
+                                             R"([[parameter]]
+path = "cilium.segment.base.young_modulus"
+from = "0.02 MPa"
+to = "1 MPa"
+count = 20
+spacing = "logarithmic"
+[[parameter]]
+path = "load.azimuth"
+values = ["0 deg", "30 deg", "77 deg"]
+)"));
+}
+
+pid_t start(const fs::path& folder, const std::string& output) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  const auto redirect = [](const char* file, int to) {
+    dup2(open(file, O_WRONLY | O_CREAT | O_TRUNC, 0666), to);
+  };
+  if (chdir(folder.c_str()) != 0) _exit(126);
+  redirect((output + ".out").c_str(), STDOUT_FILENO);
+  redirect((output + ".err").c_str(), STDERR_FILENO);
+  execl(CILIAVAL_PROGRAM, CILIAVAL_PROGRAM, "study", "varied.study.toml", "-o", output.c_str(),
+        static_cast<char*>(nullptr));
+  _exit(127);
+}
+
+/// Waits for the end; the exit code, or −1 if it was killed.
+int end_of(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// The end of a process that is killed after a time, unless it ends before.
+int killed_after(pid_t child, Seconds time) {
+  const auto start = std::chrono::steady_clock::now();
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() - start > time) kill(child, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// All files of the results but the journal, whose lines are in the order in which they came.
+std::map<std::string, std::string> contents(const fs::path& results) {
+  std::map<std::string, std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(results))
+    if (entry.path().extension() != ".journal")
+      files[entry.path().filename().string()] = read_text(entry.path());
+  return files;
+}
+
+std::vector<std::string> sorted_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
+/// Kills the study at random moments until it comes to its end, and again from the beginning, until
+/// it was killed so often. The files must be those of a study that nothing has disturbed, byte for
+/// byte, and the journal the same lines, none twice.
+void kill_and_compare(int kills_wanted) {
+  const TemporaryFolder folder;
+  write_files(folder.path());
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(end_of(start(folder.path(), "reference")), 0)
+      << read_text(folder.path() / "reference.err");
+  const Seconds whole = std::chrono::steady_clock::now() - begin;
+  const auto expected = contents(folder.path() / "reference/varied");
+  ASSERT_EQ(expected.size(), 6u);  // CSV, JSON, four plots
+  const auto journal = sorted_lines(read_text(folder.path() / "reference/varied/points.journal"));
+  ASSERT_EQ(journal.size(), 1u + 2 * 60);
+  std::mt19937 random(20261122);  // NOLINT(cert-msc51-cpp): the same moments in every run
+  std::uniform_real_distribution<double> moment(0, 0.9);
+  int kills = 0;
+  int torn = 0;
+  int continued = 0;
+  while (kills < kills_wanted) {
+    fs::remove_all(folder.path() / "out");
+    int code = -1;
+    do {
+      code = killed_after(start(folder.path(), "out"), moment(random) * whole);
+      if (code == -1) ++kills;
+      const fs::path file = folder.path() / "out/varied/points.journal";
+      if (code == -1 && kills % 2 == 0 && fs::exists(file) && fs::file_size(file) > 2000) {
+        // What a power cut may leave beside: a torn last line.
+        fs::resize_file(file, fs::file_size(file) - 40);
+        ++torn;
+      }
+      if (read_text(folder.path() / "out.err").find("are there already") != std::string::npos)
+        ++continued;
+      ASSERT_TRUE(code == -1 || code == 0) << read_text(folder.path() / "out.err");
+    } while (code != 0);
+    EXPECT_EQ(contents(folder.path() / "out/varied"), expected);
+    EXPECT_EQ(sorted_lines(read_text(folder.path() / "out/varied/points.journal")), journal);
+    EXPECT_EQ(
+        read_text(folder.path() / "out.out"),
+        std::string(read_text(folder.path() / "reference.out"))
+            .replace(read_text(folder.path() / "reference.out").rfind("reference/"), 9, "out"));
+  }
+  EXPECT_GT(continued, 0);
+  EXPECT_GT(torn, 0);
+}
+
+TEST(KilledStudy, EndsWithTheSameFilesToTheLastByte) {
+  kill_and_compare(5);
+}
+
+TEST(KilledStudySlow, EndsWithTheSameFilesToTheLastByte) {
+  kill_and_compare(60);
+}
+
+TEST(KilledStudy, TwoAtOnceInOneFolderAreRefused) {
+  const TemporaryFolder folder;
+  write_files(folder.path());
+  const pid_t first = start(folder.path(), "out");
+  const fs::path journal = folder.path() / "out/varied/points.journal";
+  while (!fs::exists(journal) || fs::file_size(journal) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(first, SIGSTOP);
+  const pid_t second = fork();
+  if (second == 0) {
+    if (chdir(folder.path().c_str()) != 0) _exit(126);
+    dup2(open("second.err", O_WRONLY | O_CREAT | O_TRUNC, 0666), STDERR_FILENO);
+    execl(CILIAVAL_PROGRAM, CILIAVAL_PROGRAM, "study", "varied.study.toml", "-o", "out", "--fresh",
+          static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  EXPECT_EQ(end_of(second), 4);
+  EXPECT_THAT(read_text(folder.path() / "second.err"),
+              HasSubstr("another process is running this study"));
+  kill(first, SIGCONT);
+  EXPECT_EQ(end_of(first), 0) << read_text(folder.path() / "out.err");
+}
+
+}  // namespace
+}  // namespace ciliaval
