@@ -111,7 +111,9 @@ void BlockCut::add_crossings(const Line& line, const PlaneGrid& planes,
     const Shape x = (line.row(i).transpose().array() - planes.origin[i]) / planes.spacing;
     const double first = x.dot(lower_);
     const double last = x.dot(upper_);
-    for (double plane = std::ceil(std::min(first, last)); plane < std::max(first, last); ++plane) {
+    const auto end = static_cast<std::int64_t>(std::ceil(std::max(first, last)));
+    for (auto k = static_cast<std::int64_t>(std::ceil(std::min(first, last))); k < end; ++k) {
+      const auto plane = static_cast<double>(k);
       if (plane == first || plane == last) continue;
       std::uintmax_t iterations = 50;
       const auto [below, above] = boost::math::tools::toms748_solve(
