@@ -43,15 +43,38 @@ def arrows(source, vector, length, name):
     return glyph
 
 
+def field_lines(octree, name):
+    """Lines of B through a line across the tip, in the plane of bending."""
+    height = top[2]
+    # Lines end where leaves of different sizes meet, but not on a grid.
+    around = ResampleToImage(registrationName=name + " grid", Input=octree)
+    around.UseInputBounds = 0
+    around.SamplingBounds = [c + s * height for c in (0.0, 0.0, height / 2) for s in (-1.2, 1.2)]
+    around.SamplingDimensions = [61, 61, 61]
+    across = [diameter * x / max(abs(tip[0]), abs(tip[1])) for x in tip]
+    lines = StreamTracer(registrationName=name + " lines", Input=around, SeedType="Line")
+    lines.Vectors = ["POINTS", "B"]
+    lines.MaximumStreamlineLength = 5 * height
+    lines.SeedType.Point1 = [a - b for a, b in zip(top, across)]
+    lines.SeedType.Point2 = [a + b for a, b in zip(top, across)]
+    lines.SeedType.Resolution = 20
+    display = Show(lines, view)
+    display.LineWidth = 2
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = [0.0, 0.0, 0.0]
+
+
 bodies = names("body_")
 diameter = 1e-3
-tip = [1.0, 0.0, 0.0]
+tip = [1.0, 0.0, 0.0]  # the direction of bending
+top = [0.0, 0.0, 0.0]  # where the tip is
 for name in names("centreline_"):
     rod = read(name)
     diameter = 2 * rod.PointData["radius"].GetRange()[1]
     bounds = rod.GetDataInformation().GetBounds()
     deflection = [max(bounds[0:2], key=abs), max(bounds[2:4], key=abs), 0.0]
     tip = deflection if any(deflection) else tip
+    top = deflection[:2] + [bounds[5]]
     line = Show(rod, view)
     line.LineWidth = 3
     ColorBy(line, ("POINTS", "kappa"))
@@ -81,7 +104,16 @@ for name in names("dipoles_"):
     if moments.GetDataInformation().GetNumberOfPoints() > 0:
         Hide(arrows(moments, "moment", diameter, name + " arrows"), view)
 
+octrees = names("field_*_potential")
+for name in octrees:
+    field = read(name)
+    if name == octrees[-1]:  # the most detailed deformation
+        field_lines(field, name)
+    Hide(field, view)
+
 for name in names("field_"):
+    if name in octrees:
+        continue
     field = read(name)
     valid = Threshold(registrationName=name + " valid", Input=field)
     valid.Scalars = ["POINTS", "valid"]
