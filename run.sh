@@ -11,7 +11,7 @@ if [ "${1:-}" = --help ] || [ "${1:-}" = -h ]; then
 fi
 if [ $# -eq 0 ]; then
   for file in cases/paper/*.toml; do
-    [[ $file == *.study.toml ]] || set -- "$@" "$file" # studies are no cases
+    [[ $file == *.study.toml || $file == *.sense.toml ]] || set -- "$@" "$file" # studies and benches are no cases
   done
 fi
 

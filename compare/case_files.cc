@@ -23,6 +23,8 @@ std::vector<Case> read_cases(const std::vector<fs::path>& files) {
     try {
       if (is_study_file(file))
         throw InputError(file.string() + ": is a study, not a case: `ciliaval study` runs it");
+      if (is_bench_file(file))
+        throw InputError(file.string() + ": is a test bench, not a case: `ciliaval sense` runs it");
       cases.push_back(read_case(file));
       for (const std::string& remark : check_case_mesh(cases.back()))
         print(fmt::format("Remark: {}: {}\n", cases.back().options.solid.mesh.string(), remark));
@@ -47,20 +49,27 @@ bool is_study_file(const fs::path& file) {
   return file.string().ends_with(".study.toml");
 }
 
+bool is_bench_file(const fs::path& file) {
+  return file.string().ends_with(".sense.toml");
+}
+
 ShippedCases shipped_cases() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error) return {};
   for (const char* data : {CILIAVAL_INSTALLED_DATA, CILIAVAL_SOURCE_DATA}) {
-    ShippedCases cases{(program.parent_path() / data / "cases").lexically_normal(), {}, {}};
+    ShippedCases cases{(program.parent_path() / data / "cases").lexically_normal(), {}, {}, {}};
     if (!fs::is_directory(cases.folder, error)) continue;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(cases.folder))
       if (is_study_file(entry.path()))
         cases.studies.push_back(entry.path());
+      else if (is_bench_file(entry.path()))
+        cases.benches.push_back(entry.path());
       else if (entry.path().extension() == ".toml")
         cases.files.push_back(entry.path());
     std::sort(cases.files.begin(), cases.files.end());
     std::sort(cases.studies.begin(), cases.studies.end());
+    std::sort(cases.benches.begin(), cases.benches.end());
     return cases;
   }
   return {};

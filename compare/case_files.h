@@ -15,11 +15,15 @@ std::vector<Case> read_cases(const std::vector<std::filesystem::path>& files);
 /// Whether a file is called like a study (docs/study.md), NAME.study.toml.
 bool is_study_file(const std::filesystem::path& file);
 
-/// The cases and studies that come with the program.
+/// Whether a file is called like a test bench to be simulated (docs/sense.md), NAME.sense.toml.
+bool is_bench_file(const std::filesystem::path& file);
+
+/// The cases, studies and benches that come with the program.
 struct ShippedCases {
   std::filesystem::path folder;
   std::vector<std::filesystem::path> files;  ///< in alphabetical order; none if they are not found
   std::vector<std::filesystem::path> studies;  ///< NAME.study.toml, which are no cases
+  std::vector<std::filesystem::path> benches;  ///< NAME.sense.toml, which are no cases
 };
 
 /// Those installed beside the program, or the build tree's sources.

@@ -18,6 +18,7 @@
 #include "compare/registry.h"
 #include "compare/results.h"
 #include "compare/run.h"
+#include "compare/sense/bench.h"
 #include "compare/study/study.h"
 #include "compare/table.h"
 #include "compare/terminal.h"
@@ -108,7 +109,9 @@ void take_part(Case problem, const RunOptions& options) {
 
 std::string title_of(const fs::path& file) {
   try {
-    return is_study_file(file) ? study::read_study(file).title : read_case(file).title;
+    if (is_study_file(file)) return study::read_study(file).title;
+    if (is_bench_file(file)) return read_bench(file).title;
+    return read_case(file).title;
   } catch (const Error&) {
     return "(cannot be read: see `ciliaval validate`)";
   }
@@ -117,15 +120,18 @@ std::string title_of(const fs::path& file) {
 std::string list_of_cases() {
   const ShippedCases shipped = shipped_cases();
   if (shipped.files.empty()) return "Shipped cases: none found beside the program\n";
-  std::string text = fmt::format("Shipped cases, in {}\n", shipped.folder.string());
-  for (const fs::path& file : shipped.files)
-    text += fmt::format("  {:<28} {}\n", file.lexically_relative(shipped.folder).string(),
-                        title_of(file));
-  if (!shipped.studies.empty())
-    text += fmt::format("\nShipped studies, in {}\n", shipped.folder.string());
-  for (const fs::path& file : shipped.studies)
-    text += fmt::format("  {:<28} {}\n", file.lexically_relative(shipped.folder).string(),
-                        title_of(file));
+  std::string text;
+  const auto add = [&](const char* kind, const std::vector<fs::path>& files) {
+    if (files.empty()) return;
+    text += fmt::format("{}Shipped {}, in {}\n", text.empty() ? "" : "\n", kind,
+                        shipped.folder.string());
+    for (const fs::path& file : files)
+      text += fmt::format("  {:<28} {}\n", file.lexically_relative(shipped.folder).string(),
+                          title_of(file));
+  };
+  add("cases", shipped.files);
+  add("studies", shipped.studies);
+  add("test benches", shipped.benches);
   return text;
 }
 
@@ -153,6 +159,13 @@ ExitCode run_cases(const std::vector<fs::path>& files, const RunOptions& options
 void validate_cases(const std::vector<fs::path>& all_files) {
   std::vector<fs::path> files;
   for (const fs::path& file : all_files) {
+    if (is_bench_file(file)) {
+      const Bench bench = read_bench(file);
+      print(fmt::format("{}: the test bench is valid: {} loads at {} azimuths, {} draws\n",
+                        file.string(), bench.problem.load_path.size(), bench.azimuths,
+                        bench.draws));
+      continue;
+    }
     if (!is_study_file(file)) {
       files.push_back(file);
       continue;

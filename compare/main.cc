@@ -20,6 +20,7 @@
 
 #include "compare/budget_command.h"
 #include "compare/check_command.h"
+#include "compare/claims_command.h"
 #include "compare/commands.h"
 #include "compare/converge_command.h"
 #include "compare/sense_command.h"
@@ -40,6 +41,7 @@ Examples:
   ciliaval converge my.toml              how far are the results from the converged ones?
   ciliaval budget my.toml                what does each assumption of the paper's model cost?
   ciliaval sense my.toml readings.csv    which load did the sensor read?
+  ciliaval claims                        what of the paper holds, by which model?
   ciliaval study my.study.toml           how does the signal change with stiffness, size, load?
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
@@ -110,7 +112,8 @@ READINGS.csv has a header with units and a row for each reading:
   first, 71.4, -1.2, 2230.9
   second, 100.2, 14.8, 2226.0
 
-or dBx, dBy, dBz, what the load has changed. The load found is the least-squares solution with the
+or dBx, dBy, dBz, what the load has changed. Without READINGS, CASE is a simulated test bench,
+NAME.sense.toml: errors of speed and direction, and which error of the sensor makes them. The load found is the least-squares solution with the
 chosen pair of models, its interval that of the noise. `nothing`: the interval holds zero; `misfit`:
 no load explains the reading; `beyond range`: see --largest (docs/sense.md).)";
 
@@ -121,12 +124,13 @@ CLI::App* add_sense(CLI::App& app, std::filesystem::path& file, std::filesystem:
       "From what the sensors read to the load: force or flow speed and direction of each reading,\n"
       "with intervals of 95 %.");
   sense->footer(sense_help);
-  sense->add_option("CASE", file, "Case file (TOML): cilium, kind of load, sensors")
+  sense
+      ->add_option("CASE", file,
+                   "Case file (TOML): cilium, kind of load, sensors; or a test bench,\n"
+                   "NAME.sense.toml, which is simulated")
       ->required()
       ->check(CLI::ExistingFile);
-  sense->add_option("READINGS", readings, "Readings (CSV with units)")
-      ->required()
-      ->check(CLI::ExistingFile);
+  sense->add_option("READINGS", readings, "Readings (CSV with units)")->check(CLI::ExistingFile);
   sense
       ->add_option("--background", options.background,
                    "The ambient field at each azimuth of the stage (CSV: azimuth, Bx, By, Bz),\n"
@@ -145,6 +149,10 @@ CLI::App* add_sense(CLI::App& app, std::filesystem::path& file, std::filesystem:
       ->type_name("QUANTITY");
   sense->add_option("--json", options.json, "Write the loads as JSON too")->type_name("FILE");
   sense->add_option("--csv", options.csv, "Write the loads as CSV too")->type_name("FILE");
+  sense
+      ->add_option("--plot", options.plot,
+                   "Of a test bench: plot the loads found over the true ones; SVG, by gnuplot")
+      ->type_name("FILE.svg");
   return sense;
 }
 
@@ -304,6 +312,15 @@ ExitCode execute(int argc, char** argv) {
   ciliaval::compare::StudyOptions study_options;
   study_options.command = options.command;
   const CLI::App* study = add_study(app, study_file, study_options);
+  ciliaval::compare::ClaimsOptions claims_options;
+  CLI::App* claims = app.add_subcommand(
+      "claims",
+      "The paper's quantitative statements, each with what the models find: reproduced, not\n"
+      "reproduced, depends on the model, or not checkable and why (docs/paper.md).");
+  claims->add_flag("--quick", claims_options.quick,
+                   "Without the 3D solid: seconds instead of two minutes");
+  claims->add_option("--json", claims_options.json, "Write the ledger as JSON too")
+      ->type_name("FILE");
   const CLI::App* list = app.add_subcommand("list", "List models, loads, shipped cases, studies");
 
   check_command(app, argc, argv);
@@ -323,7 +340,9 @@ ExitCode execute(int argc, char** argv) {
   else if (budget->parsed())
     return ciliaval::compare::budget_case(budget_file, budget_options);
   else if (sense->parsed())
-    return ciliaval::compare::sense_readings(sense_file, sense_readings, sense_options);
+    return ciliaval::compare::sense(sense_file, sense_readings, sense_options);
+  else if (claims->parsed())
+    return ciliaval::compare::print_claims(claims_options);
   else if (study->parsed())
     return ciliaval::compare::run_study(study_file, study_options);
   else if (mesh->parsed())

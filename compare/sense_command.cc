@@ -5,6 +5,7 @@
 
 #include "compare/case_files.h"
 #include "compare/results.h"
+#include "compare/sense/bench.h"
 #include "compare/sense/sensing.h"
 #include "compare/terminal.h"
 #include "compare/units.h"
@@ -46,6 +47,31 @@ ExitCode exit_code(const Sensing& sensing) {
 }
 
 }  // namespace
+
+ExitCode sense(const std::filesystem::path& file, const std::filesystem::path& readings,
+               const SenseOptions& options) {
+  if (is_bench_file(file)) {
+    if (!readings.empty())
+      throw InputError(file.string() + " is a test bench, which makes its own readings: leave " +
+                       readings.string() + " out");
+    return sense_bench(file, options);
+  }
+  if (readings.empty())
+    throw InputError("there is no file of readings after " + file.string() +
+                     "; a test bench to be simulated is called NAME.sense.toml");
+  return sense_readings(file, readings, options);
+}
+
+ExitCode sense_bench(const std::filesystem::path& file, const SenseOptions& options) {
+  require_one_rank();
+  const Bench bench = read_bench(file);
+  ProgressLine line;
+  const BenchResult result = run_bench(bench, line.callback());
+  print(bench_text(bench, result));
+  if (options.json) replace_text(*options.json, bench_json(bench, result));
+  if (options.plot) plot::write_svg(*options.plot, bench_script(bench, result), {700, 760});
+  return ExitCode::pass;
+}
 
 ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem::path& readings,
                         const SenseOptions& options) {

@@ -16,7 +16,13 @@ struct SenseOptions {
   std::optional<std::string> largest;  ///< load; else 1.25 times the case's largest
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> csv;
+  std::optional<std::filesystem::path> plot;  ///< of a bench, an SVG file
 };
+
+/// `ciliaval sense`: readings of a case, or without a file of readings a test bench. Throws
+/// InputError if the files are not of these kinds.
+ExitCode sense(const std::filesystem::path& file, const std::filesystem::path& readings,
+               const SenseOptions& options);
 
 /// `ciliaval sense CASE READINGS`: the load and its direction, with confidence intervals, from each
 /// reading of the case's sensors (compare/sense/readings.h), to stdout. Returns `solver` if the
@@ -24,5 +30,9 @@ struct SenseOptions {
 /// SolverError, FileError.
 ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem::path& readings,
                         const SenseOptions& options);
+
+/// `ciliaval sense NAME.sense.toml`: simulates the test bench (compare/sense/bench.h), to stdout.
+/// Throws InputError, SolverError, FileError.
+ExitCode sense_bench(const std::filesystem::path& file, const SenseOptions& options);
 
 }  // namespace ciliaval::compare

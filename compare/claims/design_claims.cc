@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the paper says of its parameter studies (section 3.4, Fig. 4).
+#include <algorithm>
+#include <utility>
+
+#include "compare/claims/ledger.h"
+#include "compare/registry.h"
+#include "compare/study/evaluate.h"
+#include "compare/study/report.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using study::Output;
+using study::StudyResult;
+using study::Trend;
+
+/// A shipped study with |ΔB| alone, at all its points.
+StudyResult evaluated(const std::filesystem::path& file, std::vector<Output> outputs,
+                      const Progress& progress) {
+  StudyResult result{study::read_study(file), {}};
+  study::Study& study = result.study;
+  study.outputs = std::move(outputs);
+  for (std::size_t point = 0; point < study.point_count(); ++point) {
+    if (progress)
+      progress(study.name + ": point " + std::to_string(point + 1) + " of " +
+               std::to_string(study.point_count()));
+    std::vector<study::PairResult> pairs(study.pairs.size());
+    for (const std::string& mechanics : study.mechanics()) {
+      const auto of_model =
+          study::evaluate(study, point, mechanics, mechanics_models(), field_models());
+      std::size_t next = 0;
+      for (std::size_t p = 0; p < study.pairs.size(); ++p)
+        if (study.pairs[p].mechanics == mechanics) pairs[p] = of_model.at(next++);
+    }
+    result.points.push_back(std::move(pairs));
+  }
+  return result;
+}
+
+/// |ΔB| of each pair from end to end of the parameter, and whether its trend is the one claimed.
+template <class Holds>
+void add_trends(const StudyResult& result, std::size_t output, const Holds& holds, Claim& claim) {
+  for (std::size_t pair = 0; pair < result.study.pairs.size(); ++pair) {
+    const Trend trend = study::trend(result, pair, output);
+    claim.findings.push_back(judged(result.study.pairs[pair].name() + ": dB from end to end",
+                                    1e6 * trend.first, 1e6 * trend.last, "uT", holds(trend)));
+  }
+}
+
+}  // namespace
+
+std::vector<Claim> design_claims(const std::filesystem::path& folder, const Progress& progress) {
+  const auto run = [&](const char* name, Output output) {
+    return evaluated(folder / name, {output}, progress);
+  };
+  std::vector<Claim> claims;
+  claims.push_back({"3.4.1, Fig. 4a", "the signal falls as E1 grows", {}, {}});
+  add_trends(
+      run("fig4a-e1.study.toml", Output::dB_norm), 0,
+      [](const Trend& t) { return t.kind == Trend::Kind::falling; }, claims.back());
+
+  const StudyResult e2 = run("fig4a-e2.study.toml", Output::dB_norm);
+  claims.push_back({"3.4.1, Fig. 4a",
+                    "the signal |dB| grows with E2",
+                    {},
+                    "At small E2 the magnet bends so far that dB_x has the other sign: |dB| has a "
+                    "trough (docs/study.md)."});
+  add_trends(
+      e2, 0, [](const Trend& t) { return t.kind == Trend::Kind::rising; }, claims.back());
+  const StudyResult e2_x = run("fig4a-e2.study.toml", Output::dB_x);
+  claims.push_back({"3.4.1, Fig. 4a",
+                    "dB_x grows with E2 and reaches a plateau",
+                    {},
+                    "A plateau: 95 % of the change by half of the range."});
+  const double middle = e2_x.study.parameters.front().values.back() / 2;
+  add_trends(
+      e2_x, 0,
+      [&](const Trend& t) { return t.kind == Trend::Kind::rising && t.settled_at < middle; },
+      claims.back());
+
+  claims.push_back({"3.4.2, Fig. 4b",
+                    "the signal grows with the aspect ratio (thinner cilia)",
+                    {},
+                    "Where the cilium bears the force at all: thinner ones slip off "
+                    "(docs/study.md)."});
+  add_trends(
+      run("fig4b.study.toml", Output::dB_norm), 0,
+      [](const Trend& t) { return t.kind == Trend::Kind::falling; }, claims.back());
+
+  const StudyResult proportion = run("fig4c.study.toml", Output::dB_norm);
+  claims.push_back({"3.4.3, Fig. 4c", "the signal has its peak at L2/L0 = 0.7 to 0.9", {}, {}});
+  for (std::size_t pair = 0; pair < proportion.study.pairs.size(); ++pair) {
+    const Trend trend = study::trend(proportion, pair, 0);
+    if (trend.kind == Trend::Kind::peak)
+      claims.back().findings.push_back(in_range(proportion.study.pairs[pair].name() + ": peak at",
+                                                trend.extreme_at, trend.extreme_at, "", 0.7, 0.9));
+    else
+      claims.back().findings.push_back(
+          judged(proportion.study.pairs[pair].name() + ": no peak", 0, 0, "", false));
+  }
+  return claims;
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/claims/claim.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "../run/program.h"
+#include "analytic/elastica.h"
+#include "analytic/field_models.h"
+#include "compare/claims/misprint.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Claims, AFindingHoldsFailsOrIsUndecidedWithinItsUncertainty) {
+  EXPECT_EQ(in_range("a", 1, 2, "", 0.5, 2.5).holds, true);
+  EXPECT_EQ(in_range("a", 1, 2, "", 1.5, 2.5).holds, false);
+  EXPECT_EQ(in_range("a", 1, 2, "", 0.95, 2.5, 0.1).holds, std::nullopt);
+  EXPECT_EQ(in_range("a", 1, 2, "", 1.05, 2.5, 0.1).holds, std::nullopt);
+  EXPECT_EQ(in_range("a", 1, 2, "", 1.2, 2.5, 0.1).holds, false);
+  EXPECT_EQ(in_range("a", std::nan(""), 2, "", 0, 3).holds, false);
+}
+
+TEST(Claims, TheVerdictIsThatOfTheFindings) {
+  const Finding yes = judged("a", 1, 1, "", true);
+  const Finding no = judged("b", 1, 1, "", false);
+  const Finding open = in_range("c", 1, 1, "", 1.05, 2, 0.1);
+  const auto verdict = [](std::vector<Finding> findings) {
+    return Claim{"1", "s", std::move(findings), ""}.verdict();
+  };
+  EXPECT_EQ(verdict({yes, yes}), ClaimVerdict::reproduced);
+  EXPECT_EQ(verdict({yes, open}), ClaimVerdict::reproduced);
+  EXPECT_EQ(verdict({no, open}), ClaimVerdict::not_reproduced);
+  EXPECT_EQ(verdict({yes, no}), ClaimVerdict::depends_on_the_model);
+  EXPECT_EQ(verdict({open}), ClaimVerdict::not_checkable);
+  EXPECT_EQ(verdict({}), ClaimVerdict::not_checkable);
+}
+
+// Oracle: the closed forms of the same integrals; and of a straight cilium, where cos θ = 1, the
+// equations as printed are right.
+TEST(Misprints, TheEquationsAsMeantAreTheModels) {
+  const Case problem = test::paper_case({3e-3});
+  const MechanicsResult elastica = analytic::Elastica().solve(problem.cilium, problem.load_path);
+  const Vector3 x = problem.sensors.front();
+  const Deformation& bent = *elastica.steps.front().deformation;
+  const PrintedFields fields = printed_fields(problem.cilium, bent.centreline, x);
+  const auto model = [&](const FieldModel& field) {
+    return field.field(problem.cilium, bent, problem.sensors).B.front();
+  };
+  const Vector3 line = model(analytic::LineField());
+  const Vector3 volume =
+      model(analytic::VolumeField({.slices = analytic::VolumeOptions::Slices::stacked}));
+  EXPECT_LT((fields.line - line).norm(), 1e-8 * line.norm());
+  EXPECT_LT((fields.volume - volume).norm(), 1e-6 * volume.norm());
+  EXPECT_EQ(fields.line_printed.x(), fields.line.x());
+  EXPECT_GT(std::abs(fields.line_printed.z() / fields.line.z()), 1.001);
+  const PrintedFields straight = printed_fields(problem.cilium, elastica.undeformed.centreline, x);
+  EXPECT_EQ(straight.line_printed, straight.line);
+  EXPECT_EQ(straight.volume_printed, straight.volume);
+}
+
+// The program's ledger: every claim with a verdict, and the arithmetic ones as anyone can check.
+TEST(Claims, TheLedgerJudgesEveryClaimOfThePaper) {
+  const test::TemporaryFolder folder;
+  const test::Outcome outcome =
+      test::run_program(folder.path(), "claims --quick --json claims.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto claims =
+      nlohmann::json::parse(test::read_text(folder.path() / "claims.json"))["claims"];
+  ASSERT_GE(claims.size(), 18u);
+  const auto claim = [&](const std::string& part) -> const nlohmann::json& {
+    for (const auto& c : claims)
+      if (c["statement"].get<std::string>().find(part) != std::string::npos) return c;
+    throw std::out_of_range(part);
+  };
+  EXPECT_EQ(claim("0.375 N/m")["verdict"], "reproduced");
+  EXPECT_EQ(claim("two orders of magnitude")["verdict"], "not reproduced");  // 30
+  EXPECT_NEAR(claim("two orders")["findings"][0]["low"].get<double>(), std::log10(30), 1e-12);
+  EXPECT_EQ(claim("measured B_x")["verdict"], "not checkable");
+  EXPECT_THAT(claim("measured B_x")["note"].get<std::string>(), HasSubstr("not published"));
+  EXPECT_EQ(claim("falls as E1 grows")["verdict"], "reproduced");
+  for (const auto& c : claims)
+    for (const auto& f : c["findings"]) EXPECT_FALSE(f["low"].is_null()) << c;
+  EXPECT_THAT(outcome.out, HasSubstr("claims: "));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare
