@@ -62,11 +62,12 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, const Prog
       [](const Trend& t) { return t.kind == Trend::Kind::falling; }, claims.back());
 
   const StudyResult e2 = run("fig4a-e2.study.toml", Output::dB_norm);
-  claims.push_back({"3.4.1, Fig. 4a",
-                    "the signal |dB| grows with E2",
-                    {},
-                    "At small E2 the magnet bends so far that dB_x has the other sign: |dB| has a "
-                    "trough (docs/study.md)."});
+  claims.push_back(
+      {"3.4.1, Fig. 4a",
+       "the signal |dB| grows with E2",
+       {},
+       "Below some 0.2 MPa the magnet bends so far that dB_x has the other sign, and |dB| falls "
+       "first; above it grows (docs/study.md). The paper's range of E2 is not given."});
   add_trends(
       e2, 0, [](const Trend& t) { return t.kind == Trend::Kind::rising; }, claims.back());
   const StudyResult e2_x = run("fig4a-e2.study.toml", Output::dB_x);
