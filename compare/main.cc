@@ -175,6 +175,10 @@ A study file names a case, the numbers of it to vary, and the pairs of models to
   count = 40
   spacing = "logarithmic"
 
+  [tolerances]                           # or in place of it: standard deviations
+  cilium.diameter = "0.05 mm"            # at the case with its fixed numbers
+  cilium.segment.base.young_modulus = "5 %"
+
 Each point is kept as soon as it is solved: a study that was killed goes on where it was when the
 same command is given again. All keys and outputs: docs/study.md; examples: `ciliaval list`.)";
 
@@ -183,7 +187,8 @@ CLI::App* add_study(CLI::App& app, std::filesystem::path& file,
   CLI::App* study = app.add_subcommand(
       "study",
       "Parameter study: vary numbers of a case, alone or together, run pairs of models at each\n"
-      "point, and write tables and plots of the signal, its sensitivity and its range.");
+      "point, and write tables and plots of the signal, its sensitivity and its range; propagate\n"
+      "tolerances to their standard deviations.");
   study->footer(study_help);
   study->add_option("STUDY", file, "Study file (TOML)")->required()->check(CLI::ExistingFile);
   study

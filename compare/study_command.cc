@@ -11,6 +11,7 @@
 #include "compare/results.h"
 #include "compare/study/report.h"
 #include "compare/study/sweep.h"
+#include "compare/study/tolerances.h"
 #include "compare/terminal.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
@@ -88,10 +89,13 @@ ExitCode run_study(const fs::path& file, const StudyOptions& options) {
   open_journal(study, folder, journal);
   const study::StudyResult result = solve(study, journal);
   const std::string json = study::json(result, provenance(options.command));
-  replace_text(folder / "study.csv", study::csv(result));
+  if (!study.parameters.empty()) replace_text(folder / "study.csv", study::csv(result));
+  if (!study.tolerances.empty())
+    replace_text(folder / "tolerances.csv", study::tolerance_csv(result));
   replace_text(folder / "study.json", json);
   if (options.json) replace_text(*options.json, json);
-  print(study::text(result) + fmt::format("\nResults: {}\n", folder.string()));
+  print(study::text(result) + study::tolerance_text(result) +
+        fmt::format("\nResults: {}\n", folder.string()));
   for (const study::StudyPlot& drawing : study::plots(result))
     plot::write_svg(folder / drawing.name, drawing.script, drawing.size);
   return all_failed(result) ? ExitCode::solver : ExitCode::pass;

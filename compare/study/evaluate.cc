@@ -59,6 +59,15 @@ PairResult result_of(const Study& study, const MechanicsStep& step, const FieldR
   for (std::size_t i = 0; i < study.outputs.size(); ++i) {
     std::optional<double>& value = result.values[i];
     switch (study.outputs[i]) {
+      case Output::B_x:
+        value = field.B.front()->x();
+        break;
+      case Output::B_y:
+        value = field.B.front()->y();
+        break;
+      case Output::B_z:
+        value = field.B.front()->z();
+        break;
       case Output::dB_x:
         value = dB.x();
         break;

@@ -34,6 +34,12 @@ std::string axis_title(Output output) {
       return "range: largest load";
     case Output::resolution:
       return "resolution: smallest change of the load";
+    case Output::B_x:
+      return "B_x";
+    case Output::B_y:
+      return "B_y";
+    case Output::B_z:
+      return "B_z";
     case Output::dB_x:
       return "ΔB_x";
     case Output::dB_y:
@@ -239,6 +245,7 @@ StudyPlot plot_of(const StudyResult& result, std::size_t output) {
 
 std::vector<StudyPlot> plots(const StudyResult& result) {
   std::vector<StudyPlot> all;
+  if (result.study.parameters.empty()) return all;
   for (std::size_t output = 0; output < result.study.outputs.size(); ++output) {
     StudyPlot plot = plot_of(result, output);
     if (!plot.script.empty()) all.push_back(std::move(plot));

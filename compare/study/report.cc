@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "compare/results.h"
+#include "compare/study/tolerances.h"
 #include "compare/units.h"
 
 namespace ciliaval::compare::study {
@@ -41,27 +42,14 @@ std::vector<std::size_t> shown_points(std::size_t count) {
   return points;
 }
 
-std::string cell(const PairResult& result, std::size_t output, double unit) {
-  if (result.values[output]) return fmt::format("{:.5g}", *result.values[output] / unit);
-  return result.status == Status::converged ? "-" : std::string(to_string(result.status));
-}
-
 /// A text padded to the right end of a column; `width` counts characters of ASCII.
 std::string right(const std::string& text, std::size_t width) {
   return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
 }
 
-/// Rows of cells, the columns as wide as they must be.
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> width(rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) text += "  " + right(row[i], width[i]);
-    text += '\n';
-  }
-  return text;
+std::string cell(const PairResult& result, std::size_t output, double unit) {
+  if (result.values[output]) return fmt::format("{:.5g}", *result.values[output] / unit);
+  return result.status == Status::converged ? "-" : std::string(to_string(result.status));
 }
 
 std::string point_table(const StudyResult& result, std::size_t pair) {
@@ -129,18 +117,18 @@ std::string trends(const StudyResult& result) {
 
 /// How many points of each pair slipped off or failed, and why the first one did.
 std::string exceptions(const StudyResult& result) {
+  const Study& study = result.study;
   std::string text;
-  for (std::size_t pair = 0; pair < result.study.pairs.size(); ++pair)
+  for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
     for (const Status status : {Status::slipped_off, Status::failed}) {
       std::size_t count = 0;
       std::size_t first = 0;
-      for (std::size_t point = 0; point < result.points.size(); ++point)
+      for (std::size_t point = 0; point < study.point_count(); ++point)
         if (result.points[point][pair].status == status && count++ == 0) first = point;
       if (count > 0)
         text += fmt::format("{}: {} at {} of {} points, first at {}: {}\n",
-                            result.study.pairs[pair].name(), to_string(status), count,
-                            result.points.size(), result.study.describe(first),
-                            result.points[first][pair].message);
+                            study.pairs[pair].name(), to_string(status), count, study.point_count(),
+                            study.describe(first), result.points[first][pair].message);
     }
   return text.empty() ? text : "\n" + text;
 }
@@ -150,6 +138,18 @@ Json optional(const std::optional<double>& value) {
 }
 
 }  // namespace
+
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> width(rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) text += "  " + right(row[i], width[i]);
+    text += '\n';
+  }
+  return text;
+}
 
 std::string_view symbol(Output output) {
   switch (output) {
@@ -192,6 +192,7 @@ std::string text(const StudyResult& result) {
   const Study& study = result.study;
   std::string text = fmt::format("Study \"{}\": {}\n", study.name, study.title);
   const std::size_t count = study.point_count();
+  if (count == 0) return text;
   if (count > most_rows)
     text += fmt::format("{} points, {} of them below; all are in study.csv\n", count, most_rows);
   for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
@@ -216,7 +217,7 @@ std::string csv(const StudyResult& result) {
   names.emplace_back("message");
   std::string text =
       fmt::format("# units: {}\n{}\n", fmt::join(units, ", "), fmt::join(names, ","));
-  for (std::size_t point = 0; point < result.points.size(); ++point)
+  for (std::size_t point = 0; point < study.point_count(); ++point)
     for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
       const PairResult& r = result.points[point][pair];
       text += fmt::format("{}", point);
@@ -251,7 +252,7 @@ std::string json(const StudyResult& result, const Provenance& provenance) {
   for (const Output output : study.outputs)
     json["outputs"].push_back({{"id", id(output)}, {"unit", si_unit(output, study)}});
   for (const Pair& pair : study.pairs) json["pairs"].push_back(pair.name());
-  for (std::size_t point = 0; point < result.points.size(); ++point) {
+  for (std::size_t point = 0; point < study.point_count(); ++point) {
     Json entry{{"point", point}, {"parameters", Json::object()}, {"pairs", Json::object()}};
     const std::vector<double> values = study.values_at(point);
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -265,6 +266,7 @@ std::string json(const StudyResult& result, const Provenance& provenance) {
     }
     json["points"].push_back(std::move(entry));
   }
+  if (!study.tolerances.empty()) json["tolerances"] = tolerance_json(result);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -22,6 +22,9 @@ std::string si_unit(Output output, const Study& study);
 /// "|dB|", "d|dB|/dF": what an output is, in a word.
 std::string_view symbol(Output output);
 
+/// Rows of cells of ASCII, the columns as wide as they must be, cells at their right ends.
+std::string aligned(const std::vector<std::vector<std::string>>& rows);
+
 /// For a terminal: a table of the points, thinned to some 25 of them, then what each output does
 /// along the parameter if there is one alone: monotone, or its peak.
 std::string text(const StudyResult& result);

@@ -16,9 +16,9 @@
 namespace ciliaval::compare::study {
 namespace {
 
-constexpr std::array<Output, 7> outputs{Output::dB_x,      Output::dB_y,        Output::dB_z,
-                                        Output::dB_norm,   Output::sensitivity, Output::range,
-                                        Output::resolution};
+constexpr std::array<Output, 10> outputs{
+    Output::B_x,  Output::B_y,     Output::B_z,         Output::dB_x,  Output::dB_y,
+    Output::dB_z, Output::dB_norm, Output::sensitivity, Output::range, Output::resolution};
 
 /// Checksum of a file that the case names; the results depend on its content.
 std::uint32_t checksum_of(const std::filesystem::path& file) {
@@ -34,10 +34,28 @@ std::string numbers(const std::vector<double>& values) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
+/// Where the differences are taken, in steps.
+constexpr std::array<int, 4> steps{-2, -1, 1, 2};
+
+/// What is moved at a point behind the sweep; nothing at the first one.
+std::optional<Setting> moved_number(const Study& study, std::size_t point) {
+  const std::size_t index = point - study.point_count();
+  if (index == 0) return std::nullopt;
+  const Tolerance& tolerance = study.tolerances[(index - 1) / steps.size()];
+  const int step = steps[(index - 1) % steps.size()];
+  return Setting{tolerance.number, tolerance.nominal + step * tolerance_step * tolerance.deviation};
+}
+
 }  // namespace
 
 std::string_view id(Output output) {
   switch (output) {
+    case Output::B_x:
+      return "B_x";
+    case Output::B_y:
+      return "B_y";
+    case Output::B_z:
+      return "B_z";
     case Output::dB_x:
       return "dB_x";
     case Output::dB_y:
@@ -61,10 +79,14 @@ std::span<const Output> all_outputs() {
 }
 
 std::size_t Study::point_count() const {
-  std::size_t count = 1;
+  std::size_t count = parameters.empty() ? 0 : 1;
   for (const Parameter& p : parameters)
     count = is_zipped ? p.values.size() : count * p.values.size();
   return count;
+}
+
+std::size_t Study::all_points() const {
+  return point_count() + (tolerances.empty() ? 0 : 1 + steps.size() * tolerances.size());
 }
 
 std::vector<double> Study::values_at(std::size_t point) const {
@@ -78,6 +100,11 @@ std::vector<double> Study::values_at(std::size_t point) const {
 }
 
 Case Study::case_at(std::size_t point) const {
+  if (point >= point_count()) {
+    const Case nominal = with_settings(base, fixed);
+    const auto moved = moved_number(*this, point);
+    return moved ? with_settings(nominal, {*moved}) : nominal;
+  }
   std::vector<Setting> settings = fixed;
   const std::vector<double> values = values_at(point);
   for (std::size_t i = 0; i < parameters.size(); ++i)
@@ -86,6 +113,12 @@ Case Study::case_at(std::size_t point) const {
 }
 
 std::string Study::describe(std::size_t point) const {
+  if (point >= point_count()) {
+    const auto moved = moved_number(*this, point);
+    return moved ? fmt::format("{} = {}", moved->number.path,
+                               format_quantity(moved->value, moved->number.quantity))
+                 : "nominal";
+  }
   const std::vector<double> values = values_at(point);
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < parameters.size(); ++i)
@@ -125,6 +158,8 @@ std::vector<std::string> resolved(const Study& study) {
     lines.push_back(fmt::format("fixed: {} = {}", s.number.path, format_number(s.value)));
   for (const Parameter& p : study.parameters)
     lines.push_back(fmt::format("parameter: {} = {}", p.number.path, numbers(p.values)));
+  for (const Tolerance& t : study.tolerances)
+    lines.push_back(fmt::format("tolerance: {} = {}", t.number.path, format_number(t.deviation)));
   lines.emplace_back(study.is_zipped ? "combine: zip" : "combine: product");
   for (const Pair& pair : study.pairs) lines.push_back(fmt::format("pair: {}", pair.name()));
   for (const Output output : study.outputs) lines.push_back(fmt::format("output: {}", id(output)));

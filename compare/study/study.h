@@ -16,6 +16,9 @@ namespace ciliaval::compare::study {
 
 /// What a study computes for each pair of models at each point.
 enum class Output {
+  B_x,          ///< B at the sensor, T
+  B_y,          ///< …
+  B_z,          ///< …
   dB_x,         ///< ΔB at the sensor, T
   dB_y,         ///< …
   dB_z,         ///< …
@@ -37,6 +40,19 @@ struct Parameter {
   bool is_logarithmic = false;
 };
 
+/// A number of the case that is not known exactly.
+struct Tolerance {
+  CaseNumber number;
+  double nominal = 0;    ///< value in the case with its fixed numbers, SI units
+  double deviation = 0;  ///< standard deviation, SI units
+  std::string unit;      ///< in which it is shown
+  double unit_size = 1;  ///< SI value of that unit
+};
+
+/// Part of a standard deviation by which a number is moved for the differences of fourth order of
+/// compare/study/tolerances.h, once and twice, to both sides.
+inline constexpr double tolerance_step = 0.25;
+
 struct Pair {
   std::string mechanics;
   std::string field;
@@ -53,11 +69,16 @@ struct Study {
   bool is_zipped = false;  ///< the parameters' values go together; else every combination
   std::vector<Pair> pairs;
   std::vector<Output> outputs;
+  std::vector<Tolerance> tolerances;
   std::optional<double> noise;     ///< standard deviation of a reading, T, for `resolution`
   std::optional<double> rotation;  ///< rad, for the `range` of a load that has no slip-off
 
+  /// Points of the sweep over the parameters; 0 without parameters.
   std::size_t point_count() const;
-  /// The parameters' values at a point; of a product the last parameter runs fastest.
+  /// All points that are solved: behind those of the sweep, if there are tolerances, the case with
+  /// its fixed numbers alone and each number moved by −2, −1, 1 and 2 steps.
+  std::size_t all_points() const;
+  /// The parameters' values at a point of the sweep; of a product the last parameter runs fastest.
   std::vector<double> values_at(std::size_t point) const;
   Case case_at(std::size_t point) const;
   /// "E1 = 0.1 MPa, d = 3 mm"

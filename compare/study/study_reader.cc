@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "compare/case_sections.h"
@@ -73,22 +76,31 @@ void check_contradiction(const Study& study, const CaseNumber& number, Place whe
   for (const Parameter& parameter : study.parameters) refuse(parameter.number);
 }
 
-/// [fixed]: its values stand under the case's own keys, as nested tables.
-void read_fixed(const toml::table& table, const std::string& prefix, Reading& reading,
-                Faults& faults) {
+/// A value under a dotted path of the case's keys.
+using Leaf =
+    std::function<void(const std::string& path, const toml::key& key, const toml::node& node)>;
+
+/// The values of [fixed] and [tolerances] stand under the case's own keys, as nested tables.
+void for_leaves(const toml::table& table, const std::string& prefix, const Leaf& leaf) {
   for (const auto& [key, node] : table) {
     const std::string path =
         prefix.empty() ? std::string(key.str()) : fmt::format("{}.{}", prefix, key.str());
-    if (const toml::table* inner = node.as_table()) {
-      read_fixed(*inner, path, reading, faults);
-      continue;
-    }
+    if (const toml::table* inner = node.as_table())
+      for_leaves(*inner, path, leaf);
+    else
+      leaf(path, key, node);
+  }
+}
+
+/// [fixed].
+void read_fixed(const toml::table& table, Reading& reading, Faults& faults) {
+  for_leaves(table, "", [&](const std::string& path, const toml::key& key, const toml::node& node) {
     const CaseNumber* number = find_number(reading, path, place(key), faults);
-    if (number == nullptr) continue;
+    if (number == nullptr) return;
     check_contradiction(reading.study, *number, place(key), faults);
     if (const auto value = read_number(node, path, *number, faults))
       reading.study.fixed.push_back({*number, *value});
-  }
+  });
 }
 
 /// The unit of a quantity that has been read: what follows the number.
@@ -219,14 +231,15 @@ void read_parameter(Section& table, Reading& reading) {
   reading.study.parameters.push_back(std::move(parameter));
 }
 
-void read_parameters(Section& root, Reading& reading) {
+void read_parameters(Section& root, bool has_tolerances, Reading& reading) {
   Faults& faults = root.faults();
   const toml::node* node = root.find("parameter");
   const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+  if (node == nullptr && has_tolerances) return;
   if (list == nullptr || list->empty()) {
-    faults.add(
-        node != nullptr ? place(*node) : Place{},
-        "a study varies one parameter or more: write [[parameter]] with 'path' and 'values'");
+    faults.add(node != nullptr ? place(*node) : Place{},
+               "a study varies one parameter or more: write [[parameter]] with 'path' and "
+               "'values', or [tolerances]");
     return;
   }
   for (const toml::node& element : *list) {
@@ -238,6 +251,65 @@ void read_parameters(Section& root, Reading& reading) {
     Section table(element.as_table(), "[[parameter]]", "parameter", place(element), faults);
     read_parameter(table, reading);
   }
+}
+
+/// A part of the nominal value: "5 %"; none if the text is no percentage.
+std::optional<double> percentage(const toml::node& node) {
+  const auto* text = node.as_string();
+  if (text == nullptr) return std::nullopt;
+  double value = 0;
+  const char* const last = text->get().data() + text->get().size();
+  const auto [end, error] = std::from_chars(text->get().data(), last, value);
+  const std::string_view rest(end, static_cast<std::size_t>(last - end));
+  if (error != std::errc() || rest.find_first_not_of(" %") != std::string_view::npos ||
+      std::count(rest.begin(), rest.end(), '%') != 1)
+    return std::nullopt;
+  return value / 100;
+}
+
+/// One standard deviation, a quantity or a percentage of the nominal value.
+void read_deviation(const toml::node& node, Tolerance& tolerance, Faults& faults) {
+  const CaseNumber& number = tolerance.number;
+  const double largest = std::max(std::abs(number.range.lower), std::abs(number.range.upper));
+  const Range range{0, largest, true, "a standard deviation is positive"};
+  if (const auto part = percentage(node)) {
+    tolerance.deviation = std::abs(*part * tolerance.nominal);
+    if (!(*part > 0 && tolerance.deviation > 0))
+      faults.add(place(node), fmt::format("'{}': a percentage is positive, and of a value that is "
+                                          "not zero",
+                                          number.path));
+  } else if (const auto value = read_value(node, number.path, number.quantity, range, faults)) {
+    tolerance.deviation = *value;
+    tolerance.unit = unit_of(node);
+  }
+  const double reach = 2 * tolerance_step * tolerance.deviation;
+  for (const double moved : {tolerance.nominal - reach, tolerance.nominal + reach})
+    if (!number.range.contains(moved))
+      faults.add(place(node), fmt::format("'{}' moved by half of its tolerance is {}, but must be "
+                                          "{}",
+                                          number.path, format_quantity(moved, number.quantity),
+                                          describe(number.range, number.quantity)));
+}
+
+/// [tolerances].
+void read_tolerances(const toml::table& table, Reading& reading, Faults& faults) {
+  const Case nominal = with_settings(reading.base, reading.study.fixed);
+  for_leaves(table, "", [&](const std::string& path, const toml::key& key, const toml::node& node) {
+    const CaseNumber* number = find_number(reading, path, place(key), faults);
+    if (number == nullptr) return;
+    if (number->is_whole)
+      return faults.add(place(key),
+                        fmt::format("'{}' is a whole number: it has no tolerance", path));
+    Tolerance tolerance{*number, number->get(nominal), 0, {}, 1};
+    const std::size_t before = faults.size();
+    read_deviation(node, tolerance, faults);
+    if (faults.size() != before) return;
+    if (tolerance.unit.empty())
+      tolerance.unit = number->quantity.unit;
+    else
+      tolerance.unit_size = parse_quantity("1 " + tolerance.unit, number->quantity);
+    reading.study.tolerances.push_back(std::move(tolerance));
+  });
 }
 
 /// Every pair of models that can be formed.
@@ -385,7 +457,8 @@ bool is_same(const Load& a, const Load& b) {
 /// Makes one load step of the case's: they must be the same but for what the study sets.
 void reduce_to_one_step(Study& study, Place where, Faults& faults) {
   Case& base = study.base;
-  const Case set = study.case_at(0);
+  // The tolerances are those of the case with its fixed numbers alone.
+  const Case set = study.case_at(study.tolerances.empty() ? 0 : study.point_count());
   const auto differs = [&](const Load& step) { return !is_same(step, set.load_path.front()); };
   if (std::any_of(set.load_path.begin(), set.load_path.end(), differs)) {
     faults.add(where, fmt::format("the case has {} load steps, a study's points one: say which "
@@ -403,7 +476,7 @@ void reduce_to_one_step(Study& study, Place where, Faults& faults) {
 /// Checks each point as a case file would be; the first that cannot be is a fault.
 void check_points(const Study& study, Place where, Faults& faults) {
   const toml::table root = parse_toml(to_toml(study.base), study.name);
-  for (std::size_t i = 0; i < study.point_count(); ++i) {
+  for (std::size_t i = 0; i < study.all_points(); ++i) {
     const Case c = study.case_at(i);
     std::string fault;
     Faults of_point;
@@ -458,12 +531,14 @@ Study read_study(const fs::path& file) {
     reading.numbers = case_numbers(reading.base);
   if (header.exists()) read_study_table(header, reading);
   header.finish();
-  Section fixed = root.section("fixed");
+  const Section fixed = root.section("fixed");
+  const Section tolerances = root.section("tolerances");
   if (!reading.numbers.empty()) {
     // The paths of the sensor are those of the one that was chosen.
     reading.numbers = case_numbers(reading.base);
-    if (fixed.exists()) read_fixed(*fixed.table(), "", reading, faults);
-    read_parameters(root, reading);
+    if (fixed.exists()) read_fixed(*fixed.table(), reading, faults);
+    if (tolerances.exists()) read_tolerances(*tolerances.table(), reading, faults);
+    read_parameters(root, tolerances.exists() && !tolerances.table()->empty(), reading);
   } else {
     root.find("parameter");
   }

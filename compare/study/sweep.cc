@@ -84,7 +84,7 @@ std::optional<std::pair<Solution, std::vector<PairResult>>> from_record(const St
       record.second.push_back(std::move(result));
     }
     const std::size_t count = pair_count(study, record.first.mechanics);
-    if (record.first.point >= study.point_count() || count == 0 || record.second.size() != count)
+    if (record.first.point >= study.all_points() || count == 0 || record.second.size() != count)
       return std::nullopt;
     return record;
   } catch (const Json::exception&) {
@@ -144,7 +144,7 @@ std::string difference(const std::string& journal_header, const std::string& hea
 }
 
 Extent extent(const Study& study, const Journal& journal) {
-  return {study.point_count() * study.mechanics().size(), records_of(study, journal).size()};
+  return {study.all_points() * study.mechanics().size(), records_of(study, journal).size()};
 }
 
 StudyResult run_study(const Study& study, Journal& journal,
@@ -154,12 +154,12 @@ StudyResult run_study(const Study& study, Journal& journal,
   std::vector<Solution> side_by_side;
   std::vector<Solution> one_by_one;
   for (const std::string& mechanics : study.mechanics())
-    for (std::size_t point = 0; point < study.point_count(); ++point)
+    for (std::size_t point = 0; point < study.all_points(); ++point)
       if (!records.contains({point, mechanics}))
         (runs_in_threads(study, mechanics) ? side_by_side : one_by_one)
             .push_back({point, mechanics});
 
-  const std::size_t all = study.point_count() * study.mechanics().size();
+  const std::size_t all = study.all_points() * study.mechanics().size();
   std::mutex mutex;
   const auto solve = [&](const Solution& solution, const Progress& inner) {
     auto results =
@@ -183,7 +183,7 @@ StudyResult run_study(const Study& study, Journal& journal,
   }
   journal.flush();
   StudyResult result{study, {}};
-  for (std::size_t point = 0; point < study.point_count(); ++point)
+  for (std::size_t point = 0; point < study.all_points(); ++point)
     result.points.push_back(in_order(study, point, records));
   return result;
 }

@@ -15,7 +15,8 @@ namespace ciliaval::compare::study {
 /// A study with the results of all pairs at all points.
 struct StudyResult {
   Study study;
-  std::vector<std::vector<PairResult>> points;  ///< for each point, in the order of the pairs
+  std::vector<std::vector<PairResult>> points;  ///< for each of all points, in the order of
+                                                ///< the pairs
 };
 
 /// The journal's first line: format, program and the study as resolved() has it.

@@ -65,7 +65,7 @@ Trend trend(const StudyResult& result, std::size_t pair, std::size_t output) {
   Trend t;
   std::vector<Sample> samples;
   const bool logarithmic = parameter.is_logarithmic && parameter.values.front() > 0;
-  for (std::size_t point = 0; point < result.points.size(); ++point) {
+  for (std::size_t point = 0; point < result.study.point_count(); ++point) {
     const auto& value = result.points[point][pair].values[output];
     const double x = result.study.values_at(point).front();
     if (value)

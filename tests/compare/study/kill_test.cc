@@ -28,20 +28,20 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 using Seconds = std::chrono::duration<double>;
 
-/// Some hundred points with a range: a second or so.
+/// 24 points, of which the softest slip off: a second or so.
 void write_files(const fs::path& folder) {
   test::write_study_case(folder);
   test::write_study(folder, test::study_text(R"(pairs = ["elastica/line", "beam/volume"]
-outputs = ["dB_x", "dB_norm", "sensitivity", "range"])",
+outputs = ["dB_x", "dB_norm", "sensitivity"])",
                                              R"([[parameter]]
 path = "cilium.segment.base.young_modulus"
 from = "0.02 MPa"
 to = "1 MPa"
-count = 20
+count = 12
 spacing = "logarithmic"
 [[parameter]]
 path = "load.azimuth"
-values = ["0 deg", "30 deg", "77 deg"]
+values = ["0 deg", "77 deg"]
 )"));
 }
 
@@ -105,9 +105,9 @@ void kill_and_compare(int kills_wanted) {
       << read_text(folder.path() / "reference.err");
   const Seconds whole = std::chrono::steady_clock::now() - begin;
   const auto expected = contents(folder.path() / "reference/varied");
-  ASSERT_EQ(expected.size(), 6u);  // CSV, JSON, four plots
+  ASSERT_EQ(expected.size(), 5u);  // CSV, JSON, three plots
   const auto journal = sorted_lines(read_text(folder.path() / "reference/varied/points.journal"));
-  ASSERT_EQ(journal.size(), 1u + 2 * 60);
+  ASSERT_EQ(journal.size(), 1u + 2 * 24);
   std::mt19937 random(20261122);  // NOLINT(cert-msc51-cpp): the same moments in every run
   std::uniform_real_distribution<double> moment(0, 0.9);
   int kills = 0;
@@ -120,14 +120,14 @@ void kill_and_compare(int kills_wanted) {
       code = killed_after(start(folder.path(), "out"), moment(random) * whole);
       if (code == -1) ++kills;
       const fs::path file = folder.path() / "out/varied/points.journal";
-      if (code == -1 && kills % 2 == 0 && fs::exists(file) && fs::file_size(file) > 2000) {
+      if (code == -1 && kills % 2 == 0 && fs::exists(file) && fs::file_size(file) > 6000) {
         // What a power cut may leave beside: a torn last line.
         fs::resize_file(file, fs::file_size(file) - 40);
         ++torn;
       }
       if (read_text(folder.path() / "out.err").find("are there already") != std::string::npos)
         ++continued;
-      ASSERT_TRUE(code == -1 || code == 0) << read_text(folder.path() / "out.err");
+      ASSERT_TRUE(code == -1 || code == 0) << code << read_text(folder.path() / "out.err");
     } while (code != 0);
     EXPECT_EQ(contents(folder.path() / "out/varied"), expected);
     EXPECT_EQ(sorted_lines(read_text(folder.path() / "out/varied/points.journal")), journal);

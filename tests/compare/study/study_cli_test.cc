@@ -137,6 +137,20 @@ TEST(StudyCommand, APointThatSlipsOffIsAResultAndOneThatFailsIsRecorded) {
   EXPECT_THAT(study.out, HasSubstr("elastica/line: slipped_off at 1 of 3 points"));
 }
 
+TEST(StudyCommand, TolerancesAloneAreAStudy) {
+  const TemporaryFolder folder;
+  test::write_study_case(folder.path());
+  test::write_study(folder.path(), study_text(line, "[tolerances]\nload.force = \"1 %\"\n"));
+  const Outcome study = run_program(folder.path(), "study varied.study.toml");
+  EXPECT_EQ(study.code, 0) << study.err;
+  EXPECT_THAT(study.out, HasSubstr("all together"));
+  EXPECT_FALSE(fs::exists(folder.path() / "results/varied/study.csv"));
+  EXPECT_THAT(read_text(folder.path() / "results/varied/tolerances.csv"),
+              HasSubstr("\nelastica/line,dB_x,T,load.force,N,0.001,1e-05,"));
+  const auto json = nlohmann::json::parse(read_text(folder.path() / "results/varied/study.json"));
+  EXPECT_GT(json["tolerances"]["pairs"]["elastica/line"]["dB_x"]["deviation"].get<double>(), 0);
+}
+
 TEST(StudyCommand, EveryPointFailedIsExitCode3) {
   const TemporaryFolder folder;
   test::write_study_case(folder.path(), "\"2 mN\"",

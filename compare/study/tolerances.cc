@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/study/tolerances.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "compare/results.h"
+#include "compare/study/report.h"
+
+namespace ciliaval::compare::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json optional(const std::optional<double>& value) {
+  return value ? Json(*value + 0.0) : Json(nullptr);
+}
+
+std::string csv_number(const std::optional<double>& value) {
+  return value ? fmt::format("{}", *value + 0.0) : std::string();
+}
+
+std::string shown(const std::optional<double>& value, double unit) {
+  return value ? fmt::format("{:.4g}", *value / unit) : "-";
+}
+
+std::string pair_table(const StudyResult& result, std::size_t pair) {
+  const Study& study = result.study;
+  std::vector<std::vector<std::string>> rows{{"", "value", "sigma"}};
+  std::vector<std::string> nominal{"nominal", "", ""};
+  std::vector<std::string> total{"all together", "", ""};
+  for (const Tolerance& t : study.tolerances)
+    rows.push_back({t.number.path, fmt::format("{:.6g} {}", t.nominal / t.unit_size, t.unit),
+                    fmt::format("{:.4g} {}", t.deviation / t.unit_size, t.unit)});
+  for (std::size_t o = 0; o < study.outputs.size(); ++o) {
+    const OutputUnit unit = unit_of(study.outputs[o], study);
+    const Propagation p = propagate(result, pair, o);
+    rows[0].push_back(fmt::format("{}({})", symbol(study.outputs[o]), unit.name));
+    nominal.push_back(shown(p.nominal, unit.size));
+    for (std::size_t i = 0; i < p.shares.size(); ++i)
+      rows[i + 1].push_back(shown(p.shares[i].spread, unit.size));
+    total.push_back(shown(p.deviation, unit.size));
+  }
+  rows.insert(rows.begin() + 1, std::move(nominal));
+  rows.push_back(std::move(total));
+  return aligned(rows);
+}
+
+}  // namespace
+
+Propagation propagate(const StudyResult& result, std::size_t pair, std::size_t output) {
+  const Study& study = result.study;
+  const std::size_t first = study.point_count();
+  const auto value = [&](std::size_t point) { return result.points[point][pair].values[output]; };
+  Propagation p{value(first), {}, 0.0};
+  for (std::size_t i = 0; i < study.tolerances.size(); ++i) {
+    const double sigma = study.tolerances[i].deviation;
+    const double h = tolerance_step * sigma;
+    const std::size_t at = first + 1 + 4 * i;  // −2, −1, 1, 2 steps
+    Propagation::Share& share = p.shares.emplace_back();
+    if (value(at) && value(at + 1) && value(at + 2) && value(at + 3)) {
+      const double fine = (*value(at + 2) - *value(at + 1)) / (2 * h);
+      const double coarse = (*value(at + 3) - *value(at)) / (4 * h);
+      share.slope = (4 * fine - coarse) / 3;
+      share.error = std::abs(*share.slope - fine);
+      share.spread = std::abs(*share.slope) * sigma;
+    }
+    p.deviation = p.deviation && share.spread
+                      ? std::optional<double>(std::hypot(*p.deviation, *share.spread))
+                      : std::nullopt;
+  }
+  return p;
+}
+
+std::string tolerance_text(const StudyResult& result) {
+  const Study& study = result.study;
+  if (study.tolerances.empty()) return {};
+  std::string text =
+      "\nTolerances: what one standard deviation (sigma) of each number does, to first order; all "
+      "together if they are independent\n";
+  for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
+    text += fmt::format("\n{}\n", study.pairs[pair].name());
+    const PairResult& nominal = result.points[study.point_count()][pair];
+    text += nominal.status == Status::converged
+                ? pair_table(result, pair)
+                : fmt::format("  {}: {}\n", to_string(nominal.status), nominal.message);
+  }
+  return text;
+}
+
+std::string tolerance_csv(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string text =
+      "# units: SI, of the number (deviation), of the output (spread), of the output over the "
+      "number (slope, error)\n"
+      "pair,output,output_unit,number,number_unit,nominal,deviation,slope,error,spread\n";
+  for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
+    for (std::size_t o = 0; o < study.outputs.size(); ++o) {
+      const Propagation p = propagate(result, pair, o);
+      const std::string start = fmt::format("{},{},{}", study.pairs[pair].name(),
+                                            id(study.outputs[o]), si_unit(study.outputs[o], study));
+      for (std::size_t i = 0; i < p.shares.size(); ++i) {
+        const Tolerance& t = study.tolerances[i];
+        text += fmt::format(
+            "{},{},{},{},{},{},{},{}\n", start, csv_field(t.number.path), t.number.quantity.unit,
+            t.nominal, t.deviation, csv_number(p.shares[i].slope),
+            p.shares[i].slope ? csv_number(p.shares[i].error) : "", csv_number(p.shares[i].spread));
+      }
+      text += fmt::format("{},all,,,,,,{}\n", start, csv_number(p.deviation));
+    }
+  return text;
+}
+
+Json tolerance_json(const StudyResult& result) {
+  const Study& study = result.study;
+  Json json{{"numbers", Json::array()}, {"pairs", Json::object()}};
+  for (const Tolerance& t : study.tolerances)
+    json["numbers"].push_back({{"path", t.number.path},
+                               {"unit", t.number.quantity.unit},
+                               {"nominal", t.nominal},
+                               {"deviation", t.deviation}});
+  for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
+    Json& of_pair = json["pairs"][study.pairs[pair].name()];
+    of_pair["status"] = to_string(result.points[study.point_count()][pair].status);
+    for (std::size_t o = 0; o < study.outputs.size(); ++o) {
+      const Propagation p = propagate(result, pair, o);
+      Json& entry = of_pair[std::string(id(study.outputs[o]))];
+      entry = {{"nominal", optional(p.nominal)},
+               {"deviation", optional(p.deviation)},
+               {"slopes", Json::array()},
+               {"errors", Json::array()}};
+      for (const Propagation::Share& share : p.shares) {
+        entry["slopes"].push_back(optional(share.slope));
+        entry["errors"].push_back(share.slope ? Json(share.error) : Json(nullptr));
+      }
+    }
+  }
+  return json;
+}
+
+}  // namespace ciliaval::compare::study
