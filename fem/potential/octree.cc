@@ -31,9 +31,9 @@ dealii::Point<3> to_point(const Vector3& x) {
   return {x[0], x[1], x[2]};
 }
 
-/// All ranks' keys, in the order of the ranks.
+/// All ranks' keys, in the order of the ranks; none if there is only one.
 std::vector<std::uint64_t> gather(const std::vector<std::uint64_t>& own) {
-  if (rank_count() == 1) return own;
+  if (rank_count() == 1) return {};
   const auto ranks = static_cast<std::size_t>(rank_count());
   std::vector<int> counts(ranks);
   std::vector<int> starts(ranks, 0);
@@ -93,8 +93,8 @@ void Octree::update() {
     cubes_.push_back(cube(node));
     own.push_back(key(node));
   }
-  for (const Key k : gather(own)) directory_.emplace(k, other_rank);
-  for (std::size_t c = 0; c < own.size(); ++c) directory_[own[c]] = static_cast<int>(c);
+  for (std::size_t c = 0; c < own.size(); ++c) directory_.emplace(own[c], static_cast<int>(c));
+  for (const Key k : gather(own)) directory_.emplace(k, other_rank);  // leaves the own as they are
 }
 
 bool Octree::refine(const std::function<bool(const Cube&)>& cut) {

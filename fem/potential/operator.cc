@@ -39,10 +39,11 @@ void PotentialOperator::apply(PotentialVector& result, const Read& read) const {
     for (int c = 0; c < count; ++c) read(start + c, u.col(c));
     r.noalias() = unit_ * u;
     for (int c = 0; c < count; ++c) {
-      r.col(c) *= cubes[static_cast<std::size_t>(start + c)].size;
-      if (const auto body = bodies_.find(start + c); body != bodies_.end())
+      const int cell = start + c;
+      r.col(c) *= cubes[static_cast<std::size_t>(cell)].size;
+      if (const auto body = bodies_.find(cell); body != bodies_.end())
         r.col(c).noalias() += body->second * u.col(c);
-      space_.add_free(start + c, r.col(c), result);
+      space_.add_free(cell, r.col(c), result);
     }
   }
   result.compress(dealii::VectorOperation::add);
