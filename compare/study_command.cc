@@ -25,7 +25,7 @@ constexpr const char* journal_name = "points.journal";
 
 /// DIRECTORY/NAME, made if it is not there. Throws FileError if something else lies there.
 fs::path make_folder(const fs::path& directory, const std::string& name) {
-  const fs::path folder = directory / name;
+  fs::path folder = directory / name;
   try {
     fs::create_directories(folder);
     if (!fs::exists(folder / journal_name) && !fs::is_empty(folder))

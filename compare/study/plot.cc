@@ -174,10 +174,13 @@ std::string x_axis(const Parameter& x) {
   constexpr double short_axis = 1000;
   if (to > short_axis * from) return script;
   std::vector<std::string> marks;
-  for (double decade = std::pow(10, std::floor(std::log10(from))); decade <= to; decade *= 10)
+  const int first = static_cast<int>(std::floor(std::log10(from)));
+  const int last = static_cast<int>(std::floor(std::log10(1.001 * to)));
+  for (int decade = first; decade <= last; ++decade)
     for (const double digit : {1, 2, 5})
-      if (digit * decade >= 0.999 * from && digit * decade <= 1.001 * to)
-        marks.push_back(fmt::format("{:.6g}", digit * decade));
+      if (const double mark = digit * std::pow(10, decade);
+          mark >= 0.999 * from && mark <= 1.001 * to)
+        marks.push_back(fmt::format("{:.6g}", mark));
   return script + fmt::format("set xtics ({})\n", fmt::join(marks, ", "));
 }
 

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <variant>
 
 #include "compare/results.h"
 #include "compare/study/tolerances.h"
@@ -163,7 +161,7 @@ std::string_view symbol(Output output) {
 }
 
 OutputUnit unit_of(Output output, const Study& study) {
-  const OutputUnit load = load_unit(study);
+  OutputUnit load = load_unit(study);
   switch (output) {
     case Output::sensitivity:
       return {"uT/" + divisor(load.name), 1e-6 / load.size};
@@ -176,7 +174,7 @@ OutputUnit unit_of(Output output, const Study& study) {
 }
 
 std::string si_unit(Output output, const Study& study) {
-  const std::string load(magnitude_unit(study.base.load_path.front()));
+  std::string load(magnitude_unit(study.base.load_path.front()));
   switch (output) {
     case Output::sensitivity:
       return "T/" + divisor(load);

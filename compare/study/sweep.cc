@@ -5,12 +5,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
+#include <tuple>
 #include <utility>
 
 #include "compare/results.h"
@@ -26,7 +25,9 @@ constexpr int journal_format = 1;
 struct Solution {
   std::size_t point = 0;
   std::string mechanics;
-  auto operator<=>(const Solution&) const = default;
+  bool operator<(const Solution& other) const {
+    return std::tie(point, mechanics) < std::tie(other.point, other.mechanics);
+  }
 };
 
 /// Whether the models of the study's pairs with this mechanics model may run in several threads
