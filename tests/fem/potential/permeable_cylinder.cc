@@ -86,7 +86,8 @@ void PermeableCylinder::integrate(const Panel& panel, int mirror, const Point& x
   const double length = std::abs(panel.end - panel.start);
   std::vector<std::pair<double, double>> parts{{0.0, 1.0}};
   while (!parts.empty()) {
-    const auto [lower, upper] = parts.back();
+    const double lower = parts.back().first;
+    const double upper = parts.back().second;
     parts.pop_back();
     const Point p = at(panel, lower);
     const Point q = at(panel, upper);
