@@ -470,7 +470,7 @@ void reduce_to_one_step(Study& study, Place where, Faults& faults) {
   base.load_path.resize(1);
   for (std::vector<double>* values :
        {&base.flow_velocity, &base.flow_density, &base.flow_drag_coefficient})
-    if (!values->empty()) values->resize(1);
+    if (!values->empty()) values->erase(values->begin() + 1, values->end());
 }
 
 /// Checks each point as a case file would be; the first that cannot be is a fault.

@@ -127,7 +127,7 @@ std::optional<double> fortran_number(std::string text) {
   text.erase(0, text.find_first_not_of(' '));
   const auto sign = text.find_first_of("+-", 1);
   if (sign != std::string::npos && text.find_first_of("eE") == std::string::npos)
-    text.insert(sign, "E");
+    text.insert(sign, 1, 'E');
   double value = 0;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
