@@ -291,6 +291,13 @@ std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValu
   return numerical + Vector3::Constant(*deformations + a.rounding + b.rounding);
 }
 
+std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
+                                         std::size_t step, std::size_t sensor) {
+  const auto value = field_value(run, mechanics_of(run, result), step, sensor, true);
+  if (!value || !value->numerical || !(run.measured || value->from_mechanics)) return std::nullopt;
+  return value->numerical->cwiseAbs().maxCoeff() + value->from_mechanics.value_or(0);
+}
+
 std::vector<Comparison> compare_models(const CaseResult& result) {
   std::vector<Comparison> out;
   for (std::size_t step = 0; step < result.problem.load_path.size(); ++step)

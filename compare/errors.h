@@ -90,6 +90,11 @@ std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& m
 std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValue& b,
                                             bool same_mechanics);
 
+/// The largest component of the uncertainty of a pair's ΔB, T: the field model's own, and what the
+/// deformation's carries into it. Empty if a part is not known.
+std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
+                                         std::size_t step, std::size_t sensor);
+
 /// Every pair of mechanics models and every pair of field results, step by step and over the path.
 std::vector<Comparison> compare_models(const CaseResult& result);
 

@@ -132,6 +132,7 @@ std::string fields_table(const CaseResult& result, const std::vector<Comparison>
       rows += fmt::format("{:>10}", cell(component(field.B.front(), i), 1e-3, "{:.4f}"));
     for (Eigen::Index i = 0; i < 3; ++i)
       rows += fmt::format("{:>10}", cell(component(field.dB.front(), i), 1e-6, "{:.2f}"));
+    rows += fmt::format("{:>8}", cell(change_uncertainty(result, run, step, 0), 1e-6, "{:.1g}"));
     for (const char* axis : axis_names)
       rows += fmt::format("{:>9}", &run == reference
                                        ? "ref."
@@ -140,9 +141,9 @@ std::string fields_table(const CaseResult& result, const std::vector<Comparison>
     rows += fmt::format("{:>9.2g}\n", field.seconds);
   }
   if (rows.empty()) return failures;
-  return fmt::format("\n  {:<18}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>9}\n",
-                     "field at sensor 0", "Bx", "By", "Bz (mT)", "dBx", "dBy", "dBz (uT)", "x (%)",
-                     "y", "z (2)", "time (s)") +
+  return fmt::format("\n  {:<18}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>8}{:>9}{:>9}{:>9}{:>9}\n",
+                     "field at sensor 0", "Bx", "By", "Bz (mT)", "dBx", "dBy", "dBz (uT)", "+-dB",
+                     "x (%)", "y", "z (2)", "time (s)") +
          rows + failures;
 }
 
@@ -184,6 +185,7 @@ constexpr const char* mechanics_legend =
     "    correlation, which does not see a constant factor. The last column says whether the\n"
     "    difference of the tips is larger than the numerical uncertainty of the two.\n";
 constexpr const char* fields_legend =
+    "+-dB: numerical uncertainty of dB in uT, its own and its shape's, largest component.\n"
     "(2) error of dB = B - B(undeformed), each component divided by the largest |dB| of the\n"
     "    reference (ref.) over the load path.\n"
     "(3) RMS of the error of a component over the path divided by the RMS of that component.\n"

@@ -35,20 +35,23 @@ MechanicsEntry tilt(const std::string& id, double factor) {
 TEST(Table, ShowsValuesWithUnitsAndErrorsAgainstTheReference) {
   Case c = paper_case({1e-3});
   c.mechanics = {"rough", "fine"};
-  c.fields = {"tip"};
+  c.fields = {"sure", "tip"};
   const std::vector<MechanicsEntry> mechanics{tilt("rough", 1), tilt("fine", 2)};
-  const std::vector<FieldEntry> fields{
-      field_entry("tip", [](const Deformation& d, const Vector3&) -> Vector3 {
-        return {0.1 * d.centreline.at(L).position.x(), 0, 5e-3};
-      })};
+  const auto formula = [](const Deformation& d, const Vector3&) -> Vector3 {
+    return {0.1 * d.centreline.at(L).position.x(), 0, 5e-3};
+  };
+  const std::vector<FieldEntry> fields{field_entry("sure", formula, Vector3(1e-6, 2e-6, 3e-6)),
+                                       field_entry("tip", formula)};
   const CaseResult result = run(c, mechanics, fields);
   const std::string text = table(result, compare_models(result));
   EXPECT_THAT(text, HasSubstr("contact, force 1 mN at height 16 mm, azimuth 0 deg"));
   EXPECT_THAT(text, ContainsRegex("rough +converged +1.9967 +0.0000 +19.9001 +0.001 +5.730 +1 "));
   EXPECT_THAT(text, ContainsRegex("rough - fine +50.31 +29.05 +50.31 +-50.00 .*resolved"));
   EXPECT_THAT(text, ContainsRegex("rough/tip +0.1997 +0.0000 +5.0000 +199.67 +0.00 +0.00 "
-                                  "+-49.75 +0.00 +0.00"));
+                                  "+- +-49.75 +0.00 +0.00"));
   EXPECT_THAT(text, ContainsRegex("fine/tip .*ref. +ref. +ref."));
+  // Of the bent and of the straight cilium 3 uT each; the tip's 1e-9 m add but 1e-4 uT.
+  EXPECT_THAT(text, ContainsRegex("rough/sure +0.1997 +0.0000 +5.0000 +199.67 +0.00 +0.00 +6 "));
   EXPECT_THAT(text, HasSubstr("divided by the largest |dB|"));
   EXPECT_THAT(text, Not(HasSubstr("nan")));
 }
