@@ -85,18 +85,22 @@ ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem
   sensing.unit = magnitude_unit(problem.load_path.front());
   sensing.largest = largest_load(problem, options);
   sensing.flow = flow_law(problem);
+  // Before the models run, which may take a minute.
+  const SensorReadings read =
+      read_sensor_readings(readings, options.background, problem.sensors.size());
   ProgressLine line;
   const Shapes shapes =
       shapes_up_to(problem, sensing.models.mechanics, sensing.largest, line.callback());
   const Response response(problem, sensing.models.field, shapes, problem.sensors);
   sensing.interpolation_error = response.interpolation_error();
   sensing.largest_change = response.largest_change();
-  const SensorReadings read =
-      read_sensor_readings(readings, options.background, response.undeformed());
   const Inversion invert(response, read.noise_factor * sensing.noise);
   sensing.measured_offset = read.measured_offset;
   for (const Sample& sample : read.samples)
-    sensing.samples.emplace_back(sample.name, invert(sample.change));
+    sensing.samples.emplace_back(
+        sample.name,
+        invert(read.measured_offset ? sample.change
+                                    : Eigen::VectorXd(sample.change - response.undeformed())));
   print(sensing_text(sensing));
   if (options.json) replace_text(*options.json, sensing_json(sensing));
   if (options.csv) replace_text(*options.csv, sensing_csv(sensing));

@@ -106,14 +106,13 @@ Eigen::VectorXd mean_of(const CsvTable& table, const Rows& rows, const Backgroun
   return result;
 }
 
-SensorReadings readings_of(const CsvTable& table, const Background* background,
-                           const Eigen::VectorXd& undeformed, Faults& faults) {
-  const auto sensors = static_cast<std::size_t>(undeformed.size() / 3);
+SensorReadings readings_of(const CsvTable& table, const Background* background, std::size_t sensors,
+                           Faults& faults) {
   const auto samples = samples_of(table, sensors, faults);
   SensorReadings result;
   if (!faults.empty()) return result;
   const bool change = table.has(change_column);
-  Eigen::VectorXd offset = undeformed;
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * sensors));
   for (const auto& [name, rows] : samples) {
     if (name != unloaded) continue;
     if (change) {
@@ -131,7 +130,7 @@ SensorReadings readings_of(const CsvTable& table, const Background* background,
     if (name == unloaded) continue;
     Sample sample{name, {}};
     if (change) {
-      sample.change.resize(undeformed.size());
+      sample.change.resize(offset.size());
       for (std::size_t s = 0; s < sensors; ++s)
         sample.change.segment<3>(static_cast<Eigen::Index>(3 * s)) =
             row_vector(table, change_column, rows[s].front());
@@ -155,8 +154,7 @@ void require_none(const Faults& faults, const std::filesystem::path& file) {
 
 SensorReadings read_sensor_readings(const std::filesystem::path& file,
                                     const std::optional<std::filesystem::path>& background,
-                                    const Eigen::VectorXd& undeformed) {
-  const auto sensors = static_cast<std::size_t>(undeformed.size() / 3);
+                                    std::size_t sensors) {
   std::optional<Background> ambient;
   if (background) {
     Faults faults;
@@ -172,7 +170,7 @@ SensorReadings read_sensor_readings(const std::filesystem::path& file,
   if (faults.empty() && ambient && table.has(change_column))
     faults.add({}, "the change dB has no background any more: leave the background out");
   require_none(faults, file);
-  SensorReadings result = readings_of(table, ambient ? &*ambient : nullptr, undeformed, faults);
+  SensorReadings result = readings_of(table, ambient ? &*ambient : nullptr, sensors, faults);
   require_none(faults, file);
   return result;
 }

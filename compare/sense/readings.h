@@ -18,7 +18,7 @@ struct Sample {
 /// Readings of loads that are not known, less all offsets.
 struct SensorReadings {
   std::vector<Sample> samples;
-  bool measured_offset = false;  ///< the unloaded cilium was read; else the model's B stands for it
+  bool measured_offset = false;  ///< else the samples hold B, from which the offset is to be taken
   /// Standard deviation of ΔB over that of a reading: √(1 + 1/n) with the mean of n unloaded ones.
   double noise_factor = 1;
 };
@@ -31,10 +31,10 @@ struct SensorReadings {
 ///
 ///   ΔB = (B − background(azimuth)) − (B_unloaded − background(azimuth of the unloaded)).
 ///
-/// `undeformed`: B of the model's own straight cilium, for files of B without unloaded rows.
+/// Without unloaded rows B itself is left where ΔB should be: `measured_offset` is false.
 /// Throws InputError with every fault found, a line each: `file:line:column: what is wrong`.
 SensorReadings read_sensor_readings(const std::filesystem::path& file,
                                     const std::optional<std::filesystem::path>& background,
-                                    const Eigen::VectorXd& undeformed);
+                                    std::size_t sensors);
 
 }  // namespace ciliaval::compare

@@ -122,6 +122,16 @@ TEST_F(Sense, TakesTheBackgroundOffAtEachAzimuth) {
   expect_the_forces();
 }
 
+// Without unloaded rows the model's own B is taken off, and it is said.
+TEST_F(Sense, TakesTheModelsOffsetWhereNoneWasRead) {
+  std::string text = "sample,Bx [T],By [T],Bz [T]\n";
+  for (std::size_t i = 0; i < 3; ++i) text += row(fmt::format("{}", i), field(i, "B"));
+  write("readings.csv", text);
+  ASSERT_EQ(ciliaval("sense one.toml readings.csv --models beam/line --json found.json"), 0);
+  expect_the_forces();
+  EXPECT_THAT(out_, HasSubstr("no reading of the unloaded cilium"));
+}
+
 // Changes need no offset. Readings that no model of a load makes are said to be so.
 TEST_F(Sense, ReadsChangesAndSaysWhatIsNoLoad) {
   std::string text = "time [s],dBx [T],dBy [T],dBz [T]\n";
