@@ -19,6 +19,7 @@ namespace {
 
 constexpr double least_order = 0.1;
 constexpr double largest_order = 12;
+constexpr double cautious_order = 2;  // where a formal one is not known
 
 void require_levels(std::span<const Level> levels, std::size_t least) {
   if (levels.size() < least)
@@ -57,16 +58,47 @@ Extrapolation inconclusive(std::span<const Level> levels, std::string reason) {
   return result;
 }
 
-/// The root of the equation for p: its left side less its right.
-std::optional<double> observed_order(std::span<const Level> levels) {
+/// The equation for p at one p, its left side less its right, for the levels from `first` on.
+double order_residual(std::span<const Level> levels, double p, std::size_t first = 0) {
+  levels = levels.subspan(first, 3);
   const double ratio = (levels[2].value - levels[1].value) / (levels[1].value - levels[0].value);
   const double r21 = levels[1].size / levels[0].size;
   const double r32 = levels[2].size / levels[1].size;
   // e₃₂/e₂₁ = r₂₁^p (r₃₂^p − 1)/(r₂₁^p − 1), which grows with p.
-  const auto residual = [&](double p) {
-    return p * std::log(r21) + std::log(std::expm1(p * std::log(r32))) -
-           std::log(std::expm1(p * std::log(r21))) - std::log(ratio);
-  };
+  return p * std::log(r21) + std::log(std::expm1(p * std::log(r32))) -
+         std::log(std::expm1(p * std::log(r21))) - std::log(ratio);
+}
+
+/// Whether the changes fall from level to level faster than with the largest order looked for.
+bool faster_than_any_order(std::span<const Level> levels) {
+  for (std::size_t i = 0; i + 2 < levels.size(); ++i)
+    if (!(order_residual(levels, largest_order, i) <= 0)) return false;
+  return true;
+}
+
+/// What monotone levels without an order between the limits allow to be said: an interval where
+/// they converge faster than that, from the last change and an order that is far too low for them.
+Extrapolation without_order(std::span<const Level> levels, std::optional<double> formal_order,
+                            double rounding) {
+  if (!faster_than_any_order(levels))
+    return inconclusive(levels,
+                        fmt::format("no order between {} and {} fits", least_order, largest_order));
+  const double r21 = levels[1].size / levels[0].size;
+  const double e21 = levels[1].value - levels[0].value;
+  Extrapolation result;
+  result.conclusive = true;
+  result.reason = fmt::format("faster than order {}", largest_order);
+  result.limit = levels[0].value;
+  result.safety = 3;
+  result.uncertainty =
+      std::max(rounding, result.safety * std::abs(e21) /
+                             (std::pow(r21, formal_order.value_or(cautious_order)) - 1));
+  return result;
+}
+
+/// The root of the equation for p.
+std::optional<double> observed_order(std::span<const Level> levels) {
+  const auto residual = [&](double p) { return order_residual(levels, p); };
   if (!(residual(least_order) < 0) || !(residual(largest_order) > 0)) return std::nullopt;
   std::uintmax_t iterations = 200;
   const auto [a, b] =
@@ -104,9 +136,7 @@ Extrapolation grid_convergence(std::span<const Level> levels, std::optional<doub
   if (const auto result = converged(levels, rounding)) return *result;
   if (!monotone(levels)) return inconclusive(levels, "the convergence is not monotone");
   const auto p = observed_order(levels);
-  if (!p)
-    return inconclusive(levels,
-                        fmt::format("no order between {} and {} fits", least_order, largest_order));
+  if (!p) return without_order(levels, formal_order, rounding);
   const double r21 = levels[1].size / levels[0].size;
   const double e21 = levels[1].value - levels[0].value;
   Extrapolation result;
@@ -142,8 +172,7 @@ Extrapolation least_squares_convergence(std::span<const Level> levels,
                        std::numeric_limits<double>::digits / 2, iterations)
                        .first;
   if (p < least_order + 1e-6 || p > largest_order - 1e-6)
-    return inconclusive(levels,
-                        fmt::format("no order between {} and {} fits", least_order, largest_order));
+    return without_order(levels, formal_order, rounding);
   const Fit best_fit = fit(levels, p);
   const auto [least, largest] =
       std::minmax_element(levels.begin(), levels.end(),
@@ -154,8 +183,8 @@ Extrapolation least_squares_convergence(std::span<const Level> levels,
   result.conclusive = true;
   result.order = p;
   result.limit = best_fit.limit;
-  const bool good =
-      p >= 0.5 && p <= formal_order.value_or(2) + 0.1 && best_fit.deviation < mean_difference;
+  const bool good = p >= 0.5 && p <= formal_order.value_or(cautious_order) + 0.1 &&
+                    best_fit.deviation < mean_difference;
   result.safety = good ? 1.25 : 3;
   if (!good) result.reason = "the order is not in the asymptotic range, or the levels scatter";
   const double misfit =

@@ -32,7 +32,9 @@ struct Extrapolation {
 /// f₀ = f₁ − e₂₁/(r₂₁^p − 1), and the interval is f₁ ± F_s |e₂₁|/(r₂₁^p − 1). F_s is 1.25 if p is
 /// within 10 % of the formal order, where that is given; else 3, with p no larger than the formal
 /// order in the interval (Oberkampf & Roy, 2010, section 8.6). Not conclusive: e₃₂/e₂₁ ≤ 0 (not
-/// monotone), p ≤ 0.1 (does not converge). Where the two finest values agree to rounding
+/// monotone), p ≤ 0.1 (does not converge). Where p > 12 (element degrees of a smooth solution)
+/// there is no order, the limit is f₁ and the interval F_s |e₂₁|/(r₂₁^q − 1) with F_s = 3 and q the
+/// formal order, 2 where that is not given. Where the two finest values agree to rounding
 /// (`rounding`, absolute), that is the interval.
 ///
 /// Throws InputError if there are not three levels, sizes are not positive and increasing, or a
@@ -45,7 +47,8 @@ Extrapolation grid_convergence(std::span<const Level> levels,
 /// σ² = Σ (f_i − f₀ − α h_i^p)²/(n − 3). The interval of the finest level is F_s |f₁ − f₀| + σ +
 /// |f₁ − fit(h₁)|, F_s = 1.25 if 0.5 ≤ p ≤ formal order (2 where that is not given) + 0.1 and σ is
 /// less than the data's mean difference from level to level (f_max − f_min)/(n − 1), else 3. Not
-/// conclusive if the values are not monotone or p is at the end of what was searched, 0.1 to 12.
+/// conclusive if the values are not monotone or p is at the end of what was searched, 0.1 to 12;
+/// but where all changes fall faster than with order 12, the interval is grid_convergence()'s.
 /// Throws as grid_convergence().
 Extrapolation least_squares_convergence(std::span<const Level> levels,
                                         std::optional<double> formal_order = {},

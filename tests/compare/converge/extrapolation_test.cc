@@ -70,6 +70,28 @@ TEST(GridConvergence, GivesNoIntervalWhereItIsNotMonotone) {
   EXPECT_FALSE(least_squares_convergence(four, 2).conclusive);
 }
 
+// Exponential convergence, as of element degrees of a smooth solution: no order, but an interval.
+// Oracle: the sequence's own limit; and that one slow change among fast ones gives none.
+TEST(GridConvergence, FasterThanAnyOrderHasAnIntervalWithoutAnOrder) {
+  std::vector<Level> data;
+  for (const double n : {5.0, 4.0, 3.0, 2.0})
+    data.push_back({std::exp2(-n), std::pow(10.0, -n * n)});  // limit 0
+  const std::vector<Level> three(data.begin(), data.end() - 1);
+  for (const Extrapolation& result : {extrapolate(three), extrapolate(data)}) {
+    ASSERT_TRUE(result.conclusive) << result.reason;
+    EXPECT_FALSE(result.order);
+    EXPECT_EQ(result.reason, "faster than order 12");
+    EXPECT_EQ(result.limit, data[0].value);
+    EXPECT_DOUBLE_EQ(result.uncertainty, data[1].value - data[0].value) << "F_s = 3, order 2";
+    EXPECT_GT(result.uncertainty, data[0].value);
+  }
+  EXPECT_DOUBLE_EQ(grid_convergence(three, 4).uncertainty, (data[1].value - data[0].value) / 5);
+  EXPECT_EQ(grid_convergence(three, 4, 0.5).uncertainty, 0.5) << "agree to rounding";
+  data[0].value = data[1].value - (data[2].value - data[1].value);  // the last step is as large
+  const Extrapolation slow = extrapolate(data);
+  EXPECT_TRUE(!slow.conclusive || slow.order) << "an interval without an order";
+}
+
 TEST(GridConvergence, ValuesThatAgreeToRoundingAreConverged) {
   const std::vector<Level> data{{1, 1.0}, {2, 1.0 + 1e-15}, {4, 1.0 - 1e-15}};
   const Extrapolation result = grid_convergence(data, 2, 1e-14);
