@@ -22,6 +22,7 @@ done
 
 install_packages
 build "$preset"
+scripts/paraview.sh >/dev/null || say "no ParaView: its tests are skipped"
 say "testing"
 # One thread a test: ctest runs two of them side by side.
 export DEAL_II_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1

@@ -17,6 +17,7 @@ namespace {
 /// f₀ + α h^p, finest first.
 std::vector<Level> levels(double limit, double slope, double p, const std::vector<double>& sizes) {
   std::vector<Level> result;
+  result.reserve(sizes.size());
   for (const double h : sizes) result.push_back({h, limit + slope * std::pow(h, p)});
   return result;
 }

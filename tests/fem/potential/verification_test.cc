@@ -23,8 +23,7 @@ constexpr double R = 1.5e-3;
 /// over |B| is its estimate within a factor of two either way (measured 0.79 to 1.38).
 void check(const char* name, const PotentialResult& result, const std::vector<Vector3>& exact,
            double tolerance) {
-  for (std::size_t c = 0; c < result.cycles.size(); ++c) {
-    const PotentialCycle& cycle = result.cycles[c];
+  for (const PotentialCycle& cycle : result.cycles) {
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const double error = (cycle.B[i] - exact[i]).norm();
       const double estimate = cycle.estimate(i).norm();
@@ -55,11 +54,18 @@ const std::vector<Vector3> around_ball{{0.4e-3, 2.2e-3, 1.1e-3}, {-0.2e-3, 0.3e-
 const Vector3 ball_magnetization(20e3, -30e3, 60e3);
 const double ball_volume = 4 * std::numbers::pi / 3 * R * R * R;
 
+/// The field of a dipole at the ball's centre in a uniform one, around the ball.
+std::vector<Vector3> dipole_fields(const Vector3& moment,
+                                   const Vector3& uniform = Vector3::Zero()) {
+  std::vector<Vector3> result;
+  result.reserve(around_ball.size());
+  for (const Vector3& x : around_ball) result.emplace_back(uniform + test::dipole_field(moment, x));
+  return result;
+}
+
 // Oracle: outside of a uniformly magnetised ball the field is that of the dipole V m, exactly.
 TEST(MagnetisedBall, FieldIsThatOfItsDipole) {
-  std::vector<Vector3> exact;
-  for (const Vector3& x : around_ball)
-    exact.push_back(test::dipole_field(ball_volume * ball_magnetization, x));
+  const std::vector<Vector3> exact = dipole_fields(ball_volume * ball_magnetization);
   const Magnet magnet(test::ball(R, ball_magnetization), MagnetPushForward::F);
   check("ball", solve(magnet, 1, around_ball, 1e-3), exact, 1e-3);
 }
@@ -67,9 +73,7 @@ TEST(MagnetisedBall, FieldIsThatOfItsDipole) {
 // Oracle: a ball of remanent m and recoil permeability μ_r has inside H = −m/(μ_r + 2) (the
 // demagnetising factor is 1/3), so that outside it is the dipole 3V m/(μ_r + 2).
 TEST(MagnetisedBall, RecoilPermeabilityWeakensTheDipole) {
-  std::vector<Vector3> exact;
-  for (const Vector3& x : around_ball)
-    exact.push_back(test::dipole_field(3 * ball_volume / 3.05 * ball_magnetization, x));
+  const std::vector<Vector3> exact = dipole_fields(3 * ball_volume / 3.05 * ball_magnetization);
   const Magnet magnet(test::ball(R, ball_magnetization), MagnetPushForward::F);
   check("ball, 1.05", solve(magnet, 1.05, around_ball, 2e-3), exact, 2e-3);
 }
@@ -80,8 +84,7 @@ TEST(PermeableBall, DisturbsAUniformFieldByADipole) {
   const Vector3 B0(2e-3, 1e-3, -3e-3);
   constexpr double mu = 5;
   const Vector3 dipole = 3 * ball_volume * (mu - 1) / (mu + 2) / vacuum_permeability * B0;
-  std::vector<Vector3> exact;
-  for (const Vector3& x : around_ball) exact.emplace_back(B0 + test::dipole_field(dipole, x));
+  const std::vector<Vector3> exact = dipole_fields(dipole, B0);
   const Magnet magnet(test::ball(R, Vector3(0, 0, 1e-6)), MagnetPushForward::F);
   check("permeable ball", solve(magnet, mu, around_ball, 1e-2, B0), exact, 1e-2);
 }

@@ -1,10 +1,5 @@
-// SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/vtk/files.h"
-
-namespace ciliaval::compare::vtk {
-
-const char* const open_script =
-    R"python(# Opens every series of this folder in ParaView (5.10 or later):
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Opens every series of this folder in ParaView (5.10 or later):
 #   paraview --script=open.py        to look at it
 #   pvpython open.py picture.png     to draw the last step into a file
 # Lengths are metres; the time of ParaView is the load in N, N/m or m (or the number of the step,
@@ -157,6 +152,3 @@ ResetCamera(view)
 Render(view)
 if len(sys.argv) > 1 and sys.argv[-1].endswith(".png"):
     SaveScreenshot(sys.argv[-1], view, ImageResolution=[1200, 900])
-)python";
-
-}  // namespace ciliaval::compare::vtk
