@@ -17,7 +17,7 @@ std::string value_text(const Finding& finding) {
   const std::string low = fmt::format("{:.4g}", finding.low);
   const std::string high = fmt::format("{:.4g}", finding.high);
   std::string text = low == high ? low : low + " to " + high;
-  if (finding.uncertainty > 0) text += fmt::format(" +- {:.1g}", finding.uncertainty);
+  if (finding.uncertainty > 0) text += fmt::format(" +- {:.2g}", finding.uncertainty);
   return finding.unit.empty() ? text : text + " " + finding.unit;
 }
 
@@ -74,7 +74,7 @@ std::string claims_text(const std::vector<Claim>& claims) {
     text +=
         fmt::format("{}: {}\n  -> {}\n", claim.place, claim.statement, to_string(claim.verdict()));
     for (const Finding& finding : claim.findings)
-      text += fmt::format("     {:<44} {:<26} {}\n", finding.models, value_text(finding),
+      text += fmt::format("     {:<54} {:<32} {}\n", finding.models, value_text(finding),
                           holds_text(finding.holds));
     if (!claim.note.empty()) text += fmt::format("     {}\n", claim.note);
     text += '\n';

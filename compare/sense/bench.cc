@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -54,7 +55,7 @@ bool is_there(const Bench& bench, ErrorSource source) {
 class Errors {
  public:
   explicit Errors(const std::optional<FlowLaw>& flow) : flow_(flow) {}
-  void add(const Vector2& truth, const Vector2& found) {
+  void add(std::size_t draw, const Vector2& truth, const Vector2& found) {
     const double relative = found.norm() / truth.norm() - 1;
     const double angle = std::abs(std::remainder(
         std::atan2(found.y(), found.x()) - std::atan2(truth.y(), truth.x()), 2 * std::numbers::pi));
@@ -67,6 +68,7 @@ class Errors {
     errors_.azimuth_largest = std::max(errors_.azimuth_largest, angle);
     errors_.below_ten_degrees += angle < std::numbers::pi / 18 ? 1 : 0;
     ++errors_.readings;
+    azimuths_of_draw_[draw].add(angle * angle);
   }
   BenchErrors mean() const {
     BenchErrors result = errors_;
@@ -75,12 +77,36 @@ class Errors {
     result.speed_rms = std::sqrt(errors_.speed_rms / n);
     result.azimuth_rms = std::sqrt(errors_.azimuth_rms / n);
     result.below_ten_degrees = errors_.below_ten_degrees / n;
+    result.azimuth_rms_interval = interval(result.azimuth_rms);
     return result;
   }
 
  private:
+  struct Mean {
+    double sum = 0;
+    double n = 0;
+    void add(double value) {
+      sum += value;
+      ++n;
+    }
+    double value() const { return sum / n; }
+  };
+
+  /// d√x = dx/(2√x) with dx of the mean square x.
+  double interval(double rms) const {
+    const auto draws = static_cast<double>(azimuths_of_draw_.size());
+    if (draws < 2 || rms == 0) return 0;
+    double squares = 0;
+    for (const auto& [draw, mean] : azimuths_of_draw_)
+      squares += std::pow(mean.value() - rms * rms, 2);
+    const double standard_error = std::sqrt(squares / (draws - 1) / draws);
+    return boost::math::quantile(boost::math::students_t(draws - 1), 0.975) * standard_error /
+           (2 * rms);
+  }
+
   std::optional<FlowLaw> flow_;
   BenchErrors errors_;
+  std::map<std::size_t, Mean> azimuths_of_draw_;  ///< squares
 };
 
 /// The bench with all that its readings are made and inverted with.
@@ -220,10 +246,10 @@ BenchResult Simulation::run(const Progress& progress) const {
     for (const Reading& reading : readings) {
       const SensedLoad sensed = (*invert_)(reading.change);
       if (!sensed.converged) throw SolverError("the least squares of the bench did not converge");
-      inversion.add(reading.truth, sensed.load);
-      linear.add(reading.truth, (*fit_)(reading.change));
+      inversion.add(reading.draw, reading.truth, sensed.load);
+      linear.add(reading.draw, reading.truth, (*fit_)(reading.change));
       if (source != ErrorSource::all) continue;
-      by_magnitude[reading.magnitude].add(reading.truth, sensed.load);
+      by_magnitude[reading.magnitude].add(reading.draw, reading.truth, sensed.load);
       if (reading.draw == 0) result.first_draw.push_back({reading.truth, sensed.load});
     }
     result.rows.push_back({source, inversion.mean(), linear.mean()});

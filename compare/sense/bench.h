@@ -47,9 +47,12 @@ std::string_view to_string(ErrorSource source);
 
 /// Errors of one estimator over draws, azimuths and magnitudes.
 struct BenchErrors {
-  double magnitude_rms = 0;      ///< of (found − true)/true
-  double speed_rms = 0;          ///< m/s; 0 if the load is no flow of a velocity
-  double azimuth_rms = 0;        ///< rad
+  double magnitude_rms = 0;  ///< of (found − true)/true
+  double speed_rms = 0;      ///< m/s; 0 if the load is no flow of a velocity
+  double azimuth_rms = 0;    ///< rad
+  /// 95 % half-width of azimuth_rms, rad: from the scatter of its square over the draws, which are
+  /// independent as the readings of one sensor are not (Student's t). 0 if there is one draw.
+  double azimuth_rms_interval = 0;
   double azimuth_largest = 0;    ///< rad
   double below_ten_degrees = 0;  ///< part of the readings
   std::size_t readings = 0;

@@ -25,6 +25,7 @@ Json errors_json(const BenchErrors& errors) {
   return {{"magnitude_rms", errors.magnitude_rms},
           {"speed_rms", errors.speed_rms},
           {"azimuth_rms", errors.azimuth_rms},
+          {"azimuth_rms_interval", errors.azimuth_rms_interval},
           {"azimuth_largest", errors.azimuth_largest},
           {"below_ten_degrees", errors.below_ten_degrees},
           {"readings", errors.readings}};

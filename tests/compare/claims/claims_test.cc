@@ -5,12 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "../run/program.h"
 #include "analytic/elastica.h"
 #include "analytic/field_models.h"
+#include "compare/claims/ledger.h"
 #include "compare/claims/misprint.h"
 
 namespace ciliaval::compare {
@@ -86,8 +90,46 @@ TEST(Claims, TheLedgerJudgesEveryClaimOfThePaper) {
   EXPECT_THAT(claim("measured B_x")["note"].get<std::string>(), HasSubstr("not published"));
   EXPECT_EQ(claim("falls as E1 grows")["verdict"], "reproduced");
   for (const auto& c : claims)
-    for (const auto& f : c["findings"]) EXPECT_FALSE(f["low"].is_null()) << c;
+    for (const auto& f : c["findings"]) {
+      EXPECT_FALSE(f["low"].is_null()) << c;
+      const double off = f["uncertainty"];
+      EXPECT_TRUE(std::isfinite(off) && off >= 0) << c;
+      // What pairs of models find has an interval, but for R² and rates.
+      const std::string models = f["models"];
+      if (models.find(": dB") != std::string::npos || models.find(": peak") != std::string::npos ||
+          models.ends_with(": B")) {
+        EXPECT_GT(off, 0) << c;
+      }
+    }
   EXPECT_THAT(outcome.out, HasSubstr("claims: "));
+}
+
+// With a beam of two short elements the intervals widen, and hold what the fine beam finds. Oracle:
+// the beam of degree 6 of the shipped case.
+TEST(Claims, TheIntervalsOfACoarseBeamHoldTheFineBeams) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path shipped =
+      std::filesystem::path(CILIAVAL_SOURCE_DIR) / "cases/paper/fig3d.toml";
+  std::ofstream(folder.path() / "fig3d.toml")
+      << test::read_text(shipped) << "\n[models.beam]\ndegree = 2\n";
+  const std::vector<Claim> coarse = model_claims(folder.path(), false, {});
+  const std::vector<Claim> fine = model_claims(shipped.parent_path(), false, {});
+  ASSERT_EQ(coarse.size(), fine.size());
+  int compared = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i)
+    for (std::size_t j = 0; j < fine[i].findings.size(); ++j) {
+      const Finding& a = coarse[i].findings[j];
+      const Finding& b = fine[i].findings[j];
+      ASSERT_EQ(a.models, b.models);
+      if (a.models.find("beam") == std::string::npos || a.unit == "s") continue;
+      ++compared;
+      EXPECT_GE(a.uncertainty, b.uncertainty) << a.models;
+      EXPECT_LE(std::abs(a.low - b.low), a.uncertainty + b.uncertainty) << a.models;
+      EXPECT_LE(std::abs(a.high - b.high), a.uncertainty + b.uncertainty) << a.models;
+      std::printf("%s: off by %.1e, interval %.1e\n", a.models.c_str(),
+                  std::max(std::abs(a.low - b.low), std::abs(a.high - b.high)), a.uncertainty);
+    }
+  EXPECT_EQ(compared, 9);
 }
 
 }  // namespace

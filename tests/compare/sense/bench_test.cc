@@ -81,6 +81,12 @@ TEST(Bench, TheStagesAngleIsTheDirectionsError) {
   EXPECT_LT(errors.magnitude_rms, 1e-9);
   EXPECT_NEAR(errors.azimuth_rms, 2 * degree, 0.3 * degree);  // 4 standard deviations of 400 draws
   EXPECT_GT(errors.azimuth_largest, 2 * errors.azimuth_rms);
+  // The root mean square of n normal numbers has the standard deviation σ/√(2n); the three azimuths
+  // of a draw share one. 1.97: Student's t at 97.5 %.
+  const double interval = 1.97 * 2 * degree / std::sqrt(2 * 400.0);
+  EXPECT_NEAR(errors.azimuth_rms_interval, interval, 0.2 * interval);
+  bench.draws = 1;
+  EXPECT_EQ(row(run_bench(bench), ErrorSource::stage_azimuth).inversion.azimuth_rms_interval, 0);
 }
 
 // The ambient field is measured at each azimuth and taken off: what is left is the noise of that
