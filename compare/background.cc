@@ -40,6 +40,12 @@ std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, 
   return sensor;
 }
 
+std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns) {
+  for (const std::string_view name : {"Bx", "By", "Bz", "dBx", "dBy", "dBz"})
+    columns.push_back({name, Kind::quantity, quantity::flux_density, false});
+  return columns;
+}
+
 void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
                              Faults& faults) {
   const auto count = [&](std::size_t first) {

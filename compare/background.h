@@ -22,8 +22,11 @@ std::optional<std::size_t> index_in(const std::string& text, std::size_t bound);
 std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, std::size_t row,
                                      std::size_t sensors, Faults& faults);
 
-/// Adds a fault unless the table has the three columns from `field` on (B) or those from `change` on
-/// (ΔB), and no others of the six.
+/// Optional columns for what sensors read, after others: Bx, By, Bz, dBx, dBy, dBz.
+std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns);
+
+/// Adds a fault unless the table has the three columns from `field` on (B) or those from `change`
+/// on (ΔB), and no others of the six.
 void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
                              Faults& faults);
 

@@ -219,17 +219,9 @@ constexpr std::size_t field_column = 2;
 constexpr std::size_t change_column = 5;
 
 CsvTable readings_table(std::string_view text, std::size_t sensors, Faults& faults) {
-  const auto flux = [](std::string_view name) {
-    return CsvColumn{name, Kind::quantity, quantity::flux_density, false};
-  };
-  const std::array<CsvColumn, 8> columns{{{"step", Kind::word, quantity::number, true},
-                                          {"sensor", Kind::word, quantity::number, false},
-                                          flux("Bx"),
-                                          flux("By"),
-                                          flux("Bz"),
-                                          flux("dBx"),
-                                          flux("dBy"),
-                                          flux("dBz")}};
+  const std::vector<CsvColumn> columns =
+      with_field_columns({{"step", Kind::word, quantity::number, true},
+                          {"sensor", Kind::word, quantity::number, false}});
   CsvTable table = read_csv(text, columns, {}, faults);
   if (!faults.empty()) return table;
   require_sensor_column(table, sensor_column, sensors, faults);

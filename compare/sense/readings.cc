@@ -28,18 +28,10 @@ constexpr std::size_t field_column = 3;
 constexpr std::size_t change_column = 6;
 
 CsvTable readings_table(std::string_view text, std::size_t sensors, Faults& faults) {
-  const auto flux = [](std::string_view name) {
-    return CsvColumn{name, Kind::quantity, quantity::flux_density, false};
-  };
-  const std::array<CsvColumn, 9> columns{{{"sample", Kind::word, quantity::number, false},
-                                          {"sensor", Kind::word, quantity::number, false},
-                                          {"azimuth", Kind::quantity, quantity::angle, false},
-                                          flux("Bx"),
-                                          flux("By"),
-                                          flux("Bz"),
-                                          flux("dBx"),
-                                          flux("dBy"),
-                                          flux("dBz")}};
+  const std::vector<CsvColumn> columns =
+      with_field_columns({{"sample", Kind::word, quantity::number, false},
+                          {"sensor", Kind::word, quantity::number, false},
+                          {"azimuth", Kind::quantity, quantity::angle, false}});
   constexpr std::array<std::string_view, 1> ignored{"time"};
   CsvTable table = read_csv(text, columns, ignored, faults);
   if (!faults.empty()) return table;
