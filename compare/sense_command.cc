@@ -81,7 +81,11 @@ ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem
   Sensing sensing;
   sensing.case_name = problem.name;
   sensing.models = parse_pair(options.models);
-  sensing.noise = Vector3::Constant(parse_quantity(options.noise, quantity::flux_density));
+  const double noise = parse_quantity(options.noise, quantity::flux_density);
+  if (!(noise > 0))
+    throw InputError("--noise: the noise of a reading must be finite and positive, not `" +
+                     options.noise + '`');
+  sensing.noise = Vector3::Constant(noise);
   sensing.unit = magnitude_unit(problem.load_path.front());
   sensing.largest = largest_load(problem, options);
   sensing.flow = flow_law(problem);

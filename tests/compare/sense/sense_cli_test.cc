@@ -197,7 +197,8 @@ TEST_F(Sense, BadReadingsAndOptionsAreRefusedWithTheirPlace) {
                "leave its rows out");
   const std::string good = header + "a,1,2,3\n";
   expect_error(good, "flux density", "--noise '1 mm'");
-  expect_error(good, "finite and positive", "--noise '0 uT'");
+  expect_error(good, "--noise: the noise of a reading must be finite and positive",
+               "--noise '0 uT'");
   expect_error(good, "elastica/volume", "--models volume");
   expect_error(good, "force", "--largest '4 mm'");
   write("background.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n0,1,2,3\n");
