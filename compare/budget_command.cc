@@ -6,6 +6,7 @@
 #include "compare/budget/budget.h"
 #include "compare/budget/report.h"
 #include "compare/case_files.h"
+#include "compare/provenance.h"
 #include "compare/registry.h"
 #include "compare/results.h"
 #include "compare/terminal.h"
@@ -31,7 +32,7 @@ ExitCode budget_case(const std::filesystem::path& file, const BudgetOptions& opt
     if (const std::string message = fault(row); !message.empty())
       throw std::logic_error("the error budget is wrong, please report it: " + message);
   print(budget_text(budget));
-  if (options.json) replace_text(*options.json, budget_json(budget));
+  if (options.json) replace_text(*options.json, budget_json(budget, provenance(options.command)));
   if (options.csv) replace_text(*options.csv, budget_csv(budget));
   if (options.plot) {
     const Waterfall drawing = waterfall(budget);

@@ -15,6 +15,7 @@ struct BudgetOptions {
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> csv;
   std::optional<std::filesystem::path> plot;  ///< an SVG file
+  std::string command;                        ///< the command line, for the provenance
 };
 
 /// `ciliaval budget`: splits what lies between the paper's model and the best one into the parts of

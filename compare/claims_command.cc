@@ -3,6 +3,7 @@
 
 #include "compare/case_files.h"
 #include "compare/claims/ledger.h"
+#include "compare/provenance.h"
 #include "compare/results.h"
 #include "compare/terminal.h"
 #include "fem/parallel.h"
@@ -20,7 +21,7 @@ ExitCode print_claims(const ClaimsOptions& options) {
   ProgressLine line;
   const std::vector<Claim> all = claims(folder, !options.quick, line.callback());
   print(claims_text(all));
-  if (options.json) replace_text(*options.json, claims_json(all));
+  if (options.json) replace_text(*options.json, claims_json(all, provenance(options.command)));
   return ExitCode::pass;
 }
 

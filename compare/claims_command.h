@@ -11,6 +11,7 @@ namespace ciliaval::compare {
 struct ClaimsOptions {
   bool quick = false;  ///< without the 3D solid
   std::optional<std::filesystem::path> json;
+  std::string command;  ///< the command line, for the provenance
 };
 
 /// `ciliaval claims`: the paper's quantitative statements, each with what the models find, to

@@ -11,6 +11,7 @@
 #include "compare/check_command.h"
 #include "compare/claims_command.h"
 #include "compare/converge_command.h"
+#include "compare/report_command.h"
 #include "compare/sense_command.h"
 #include "compare/study_command.h"
 
@@ -59,6 +60,22 @@ A study file names a case, the numbers of it to vary, and the pairs of models to
 
 Each point is kept as soon as it is solved: a study that was killed goes on where it was when the
 same command is given again. All keys and outputs: docs/study.md; examples: `ciliaval list`.)";
+
+constexpr const char* report_help = R"(
+The page shows what lies in DIR and in the folders in it, whatever the files are called:
+
+  ciliaval run CASE.toml -o DIR                      DIR/<case>/summary.json
+  ciliaval study NAME.study.toml -o DIR              DIR/<study>/study.json
+  ciliaval budget CASE.toml --json DIR/NAME.budget.json
+  ciliaval converge CASE.toml --json DIR/NAME.converge.json
+  ciliaval sense NAME.sense.toml --json DIR/NAME.sense.json
+  ciliaval claims --json DIR/claims.json
+  ciliaval check --json DIR/check.json
+  pvpython DIR/<case>/vtk/open.py DIR/pictures/NAME.png
+
+What is not there is named in the page with its command. No number is computed: each is from a
+file that the page names. A file that is damaged is named, the others are shown, and the exit code
+is 4; so it is where gnuplot, which draws the figures, is not installed (docs/report.md).)";
 
 /// Lets `chosen` become the command when the command line names it.
 void choose(CLI::App* command, Command& chosen, Command execute) {
@@ -145,9 +162,10 @@ void add_check(CLI::App& app, const std::string& command_line, Command& chosen) 
   choose(check, chosen, [files, options] { return check_cases(*files, *options); });
 }
 
-void add_converge(CLI::App& app, Command& chosen) {
+void add_converge(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto file = std::make_shared<fs::path>();
   const auto options = std::make_shared<ConvergeOptions>();
+  options->command = command_line;
   CLI::App* converge = app.add_subcommand(
       "converge",
       "Refinement study: refine meshes, element degrees, sums and tolerances of each model of a\n"
@@ -169,9 +187,10 @@ void add_converge(CLI::App& app, Command& chosen) {
   choose(converge, chosen, [file, options] { return converge_case(*file, *options); });
 }
 
-void add_budget(CLI::App& app, Command& chosen) {
+void add_budget(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto file = std::make_shared<fs::path>();
   const auto options = std::make_shared<BudgetOptions>();
+  options->command = command_line;
   CLI::App* budget = app.add_subcommand(
       "budget",
       "Error budget: split what lies between the paper's model and the best one into the parts of\n"
@@ -194,10 +213,11 @@ void add_budget(CLI::App& app, Command& chosen) {
   choose(budget, chosen, [file, options] { return budget_case(*file, *options); });
 }
 
-void add_sense(CLI::App& app, Command& chosen) {
+void add_sense(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto file = std::make_shared<fs::path>();
   const auto readings = std::make_shared<fs::path>();
   const auto options = std::make_shared<SenseOptions>();
+  options->command = command_line;
   CLI::App* sense = app.add_subcommand(
       "sense",
       "From what the sensors read to the load: force or flow speed and direction of each reading,\n"
@@ -260,8 +280,9 @@ void add_study(CLI::App& app, const std::string& command_line, Command& chosen) 
   choose(study, chosen, [file, options] { return run_study(*file, *options); });
 }
 
-void add_claims(CLI::App& app, Command& chosen) {
+void add_claims(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto options = std::make_shared<ClaimsOptions>();
+  options->command = command_line;
   CLI::App* claims = app.add_subcommand(
       "claims",
       "The paper's quantitative statements, each with what the models find: reproduced, not\n"
@@ -272,6 +293,23 @@ void add_claims(CLI::App& app, Command& chosen) {
   choose(claims, chosen, [options] { return print_claims(*options); });
 }
 
+void add_report(CLI::App& app, const std::string& command_line, Command& chosen) {
+  const auto folder = std::make_shared<fs::path>("results");
+  const auto options = std::make_shared<ReportOptions>();
+  options->command = command_line;
+  CLI::App* report = app.add_subcommand(
+      "report",
+      "One page of everything in a folder of results, as one file that opens offline: cases,\n"
+      "studies, error budgets, convergence, loads from readings, the ledger of claims, pictures.");
+  report->footer(report_help);
+  report->add_option("DIR", *folder, "Folder of results")->capture_default_str();
+  report
+      ->add_option("-o,--output", options->output,
+                   "File to write; left out: DIR/report.html. One that is there is replaced")
+      ->type_name("FILE.html");
+  choose(report, chosen, [folder, options] { return write_report(*folder, *options); });
+}
+
 }  // namespace
 
 void add_commands(CLI::App& app, const std::string& command_line, Command& chosen) {
@@ -279,11 +317,12 @@ void add_commands(CLI::App& app, const std::string& command_line, Command& chose
   add_validate(app, chosen);
   add_mesh(app, command_line, chosen);
   add_check(app, command_line, chosen);
-  add_converge(app, chosen);
-  add_budget(app, chosen);
-  add_sense(app, chosen);
+  add_converge(app, command_line, chosen);
+  add_budget(app, command_line, chosen);
+  add_sense(app, command_line, chosen);
   add_study(app, command_line, chosen);
-  add_claims(app, chosen);
+  add_claims(app, command_line, chosen);
+  add_report(app, command_line, chosen);
   choose(app.add_subcommand("list", "List models, loads, shipped cases, studies and benches"),
          chosen, [] {
            list();

@@ -16,6 +16,7 @@
 #include "compare/output_folder.h"
 #include "compare/provenance.h"
 #include "compare/registry.h"
+#include "compare/report/report.h"
 #include "compare/results.h"
 #include "compare/run.h"
 #include "compare/sense/bench.h"
@@ -77,6 +78,15 @@ void end_checkpoints(CheckpointFolder& folder, const CaseResult& result) {
   if (!needed) folder.clear();
 }
 
+/// report.html beside summary.json. Figures that cannot be drawn are named, on the page and here:
+/// the results are as good without them.
+void write_case_report(const fs::path& folder) {
+  report::Figures figures;
+  write_text(folder / "report.html", report::case_page(folder, figures));
+  if (!figures.failure().empty())
+    fmt::print(stderr, "ciliaval: report.html is without its figures: {}\n", figures.failure());
+}
+
 ExitCode run_one(Prepared& prepared, const RunOptions& options) {
   ProgressLine line;
   const Progress progress = line.callback();
@@ -90,6 +100,7 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options) {
   write_text(folder.path() / "case.toml", to_toml(problem));
   write_results(result, comparisons, origin, folder.path());
   vtk::write_vtk(result, grid, origin, folder.path() / "vtk");
+  write_case_report(folder.path());
   folder.commit();
   print(table(result, comparisons));
   if (prepared.checkpoints) end_checkpoints(*prepared.checkpoints, result);

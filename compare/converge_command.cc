@@ -6,6 +6,7 @@
 #include "compare/case_files.h"
 #include "compare/converge/plot.h"
 #include "compare/converge/study.h"
+#include "compare/provenance.h"
 #include "compare/results.h"
 #include "compare/terminal.h"
 #include "fem/parallel.h"
@@ -28,7 +29,8 @@ ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions&
     studies.push_back(refinement_study(problem, refinement, options.levels, line.callback()));
     failed = failed || !studies.back().failure.empty();
   }
-  if (options.json) replace_text(*options.json, study_json(problem.name, studies));
+  if (options.json)
+    replace_text(*options.json, study_json(problem.name, studies, provenance(options.command)));
   if (options.csv) replace_text(*options.csv, study_csv(studies));
   if (studies.empty()) {
     print("The case has no model that can be refined: `dipole` is a closed form.\n");

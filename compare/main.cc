@@ -37,6 +37,7 @@ Examples:
   ciliaval sense my.toml readings.csv    which load did the sensor read?
   ciliaval claims                        what of the paper holds, by which model?
   ciliaval study my.study.toml           how does the signal change with stiffness, size, load?
+  ciliaval report                        one page of everything in results/
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py

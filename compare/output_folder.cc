@@ -77,9 +77,10 @@ std::regex result_files() {
   const std::string mechanics = any_id(mechanics_models());
   const std::string series = fmt::format("((body|centreline|dipoles)_{0}|field_{0}_{1}|sensors)",
                                          mechanics, any_id(field_models()));
-  return std::regex(fmt::format(R"(summary\.json|errors\.csv|case\.toml|{}_[0-9]{{4,}}\.csv|)"
-                                R"(vtk/open\.py|vtk/{}(\.pvd|_[0-9]{{4,}}\.vt[upi]))",
-                                mechanics, series));
+  return std::regex(
+      fmt::format(R"(summary\.json|report\.html|errors\.csv|case\.toml|{}_[0-9]{{4,}}\.csv|)"
+                  R"(vtk/open\.py|vtk/{}(\.pvd|_[0-9]{{4,}}\.vt[upi]))",
+                  mechanics, series));
 }
 
 /// Whether a summary is that of a run of this case. Its lists are skipped: they may be long.

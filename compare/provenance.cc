@@ -38,4 +38,12 @@ Provenance provenance(const std::string& command) {
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
 }
 
+nlohmann::ordered_json to_json(const Provenance& provenance) {
+  return {{"version", provenance.version},
+          {"git", provenance.git},
+          {"libraries", provenance.libraries},
+          {"command", provenance.command},
+          {"date", provenance.date}};
+}
+
 }  // namespace ciliaval::compare

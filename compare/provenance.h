@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace ciliaval::compare {
@@ -17,5 +18,8 @@ struct Provenance {
 
 /// This program's provenance, now. `command` is handed through.
 Provenance provenance(const std::string& command);
+
+/// The "provenance" of a result file: version, git, libraries, command, date.
+nlohmann::ordered_json to_json(const Provenance& provenance);
 
 }  // namespace ciliaval::compare

@@ -187,11 +187,7 @@ std::vector<double> output_points(const Centreline& centreline) {
 std::string summary_json(const CaseResult& result, const std::vector<Comparison>& comparisons,
                          const Provenance& provenance) {
   Json json{{"schema", 1}, {"case", result.problem.name}, {"title", result.problem.title}};
-  json["provenance"] = {{"version", provenance.version},
-                        {"git", provenance.git},
-                        {"libraries", provenance.libraries},
-                        {"command", provenance.command},
-                        {"date", provenance.date}};
+  json["provenance"] = to_json(provenance);
   json["sensors"] = Json::array();
   for (const Vector3& sensor : result.problem.sensors) json["sensors"].push_back(vector(sensor));
   json["undeformed"] = {{"fields", Json::object()}};

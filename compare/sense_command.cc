@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compare/case_files.h"
+#include "compare/provenance.h"
 #include "compare/results.h"
 #include "compare/sense/bench.h"
 #include "compare/sense/sensing.h"
@@ -68,7 +69,8 @@ ExitCode sense_bench(const std::filesystem::path& file, const SenseOptions& opti
   ProgressLine line;
   const BenchResult result = run_bench(bench, line.callback());
   print(bench_text(bench, result));
-  if (options.json) replace_text(*options.json, bench_json(bench, result));
+  if (options.json)
+    replace_text(*options.json, bench_json(bench, result, provenance(options.command)));
   if (options.plot) plot::write_svg(*options.plot, bench_script(bench, result), {700, 760});
   return ExitCode::pass;
 }
@@ -106,7 +108,7 @@ ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem
         invert(read.measured_offset ? sample.change
                                     : Eigen::VectorXd(sample.change - response.undeformed())));
   print(sensing_text(sensing));
-  if (options.json) replace_text(*options.json, sensing_json(sensing));
+  if (options.json) replace_text(*options.json, sensing_json(sensing, provenance(options.command)));
   if (options.csv) replace_text(*options.csv, sensing_csv(sensing));
   return exit_code(sensing);
 }

@@ -17,6 +17,7 @@ struct SenseOptions {
   std::optional<std::filesystem::path> json;
   std::optional<std::filesystem::path> csv;
   std::optional<std::filesystem::path> plot;  ///< of a bench, an SVG file
+  std::string command;                        ///< the command line, for the provenance
 };
 
 /// `ciliaval sense`: readings of a case, or without a file of readings a test bench. Throws

@@ -27,10 +27,10 @@ install_packages() {
     die "apt-get could not install ${missing[*]}"
 }
 
-# build PRESET: configures and builds it; what has not changed is not built again.
+# build PRESET [TARGET]: configures and builds it, or of it the target; what has not changed is not built again.
 build() {
   say "building build/$1"
   local log
   log=$(cmake --preset "$1" 2>&1) || { printf '%s\n' "$log" >&2; die "configuring the preset '$1' failed"; }
-  cmake --build --preset "$1" >&2 || die "the build failed"
+  cmake --build --preset "$1" ${2:+--target "$2"} >&2 || die "the build failed"
 }

@@ -228,14 +228,17 @@ std::string budget_text(const Budget& budget) {
   return text;
 }
 
-std::string budget_json(const Budget& budget) {
+std::string budget_json(const Budget& budget, const Provenance& provenance) {
   Json json{{"schema", 1},
             {"case", budget.case_name},
+            {"provenance", to_json(provenance)},
+            {"loads", Json::array()},
             {"chain", Json::array()},
             {"not_run", budget.chain.not_run},
             {"remarks", budget.remarks},
             {"seconds", budget.seconds},
             {"rows", Json::array()}};
+  for (const Load& load : budget.load_path) json["loads"].push_back(describe(load));
   for (const Station& station : budget.chain.stations)
     json["chain"].push_back({{"name", station.name()}, {"physics", station.physics}});
   for (const BudgetRow& row : budget.rows) json["rows"].push_back(row_json(row));

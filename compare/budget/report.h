@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "compare/budget/budget.h"
 #include "compare/plot/gnuplot.h"
+#include "compare/provenance.h"
 
 namespace ciliaval::compare {
 
@@ -16,8 +19,9 @@ std::string budget_text(const Budget& budget);
 /// {"schema": 1, "case", "chain": [{"name", "physics"}], "not_run", "remarks", "seconds", "rows":
 /// [{"step", "sensor", "quantity", "component", "unit", "paper_model", "paper", "best_model",
 /// "best", "total": LINK, "links": [LINK], "beside": LINK or null}]}, LINK = {"from", "to",
-/// "physics", "value", "uncertainty", "verdict"}; SI units.
-std::string budget_json(const Budget& budget);
+/// "physics", "value", "uncertainty", "verdict"}; SI units. "loads" are the steps' in words,
+/// "provenance" as in summary.json.
+std::string budget_json(const Budget& budget, const Provenance& provenance);
 
 /// A line for each link, total and model beside: step, sensor, quantity, component, unit, kind
 /// ("link", "total", "beside"), from, to, value, uncertainty, verdict; SI units.
@@ -33,5 +37,17 @@ struct Waterfall {
 /// the tip that changes most and the three of ΔB at the first sensor, of the last step with rows.
 /// Whiskers are the uncertainties; grey bars are below theirs, hollow ones inconclusive.
 Waterfall waterfall(const Budget& budget);
+
+/// The same for a page that may be narrow: a drawing for each of its columns, without a legend.
+struct WaterfallPanel {
+  std::string quantity;  ///< "tip x, mm"
+  std::size_t step = 0;
+  Waterfall drawing;
+};
+std::vector<WaterfallPanel> waterfall_panels(const Budget& budget);
+
+/// The chain's models, the rows and the remarks of a text that budget_json() made. Throws what
+/// nlohmann::json does if it is not.
+Budget read_budget(const nlohmann::ordered_json& json);
 
 }  // namespace ciliaval::compare

@@ -129,6 +129,17 @@ std::string panel_script(const Budget& budget, const Panel& panel, bool first) {
                      lines + 0.2);
 }
 
+constexpr int names_width = 240;
+constexpr int panel_width = 230;
+constexpr int right_margin = 20;
+
+int height_of(const Budget& budget) {
+  return 170 + 30 * static_cast<int>(budget.chain.stations.size());
+}
+
+constexpr const char* header =
+    "unset key\nset samples 2\nset grid x\nset tics nomirror\nset xtics rotate by -40\n";
+
 }  // namespace
 
 Waterfall waterfall(const Budget& budget) {
@@ -136,25 +147,33 @@ Waterfall waterfall(const Budget& budget) {
   const std::size_t step = budget.rows.back().step;
   const std::vector<Panel> panels = panels_of(budget, step);
   if (panels.empty()) return {};
-  const int left = 240;
-  const int width = 230;
   const int count = static_cast<int>(panels.size());
-  const plot::Size size{left + width * count + 20,
-                        170 + 30 * static_cast<int>(budget.chain.stations.size())};
+  const plot::Size size{names_width + panel_width * count + right_margin, height_of(budget)};
   std::string script = fmt::format(
-      "unset key\nset samples 2\nset grid x\nset tics nomirror\nset xtics rotate by -40\n"
-      "set label 1 {} at screen 0.5, screen 0.04 center\n"
+      "{}set label 1 {} at screen 0.5, screen 0.04 center\n"
       "set multiplot layout 1,{} title {} margins {},{},0.3,0.82 spacing 0.015\n",
+      header,
       plot::quoted(
           "bars from the paper's model to the best, whiskers: numerical uncertainty; grey: "
           "below it; hollow: it is not known"),
       count,
       plot::quoted(fmt::format("{}, step {} of {}: {}", budget.case_name, step + 1,
                                budget.load_path.size(), describe(budget.load_path[step]))),
-      static_cast<double>(left) / size.width, 1 - 20.0 / size.width);
+      static_cast<double>(names_width) / size.width,
+      1 - static_cast<double>(right_margin) / size.width);
   for (const Panel& panel : panels)
     script += panel_script(budget, panel, &panel == &panels.front()) + "unset label 1\n";
   return {script + "unset multiplot\n", size};
+}
+
+std::vector<WaterfallPanel> waterfall_panels(const Budget& budget) {
+  std::vector<WaterfallPanel> result;
+  if (budget.rows.empty()) return result;
+  const std::size_t step = budget.rows.back().step;
+  const plot::Size size{names_width + panel_width + right_margin, height_of(budget)};
+  for (const Panel& panel : panels_of(budget, step))
+    result.push_back({panel.title, step, {header + panel_script(budget, panel, true), size}});
+  return result;
 }
 
 }  // namespace ciliaval::compare

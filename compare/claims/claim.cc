@@ -85,8 +85,8 @@ std::string claims_text(const std::vector<Claim>& claims) {
                     claims.size(), counts[0], counts[1], counts[2], counts[3]);
 }
 
-std::string claims_json(const std::vector<Claim>& claims) {
-  Json json{{"schema", 1}, {"claims", Json::array()}};
+std::string claims_json(const std::vector<Claim>& claims, const Provenance& provenance) {
+  Json json{{"schema", 1}, {"provenance", to_json(provenance)}, {"claims", Json::array()}};
   for (const Claim& claim : claims) {
     Json entry{{"place", claim.place},
                {"statement", claim.statement},

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/provenance.h"
+
 namespace ciliaval::compare {
 
 /// What one pair of models (or one measure) finds for a claim: a value, or the range of values over
@@ -43,8 +45,8 @@ struct Claim {
 
 /// A table for people.
 std::string claims_text(const std::vector<Claim>& claims);
-/// {"schema": 1, "claims": [{"place", "statement", "verdict", "note", "findings": [{"models",
-/// "low", "high", "unit", "uncertainty", "holds"}]}]}
-std::string claims_json(const std::vector<Claim>& claims);
+/// {"schema": 1, "provenance", "claims": [{"place", "statement", "verdict", "note", "findings":
+/// [{"models", "low", "high", "unit", "uncertainty", "holds"}]}]}
+std::string claims_json(const std::vector<Claim>& claims, const Provenance& provenance);
 
 }  // namespace ciliaval::compare

@@ -4,8 +4,11 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 namespace ciliaval::compare {
@@ -105,13 +108,31 @@ std::string panel(const RefinementStudy& study, std::size_t step, std::size_t st
 }
 
 /// The last step with something to draw.
-std::string last_panel(const Case& problem, const RefinementStudy& study, int number) {
-  const std::size_t steps = problem.load_path.size();
+std::string last_panel(std::size_t steps, const RefinementStudy& study, int number) {
   for (std::size_t step = steps; step-- > 0;) {
     std::string text = panel(study, step, steps, number);
     if (!text.empty()) return text;
   }
   return {};
+}
+
+constexpr const char* header =
+    "set logscale xy\nset format y '10^{%L}'\nset grid\nset autoscale noextend\n"
+    "set offsets graph 0.08, graph 0.08, graph 0.08, graph 0.08\nset ylabel '|f - f₀| / |f|'\n"
+    "set key below left vertical maxcols 1 Left reverse samplen 2\n";
+
+/// How many load steps the quantities "steps/N/…" are of.
+std::size_t step_count(const RefinementStudy& study) {
+  constexpr std::string_view prefix = "steps/";
+  std::size_t count = 0;
+  for (const ConvergedQuantity& q : study.quantities) {
+    std::size_t step = 0;
+    if (q.id.starts_with(prefix) &&
+        std::from_chars(q.id.data() + prefix.size(), q.id.data() + q.id.size(), step).ec ==
+            std::errc())
+      count = std::max(count, step + 1);
+  }
+  return count;
 }
 
 }  // namespace
@@ -120,20 +141,24 @@ ConvergencePlot convergence_plot(const Case& problem, const std::vector<Refineme
   std::string panels;
   int count = 0;
   for (const RefinementStudy& study : studies)
-    if (const std::string text = last_panel(problem, study, count); !text.empty()) {
+    if (const std::string text = last_panel(problem.load_path.size(), study, count);
+        !text.empty()) {
       panels += text;
       ++count;
     }
   if (panels.empty()) return {};
-  const std::string header = fmt::format(
-      "set logscale xy\nset format y '10^{{%L}}'\nset grid\nset autoscale noextend\n"
-      "set offsets graph 0.08, graph 0.08, graph 0.08, graph 0.08\nset ylabel {}\n"
-      "set key below left vertical maxcols 1 Left reverse samplen 2\n"
-      "set multiplot layout 1,{} title {}\n",
-      plot::quoted("|f - f₀| / |f|"), count,
+  const std::string title = fmt::format(
+      "set multiplot layout 1,{} title {}\n", count,
       plot::quoted(problem.name + ": distance f - f₀ from the extrapolated limit (grey crosses, "
                                   "inconclusive: from the finest level)"));
-  return {header + panels + "unset multiplot\n", {panel_size.width * count, panel_size.height}};
+  return {header + title + panels + "unset multiplot\n",
+          {panel_size.width * count, panel_size.height}};
+}
+
+ConvergencePlot convergence_panel(const RefinementStudy& study) {
+  const std::string panel = last_panel(step_count(study), study, 0);
+  if (panel.empty()) return {};
+  return {header + panel, panel_size};
 }
 
 }  // namespace ciliaval::compare

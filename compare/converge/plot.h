@@ -20,4 +20,7 @@ struct ConvergencePlot {
 /// inconclusive has no limit and no line: grey crosses show the distances from the finest level.
 ConvergencePlot convergence_plot(const Case& problem, const std::vector<RefinementStudy>& studies);
 
+/// The panel of one study alone, without a title above it.
+ConvergencePlot convergence_panel(const RefinementStudy& study);
+
 }  // namespace ciliaval::compare

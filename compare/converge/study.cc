@@ -198,6 +198,27 @@ Json quantity_json(const ConvergedQuantity& quantity) {
   return json;
 }
 
+std::string text_or_none(const Json& json) {
+  return json.is_null() ? std::string() : json.get<std::string>();
+}
+
+ConvergedQuantity read_quantity(const Json& json) {
+  ConvergedQuantity quantity{
+      json.at("id").get<std::string>(), json.at("unit").get<std::string>(), {}, {}};
+  for (const Json& level : json.at("levels"))
+    quantity.levels.push_back({level.at("size").get<double>(), level.at("value").get<double>()});
+  Extrapolation& e = quantity.extrapolation;
+  e.conclusive = json.at("conclusive").get<bool>();
+  e.reason = text_or_none(json.at("reason"));
+  if (!json.at("order").is_null()) e.order = json["order"].get<double>();
+  if (e.conclusive) {
+    e.limit = json.at("limit").get<double>();
+    e.uncertainty = json.at("uncertainty").get<double>();
+    e.safety = json.at("safety").get<double>();
+  }
+  return quantity;
+}
+
 }  // namespace
 
 RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,
@@ -252,11 +273,16 @@ std::string study_text(const std::vector<RefinementStudy>& studies) {
   return text;
 }
 
-std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies) {
-  Json json{{"schema", 1}, {"case", case_name}, {"studies", Json::array()}};
+std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
+                       const Provenance& provenance) {
+  Json json{{"schema", 1},
+            {"case", case_name},
+            {"provenance", to_json(provenance)},
+            {"studies", Json::array()}};
   for (const RefinementStudy& study : studies) {
     Json entry{{"model", study.model},
                {"knob", study.knob},
+               {"size_name", study.size_name},
                {"settings", study.settings},
                {"seconds", study.seconds},
                {"failure", study.failure.empty() ? Json(nullptr) : Json(study.failure)},
@@ -266,6 +292,23 @@ std::string study_json(const std::string& case_name, const std::vector<Refinemen
     json["studies"].push_back(std::move(entry));
   }
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::vector<RefinementStudy> read_studies(const Json& json) {
+  std::vector<RefinementStudy> studies;
+  for (const Json& entry : json.at("studies")) {
+    RefinementStudy study{};
+    study.model = entry.at("model").get<std::string>();
+    study.knob = entry.at("knob").get<std::string>();
+    study.size_name = entry.value("size_name", "size of the level");
+    study.settings = entry.at("settings").get<std::vector<double>>();
+    study.seconds = entry.at("seconds").get<std::vector<double>>();
+    study.failure = text_or_none(entry.at("failure"));
+    for (const Json& quantity : entry.at("quantities"))
+      study.quantities.push_back(read_quantity(quantity));
+    studies.push_back(std::move(study));
+  }
+  return studies;
 }
 
 std::string study_csv(const std::vector<RefinementStudy>& studies) {

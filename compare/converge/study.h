@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "compare/case.h"
 #include "compare/converge/extrapolation.h"
 #include "compare/converge/refinement.h"
+#include "compare/provenance.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::compare {
@@ -42,10 +44,14 @@ RefinementStudy refinement_study(const Case& problem, const Refinement& refineme
 /// Tables for people: of each model the tip, its angle and the field components, with what the
 /// levels say.
 std::string study_text(const std::vector<RefinementStudy>& studies);
-/// {"schema": 1, "case", "studies": [{"model", "knob", "settings", "seconds", "failure",
-/// "quantities": [{"id", "unit", "levels": [{"size", "value"}], "conclusive", "reason", "order",
-/// "limit", "uncertainty", "safety"}]}]}
-std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies);
+/// {"schema": 1, "case", "provenance", "studies": [{"model", "knob", "size_name", "settings",
+/// "seconds", "failure", "quantities": [{"id", "unit", "levels": [{"size", "value"}], "conclusive",
+/// "reason", "order", "limit", "uncertainty", "safety"}]}]}
+std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
+                       const Provenance& provenance);
+/// The studies of a text that study_json() made. Throws what nlohmann::json does if it is not.
+std::vector<RefinementStudy> read_studies(const nlohmann::ordered_json& json);
+
 /// A line for each quantity: model, knob, id, unit, conclusive, order, limit, uncertainty, safety,
 /// reason, then size and value of each level.
 std::string study_csv(const std::vector<RefinementStudy>& studies);

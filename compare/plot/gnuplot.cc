@@ -3,15 +3,18 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "compare/results.h"
 #include "problem/error.h"
@@ -87,6 +90,21 @@ std::string quoted(std::string_view text) {
     result += c == '\n' || c == '\r' ? ' ' : c;
   }
   return result + '\'';
+}
+
+std::string logarithmic_x_axis(double from, double to) {
+  const std::string script = fmt::format("set xrange [{}:{}]\nset logscale x\n", from, to);
+  constexpr double short_axis = 1000;
+  if (to > short_axis * from) return script;
+  std::vector<std::string> marks;
+  const int first = static_cast<int>(std::floor(std::log10(from)));
+  const int last = static_cast<int>(std::floor(std::log10(1.001 * to)));
+  for (int decade = first; decade <= last; ++decade)
+    for (const double digit : {1, 2, 5})
+      if (const double mark = digit * std::pow(10, decade);
+          mark >= 0.999 * from && mark <= 1.001 * to)
+        marks.push_back(fmt::format("{:.6g}", mark));
+  return script + fmt::format("set xtics ({})\n", fmt::join(marks, ", "));
 }
 
 std::string draw_svg(std::string_view script, Size size) {

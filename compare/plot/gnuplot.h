@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -12,6 +13,13 @@ struct Size {
   int width = 800;
   int height = 500;
 };
+
+/// Paul Tol's bright colours, told apart by the colour-blind.
+inline constexpr std::array<std::string_view, 7> colours{"#4477aa", "#ee6677", "#228833", "#ccbb44",
+                                                         "#66ccee", "#aa3377", "#888888"};
+
+/// A logarithmic horizontal axis from `from` > 0 to `to`; a short one has marks at 1, 2 and 5.
+std::string logarithmic_x_axis(double from, double to);
 
 /// A text as a string of gnuplot's that shows it letter by letter: quoted, and with the characters
 /// escaped that gnuplot's enhanced mode reads as markup; line breaks become blanks.

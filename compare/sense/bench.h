@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "compare/plot/gnuplot.h"
+#include "compare/provenance.h"
 #include "compare/sense/inversion.h"
 #include "compare/sense/sensing.h"
 
@@ -82,7 +83,8 @@ struct BenchResult {
 BenchResult run_bench(const Bench& bench, const Progress& progress = {});
 
 std::string bench_text(const Bench& bench, const BenchResult& result);
-std::string bench_json(const Bench& bench, const BenchResult& result);
+/// docs/sense.md; "provenance" as in summary.json.
+std::string bench_json(const Bench& bench, const BenchResult& result, const Provenance& provenance);
 /// The readings of the first draw over the true loads, in the plane of the load.
 std::string bench_script(const Bench& bench, const BenchResult& result);
 

@@ -73,10 +73,13 @@ std::string bench_text(const Bench& bench, const BenchResult& result) {
                     100 * result.linear_misfit);
 }
 
-std::string bench_json(const Bench& bench, const BenchResult& result) {
+std::string bench_json(const Bench& bench, const BenchResult& result,
+                       const Provenance& provenance) {
   Json json{{"schema", 1},
             {"title", bench.title},
             {"case", bench.problem.name},
+            {"provenance", to_json(provenance)},
+            {"unit", magnitude_unit(bench.problem.load_path.front())},
             {"models", bench.models.name()},
             {"truth", bench.truth.name()},
             {"azimuths", bench.azimuths},
@@ -90,7 +93,8 @@ std::string bench_json(const Bench& bench, const BenchResult& result) {
               {"ambient", {bench.ambient.x(), bench.ambient.y(), bench.ambient.z()}}}},
             {"linear_misfit", result.linear_misfit},
             {"sources", Json::array()},
-            {"by_magnitude", Json::array()}};
+            {"by_magnitude", Json::array()},
+            {"first_draw", Json::array()}};
   for (const BenchRow& row : result.rows)
     json["sources"].push_back({{"source", to_string(row.source)},
                                {"inversion", errors_json(row.inversion)},
@@ -100,6 +104,9 @@ std::string bench_json(const Bench& bench, const BenchResult& result) {
     entry["magnitude"] = magnitude(bench.problem.load_path[m]);
     json["by_magnitude"].push_back(std::move(entry));
   }
+  for (const BenchPoint& p : result.first_draw)
+    json["first_draw"].push_back(
+        {{"truth", {p.truth.x(), p.truth.y()}}, {"found", {p.found.x(), p.found.y()}}});
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -103,9 +103,10 @@ std::string sensing_text(const Sensing& s) {
   return text + "Intervals of 95 %, of the noise of reading and offset alone.\n";
 }
 
-std::string sensing_json(const Sensing& s) {
+std::string sensing_json(const Sensing& s, const Provenance& provenance) {
   Json json{{"schema", 1},
             {"case", s.case_name},
+            {"provenance", to_json(provenance)},
             {"models", s.models.name()},
             {"noise", {s.noise.x(), s.noise.y(), s.noise.z()}},
             {"unit", s.unit},

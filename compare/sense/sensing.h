@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compare/provenance.h"
 #include "compare/sense/inversion.h"
 #include "compare/sense/readings.h"
 
@@ -53,7 +54,7 @@ std::string sensing_text(const Sensing& sensing);
 /// "samples": [{"sample", "status", "load": [x, y], "magnitude", "magnitude_interval", "azimuth",
 /// "azimuth_interval", "covariance", "chi_squared", "misfit_probability", "velocity",
 /// "velocity_interval": [low, high]}]}; angles in rad, half-widths of 95 %.
-std::string sensing_json(const Sensing& sensing);
+std::string sensing_json(const Sensing& sensing, const Provenance& provenance);
 /// A line for each sample, units in the header.
 std::string sensing_csv(const Sensing& sensing);
 

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,9 +13,6 @@ namespace {
 
 constexpr plot::Size plot_size{760, 520};
 constexpr std::size_t most_families = 6;
-/// Paul Tol's bright colours, told apart by the colour-blind.
-constexpr std::array<std::string_view, 7> colours{"#4477aa", "#ee6677", "#228833", "#ccbb44",
-                                                  "#66ccee", "#aa3377", "#888888"};
 
 /// "uT" as it is printed.
 std::string with_mu(std::string unit) {
@@ -126,7 +122,7 @@ std::string marks(const Curve& curve, double height, bool& slipped, bool& failed
     (is_slip ? slipped : failed) = true;
     text += fmt::format("set label '' at first {}, graph {} point pt {} ps 0.5 lc rgb '{}'\n",
                         study.values_at(point).front() / study.parameters.front().unit_size, height,
-                        is_slip ? 2 : 3, colours[curve.pair % colours.size()]);
+                        is_slip ? 2 : 3, plot::colours[curve.pair % plot::colours.size()]);
   }
   return text;
 }
@@ -160,28 +156,15 @@ std::string axis_label(const std::string& name, const std::string& unit) {
   return plot::quoted(unit.empty() ? name : fmt::format("{}, {}", name, unit));
 }
 
-/// The horizontal axis: from the least to the largest value; a short logarithmic one has marks at
-/// 1, 2 and 5.
+/// The horizontal axis: from the least to the largest value.
 std::string x_axis(const Parameter& x) {
   const auto [least, largest] = std::minmax_element(x.values.begin(), x.values.end());
   const double from = *least / x.unit_size;
   const double to = *largest / x.unit_size;
   std::string script = fmt::format("set xlabel {} offset 0,0.4\n", axis_label(x.name, x.unit));
   if (from == to) return script;
-  script += fmt::format("set xrange [{}:{}]\n", from, to);
-  if (!x.is_logarithmic || from <= 0) return script;
-  script += "set logscale x\n";
-  constexpr double short_axis = 1000;
-  if (to > short_axis * from) return script;
-  std::vector<std::string> marks;
-  const int first = static_cast<int>(std::floor(std::log10(from)));
-  const int last = static_cast<int>(std::floor(std::log10(1.001 * to)));
-  for (int decade = first; decade <= last; ++decade)
-    for (const double digit : {1, 2, 5})
-      if (const double mark = digit * std::pow(10, decade);
-          mark >= 0.999 * from && mark <= 1.001 * to)
-        marks.push_back(fmt::format("{:.6g}", mark));
-  return script + fmt::format("set xtics ({})\n", fmt::join(marks, ", "));
+  return script + (x.is_logarithmic && from > 0 ? plot::logarithmic_x_axis(from, to)
+                                                : fmt::format("set xrange [{}:{}]\n", from, to));
 }
 
 /// The vertical axis: logarithmic for values of one sign that differ by more than what can be read
@@ -221,7 +204,7 @@ StudyPlot plot_of(const StudyResult& result, std::size_t output) {
     for (std::size_t f = 0; f < families.size(); ++f) {
       const Curve curve{result, pair, output, families[f]};
       const std::string name = fmt::format("curve{}_{}", pair, f);
-      const std::string_view colour = colours[pair % colours.size()];
+      const std::string_view colour = plot::colours[pair % plot::colours.size()];
       blocks += data_block(curve, name, extremes);
       if (families.size() == 1)
         blocks += marks(curve, 0.015 + 0.02 * static_cast<double>(pair), slipped, failed);

@@ -246,7 +246,10 @@ std::string json(const StudyResult& result, const Provenance& provenance) {
     json["parameters"].push_back({{"path", p.number.path},
                                   {"name", p.name},
                                   {"unit", p.number.quantity.unit},
-                                  {"values", p.values}});
+                                  {"values", p.values},
+                                  {"shown_unit", p.unit},
+                                  {"shown_unit_size", p.unit_size},
+                                  {"logarithmic", p.is_logarithmic}});
   for (const Output output : study.outputs)
     json["outputs"].push_back({{"id", id(output)}, {"unit", si_unit(output, study)}});
   for (const Pair& pair : study.pairs) json["pairs"].push_back(pair.name());

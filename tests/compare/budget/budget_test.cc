@@ -344,7 +344,7 @@ TEST(BudgetReport, JsonAndCsvGiveTheNumbersBack) {
   World world;
   world.tip_uncertainty["solid"] = std::nullopt;
   const Budget budget = error_budget(problem, world.mechanics(), world.fields(), {});
-  const auto json = nlohmann::json::parse(budget_json(budget));
+  const auto json = nlohmann::json::parse(budget_json(budget, {}));
   std::istringstream csv(budget_csv(budget));
   std::string line;
   ASSERT_TRUE(std::getline(csv, line));

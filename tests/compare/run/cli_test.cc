@@ -195,7 +195,7 @@ TEST(CommandLine, AMistypedCommandIsNamedWithTheValidOnes) {
   EXPECT_THAT(outcome.err, HasSubstr("`rum`"));
   EXPECT_THAT(
       outcome.err,
-      HasSubstr("run, validate, mesh, check, converge, budget, sense, study, claims, list"));
+      HasSubstr("run, validate, mesh, check, converge, budget, sense, study, claims, report, list"));
 }
 
 TEST(CommandLine, AMessageWithAPlaceStartsWithIt) {

@@ -118,7 +118,7 @@ TEST(Bench, EachSourceShowsAndTheSeedDecides) {
     EXPECT_GT(row(result, source).inversion.magnitude_rms, 1e-5) << to_string(source);
     EXPECT_GT(all.azimuth_largest, row(result, source).inversion.azimuth_rms) << to_string(source);
   }
-  EXPECT_EQ(bench_json(bench, result), bench_json(bench, run_bench(bench)));
+  EXPECT_EQ(bench_json(bench, result, {}), bench_json(bench, run_bench(bench), {}));
   EXPECT_EQ(result.first_draw.size(), 36u);
   EXPECT_EQ(result.by_magnitude.size(), 3u);
   EXPECT_GT(result.by_magnitude.front().azimuth_rms, result.by_magnitude.back().azimuth_rms);

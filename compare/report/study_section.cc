@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "compare/report/curves.h"
+#include "compare/report/sections.h"
+
+namespace ciliaval::compare::report {
+namespace {
+
+/// Of more combinations of the other parameters some are drawn, of more points some are listed.
+constexpr std::size_t most_families = 6;
+constexpr std::size_t most_rows = 100;
+
+struct Parameter {
+  std::string path;
+  std::string name;
+  ShownUnit unit;
+  bool logarithmic = false;
+
+  std::string label() const { return unit.name.empty() ? name : name + ", " + unit.name; }
+  std::string shown(double value) const {
+    return number(value, unit.size, 4) + (unit.name.empty() ? "" : " " + unit.name);
+  }
+};
+
+std::vector<Parameter> parameters_of(const Json& study) {
+  std::vector<Parameter> result;
+  for (const Json& p : study.at("parameters")) {
+    ShownUnit unit = shown_unit(p.at("unit").get<std::string>());
+    if (p.contains("shown_unit"))
+      unit = {p["shown_unit"].get<std::string>(), p.at("shown_unit_size").get<double>()};
+    result.push_back({p.at("path").get<std::string>(), p.at("name").get<std::string>(),
+                      std::move(unit), p.value("logarithmic", false)});
+  }
+  return result;
+}
+
+std::string symbol(const std::string& output) {
+  if (output == "dB_norm") return "|ΔB|";
+  if (output == "sensitivity") return "sensitivity d|ΔB|/dF";
+  if (output == "range") return "range: largest load";
+  if (output == "resolution") return "resolution: smallest change of the load";
+  return output.starts_with("dB_") ? "ΔB" + output.substr(2) : output;
+}
+
+/// The indices of `shown` of `count` things, evenly chosen, the first and the last among them.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t shown) {
+  std::vector<std::size_t> chosen;
+  const std::size_t n = std::min(count, shown);
+  for (std::size_t i = 0; i < n; ++i) chosen.push_back(n < 2 ? 0 : i * (count - 1) / (n - 1));
+  return chosen;
+}
+
+/// The points that differ in the first parameter alone, each set with the others' values in words.
+struct Family {
+  std::string name;
+  std::vector<const Json*> points;
+};
+
+std::vector<Family> families_of(const Json& study, const std::vector<Parameter>& parameters) {
+  std::vector<Family> all;
+  std::map<std::string, std::size_t> known;
+  const auto is_zipped = [&] {
+    return study.at("points").size() == study.at("parameters")[0].at("values").size();
+  };
+  const std::size_t other = is_zipped() ? parameters.size() : 1;
+  for (const Json& point : study.at("points")) {
+    std::string name;
+    for (std::size_t i = other; i < parameters.size(); ++i)
+      name += fmt::format(
+          "{}{} = {}", name.empty() ? "" : ", ", parameters[i].name,
+          parameters[i].shown(point.at("parameters").at(parameters[i].path).get<double>()));
+    const auto [it, is_new] = known.emplace(name, all.size());
+    if (is_new) all.push_back({name, {}});
+    all[it->second].points.push_back(&point);
+  }
+  std::vector<Family> result;
+  for (const std::size_t i : evenly(all.size(), most_families)) result.push_back(all[i]);
+  return result;
+}
+
+/// "elastica/line 83.2 µT at L2/L0 = 0.87; …": the largest of a study's points.
+std::string largest_text(const std::vector<Family>& families, const Json& pairs, const Parameter& x,
+                         const std::string& output, const ShownUnit& unit) {
+  std::string text;
+  for (const Json& pair : pairs) {
+    const Json* best = nullptr;
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const Family& family : families)
+      for (const Json* point : family.points) {
+        const Json& value = point->at("pairs").at(pair.get<std::string>()).at(output);
+        if (value.is_null() || value.get<double>() <= largest) continue;
+        largest = value.get<double>();
+        best = point;
+      }
+    if (best == nullptr) continue;
+    text += fmt::format("{}{} {} {} at {} = {}", text.empty() ? "" : "; ", pair.get<std::string>(),
+                        number(largest, unit.size, 4), unit.name, x.name,
+                        x.shown(best->at("parameters").at(x.path).get<double>()));
+  }
+  return text;
+}
+
+Drawing drawing_of(const Json& study, const std::vector<Parameter>& parameters,
+                   const std::vector<Family>& families, const Json& output) {
+  const Parameter& x = parameters.front();
+  const std::string id = output.at("id").get<std::string>();
+  const ShownUnit unit = shown_unit(output.at("unit").get<std::string>());
+  const bool unit_in_legend = families.size() > 1;
+  Curves drawing;
+  drawing.title = symbol(id);
+  drawing.x_label = x.label();
+  drawing.y_label = fmt::format("{}, {}", symbol(id), unit.name);
+  drawing.logarithmic_x = x.logarithmic;
+  std::size_t pair_number = 0;
+  for (const Json& pair : study.at("pairs")) {
+    const std::string colour(plot::colours[pair_number % plot::colours.size()]);
+    for (std::size_t f = 0; f < families.size(); ++f) {
+      const std::string name = pair.get<std::string>();
+      Curve curve{unit_in_legend ? name + ", " + families[f].name : name,
+                  colour,
+                  static_cast<int>(unit_in_legend ? f : pair_number) + 1,
+                  0,
+                  {}};
+      if (families[f].points.size() < 30) curve.mark = 7;
+      for (const Json* point : families[f].points)
+        curve.points.emplace_back(coordinate(point->at("parameters").at(x.path), x.unit.size),
+                                  coordinate(point->at("pairs").at(name).at(id), unit.size));
+      drawing.curves.push_back(std::move(curve));
+    }
+    ++pair_number;
+  }
+  return {fmt::format("{} over {}", symbol(id), x.name),
+          fmt::format("Largest of the points: {}.",
+                      largest_text(families, study.at("pairs"), x, id, unit)),
+          script(drawing), panel_size(drawing)};
+}
+
+/// How many points of each pair slipped off or failed, and why the first did.
+std::vector<std::string> exceptions(const Json& study) {
+  std::vector<std::string> result;
+  for (const Json& pair : study.at("pairs"))
+    for (const char* status : {"slipped_off", "failed"}) {
+      std::size_t count = 0;
+      std::string message;
+      for (const Json& point : study.at("points")) {
+        const Json& of_pair = point.at("pairs").at(pair.get<std::string>());
+        if (of_pair.at("status").get<std::string>() != status) continue;
+        if (count++ == 0) message = text_at(of_pair, "message");
+      }
+      if (count > 0)
+        result.push_back(fmt::format("{}: {} at {} of {} points{}{}", pair.get<std::string>(),
+                                     status, count, study["points"].size(),
+                                     message.empty() ? "" : ", the first: ", message));
+    }
+  return result;
+}
+
+Table point_table(const Json& study, const std::vector<Parameter>& parameters,
+                  const std::string& pair) {
+  Table table{pair, {"point"}, {}};
+  for (const Parameter& p : parameters) table.head.push_back(p.label());
+  for (const Json& output : study.at("outputs"))
+    table.head.push_back(fmt::format("{}, {}", output.at("id").get<std::string>(),
+                                     shown_unit(output.at("unit").get<std::string>()).name));
+  const Json& points = study.at("points");
+  for (const std::size_t i : evenly(points.size(), most_rows)) {
+    const Json& of_pair = points[i].at("pairs").at(pair);
+    std::vector<Cell> row{std::to_string(i)};
+    for (const Parameter& p : parameters)
+      row.emplace_back(number(points[i].at("parameters").at(p.path), p.unit.size));
+    const std::string status = of_pair.at("status").get<std::string>();
+    for (const Json& output : study["outputs"]) {
+      const Json& value = of_pair.at(output["id"].get<std::string>());
+      row.emplace_back(value.is_null() && status != "converged"
+                           ? status
+                           : number(value, shown_unit(output["unit"].get<std::string>()).size));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// Standard deviations of the outputs, by pair.
+std::string tolerances(const Json& study) {
+  const Json& tolerances = at_or_null(study, "tolerances");
+  if (tolerances.is_null()) return {};
+  std::string text;
+  for (const auto& [pair, of_pair] : tolerances.at("pairs").items()) {
+    Table table{pair + ": what one standard deviation of each number does", {"number"}, {}};
+    for (const Json& n : tolerances.at("numbers"))
+      table.rows.push_back(
+          {fmt::format("{} ± {} {}", n.at("path").get<std::string>(), number(n.at("deviation")),
+                       n.at("unit").get<std::string>())});
+    table.rows.push_back({"all together"});
+    for (const Json& output : study.at("outputs")) {
+      const ShownUnit unit = shown_unit(output.at("unit").get<std::string>());
+      const std::string id = output.at("id").get<std::string>();
+      table.head.push_back(fmt::format("{}, {}", id, unit.name));
+      const Json& entry = of_pair.at(id);
+      for (std::size_t i = 0; i + 1 < table.rows.size(); ++i) {
+        const Json& slope = entry.at("slopes").at(i);
+        table.rows[i].emplace_back(
+            slope.is_null() ? unknown
+                            : number(std::abs(slope.get<double>()) *
+                                         tolerances["numbers"].at(i).at("deviation").get<double>(),
+                                     unit.size, 4));
+      }
+      table.rows.back().emplace_back(number(entry.at("deviation"), unit.size, 4));
+    }
+    text += html(table);
+  }
+  return heading(3, "Tolerances") + text;
+}
+
+}  // namespace
+
+std::string study_content(const Json& study, Figures& figures) {
+  const std::vector<Parameter> parameters = parameters_of(study);
+  std::vector<std::string> pairs;
+  for (const Json& pair : study.at("pairs")) pairs.push_back(pair.get<std::string>());
+  std::vector<std::string> names;
+  for (const Parameter& p : parameters) names.push_back(p.name);
+  std::string text = paragraph(
+      fmt::format("{} points of the case {}{}; pairs {}.", study.at("points").size(),
+                  study.at("case").get<std::string>(),
+                  names.empty() ? "" : ", varied in " + in_words(names), in_words(pairs)));
+  text += list(exceptions(study));
+  if (!parameters.empty() && !study["points"].empty()) {
+    const std::vector<Family> families = families_of(study, parameters);
+    std::vector<Drawing> drawings;
+    for (const Json& output : study.at("outputs"))
+      drawings.push_back(drawing_of(study, parameters, families, output));
+    text += figures.row(drawings);
+    std::string tables;
+    for (const std::string& pair : pairs) tables += html(point_table(study, parameters, pair));
+    if (study["points"].size() > most_rows)
+      tables = paragraph(fmt::format("{} of the {} points; all are in study.csv.", most_rows,
+                                     study["points"].size())) +
+               tables;
+    text += details("The points' numbers", tables);
+  }
+  text += tolerances(study);
+  std::vector<std::string> resolved;
+  for (const Json& line : study.at("resolved")) resolved.push_back(line.get<std::string>());
+  std::string lines;
+  for (const std::string& line : resolved) lines += line + "\n";
+  return text + details("Everything the results depend on, SI units",
+                        verbatim("The study, resolved", lines));
+}
+
+}  // namespace ciliaval::compare::report

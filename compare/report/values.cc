@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/report/values.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <limits>
+
+#include "problem/error.h"
+
+namespace ciliaval::compare::report {
+
+ShownUnit shown_unit(const std::string& si) {
+  static const std::array<std::pair<const char*, ShownUnit>, 8> units{
+      {{"T", {"µT", 1e-6}},
+       {"N", {"mN", 1e-3}},
+       {"m", {"mm", 1e-3}},
+       {"rad", {"deg", 0.017453292519943295}},
+       {"T/N", {"µT/mN", 1e-3}},
+       {"T/(N/m)", {"µT/(N/m)", 1e-6}},
+       {"T/m", {"µT/mm", 1e-3}},
+       {"Pa", {"MPa", 1e6}}}};
+  for (const auto& [name, unit] : units)
+    if (si == name) return unit;
+  return {si, 1};
+}
+
+std::string number(double value, double unit, int digits) {
+  return fmt::format("{:.{}g}", value / unit + 0.0, digits);
+}
+
+std::string number(const Json& value, double unit, int digits) {
+  return value.is_null() ? unknown : number(value.get<double>(), unit, digits);
+}
+
+double coordinate(const Json& value, double unit) {
+  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>() / unit;
+}
+
+std::string with_uncertainty(const Json& value, const Json& uncertainty, double unit) {
+  if (value.is_null() || uncertainty.is_null()) return number(value, unit);
+  return fmt::format("{} ± {}", number(value, unit), number(uncertainty, unit, 2));
+}
+
+const Json& at_or_null(const Json& json, const char* key) {
+  static const Json null;
+  const auto it = json.find(key);
+  return it == json.end() ? null : *it;
+}
+
+std::string text_at(const Json& json, const char* key) {
+  const Json& value = at_or_null(json, key);
+  return value.is_null() ? std::string() : value.get<std::string>();
+}
+
+Load load_of(const Json& json) {
+  const auto at = [&](const char* key) { return json.at(key).get<double>(); };
+  const std::string type = json.at("type").get<std::string>();
+  if (type == "contact") return ContactLoad{at("force"), at("height"), at("azimuth")};
+  if (type == "flow") return FlowLoad{at("force_per_height"), at("azimuth")};
+  if (type == "section") return SectionLoad{at("force"), at("arclength"), at("azimuth")};
+  if (type == "dead") return DeadLoad{at("force_per_length"), at("azimuth")};
+  if (type == "probe") return ProbeLoad{at("displacement"), at("height"), at("azimuth")};
+  throw FileError("there is no load `" + type + "`");
+}
+
+std::string in_words(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  return text;
+}
+
+}  // namespace ciliaval::compare::report

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// `ciliaval report` and the pages of `ciliaval run`, as files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fmt/core.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
+
+#include "compare/report/html.h"
+#include "results.h"
+
+namespace ciliaval {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using test::read_text;
+using test::run_program;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A page is too long to be printed.
+bool shows(const std::string& page, const std::string& text) {
+  return page.find(text) != std::string::npos;
+}
+
+void expect_shown(const std::string& page, const std::string& text) {
+  EXPECT_TRUE(shows(page, text)) << text;
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+TEST(Html, NothingInATextIsMarkup) {
+  using compare::report::escaped;
+  EXPECT_EQ(escaped("<a href=\"x\" b='y'>&amp;"),
+            "&lt;a href=&quot;x&quot; b=&#39;y&#39;&gt;&amp;amp;");
+  EXPECT_EQ(escaped("a\x01\x7f\tb\n"), "a  \tb\n");
+  EXPECT_EQ(escaped("\xc3\xa4 \xff"), "\xc3\xa4 \xef\xbf\xbd");
+  EXPECT_EQ(compare::report::identifier("fig 3\"b/x"), "fig-3-b-x");
+}
+
+// Oracle: the numbers of the result files, formatted here.
+TEST(Report, ShowsTheNumbersOfTheFilesOfEveryKind) {
+  const test::Results results;
+  const std::string page = read_text(results.results() / "report.html");
+  const auto summary = nlohmann::json::parse(read_text(results.results() / "one/summary.json"));
+  const auto expect = [&](double value) {
+    expect_shown(page, (fmt::format("<td>{:.6g}</td>", value)));
+  };
+  for (const auto& step : summary["steps"])
+    for (const auto& [name, field] : step["fields"].items())
+      for (const double component : field["dB"][0]) expect(component * 1e6);
+  const auto study = nlohmann::json::parse(read_text(results.results() / "varied/study.json"));
+  for (const auto& point : study["points"])
+    EXPECT_THAT(
+        page, HasSubstr(fmt::format("<td>{:.5g}</td>",
+                                    point["pairs"]["beam/volume"]["dB_norm"].get<double>() * 1e6)));
+  const auto budget = nlohmann::json::parse(read_text(results.results() / "one.budget.json"));
+  for (const auto& row : budget["rows"])
+    if (row["quantity"] == "dB")
+      expect_shown(page, (fmt::format("<td>{:.5g}</td>", row["best"].get<double>() * 1e6)));
+  const auto converge = nlohmann::json::parse(read_text(results.results() / "one.converge.json"));
+  for (const auto& quantity : converge["studies"][0]["quantities"])
+    if (quantity["id"].get<std::string>().find("/tip/") != std::string::npos)
+      expect_shown(page, (quantity["id"].get<std::string>()));
+  const auto sensed = nlohmann::json::parse(read_text(results.results() / "one.sense.json"));
+  expect_shown(page, (fmt::format("<td>{:.5g}</td>",
+                                  sensed["samples"][0]["magnitude"].get<double>() * 1e3)));
+  expect_shown(page, "a &lt; b &amp; &quot;c&quot;");
+  expect_shown(page, "data:image/png;base64,iVBORw0KGgo");
+}
+
+// Oracle: the pair's own line in errors.csv.
+TEST(Report, TheMatrixOfPairsHasTheirErrorsAndVerdicts) {
+  const test::Results results;
+  const auto summary = nlohmann::json::parse(read_text(results.results() / "one/summary.json"));
+  const std::string page = read_text(results.results() / "one/report.html");
+  std::size_t found = 0;
+  for (const auto& c : summary["comparisons"])
+    if (c["step"] == 1 && c["quantity"] == "dB" && c["component"] == "x") {
+      ++found;
+      EXPECT_EQ(c["verdict"], "resolved");
+      expect_shown(page, (fmt::format(">{:.3g}", 100 * c["relative"].get<double>())));
+    }
+  EXPECT_EQ(found, 6u);
+  // Verdicts that this case does not have.
+  auto changed = summary;
+  for (auto& c : changed["comparisons"])
+    if (c["step"] == 1 && c["quantity"] == "dB" && c["component"] == "x") {
+      const bool known = c["model"] == "elastica/line";
+      c["verdict"] = known ? "below uncertainty" : "inconclusive";
+      c["uncertainty"] = known ? c["scale"] : nlohmann::json();
+    }
+  write(results.results() / "one/summary.json", changed.dump());
+  ASSERT_EQ(run_program(results.folder(), "report results").code, 0);
+  const std::string other = read_text(results.results() / "report.html");
+  EXPECT_TRUE(std::regex_search(other, std::regex("class=\"faint\">~ [-0-9.e]+ ± 1e\\+02<")));
+  EXPECT_TRUE(std::regex_search(other, std::regex("class=\"faint\">[?] [-0-9.e]+<")));
+}
+
+TEST(Report, SaysWhichProgramMadeTheResultsAndWhetherItIsOne) {
+  const test::Results results;
+  const fs::path file = results.results() / "one/summary.json";
+  const std::string page = read_text(results.results() / "report.html");
+  expect_shown(page, "ciliaval run one.toml -o results</td>");
+  expect_shown(page, "ciliaval budget one.toml --without solid");
+  expect_shown(page, "ciliaval converge one.toml");
+  expect_shown(page, "ciliaval sense one.toml readings.csv");
+  auto summary = nlohmann::json::parse(read_text(file));
+  expect_shown(page, (summary["provenance"]["date"].get<std::string>()));
+  EXPECT_FALSE(shows(page, "different states of the program"));
+  summary["provenance"]["git"] = "another0state";
+  write(file, summary.dump());
+  ASSERT_EQ(run_program(results.folder(), "report results -o other.html").code, 0);
+  const std::string other = read_text(results.folder() / "other.html");
+  expect_shown(other, "another0state");
+  expect_shown(other, "different states of the program");
+  EXPECT_EQ(read_text(results.results() / "report.html"), page);
+}
+
+TEST(Report, NamesWhatIsNotThereWithItsCommand) {
+  const test::Results results;
+  for (const char* name : {"claims.json", "one.budget.json"}) fs::remove(results.results() / name);
+  fs::remove_all(results.results() / "pictures");
+  ASSERT_EQ(run_program(results.folder(), "report results").code, 0);
+  const std::string page = read_text(results.results() / "report.html");
+  expect_shown(page, "ciliaval claims --json results/claims.json");
+  expect_shown(page, "ciliaval budget CASE.toml");
+  expect_shown(page, "cases/paper/fig4b.study.toml");
+  expect_shown(page, "pvpython");
+  EXPECT_FALSE(shows(page, "ciliaval converge CASE.toml"));
+}
+
+TEST(Report, AFileThatIsDamagedIsNamedAndTheOthersAreShown) {
+  const test::Results results;
+  const fs::path folder = results.results();
+  const std::string whole = read_text(folder / "one.budget.json");
+  const auto fails = [&](const fs::path& file, const std::string& content) {
+    SCOPED_TRACE(file);
+    const fs::path path = folder / file;
+    const std::string before = fs::exists(path) ? read_text(path) : "";
+    write(path, content);
+    const Outcome outcome = run_program(results.folder(), "report results");
+    EXPECT_EQ(outcome.code, 4) << file;
+    EXPECT_THAT(outcome.err, HasSubstr("results/" + file.string())) << file;
+    const std::string page = read_text(folder / "report.html");
+    expect_shown(page, "Files that could not be shown");
+    expect_shown(page, "Study varied");
+    before.empty() ? static_cast<void>(fs::remove(path)) : write(path, before);
+  };
+  fails("one.budget.json", whole.substr(0, whole.size() / 2));
+  fails("one.budget.json",
+        std::regex_replace(whole, std::regex("\"paper\": [^,]*"), "\"paper\": \"x\""));
+  fails("one/summary.json", R"({"schema": 1, "case": "one", "steps": 3, "comparisons": []})");
+  fails("one/beam_0001.csv", "S,x,y\n1,2\n");
+  fails("notes.json", R"({"mine": true})");
+  fails("list.json", "[1, 2]");
+  fails("binary.json", std::string("\x00\xff\xfe", 3));
+  fails("pictures/cut.png", read_text(folder / "pictures/fig3b.png").substr(0, 5000));
+  EXPECT_EQ(run_program(results.folder(), "report results").code, 0);
+}
+
+TEST(Report, WithoutGnuplotThereAreTablesAndASentence) {
+  const test::Results results;
+  const fs::path gone = results.results() / "one";
+  fs::remove_all(gone);
+  const Outcome run = run_program(results.folder(), "run one.toml -o results", "PATH=/nowhere ");
+  EXPECT_EQ(run.code, 0);
+  EXPECT_THAT(run.err, HasSubstr("apt-get install gnuplot-nox"));
+  const std::string of_case = read_text(gone / "report.html");
+  expect_shown(of_case, "apt-get install gnuplot-nox");
+  expect_shown(of_case, "Shapes: what each mechanics model found");
+  EXPECT_FALSE(shows(of_case, "<svg"));
+  const Outcome report = run_program(results.folder(), "report results", "PATH=/nowhere ");
+  EXPECT_EQ(report.code, 4);
+  EXPECT_THAT(report.err, HasSubstr("apt-get install gnuplot-nox"));
+  expect_shown(read_text(results.results() / "report.html"), ("The paper&#39;s claims"));
+}
+
+TEST(Report, WhatCannotBeDoneHasItsExitCodeAndMessage) {
+  const test::TemporaryFolder folder;
+  const auto fails = [&](const std::string& arguments, int code, const std::string& words) {
+    const Outcome outcome = run_program(folder.path(), arguments);
+    EXPECT_EQ(outcome.code, code) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(words)) << arguments;
+  };
+  fails("report", 2, "results");
+  fails("report none", 2, "none");
+  fs::create_directory(folder.path() / "empty");
+  fails("report empty", 4, "there are no results in `empty`");
+  write(folder.path() / "empty/claims.json", R"({"schema": 1, "claims": []})");
+  fails("report empty -o none/x.html", 4, "none/x.html");
+  EXPECT_EQ(run_program(folder.path(), "report empty").code, 0);
+}
+
+// What is there stays until the new page is complete.
+TEST(Report, ReplacesItsFileAtOnceOrNotAtAll) {
+  const test::Results results;
+  const fs::path file = results.results() / "report.html";
+  const std::string before = read_text(file);
+  const std::string limited = "cd '" + results.folder().string() +
+                              "' && ulimit -f 40 && trap '' XFSZ && '" CILIAVAL_PROGRAM
+                              "' report results >out.txt 2>err.txt";
+  EXPECT_EQ(WEXITSTATUS(std::system(("bash -c \"" + limited + "\"").c_str())), 4);
+  EXPECT_EQ(read_text(file), before);
+}
+
+}  // namespace
+}  // namespace ciliaval
