@@ -10,8 +10,8 @@ if [ "${1:-}" = --help ] || [ "${1:-}" = -h ]; then
 usage: ./run.sh [CASE.toml …]
 
 Without arguments: the cases, parameter studies and test benches of cases/paper/, the paper's claims, the
-error budget and the convergence of fig3b. Results in results/, all on one page in results/report.html.
-With case files: these alone, and the page. The exit code is that of the first step that failed; the others
+error budget and the convergence of fig3b, ParaView's pictures. Results in results/, all on one page in
+results/report.html. With case files: these alone, and the page. The exit code is that of the first step that failed; the others
 are run all the same.
 END
   exit 0
@@ -50,6 +50,17 @@ else
   step claims --json results/claims.json
   step budget "$paper/fig3b.toml" --json results/fig3b.budget.json
   step converge "$paper/fig3b.toml" --json results/fig3b.converge.json
+fi
+# ParaView's pictures of what was run. Without ParaView the page has none.
+if pvpython=$(scripts/paraview.sh); then
+  mkdir -p results/pictures
+  for script in results/*/vtk/open.py; do
+    name=$(basename "${script%/vtk/open.py}")
+    say "picture of $name"
+    "$pvpython" "$script" "results/pictures/$name.png" >&2 || failed+=("the picture of $name")
+  done
+else
+  say "no ParaView: no pictures"
 fi
 step report results
 
