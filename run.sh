@@ -57,7 +57,8 @@ if pvpython=$(scripts/paraview.sh); then
   for script in results/*/vtk/open.py; do
     name=$(basename "${script%/vtk/open.py}")
     say "picture of $name"
-    "$pvpython" "$script" "results/pictures/$name.png" >&2 || failed+=("the picture of $name")
+    "$pvpython" "$script" "results/pictures/$name.png" >&2 ||
+      { failed+=("the picture of $name"); [ $status -ne 0 ] || status=4; }
   done
 else
   say "no ParaView: no pictures"
