@@ -8,6 +8,7 @@ find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
+find_package(NLopt 2.7 REQUIRED)
 # Only these: every further component drags in VTK's own HDF5, beside the one of deal.II.
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
 # The library that deal.II itself is linked to: it costs no start-up time.

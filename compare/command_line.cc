@@ -58,6 +58,10 @@ A study file names a case, the numbers of it to vary, and the pairs of models to
   cilium.diameter = "0.05 mm"            # at the case with its fixed numbers
   cilium.segment.base.young_modulus = "5 %"
 
+  [optimise]                             # or: the best design within `from` and `to` of each
+  maximise = "dB_norm"                   # [[parameter]], found with the first pair, confirmed
+  at_least.range = "2 mN"                # with all of them
+
 Each point is kept as soon as it is solved: a study that was killed goes on where it was when the
 same command is given again. All keys and outputs: docs/study.md; examples: `ciliaval list`.)";
 
@@ -264,7 +268,7 @@ void add_study(CLI::App& app, const std::string& command_line, Command& chosen) 
       "study",
       "Parameter study: vary numbers of a case, alone or together, run pairs of models at each\n"
       "point, and write tables and plots of the signal, its sensitivity and its range; propagate\n"
-      "tolerances to their standard deviations.");
+      "tolerances to their standard deviations; find the best design within limits.");
   study->footer(study_help);
   add_file(study, "STUDY", *file, "Study file (TOML)");
   study

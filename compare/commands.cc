@@ -182,8 +182,11 @@ void validate_cases(const std::vector<fs::path>& all_files) {
       continue;
     }
     const study::Study study = study::read_study(file);
-    print(fmt::format("{}: study \"{}\" is valid: {} points, {} pairs of models\n", file.string(),
-                      study.name, study.point_count(), study.pairs.size()));
+    const std::string what = study.optimisation ? fmt::format("an optimum over {} numbers",
+                                                              study.optimisation->parameters.size())
+                                                : fmt::format("{} points", study.point_count());
+    print(fmt::format("{}: study \"{}\" is valid: {}, {} pairs of models\n", file.string(),
+                      study.name, what, study.pairs.size()));
   }
   const std::vector<Case> cases = read_cases(files);
   for (std::size_t i = 0; i < cases.size(); ++i)

@@ -293,7 +293,12 @@ std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValu
 
 std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
                                          std::size_t step, std::size_t sensor) {
-  const auto value = field_value(run, mechanics_of(run, result), step, sensor, true);
+  return change_uncertainty(mechanics_of(run, result), run, step, sensor);
+}
+
+std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const FieldRun& run,
+                                         std::size_t step, std::size_t sensor) {
+  const auto value = field_value(run, mechanics, step, sensor, true);
   if (!value || !value->numerical || !(run.measured || value->from_mechanics)) return std::nullopt;
   return value->numerical->cwiseAbs().maxCoeff() + value->from_mechanics.value_or(0);
 }

@@ -92,6 +92,8 @@ std::optional<Vector3> combined_uncertainty(const FieldValue& a, const FieldValu
 
 /// The largest component of the uncertainty of a pair's ΔB, T: the field model's own, and what the
 /// deformation's carries into it. Empty if a part is not known.
+std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const FieldRun& run,
+                                         std::size_t step, std::size_t sensor);
 std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
                                          std::size_t step, std::size_t sensor);
 

@@ -55,6 +55,13 @@ void open_journal(const study::Study& study, const fs::path& folder, study::Jour
         fmt::format("the results in `{}` are not of this study: {}. Choose another "
                     "folder with -o DIR, or start anew with --fresh, which deletes them",
                     folder.string(), what));
+  if (study.optimisation) {
+    if (const std::size_t kept = study::kept_evaluations(study, journal); kept > 0)
+      fmt::print(stderr,
+                 "ciliaval: study \"{}\": {} evaluations are there already; --fresh starts anew\n",
+                 study.name, kept);
+    return;
+  }
   const study::Extent extent = study::extent(study, journal);
   if (extent.kept > 0)
     fmt::print(stderr,
@@ -65,15 +72,26 @@ void open_journal(const study::Study& study, const fs::path& folder, study::Jour
 
 study::StudyResult solve(const study::Study& study, study::Journal& journal) {
   ProgressLine line;
+  if (study.optimisation)
+    return {study,
+            {},
+            study::run_optimisation(study, journal, mechanics_models(), field_models(),
+                                    line.callback())};
   return study::run_study(study, journal, mechanics_models(), field_models(), line.callback());
 }
 
-/// Whether nothing but failures came out.
-bool all_failed(const study::StudyResult& result) {
+ExitCode exit_code(const study::StudyResult& result) {
   const auto failed = [](const study::PairResult& r) { return r.status == Status::failed; };
-  return std::all_of(result.points.begin(), result.points.end(), [&](const auto& pairs) {
+  const auto all_failed = [&](const std::vector<study::PairResult>& pairs) {
     return std::all_of(pairs.begin(), pairs.end(), failed);
-  });
+  };
+  if (result.optimum) {
+    if (result.optimum->found()) return ExitCode::pass;
+    return all_failed(result.optimum->designs.front().pairs) ? ExitCode::solver
+                                                             : ExitCode::undecided;
+  }
+  return std::all_of(result.points.begin(), result.points.end(), all_failed) ? ExitCode::solver
+                                                                             : ExitCode::pass;
 }
 
 }  // namespace
@@ -92,13 +110,16 @@ ExitCode run_study(const fs::path& file, const StudyOptions& options) {
   if (!study.parameters.empty()) replace_text(folder / "study.csv", study::csv(result));
   if (!study.tolerances.empty())
     replace_text(folder / "tolerances.csv", study::tolerance_csv(result));
+  if (result.optimum)
+    replace_text(folder / "optimum.csv", study::optimum_csv(study, *result.optimum));
   replace_text(folder / "study.json", json);
   if (options.json) replace_text(*options.json, json);
   print(study::text(result) + study::tolerance_text(result) +
+        (result.optimum ? study::optimum_text(study, *result.optimum) : "") +
         fmt::format("\nResults: {}\n", folder.string()));
   for (const study::StudyPlot& drawing : study::plots(result))
     plot::write_svg(folder / drawing.name, drawing.script, drawing.size);
-  return all_failed(result) ? ExitCode::solver : ExitCode::pass;
+  return exit_code(result);
 }
 
 }  // namespace ciliaval::compare

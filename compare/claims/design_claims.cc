@@ -31,8 +31,8 @@ StudyResult evaluated(const std::filesystem::path& file, std::vector<Output> out
                std::to_string(study.point_count()));
     std::vector<study::PairResult> pairs(study.pairs.size());
     for (const std::string& mechanics : study.mechanics()) {
-      const auto of_model =
-          study::evaluate(study, point, mechanics, mechanics_models(), field_models());
+      const auto of_model = study::evaluate(study, study.case_at(point), mechanics,
+                                            mechanics_models(), field_models());
       std::size_t next = 0;
       for (std::size_t p = 0; p < study.pairs.size(); ++p)
         if (study.pairs[p].mechanics == mechanics) pairs[p] = of_model.at(next++);
@@ -44,7 +44,7 @@ StudyResult evaluated(const std::filesystem::path& file, std::vector<Output> out
 
 /// What the numerical errors of a pair make of ΔB at a point, T.
 double change_uncertainty_at(const study::Study& study, std::size_t point,
-                             const study::Pair& pair) {
+                             const ModelPair& pair) {
   Case problem = study.case_at(point);
   problem.external.clear();
   problem.mechanics = {pair.mechanics};

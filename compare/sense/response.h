@@ -7,19 +7,13 @@
 #include <vector>
 
 #include "compare/case.h"
+#include "compare/model_pair.h"
 #include "problem/deformation.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::compare {
 
 using Vector2 = Eigen::Vector2d;
-
-/// A pair of models by its name, "elastica/volume".
-struct ModelPair {
-  std::string mechanics;
-  std::string field;
-  std::string name() const { return mechanics + "/" + field; }
-};
 
 /// The pair that a text names. Throws InputError if it is none, or the models do not go together.
 ModelPair parse_pair(const std::string& text);

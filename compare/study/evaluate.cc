@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "compare/budget/sensitivity.h"
+#include "compare/errors.h"
 #include "compare/run.h"
 #include "compare/study/range.h"
 #include "problem/error.h"
@@ -122,12 +123,10 @@ void add_range(const Study& study, const Case& c, const MechanicsModel& model,
 
 }  // namespace
 
-std::vector<PairResult> evaluate(const Study& study, std::size_t point,
-                                 const std::string& mechanics,
+std::vector<PairResult> evaluate(const Study& study, Case c, const std::string& mechanics,
                                  std::span<const MechanicsEntry> mechanics_models,
                                  std::span<const FieldEntry> field_models,
                                  const Progress& progress) {
-  Case c = study.case_at(point);
   const SurroundedPath path = surround(
       c.load_path, study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution));
   c.load_path = path.loads;
@@ -135,15 +134,16 @@ std::vector<PairResult> evaluate(const Study& study, std::size_t point,
   const MechanicsRun run = run_mechanics(mechanics, *model, c, progress);
   const MechanicsStep& step = run.result.steps[path.step.front()];
   std::vector<PairResult> results;
-  for (const Pair& pair : study.pairs) {
+  for (const ModelPair& pair : study.pairs) {
     if (pair.mechanics != mechanics) continue;
     if (step.status != Status::converged) {
       results.push_back(result_of(study, step, {}, path));
       continue;
     }
     const auto field = make_model(field_models, pair.field, c.options);
-    results.push_back(
-        result_of(study, step, run_field(pair.field, *field, run, c, progress), path));
+    const FieldRun fields = run_field(pair.field, *field, run, c, progress);
+    results.push_back(result_of(study, step, fields, path));
+    results.back().uncertainty = change_uncertainty(run, fields, path.step.front(), 0);
   }
   add_range(study, c, *model, step, progress, results);
   return results;

@@ -18,13 +18,14 @@ struct PairResult {
   std::string message;                        ///< why it failed or slipped off, or why a value is
                                               ///< missing; else empty
   std::vector<std::optional<double>> values;  ///< of the study's outputs, in their order
+  std::optional<double> uncertainty = std::nullopt;  ///< numerical, of the components of ΔB, T
 };
 
-/// Runs one mechanics model of the study at a point, and the fields of its pairs on it: a result
-/// for each of these pairs, in their order. What a model throws is its failure. A contact that
-/// slips off has a range, but no field. Throws RankFailure, CheckpointError.
-std::vector<PairResult> evaluate(const Study& study, std::size_t point,
-                                 const std::string& mechanics,
+/// Runs one mechanics model of the study on the case of one of its points, and the fields of its
+/// pairs on it: a result for each of these pairs, in their order. What a model throws is its
+/// failure. A contact that slips off has a range, but no field. Throws RankFailure,
+/// CheckpointError.
+std::vector<PairResult> evaluate(const Study& study, Case c, const std::string& mechanics,
                                  std::span<const MechanicsEntry> mechanics_models,
                                  std::span<const FieldEntry> field_models,
                                  const Progress& progress = {});

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compare/results.h"
+#include "compare/study/record.h"
 #include "compare/study/tolerances.h"
 #include "compare/units.h"
 
@@ -43,11 +44,6 @@ std::vector<std::size_t> shown_points(std::size_t count) {
 /// A text padded to the right end of a column; `width` counts characters of ASCII.
 std::string right(const std::string& text, std::size_t width) {
   return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
-}
-
-std::string cell(const PairResult& result, std::size_t output, double unit) {
-  if (result.values[output]) return fmt::format("{:.5g}", *result.values[output] / unit);
-  return result.status == Status::converged ? "-" : std::string(to_string(result.status));
 }
 
 std::string point_table(const StudyResult& result, std::size_t pair) {
@@ -131,10 +127,6 @@ std::string exceptions(const StudyResult& result) {
   return text.empty() ? text : "\n" + text;
 }
 
-Json optional(const std::optional<double>& value) {
-  return value ? Json(*value + 0.0) : Json(nullptr);
-}
-
 }  // namespace
 
 std::string aligned(const std::vector<std::vector<std::string>>& rows) {
@@ -147,6 +139,11 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
     text += '\n';
   }
   return text;
+}
+
+std::string cell(const PairResult& result, std::size_t output, double unit) {
+  if (result.values[output]) return fmt::format("{:.5g}", *result.values[output] / unit);
+  return result.status == Status::converged ? "-" : std::string(to_string(result.status));
 }
 
 std::string_view symbol(Output output) {
@@ -198,11 +195,11 @@ std::string text(const StudyResult& result) {
   return text + trends(result) + exceptions(result);
 }
 
-std::string csv(const StudyResult& result) {
-  const Study& study = result.study;
+std::string csv_header(const Study& study, const std::vector<Parameter>& parameters,
+                       const std::string& first) {
   std::vector<std::string> units;
-  std::vector<std::string> names{"point"};
-  for (const Parameter& p : study.parameters) {
+  std::vector<std::string> names{first};
+  for (const Parameter& p : parameters) {
     names.push_back(csv_field(p.number.path));
     if (!p.number.quantity.unit.empty())
       units.push_back(fmt::format("{} {}", p.number.path, p.number.quantity.unit));
@@ -213,17 +210,33 @@ std::string csv(const StudyResult& result) {
     units.push_back(fmt::format("{} {}", id(output), si_unit(output, study)));
   }
   names.emplace_back("message");
-  std::string text =
-      fmt::format("# units: {}\n{}\n", fmt::join(units, ", "), fmt::join(names, ","));
+  return fmt::format("# units: {}\n{}\n", fmt::join(units, ", "), fmt::join(names, ","));
+}
+
+std::string csv_row(const std::string& first, const std::vector<double>& values,
+                    const ModelPair& pair, const PairResult& result) {
+  std::string text = first;
+  for (const double v : values) text += fmt::format(",{}", v);
+  text += fmt::format(",{},{}", pair.name(), to_string(result.status));
+  for (const auto& value : result.values) text += value ? fmt::format(",{}", *value + 0.0) : ",";
+  return text + fmt::format(",{}\n", csv_field(result.message));
+}
+
+Json pair_json(const Study& study, const PairResult& result) {
+  Json json{{"status", to_string(result.status)}, {"message", result.message}};
+  for (std::size_t o = 0; o < study.outputs.size(); ++o)
+    json[std::string(id(study.outputs[o]))] = to_json(result.values[o]);
+  json["dB_uncertainty"] = to_json(result.uncertainty);
+  return json;
+}
+
+std::string csv(const StudyResult& result) {
+  const Study& study = result.study;
+  std::string text = csv_header(study, study.parameters, "point");
   for (std::size_t point = 0; point < study.point_count(); ++point)
-    for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
-      const PairResult& r = result.points[point][pair];
-      text += fmt::format("{}", point);
-      for (const double v : study.values_at(point)) text += fmt::format(",{}", v);
-      text += fmt::format(",{},{}", study.pairs[pair].name(), to_string(r.status));
-      for (const auto& value : r.values) text += value ? fmt::format(",{}", *value + 0.0) : ",";
-      text += fmt::format(",{}\n", csv_field(r.message));
-    }
+    for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
+      text += csv_row(std::to_string(point), study.values_at(point), study.pairs[pair],
+                      result.points[point][pair]);
   return text;
 }
 
@@ -252,22 +265,18 @@ std::string json(const StudyResult& result, const Provenance& provenance) {
                                   {"logarithmic", p.is_logarithmic}});
   for (const Output output : study.outputs)
     json["outputs"].push_back({{"id", id(output)}, {"unit", si_unit(output, study)}});
-  for (const Pair& pair : study.pairs) json["pairs"].push_back(pair.name());
+  for (const ModelPair& pair : study.pairs) json["pairs"].push_back(pair.name());
   for (std::size_t point = 0; point < study.point_count(); ++point) {
     Json entry{{"point", point}, {"parameters", Json::object()}, {"pairs", Json::object()}};
     const std::vector<double> values = study.values_at(point);
     for (std::size_t i = 0; i < values.size(); ++i)
       entry["parameters"][study.parameters[i].number.path] = values[i];
-    for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
-      const PairResult& r = result.points[point][pair];
-      Json& of_pair = entry["pairs"][study.pairs[pair].name()];
-      of_pair = {{"status", to_string(r.status)}, {"message", r.message}};
-      for (std::size_t o = 0; o < study.outputs.size(); ++o)
-        of_pair[std::string(id(study.outputs[o]))] = optional(r.values[o]);
-    }
+    for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
+      entry["pairs"][study.pairs[pair].name()] = pair_json(study, result.points[point][pair]);
     json["points"].push_back(std::move(entry));
   }
   if (!study.tolerances.empty()) json["tolerances"] = tolerance_json(result);
+  if (result.optimum) json["optimum"] = optimum_json(study, *result.optimum);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

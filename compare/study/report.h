@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ std::string si_unit(Output output, const Study& study);
 /// "|dB|", "d|dB|/dF": what an output is, in a word.
 std::string_view symbol(Output output);
 
+/// An output of a result in this unit, or what has become of it.
+std::string cell(const PairResult& result, std::size_t output, double unit);
+
 /// Rows of cells of ASCII, the columns as wide as they must be, cells at their right ends.
 std::string aligned(const std::vector<std::vector<std::string>>& rows);
 
@@ -32,6 +36,16 @@ std::string text(const StudyResult& result);
 /// study.csv: a comment line with the units, a header, a line for each point and pair in their
 /// order, SI units; what is undefined is empty.
 std::string csv(const StudyResult& result);
+
+/// The comment line and the header of a CSV file of the study; `first` is its first column. Then a
+/// line of it.
+std::string csv_header(const Study& study, const std::vector<Parameter>& parameters,
+                       const std::string& first);
+std::string csv_row(const std::string& first, const std::vector<double>& values,
+                    const ModelPair& pair, const PairResult& result);
+
+/// What a pair made of a point: {"status", "message", OUTPUT…, "dB_uncertainty"}, SI units.
+nlohmann::ordered_json pair_json(const Study& study, const PairResult& result);
 
 /// study.json (docs/study.md), SI units. Nothing in it says when or how often the program ran.
 std::string json(const StudyResult& result, const Provenance& provenance);

@@ -112,6 +112,13 @@ Case Study::case_at(std::size_t point) const {
   return with_settings(base, settings);
 }
 
+Case Study::design(const std::vector<double>& values) const {
+  std::vector<Setting> settings = fixed;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    settings.push_back({optimisation->parameters[i].number, values[i]});
+  return with_settings(base, settings);
+}
+
 std::string Study::describe(std::size_t point) const {
   if (point >= point_count()) {
     const auto moved = moved_number(*this, point);
@@ -129,7 +136,7 @@ std::string Study::describe(std::size_t point) const {
 
 std::vector<std::string> Study::mechanics() const {
   std::vector<std::string> ids;
-  for (const Pair& pair : pairs)
+  for (const ModelPair& pair : pairs)
     if (std::find(ids.begin(), ids.end(), pair.mechanics) == ids.end())
       ids.push_back(pair.mechanics);
   return ids;
@@ -161,8 +168,21 @@ std::vector<std::string> resolved(const Study& study) {
   for (const Tolerance& t : study.tolerances)
     lines.push_back(fmt::format("tolerance: {} = {}", t.number.path, format_number(t.deviation)));
   lines.emplace_back(study.is_zipped ? "combine: zip" : "combine: product");
-  for (const Pair& pair : study.pairs) lines.push_back(fmt::format("pair: {}", pair.name()));
+  for (const ModelPair& pair : study.pairs) lines.push_back(fmt::format("pair: {}", pair.name()));
   for (const Output output : study.outputs) lines.push_back(fmt::format("output: {}", id(output)));
+  if (study.optimisation) {
+    const Optimisation& o = *study.optimisation;
+    lines.push_back(fmt::format("optimise: {}, {} global evaluations, {} starts", id(o.goal),
+                                o.global_evaluations, o.starts));
+    for (const Limit& limit : o.limits)
+      lines.push_back(fmt::format("limit: {} {} {}", id(limit.output),
+                                  limit.is_lower ? ">=" : "<=", format_number(limit.value)));
+    for (std::size_t i = 0; i < o.parameters.size(); ++i)
+      lines.push_back(fmt::format("searched: {} = {}, {}, from {}", o.parameters[i].number.path,
+                                  numbers(o.parameters[i].values),
+                                  o.parameters[i].is_logarithmic ? "logarithmic" : "linear",
+                                  format_number(o.start[i])));
+  }
   if (study.noise) lines.push_back(fmt::format("noise: {}", format_number(*study.noise)));
   if (study.rotation) lines.push_back(fmt::format("rotation: {}", format_number(*study.rotation)));
   return lines;

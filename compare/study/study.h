@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compare/case.h"
+#include "compare/model_pair.h"
 #include "compare/study/case_number.h"
 
 namespace ciliaval::compare::study {
@@ -53,10 +54,21 @@ struct Tolerance {
 /// compare/study/tolerances.h, once and twice, to both sides.
 inline constexpr double tolerance_step = 0.25;
 
-struct Pair {
-  std::string mechanics;
-  std::string field;
-  std::string name() const { return mechanics + "/" + field; }
+/// A limit that a design must keep.
+struct Limit {
+  Output output{};
+  bool is_lower = true;  ///< the output's magnitude is at least, not at most, the value
+  double value = 0;      ///< positive, SI units
+};
+
+/// The search for the design whose goal has the largest magnitude.
+struct Optimisation {
+  Output goal = Output::dB_norm;
+  std::vector<Limit> limits;
+  std::vector<Parameter> parameters;  ///< what is searched; `values` are the two bounds
+  std::vector<double> start;          ///< one value for each parameter, within the bounds
+  unsigned int global_evaluations = 2000;
+  unsigned int starts = 10;  ///< of local searches, besides the start and the global search's end
 };
 
 /// A study, as its file states it (docs/study.md).
@@ -67,9 +79,11 @@ struct Study {
   std::vector<Setting> fixed;
   std::vector<Parameter> parameters;
   bool is_zipped = false;  ///< the parameters' values go together; else every combination
-  std::vector<Pair> pairs;
+  std::vector<ModelPair> pairs;
   std::vector<Output> outputs;
   std::vector<Tolerance> tolerances;
+  std::optional<Optimisation> optimisation;  ///< in place of parameters and tolerances; the first
+                                             ///< pair searches
   std::optional<double> noise;     ///< standard deviation of a reading, T, for `resolution`
   std::optional<double> rotation;  ///< rad, for the `range` of a load that has no slip-off
 
@@ -81,6 +95,8 @@ struct Study {
   /// The parameters' values at a point of the sweep; of a product the last parameter runs fastest.
   std::vector<double> values_at(std::size_t point) const;
   Case case_at(std::size_t point) const;
+  /// The case with its fixed numbers and these values of what is optimised.
+  Case design(const std::vector<double>& values) const;
   /// "E1 = 0.1 MPa, d = 3 mm"
   std::string describe(std::size_t point) const;
   /// The mechanics models of the pairs, each once, in their order.

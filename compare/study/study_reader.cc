@@ -15,7 +15,7 @@
 
 #include "compare/case_sections.h"
 #include "compare/case_syntax.h"
-#include "compare/study/study.h"
+#include "compare/study/reading.h"
 #include "problem/error.h"
 #include "problem/words.h"
 
@@ -24,57 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_points = 1'000'000;
-constexpr std::size_t longest_name = 40;  ///< of a parameter, bytes
-constexpr std::array<std::string_view, 4> range_keys{"from", "to", "count", "spacing"};
-constexpr Range count_range{2, 100'000, false, "a range has two ends, and a study must end"};
 constexpr Range sensor_range{0, 1e6, false, "sensors are counted from 0"};
 constexpr Range noise_range{0, 100, true, key::unit_slip};
 constexpr Range rotation_range{0, std::numbers::pi / 2, true,
                                "under a horizontal force the tip's rotation stays below 90 deg"};
-
-/// What is read of a study while its faults are gathered.
-struct Reading {
-  Study study;
-  Case base;  ///< the case file's
-  std::vector<CaseNumber> numbers;
-};
-
-/// The number of this path, or a fault.
-const CaseNumber* find_number(const Reading& reading, const std::string& path, Place where,
-                              Faults& faults) {
-  std::vector<std::string_view> paths;
-  for (const CaseNumber& number : reading.numbers) {
-    if (number.path == path) return &number;
-    paths.push_back(number.path);
-  }
-  std::string advice = did_you_mean(path, paths);
-  if (advice.empty()) advice = fmt::format(" (there are {})", fmt::join(paths, ", "));
-  faults.add(where, fmt::format("the case has no number {}{}", in_quotes(path), advice));
-  return nullptr;
-}
-
-/// A value of a number of the case, or a fault.
-std::optional<double> read_number(const toml::node& node, std::string_view name,
-                                  const CaseNumber& number, Faults& faults) {
-  if (!number.is_whole) return read_value(node, name, number.quantity, number.range, faults);
-  const auto whole = read_whole_number(node, name, number.range, faults);
-  return whole ? std::optional<double>(*whole) : std::nullopt;
-}
-
-/// Adds a fault if something else sets the same already.
-void check_contradiction(const Study& study, const CaseNumber& number, Place where,
-                         Faults& faults) {
-  const auto refuse = [&](const CaseNumber& other) {
-    if (other.sets == number.sets)
-      faults.add(where, other.path == number.path
-                            ? fmt::format("'{}' is set twice", number.path)
-                            : fmt::format("'{}' contradicts '{}': set one of them", number.path,
-                                          other.path));
-  };
-  for (const Setting& setting : study.fixed) refuse(setting.number);
-  for (const Parameter& parameter : study.parameters) refuse(parameter.number);
-}
 
 /// A value under a dotted path of the case's keys.
 using Leaf =
@@ -101,156 +54,6 @@ void read_fixed(const toml::table& table, Reading& reading, Faults& faults) {
     if (const auto value = read_number(node, path, *number, faults))
       reading.study.fixed.push_back({*number, *value});
   });
-}
-
-/// The unit of a quantity that has been read: what follows the number.
-std::string unit_of(const toml::node& node) {
-  const auto* text = node.as_string();
-  if (text == nullptr) return {};
-  std::string_view rest = text->get();
-  const auto skip = [&](std::string_view characters) {
-    rest.remove_prefix(std::min(rest.find_first_not_of(characters), rest.size()));
-  };
-  skip(" +-0123456789._");
-  if (rest.size() > 1 && (rest[0] == 'e' || rest[0] == 'E') &&
-      std::string_view("+-0123456789").find(rest[1]) != std::string_view::npos) {
-    rest.remove_prefix(1);
-    skip("+-0123456789");
-  }
-  skip(" ");
-  return std::string(rest);
-}
-
-/// The value with 15 significant digits, which a person would have written: 0.3, not
-/// 0.30000000000000004.
-double rounded(double value) {
-  return std::stod(fmt::format("{:.15g}", value));
-}
-
-/// The values from one end to the other, both included.
-std::vector<double> spaced(double from, double to, unsigned int count, bool logarithmic) {
-  std::vector<double> values(count);
-  for (unsigned int i = 0; i < count; ++i) {
-    const double t = static_cast<double>(i) / (count - 1);
-    values[i] = rounded(logarithmic ? from * std::pow(to / from, t) : from + t * (to - from));
-  }
-  values.front() = from;
-  values.back() = to;
-  return values;
-}
-
-/// `from`, `to`, `count`, `spacing`.
-void read_range(Section& table, Parameter& parameter) {
-  Faults& faults = table.faults();
-  const std::size_t before = faults.size();
-  const auto end = [&](std::string_view key) {
-    const toml::node* node = table.require(key);
-    if (node == nullptr) return std::optional<double>();
-    if (parameter.unit.empty()) parameter.unit = unit_of(*node);
-    return read_number(*node, key, parameter.number, faults);
-  };
-  const auto from = end("from");
-  const auto to = end("to");
-  std::optional<unsigned int> count;
-  if (const toml::node* node = table.require("count"))
-    count = read_whole_number(*node, "count", count_range, faults);
-  if (const toml::node* node = table.find("spacing")) {
-    constexpr std::array<std::string_view, 2> spacings{"linear", "logarithmic"};
-    parameter.is_logarithmic = read_choice(*node, "spacing", spacings, {}, faults) == spacings[1];
-  }
-  if (!from || !to || !count || faults.size() != before) return;
-  if (*from == *to)
-    faults.add(place(*table.find("to")), "'from' and 'to' are the same: there is nothing to vary");
-  else if (parameter.is_logarithmic && !(*from * *to > 0))
-    faults.add(place(*table.find("spacing")),
-               "a logarithmic range has both ends of one sign, and none at zero");
-  else
-    parameter.values = spaced(*from, *to, *count, parameter.is_logarithmic);
-  for (const double v : parameter.values)
-    if (parameter.number.is_whole && v != std::floor(v)) {
-      faults.add(place(*table.find("count")),
-                 fmt::format("'{}' is a whole number, but the range has {:g}: list its 'values'",
-                             parameter.number.path, v));
-      return;
-    }
-}
-
-/// `values`.
-void read_values(const toml::node& node, Parameter& parameter, Faults& faults) {
-  const toml::array* list = node.as_array();
-  if (list == nullptr || list->empty() || list->size() > most_points) {
-    faults.add(place(node), fmt::format("'values' must be a list of 1 to {} values, found {}",
-                                        most_points, describe(node)));
-    return;
-  }
-  parameter.unit = unit_of(list->front());
-  for (const toml::node& element : *list) {
-    const auto value = read_number(element, "values", parameter.number, faults);
-    if (!value) continue;
-    if (std::find(parameter.values.begin(), parameter.values.end(), *value) !=
-        parameter.values.end())
-      faults.add(place(element), "the value is listed twice");
-    parameter.values.push_back(*value);
-  }
-}
-
-void read_parameter(Section& table, Reading& reading) {
-  Faults& faults = table.faults();
-  const std::size_t before = faults.size();
-  const toml::node* path_node = table.require("path");
-  const toml::node* name = table.find("name");
-  const toml::node* values = table.find("values");
-  const std::optional<std::string> path =
-      path_node != nullptr ? read_text(*path_node, "path", faults) : std::nullopt;
-  const CaseNumber* number =
-      path ? find_number(reading, *path, place(*path_node), faults) : nullptr;
-  if (number == nullptr) {  // which values it may have cannot be told
-    for (const std::string_view key : range_keys) table.find(key);
-    table.finish();
-    return;
-  }
-  Parameter parameter{*number, path->substr(path->find_last_of('.') + 1), {}, 1, {}, false};
-  check_contradiction(reading.study, *number, place(*path_node), faults);
-  if (name != nullptr)
-    parameter.name = read_line(*name, "name", longest_name, faults).value_or(parameter.name);
-  const bool has_range = table.table()->contains("from") || table.table()->contains("to");
-  if (values != nullptr && has_range)
-    faults.add(place(*values), "'values' contradicts 'from' and 'to': give one of them");
-  if (values == nullptr && !has_range)
-    faults.add(table.where(), "[[parameter]] needs 'values', or 'from', 'to' and 'count'");
-  if (values != nullptr) {
-    read_values(*values, parameter, faults);
-    for (const std::string_view key : range_keys) table.find(key);
-  } else {
-    read_range(table, parameter);
-  }
-  table.finish();
-  if (faults.size() != before) return;
-  if (!parameter.unit.empty())
-    parameter.unit_size = parse_quantity("1 " + parameter.unit, number->quantity);
-  reading.study.parameters.push_back(std::move(parameter));
-}
-
-void read_parameters(Section& root, bool has_tolerances, Reading& reading) {
-  Faults& faults = root.faults();
-  const toml::node* node = root.find("parameter");
-  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
-  if (node == nullptr && has_tolerances) return;
-  if (list == nullptr || list->empty()) {
-    faults.add(node != nullptr ? place(*node) : Place{},
-               "a study varies one parameter or more: write [[parameter]] with 'path' and "
-               "'values', or [tolerances]");
-    return;
-  }
-  for (const toml::node& element : *list) {
-    if (!element.is_table()) {
-      faults.add(place(element),
-                 fmt::format("expected a table [[parameter]], found {}", describe(element)));
-      continue;
-    }
-    Section table(element.as_table(), "[[parameter]]", "parameter", place(element), faults);
-    read_parameter(table, reading);
-  }
 }
 
 /// A part of the nominal value: "5 %"; none if the text is no percentage.
@@ -355,16 +158,24 @@ void read_pairs(Section& table, Study& study) {
   }
 }
 
+/// The outputs that [study] lists, and those that the optimisation needs, in their own order.
 void read_outputs(Section& table, Study& study) {
-  study.outputs = {Output::dB_x, Output::dB_y, Output::dB_z, Output::dB_norm};
-  const toml::node* node = table.find("outputs");
-  if (node == nullptr) return;
-  std::vector<std::string_view> choices;
-  for (const Output output : all_outputs()) choices.push_back(id(output));
-  const std::vector<std::string> ids = read_choices(*node, "outputs", choices, table.faults());
-  study.outputs.clear();
+  std::vector<Output> asked{Output::dB_x, Output::dB_y, Output::dB_z, Output::dB_norm};
+  if (const toml::node* node = table.find("outputs")) {
+    std::vector<std::string_view> choices;
+    for (const Output output : all_outputs()) choices.push_back(id(output));
+    const std::vector<std::string> ids = read_choices(*node, "outputs", choices, table.faults());
+    asked.clear();
+    for (const Output output : all_outputs())
+      if (std::find(ids.begin(), ids.end(), id(output)) != ids.end()) asked.push_back(output);
+  }
+  if (study.optimisation) {
+    asked.push_back(study.optimisation->goal);
+    for (const Limit& limit : study.optimisation->limits) asked.push_back(limit.output);
+  }
   for (const Output output : all_outputs())
-    if (std::find(ids.begin(), ids.end(), id(output)) != ids.end()) study.outputs.push_back(output);
+    if (std::find(asked.begin(), asked.end(), output) != asked.end())
+      study.outputs.push_back(output);
 }
 
 /// A quantity that goes with an output.
@@ -427,6 +238,8 @@ void read_study_table(Section& table, Reading& reading) {
   Study& study = reading.study;
   read_name_and_title(table, study.name, study.title);
   if (const toml::node* node = table.find("combine")) {
+    if (study.optimisation)
+      faults.add(place(*node), "'combine' goes with the values of parameters, not with [optimise]");
     constexpr std::array<std::string_view, 2> choices{"product", "zip"};
     study.is_zipped = read_choice(*node, "combine", choices, {}, faults) == choices[1];
   }
@@ -519,6 +332,29 @@ void check_study(Study& study, Place where, Faults& faults) {
   if (faults.size() == before) check_points(study, where, faults);
 }
 
+/// The same of an optimisation: the points that are checked are the corners of its bounds.
+void check_optimisation(Study& study, Place where, Faults& faults) {
+  Study corners = study;
+  corners.parameters = study.optimisation->parameters;
+  check_study(corners, where, faults);
+  study.base = std::move(corners.base);
+}
+
+/// [tolerances] and [[parameter]], or the parameters of [optimise].
+void read_varied(Section& root, const Section& tolerances, Reading& reading) {
+  Faults& faults = root.faults();
+  if (reading.study.optimisation) {
+    if (tolerances.exists())
+      faults.add(tolerances.where(),
+                 "[tolerances] are of one design: put the one that [optimise] finds under [fixed] "
+                 "of another study");
+    return read_searched_parameters(root, reading);
+  }
+  if (tolerances.exists()) read_tolerances(*tolerances.table(), reading, faults);
+  if (root.find("parameter") != nullptr || !tolerances.exists() || tolerances.table()->empty())
+    read_parameters(root, reading);
+}
+
 }  // namespace
 
 Study read_study(const fs::path& file) {
@@ -529,6 +365,8 @@ Study read_study(const fs::path& file) {
   Section header = require_section(root, "study");
   if (header.exists() && read_base(header, file, reading.base))
     reading.numbers = case_numbers(reading.base);
+  Section optimise = root.section("optimise");
+  if (optimise.exists()) read_optimisation(optimise, reading);
   if (header.exists()) read_study_table(header, reading);
   header.finish();
   const Section fixed = root.section("fixed");
@@ -537,8 +375,7 @@ Study read_study(const fs::path& file) {
     // The paths of the sensor are those of the one that was chosen.
     reading.numbers = case_numbers(reading.base);
     if (fixed.exists()) read_fixed(*fixed.table(), reading, faults);
-    if (tolerances.exists()) read_tolerances(*tolerances.table(), reading, faults);
-    read_parameters(root, tolerances.exists() && !tolerances.table()->empty(), reading);
+    read_varied(root, tolerances, reading);
   } else {
     root.find("parameter");
   }
@@ -547,11 +384,12 @@ Study read_study(const fs::path& file) {
   study.base = std::move(reading.base);
   study.base.mechanics = study.mechanics();
   study.base.fields.clear();
-  for (const Pair& pair : study.pairs)
+  for (const ModelPair& pair : study.pairs)
     if (std::find(study.base.fields.begin(), study.base.fields.end(), pair.field) ==
         study.base.fields.end())
       study.base.fields.push_back(pair.field);
-  if (faults.empty()) check_study(study, header.where(), faults);
+  if (faults.empty())
+    (study.optimisation ? check_optimisation : check_study)(study, header.where(), faults);
   if (!faults.empty()) throw InputError(faults.report(file.string()));
   return std::move(reading.study);
 }

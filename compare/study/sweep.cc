@@ -12,7 +12,7 @@
 #include <tuple>
 #include <utility>
 
-#include "compare/results.h"
+#include "compare/study/record.h"
 
 namespace ciliaval::compare::study {
 namespace {
@@ -35,35 +35,20 @@ struct Solution {
 /// use the cores themselves.
 bool runs_in_threads(const Study& study, const std::string& mechanics) {
   if (mechanics != "elastica" && mechanics != "beam") return false;
-  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const Pair& pair) {
+  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const ModelPair& pair) {
     return pair.mechanics == mechanics && pair.field == "potential";
   });
-}
-
-Status status_of(const std::string& text) {
-  for (const Status status : {Status::converged, Status::slipped_off})
-    if (to_string(status) == text) return status;
-  return Status::failed;
 }
 
 std::size_t pair_count(const Study& study, const std::string& mechanics) {
   return static_cast<std::size_t>(
       std::count_if(study.pairs.begin(), study.pairs.end(),
-                    [&](const Pair& pair) { return pair.mechanics == mechanics; }));
+                    [&](const ModelPair& pair) { return pair.mechanics == mechanics; }));
 }
 
 std::string to_record(const Solution& solution, const std::vector<PairResult>& results) {
-  Json pairs = Json::array();
-  for (const PairResult& result : results) {
-    Json values = Json::array();
-    for (const auto& value : result.values)
-      values.push_back(value ? Json(*value + 0.0) : Json(nullptr));
-    pairs.push_back({{"status", to_string(result.status)},
-                     {"message", result.message},
-                     {"values", std::move(values)}});
-  }
   return Json{
-      {"point", solution.point}, {"mechanics", solution.mechanics}, {"pairs", std::move(pairs)}}
+      {"point", solution.point}, {"mechanics", solution.mechanics}, {"pairs", to_json(results)}}
       .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -72,22 +57,13 @@ std::optional<std::pair<Solution, std::vector<PairResult>>> from_record(const St
                                                                         const std::string& text) {
   try {
     const Json json = Json::parse(text);
-    std::pair<Solution, std::vector<PairResult>> record{
-        {json.at("point").get<std::size_t>(), json.at("mechanics").get<std::string>()}, {}};
-    for (const Json& pair : json.at("pairs")) {
-      PairResult result{status_of(pair.at("status").get<std::string>()),
-                        pair.at("message").get<std::string>(),
-                        {}};
-      for (const Json& value : pair.at("values"))
-        result.values.push_back(value.is_null() ? std::nullopt
-                                                : std::optional<double>(value.get<double>()));
-      if (result.values.size() != study.outputs.size()) return std::nullopt;
-      record.second.push_back(std::move(result));
-    }
-    const std::size_t count = pair_count(study, record.first.mechanics);
-    if (record.first.point >= study.all_points() || count == 0 || record.second.size() != count)
-      return std::nullopt;
-    return record;
+    const Solution solution{json.at("point").get<std::size_t>(),
+                            json.at("mechanics").get<std::string>()};
+    if (solution.point >= study.all_points()) return std::nullopt;
+    auto results =
+        results_from(json.at("pairs"), study.outputs.size(), pair_count(study, solution.mechanics));
+    if (!results) return std::nullopt;
+    return std::pair(solution, std::move(*results));
   } catch (const Json::exception&) {
     return std::nullopt;
   }
@@ -106,7 +82,7 @@ Records records_of(const Study& study, const Journal& journal) {
 std::vector<PairResult> in_order(const Study& study, std::size_t point, const Records& records) {
   std::vector<PairResult> results;
   std::map<std::string, std::size_t> next;
-  for (const Pair& pair : study.pairs)
+  for (const ModelPair& pair : study.pairs)
     results.push_back(records.at({point, pair.mechanics})[next[pair.mechanics]++]);
   return results;
 }
@@ -163,8 +139,8 @@ StudyResult run_study(const Study& study, Journal& journal,
   const std::size_t all = study.all_points() * study.mechanics().size();
   std::mutex mutex;
   const auto solve = [&](const Solution& solution, const Progress& inner) {
-    auto results =
-        evaluate(study, solution.point, solution.mechanics, mechanics_models, field_models, inner);
+    auto results = evaluate(study, study.case_at(solution.point), solution.mechanics,
+                            mechanics_models, field_models, inner);
     journal.append(to_record(solution, results));
     const std::lock_guard guard(mutex);
     records.emplace(solution, std::move(results));

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "compare/study/evaluate.h"
 #include "compare/study/journal.h"
+#include "compare/study/optimise.h"
 #include "compare/study/study.h"
 
 namespace ciliaval::compare::study {
@@ -17,6 +19,7 @@ struct StudyResult {
   Study study;
   std::vector<std::vector<PairResult>> points;  ///< for each of all points, in the order of
                                                 ///< the pairs
+  std::optional<Optimum> optimum = std::nullopt;
 };
 
 /// The journal's first line: format, program and the study as resolved() has it.

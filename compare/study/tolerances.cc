@@ -7,16 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "compare/results.h"
+#include "compare/study/record.h"
 #include "compare/study/report.h"
 
 namespace ciliaval::compare::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json optional(const std::optional<double>& value) {
-  return value ? Json(*value + 0.0) : Json(nullptr);
-}
 
 std::string csv_number(const std::optional<double>& value) {
   return value ? fmt::format("{}", *value + 0.0) : std::string();
@@ -127,12 +124,12 @@ Json tolerance_json(const StudyResult& result) {
     for (std::size_t o = 0; o < study.outputs.size(); ++o) {
       const Propagation p = propagate(result, pair, o);
       Json& entry = of_pair[std::string(id(study.outputs[o]))];
-      entry = {{"nominal", optional(p.nominal)},
-               {"deviation", optional(p.deviation)},
+      entry = {{"nominal", to_json(p.nominal)},
+               {"deviation", to_json(p.deviation)},
                {"slopes", Json::array()},
                {"errors", Json::array()}};
       for (const Propagation::Share& share : p.shares) {
-        entry["slopes"].push_back(optional(share.slope));
+        entry["slopes"].push_back(to_json(share.slope));
         entry["errors"].push_back(share.slope ? Json(share.error) : Json(nullptr));
       }
     }

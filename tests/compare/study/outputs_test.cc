@@ -63,7 +63,7 @@ struct Models {
 };
 
 std::vector<PairResult> evaluate_with(const Models& models, const Study& study, std::size_t point) {
-  return evaluate(study, point, "elastica", models.mechanics, models.fields);
+  return evaluate(study, study.case_at(point), "elastica", models.mechanics, models.fields);
 }
 
 // Oracle: |ΔB| = 5 (0.1 rad/mN)² F² (1 + x), its slope by hand, noise over it.
@@ -223,7 +223,7 @@ TEST(StudyRange, OfRodsIsTheForceAtWhichTheContactSlipsOff) {
                parameter("load.force", "\"0 mN\", \"1 mN\", \"9 mN\""));
   for (std::size_t point = 0; point < 3; ++point) {
     const auto range = [&](const std::string& mechanics) {
-      return evaluate(study, point, mechanics, mechanics_models(), field_models())[0]
+      return evaluate(study, study.case_at(point), mechanics, mechanics_models(), field_models())[0]
           .values[0]
           .value();
     };
@@ -272,7 +272,8 @@ TEST(ShippedStudies, ShowThePapersTrendsWithThePapersModels) {
     std::vector<double> all;
     for (std::size_t i = 0; i < study.point_count(); ++i)
       if (const auto value =
-              evaluate(study, i, "elastica", mechanics_models(), field_models())[0].values[output])
+              evaluate(study, study.case_at(i), "elastica", mechanics_models(), field_models())[0]
+                  .values[output])
         all.push_back(*value);
     return all;
   };

@@ -162,6 +162,19 @@ TEST_F(StudyReader, TheResolvedStudyHasWhatTheResultsDependOnAndNothingElse) {
   std::string longer = modulus_range;
   longer.replace(longer.find("= 5"), 3, "= 6");
   EXPECT_NE(with(pairs, longer), lines);
+  const auto optimised = [&](const std::string& keys, const std::string& bounds) {
+    return with(pairs, "[optimise]\nmaximise = \"dB_x\"\n" + keys +
+                           "[[parameter]]\npath = \"cilium.diameter\"\nto = \"5 mm\"\n" + bounds);
+  };
+  const std::string from = "from = \"1 mm\"\n";
+  const std::vector<std::string> optimum = optimised("", from);
+  for (const char* keys :
+       {"starts = 9\n", "global_evaluations = 9\n", "at_least.dB_x = \"1 uT\"\n"})
+    EXPECT_NE(optimised(keys, from), optimum) << keys;
+  for (const char* bounds : {"from = \"2 mm\"\n", "from = \"1 mm\"\nstart = \"2 mm\"\n",
+                             "from = \"1 mm\"\nspacing = \"logarithmic\"\n"})
+    EXPECT_NE(optimised("", bounds), optimum) << bounds;
+  EXPECT_EQ(optimised("", from + "name = \"d\"\n"), optimum);
   test::write_study_case(folder_.path(), "\"1 mN\"",
                          "mechanics = [\"elastica\"]\n[models.beam]\ndegree = 4\n");
   EXPECT_NE(with(pairs, modulus_range), lines);
@@ -246,6 +259,97 @@ TEST_F(StudyReader, FaultsAreSaidWithTheirPlaceAndAnAdvice) {
     EXPECT_THAT(said, HasSubstr(p.words));
   }
   EXPECT_EQ(faults(study_text(pairs, modulus_range)), "");
+}
+
+TEST_F(StudyReader, ReadsAnOptimisation) {
+  const Study study = read(study_text(
+      pairs + "outputs = [\"dB_x\"]\n",
+      "[fixed]\nload.force = \"2 mN\"\n[optimise]\nmaximise = \"sensitivity\"\nstarts = 3\n"
+      "at_least.range = \"2.5 mN\"\n[optimise.at_most]\nB_z = \"3 mT\"\nsensitivity = \"1 mT/mN\"\n"
+      "[[parameter]]\npath = \"cilium.segment.base.young_modulus\"\nname = \"E1\"\nfrom = \"0.2 "
+      "MPa\"\nto = \"3 MPa\"\nspacing = \"logarithmic\"\n"
+      "[[parameter]]\npath = \"cilium.diameter\"\nfrom = \"1 mm\"\nto = \"5 mm\"\n"
+      "[[parameter]]\npath = \"load.height\"\nfrom = \"14 mm\"\nto = \"18 mm\"\nstart = \"17 "
+      "mm\"\n"));
+  // What is searched for is among the outputs.
+  EXPECT_THAT(study.outputs,
+              ElementsAre(Output::B_z, Output::dB_x, Output::sensitivity, Output::range));
+  EXPECT_TRUE(study.parameters.empty());
+  EXPECT_EQ(study.point_count(), 0u);
+  const Optimisation& o = study.optimisation.value();
+  EXPECT_EQ(o.goal, Output::sensitivity);
+  EXPECT_EQ(o.starts, 3u);
+  EXPECT_EQ(o.global_evaluations, 2000u);
+  ASSERT_EQ(o.limits.size(), 3u);
+  EXPECT_EQ(o.limits[0].output, Output::range);
+  EXPECT_TRUE(o.limits[0].is_lower);
+  EXPECT_DOUBLE_EQ(o.limits[0].value, 2.5e-3);
+  EXPECT_EQ(o.limits[1].output, Output::B_z);
+  EXPECT_FALSE(o.limits[1].is_lower);
+  EXPECT_DOUBLE_EQ(o.limits[2].value, 1);
+  // The case's own value, brought within the bounds, unless the study says another.
+  EXPECT_THAT(o.start, ElementsAre(0.2e6, 0.003, 0.017));
+  EXPECT_TRUE(o.parameters[0].is_logarithmic);
+  EXPECT_THAT(o.parameters[1].values, ElementsAre(0.001, 0.005));
+  const Case c = study.design({1e6, 0.002, 0.015});
+  EXPECT_EQ(c.cilium.segments[0].young_modulus, 1e6);
+  EXPECT_EQ(c.cilium.diameter, 0.002);
+  EXPECT_EQ(contact_height(c.load_path.front()), 0.015);
+  EXPECT_EQ(magnitude(c.load_path.front()), 2e-3);
+}
+
+TEST_F(StudyReader, FaultsOfAnOptimisationAreSaidWithTheirPlace) {
+  const std::string optimise = "[optimise]\nmaximise = \"dB_norm\"\n";  // lines 6 and 7
+  const std::string d = "[[parameter]]\npath = \"cilium.diameter\"\n";
+  const std::string ends = "from = \"1 mm\"\nto = \"5 mm\"\n";
+  struct Planted {
+    std::string header;
+    std::string rest;
+    std::string place;
+    std::string words;
+  };
+  const std::vector<Planted> planted{
+      {pairs, "[optimise]\n" + d + ends, "6:1:", "needs 'maximise'"},
+      {pairs, "[optimise]\nmaximise = \"dB_nrm\"\n" + d + ends, "7:12:", "did you mean 'dB_norm'?"},
+      {pairs, "[optimise]\nmaximise = \"resolution\"\n" + d + ends,
+       "7:12:", "cannot be 'resolution'"},
+      {pairs, optimise + "at_leest.range = \"2 mN\"\n" + d + ends,
+       "8:1:", "did you mean 'at_least'?"},
+      {pairs, optimise + "at_least.ranje = \"2 mN\"\n" + d + ends,
+       "8:10:", "did you mean 'range'?"},
+      {pairs, optimise + "at_least.range = \"2 mm\"\n" + d + ends, "8:18:", "force"},
+      {pairs, optimise + "at_least.range = \"0 mN\"\n" + d + ends, "8:18:", "positive"},
+      {pairs, optimise + "at_least.range = 2\n" + d + ends, "8:18:", "has no unit"},
+      {pairs, optimise + "at_least.range = \"2 mN\"\nat_most.range = \"1 mN\"\n" + d + ends,
+       "9:17:", "at least 0.002 and at most 0.001"},
+      {pairs, optimise + "starts = -1\n" + d + ends, "8:10:", "'starts'"},
+      {pairs, optimise + "global_evaluations = 2.5\n" + d + ends, "8:22:", "whole number"},
+      {pairs, optimise, "1:1:", "searches one parameter or more"},
+      {pairs, optimise + d + "from = \"1 mm\"\n", "8:1:", "needs 'to'"},
+      {pairs, optimise + d + ends + "count = 3\n", "12:9:", "and no 'count'"},
+      {pairs, optimise + d + ends + "values = [\"1 mm\"]\n", "12:10:", "and no 'values'"},
+      {pairs, optimise + d + "from = \"5 mm\"\nto = \"1 mm\"\n", "10:8:", "must be below 'to'"},
+      {pairs, optimise + d + ends + "start = \"6 mm\"\n", "12:9:", "between 'from' and 'to'"},
+      {pairs, optimise + d + ends + "strat = \"3 mm\"\n", "12:1:", "did you mean 'start'?"},
+      {pairs, optimise + d + ends + d + ends, "13:8:", "is set twice"},
+      {pairs, optimise + "[[parameter]]\npath = \"models.beam.degree\"\nfrom = 2\nto = 5\n",
+       "8:1:", "is a whole number"},
+      {pairs + "combine = \"zip\"\n", optimise + d + ends, "5:11:", "not with [optimise]"},
+      {pairs, optimise + "[tolerances]\ncilium.diameter = \"1 %\"\n" + d + ends,
+       "8:1:", "of another study"},
+      {pairs, optimise + "at_most.resolution = \"1 mN\"\n" + d + ends, "1:1:", "needs 'noise'"},
+      // Right by itself, not with the rest of the case: the contact beyond the tip.
+      {pairs,
+       optimise + "[[parameter]]\npath = \"cilium.length\"\nfrom = \"15 mm\"\nto = \"30 mm\"\n",
+       "1:1:", "at length = 15 mm: the contact height 0.016 m must lie between"},
+  };
+  for (const Planted& p : planted) {
+    SCOPED_TRACE(p.header + p.rest);
+    const std::string said = faults(study_text(p.header, p.rest));
+    EXPECT_THAT(said, StartsWith("varied.study.toml:" + p.place));
+    EXPECT_THAT(said, HasSubstr(p.words));
+  }
+  EXPECT_EQ(faults(study_text(pairs, optimise + d + ends)), "");
 }
 
 TEST_F(StudyReader, SeveralFaultsAreSaidAtOnceInTheOrderOfTheFile) {

@@ -151,6 +151,46 @@ TEST(StudyCommand, TolerancesAloneAreAStudy) {
   EXPECT_GT(json["tolerances"]["pairs"]["elastica/line"]["dB_x"]["deviation"].get<double>(), 0);
 }
 
+// Oracle: `ciliaval study` of the design that was found, as a sweep of one point.
+TEST(StudyCommand, AnOptimumIsTheSweepsPointOfItsDesign) {
+  const TemporaryFolder folder;
+  test::write_study_case(folder.path());
+  const std::string header =
+      "pairs = [\"elastica/volume\", \"beam/line\"]\n"
+      "outputs = [\"dB_norm\", \"range\"]\n";
+  const auto search = [&](const std::string& range) {
+    test::write_study(
+        folder.path(),
+        study_text(header, "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"" + range +
+                               "\"\nglobal_evaluations = 0\nstarts = 1\n[[parameter]]\n"
+                               "path = \"cilium.diameter\"\nfrom = \"1 mm\"\nto = "
+                               "\"5 mm\"\n"));
+    return run_program(folder.path(), "study varied.study.toml --fresh");
+  };
+  const Outcome study = search("2 mN");
+  ASSERT_EQ(study.code, 0) << study.err;
+  EXPECT_EQ(study.err, "");
+  const fs::path out = folder.path() / "results/varied";
+  EXPECT_TRUE(fs::exists(out / "optimum.csv"));
+  EXPECT_FALSE(fs::exists(out / "study.csv"));
+  const Outcome again = run_program(folder.path(), "study varied.study.toml");
+  EXPECT_EQ(again.out, study.out);
+  EXPECT_THAT(again.err, HasSubstr("evaluations are there already"));
+  EXPECT_THAT(run_program(folder.path(), "validate varied.study.toml").out,
+              HasSubstr("is valid: an optimum over 1 numbers, 2 pairs"));
+  const auto design = nlohmann::json::parse(read_text(out / "study.json"))["optimum"]["designs"][1];
+  const double diameter = design["parameters"]["cilium.diameter"];
+  test::write_study(folder.path(),
+                    study_text(header, "[[parameter]]\npath = \"cilium.diameter\"\nvalues = [\"" +
+                                           nlohmann::json(diameter).dump() + " m\"]\n"));
+  ASSERT_EQ(run_program(folder.path(), "study varied.study.toml --fresh").code, 0);
+  EXPECT_EQ(nlohmann::json::parse(read_text(out / "study.json"))["points"][0]["pairs"],
+            design["pairs"]);
+  const Outcome none = search("1 N");
+  EXPECT_EQ(none.code, 5) << none.err;
+  EXPECT_THAT(none.out, HasSubstr("No design was found"));
+}
+
 TEST(StudyCommand, EveryPointFailedIsExitCode3) {
   const TemporaryFolder folder;
   test::write_study_case(folder.path(), "\"2 mN\"",
@@ -202,8 +242,9 @@ TEST(StudyCommand, HelpTeachesAndListShowsTheShippedOnes) {
   EXPECT_THAT(help.out, HasSubstr("[[parameter]]"));
   EXPECT_THAT(help.out, HasSubstr("--fresh"));
   const Outcome list = run_program(folder.path(), "list");
-  for (const char* word : {"paper/fig4a-e1.study.toml", "paper/fig4a-e2.study.toml",
-                           "paper/fig4b.study.toml", "paper/fig4c.study.toml", "(Fig. 4c)"})
+  for (const char* word :
+       {"paper/fig4a-e1.study.toml", "paper/fig4a-e2.study.toml", "paper/fig4b.study.toml",
+        "paper/fig4c.study.toml", "paper/optimum.study.toml", "(Fig. 4c)"})
     EXPECT_THAT(list.out, HasSubstr(word));
 }
 

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compare/study/evaluate.h"
+#include "compare/study/journal.h"
+#include "compare/study/search.h"
+
+namespace ciliaval::compare::study {
+
+/// A design with what the pairs make of it.
+struct Design {
+  std::string name;            ///< "start", "optimum 1", …
+  std::vector<double> values;  ///< of the parameters, SI units
+  std::vector<ModelPair> models;
+  std::vector<PairResult> pairs;  ///< for each of `models`
+};
+
+/// What an optimisation found.
+struct Optimum {
+  SearchResult search;          ///< in the unit box of the parameters' bounds
+  std::vector<Design> designs;  ///< the start, then each of `search.optima`; by all pairs the start
+                                ///< and the best, by the mechanics model that searched the others
+  std::size_t evaluations = 0;  ///< distinct designs that the search has asked for
+
+  bool found() const { return designs.size() > 1; }
+};
+
+/// A constraint of the search: a limit of the study's, or that the contact or probe does not slip
+/// off under the design's own load.
+struct Constraint {
+  Output output{};
+  bool is_lower = true;
+  double value = 0;          ///< SI units; of its own load the factor
+  bool is_own_load = false;  ///< the range is at least `value` times the load
+};
+std::vector<Constraint> constraints_of(const Study& study);
+
+/// Searches with the study's first pair and confirms with all of them. The gain is ln|y| of the
+/// goal y, a constraint ln(limit/|y|) or ln(|y|/limit), so that the multipliers are elasticities:
+/// per cent of the goal for one per cent of the limit. A design without a goal, because it slips
+/// off or the model fails, has a stand-in far below; how far it is from bearing its load is known
+/// from its range all the same. Each evaluation is in the journal as soon as it is there; the
+/// search asks for the same sequence of designs again and finds them there. Throws FileError,
+/// RankFailure, CheckpointError.
+Optimum run_optimisation(const Study& study, Journal& journal,
+                         std::span<const MechanicsEntry> mechanics_models,
+                         std::span<const FieldEntry> field_models, const Progress& progress = {});
+
+/// How many evaluations of the study the journal holds.
+std::size_t kept_evaluations(const Study& study, const Journal& journal);
+
+/// For a terminal: the designs, what limits them, and what each pair makes of them.
+std::string optimum_text(const Study& study, const Optimum& optimum);
+
+/// optimum.csv: a line for each design and pair, as study.csv has it.
+std::string optimum_csv(const Study& study, const Optimum& optimum);
+
+/// The object `optimum` of study.json (docs/study.md), SI units.
+nlohmann::ordered_json optimum_json(const Study& study, const Optimum& optimum);
+
+}  // namespace ciliaval::compare::study

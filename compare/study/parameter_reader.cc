@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The parameters of a study file.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "compare/case_sections.h"
+#include "compare/study/reading.h"
+#include "problem/words.h"
+
+namespace ciliaval::compare::study {
+namespace {
+
+constexpr std::size_t longest_name = 40;  ///< of a parameter, bytes
+constexpr std::array<std::string_view, 4> range_keys{"from", "to", "count", "spacing"};
+constexpr Range count_range{2, 100'000, false, "a range has two ends, and a study must end"};
+
+/// The value with 15 significant digits, which a person would have written: 0.3, not
+/// 0.30000000000000004.
+double rounded(double value) {
+  return std::stod(fmt::format("{:.15g}", value));
+}
+
+/// The values from one end to the other, both included.
+std::vector<double> spaced(double from, double to, unsigned int count, bool logarithmic) {
+  std::vector<double> values(count);
+  for (unsigned int i = 0; i < count; ++i) {
+    const double t = static_cast<double>(i) / (count - 1);
+    values[i] = rounded(logarithmic ? from * std::pow(to / from, t) : from + t * (to - from));
+  }
+  values.front() = from;
+  values.back() = to;
+  return values;
+}
+
+/// `from`, `to`, `count`, `spacing`.
+void read_range(Section& table, Parameter& parameter) {
+  Faults& faults = table.faults();
+  const toml::node* node = table.require("count");
+  const auto count = node != nullptr ? read_whole_number(*node, "count", count_range, faults)
+                                     : std::optional<unsigned int>();
+  const auto ends = read_ends(table, parameter);
+  if (!ends || !count) return;
+  parameter.values = spaced(ends->from, ends->to, *count, parameter.is_logarithmic);
+  for (const double v : parameter.values)
+    if (parameter.number.is_whole && v != std::floor(v)) {
+      faults.add(place(*node),
+                 fmt::format("'{}' is a whole number, but the range has {:g}: list its 'values'",
+                             parameter.number.path, v));
+      return;
+    }
+}
+
+/// `values`.
+void read_values(const toml::node& node, Parameter& parameter, Faults& faults) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty() || list->size() > most_points) {
+    faults.add(place(node), fmt::format("'values' must be a list of 1 to {} values, found {}",
+                                        most_points, describe(node)));
+    return;
+  }
+  parameter.unit = unit_of(list->front());
+  for (const toml::node& element : *list) {
+    const auto value = read_number(element, "values", parameter.number, faults);
+    if (!value) continue;
+    if (std::find(parameter.values.begin(), parameter.values.end(), *value) !=
+        parameter.values.end())
+      faults.add(place(element), "the value is listed twice");
+    parameter.values.push_back(*value);
+  }
+}
+
+/// A parameter with its values.
+void read_parameter(Section& table, Reading& reading) {
+  Faults& faults = table.faults();
+  const std::size_t before = faults.size();
+  std::optional<Parameter> parameter = read_parameter_name(table, reading);
+  const toml::node* values = table.find("values");
+  if (!parameter) {  // which values it may have cannot be told
+    for (const std::string_view key : range_keys) table.find(key);
+    table.finish();
+    return;
+  }
+  const bool has_range = table.table()->contains("from") || table.table()->contains("to");
+  if (values != nullptr && has_range)
+    faults.add(place(*values), "'values' contradicts 'from' and 'to': give one of them");
+  if (values == nullptr && !has_range)
+    faults.add(table.where(), "[[parameter]] needs 'values', or 'from', 'to' and 'count'");
+  if (values != nullptr) {
+    read_values(*values, *parameter, faults);
+    for (const std::string_view key : range_keys) table.find(key);
+  } else {
+    read_range(table, *parameter);
+  }
+  table.finish();
+  if (faults.size() == before) add_parameter(std::move(*parameter), reading.study.parameters);
+}
+
+}  // namespace
+
+const CaseNumber* find_number(const Reading& reading, const std::string& path, Place where,
+                              Faults& faults) {
+  std::vector<std::string_view> paths;
+  for (const CaseNumber& number : reading.numbers) {
+    if (number.path == path) return &number;
+    paths.push_back(number.path);
+  }
+  std::string advice = did_you_mean(path, paths);
+  if (advice.empty()) advice = fmt::format(" (there are {})", fmt::join(paths, ", "));
+  faults.add(where, fmt::format("the case has no number {}{}", in_quotes(path), advice));
+  return nullptr;
+}
+
+std::optional<double> read_number(const toml::node& node, std::string_view name,
+                                  const CaseNumber& number, Faults& faults) {
+  if (!number.is_whole) return read_value(node, name, number.quantity, number.range, faults);
+  const auto whole = read_whole_number(node, name, number.range, faults);
+  return whole ? std::optional<double>(*whole) : std::nullopt;
+}
+
+void check_contradiction(const Study& study, const CaseNumber& number, Place where,
+                         Faults& faults) {
+  const auto refuse = [&](const CaseNumber& other) {
+    if (other.sets == number.sets)
+      faults.add(where, other.path == number.path
+                            ? fmt::format("'{}' is set twice", number.path)
+                            : fmt::format("'{}' contradicts '{}': set one of them", number.path,
+                                          other.path));
+  };
+  for (const Setting& setting : study.fixed) refuse(setting.number);
+  for (const Parameter& parameter : study.parameters) refuse(parameter.number);
+  if (study.optimisation)
+    for (const Parameter& parameter : study.optimisation->parameters) refuse(parameter.number);
+}
+
+std::string unit_of(const toml::node& node) {
+  const auto* text = node.as_string();
+  if (text == nullptr) return {};
+  std::string_view rest = text->get();
+  const auto skip = [&](std::string_view characters) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(characters), rest.size()));
+  };
+  skip(" +-0123456789._");
+  if (rest.size() > 1 && (rest[0] == 'e' || rest[0] == 'E') &&
+      std::string_view("+-0123456789").find(rest[1]) != std::string_view::npos) {
+    rest.remove_prefix(1);
+    skip("+-0123456789");
+  }
+  skip(" ");
+  return std::string(rest);
+}
+
+std::optional<Parameter> read_parameter_name(Section& table, Reading& reading) {
+  Faults& faults = table.faults();
+  const toml::node* path_node = table.require("path");
+  const toml::node* name = table.find("name");
+  const std::optional<std::string> path =
+      path_node != nullptr ? read_text(*path_node, "path", faults) : std::nullopt;
+  const CaseNumber* number =
+      path ? find_number(reading, *path, place(*path_node), faults) : nullptr;
+  if (number == nullptr) return std::nullopt;
+  Parameter parameter{*number, path->substr(path->find_last_of('.') + 1), {}, 1, {}, false};
+  check_contradiction(reading.study, *number, place(*path_node), faults);
+  if (name != nullptr)
+    parameter.name = read_line(*name, "name", longest_name, faults).value_or(parameter.name);
+  return parameter;
+}
+
+std::optional<Ends> read_ends(Section& table, Parameter& parameter) {
+  Faults& faults = table.faults();
+  const std::size_t before = faults.size();
+  const auto end = [&](std::string_view key) {
+    const toml::node* node = table.require(key);
+    if (node == nullptr) return std::optional<double>();
+    if (parameter.unit.empty()) parameter.unit = unit_of(*node);
+    return read_number(*node, key, parameter.number, faults);
+  };
+  const auto from = end("from");
+  const auto to = end("to");
+  if (const toml::node* node = table.find("spacing")) {
+    constexpr std::array<std::string_view, 2> spacings{"linear", "logarithmic"};
+    parameter.is_logarithmic = read_choice(*node, "spacing", spacings, {}, faults) == spacings[1];
+  }
+  if (!from || !to || faults.size() != before) return std::nullopt;
+  if (*from == *to)
+    faults.add(place(*table.find("to")), "'from' and 'to' are the same: there is nothing to vary");
+  else if (parameter.is_logarithmic && !(*from * *to > 0))
+    faults.add(place(*table.find("spacing")),
+               "a logarithmic range has both ends of one sign, and none at zero");
+  else
+    return Ends{*from, *to};
+  return std::nullopt;
+}
+
+void add_parameter(Parameter parameter, std::vector<Parameter>& all) {
+  if (!parameter.unit.empty())
+    parameter.unit_size = parse_quantity("1 " + parameter.unit, parameter.number.quantity);
+  all.push_back(std::move(parameter));
+}
+
+void for_parameters(Section& root, std::string_view advice,
+                    const std::function<void(Section& table)>& read) {
+  Faults& faults = root.faults();
+  const toml::node* node = root.find("parameter");
+  const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+  if (list == nullptr || list->empty())
+    return faults.add(node != nullptr ? place(*node) : Place{}, std::string(advice));
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) {
+      faults.add(place(element),
+                 fmt::format("expected a table [[parameter]], found {}", describe(element)));
+      continue;
+    }
+    Section table(element.as_table(), "[[parameter]]", "parameter", place(element), faults);
+    read(table);
+  }
+}
+
+void read_parameters(Section& root, Reading& reading) {
+  for_parameters(root,
+                 "a study varies one parameter or more: write [[parameter]] with 'path' and "
+                 "'values', or [tolerances]",
+                 [&](Section& table) { read_parameter(table, reading); });
+}
+
+}  // namespace ciliaval::compare::study

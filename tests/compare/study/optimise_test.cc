@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/study/optimise.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "compare/registry.h"
+#include "compare/study/report.h"
+#include "problem/error.h"
+#include "study_texts.h"
+
+namespace ciliaval::compare::study {
+namespace {
+
+namespace fs = std::filesystem;
+using test::study_text;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+const std::string volume = "pairs = [\"elastica/volume\"]\noutputs = [\"dB_norm\", \"range\"]\n";
+
+std::string bounds(const std::string& path, const std::string& from, const std::string& to,
+                   const std::string& more = "") {
+  return "[[parameter]]\npath = \"cilium." + path + "\"\nfrom = " + from + "\nto = " + to + "\n" +
+         more;
+}
+const std::string proportion = bounds("segment.magnet.proportion", "0.05", "0.95");
+const std::string diameter = bounds("diameter", "\"1 mm\"", "\"5 mm\"");
+
+Study study_of(const fs::path& folder, const std::string& header, const std::string& rest) {
+  test::write_study_case(folder);
+  return read_study(test::write_study(folder, study_text(header, rest)));
+}
+
+struct Models {
+  std::vector<MechanicsEntry> mechanics{mechanics_models().begin(), mechanics_models().end()};
+  std::vector<FieldEntry> fields{field_models().begin(), field_models().end()};
+};
+
+Optimum optimum_of(const Study& study, const fs::path& folder, const Models& models = {}) {
+  Journal journal(folder / "journal", true);
+  journal.append(journal_header(study, "test"));
+  return run_optimisation(study, journal, models.mechanics, models.fields);
+}
+
+Optimum optimum_of(const std::string& header, const std::string& rest) {
+  const TemporaryFolder folder;
+  return optimum_of(study_of(folder.path(), header, rest), folder.path());
+}
+
+/// An output of the first pair at the best design.
+double best_value(const Optimum& optimum, std::size_t output) {
+  return optimum.designs.at(1).pairs.at(0).values.at(output).value();
+}
+
+// Oracle: the peak of the scan of Fig. 4c, a parabola through its three highest points, 0.001
+// apart.
+TEST(Optimise, OneParametersOptimumIsThePeakOfItsScan) {
+  for (const std::string pair : {"elastica/line", "elastica/volume"}) {
+    const TemporaryFolder folder;
+    const std::string header = "pairs = [\"" + pair + "\"]\noutputs = [\"dB_norm\"]\n";
+    const std::string fixed =
+        "[fixed]\ncilium.segment.base.young_modulus = \"0.5 MPa\"\n"
+        "cilium.segment.magnet.young_modulus = \"1 MPa\"\n";
+    const Study scan = study_of(folder.path(), header,
+                                fixed +
+                                    "[[parameter]]\npath = \"cilium.segment.magnet.proportion\"\n"
+                                    "from = 0.855\nto = 0.905\ncount = 51\n");
+    Journal journal(folder.path() / "scan");
+    journal.append(journal_header(scan, "test"));
+    const Trend peak = trend(run_study(scan, journal, mechanics_models(), field_models()), 0, 0);
+    ASSERT_EQ(peak.kind, Trend::Kind::peak);
+    const Optimum optimum =
+        optimum_of(header, fixed + "[optimise]\nmaximise = \"dB_norm\"\n" + proportion);
+    ASSERT_TRUE(optimum.found());
+    EXPECT_NEAR(optimum.designs[1].values[0], peak.extreme_at, 1e-4) << pair;
+    EXPECT_NEAR(best_value(optimum, 0), peak.largest, 1e-6 * peak.largest) << pair;
+    EXPECT_LT(optimum.search.optima[0].residual, 1e-6);
+  }
+}
+
+// Oracle: a grid of 81 × 81 designs, of which none that keeps the limit may be better, and of which
+// the best is near.
+TEST(Optimise, TwoParametersOptimumUnderALimitIsThatOfAGrid) {
+  const std::string goal = "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\n";
+  const Optimum optimum = optimum_of(volume, goal + diameter + proportion);
+  ASSERT_TRUE(optimum.found());
+  EXPECT_NEAR(best_value(optimum, 1), 2e-3, 2e-8 * 2e-3);
+  const double best = best_value(optimum, 0);
+  const TemporaryFolder folder;
+  const Study grid =
+      study_of(folder.path(), volume,
+               bounds("diameter", "\"1 mm\"", "\"3 mm\"", "count = 81\n") +
+                   bounds("segment.magnet.proportion", "0.55", "0.95", "count = 81\n"));
+  Journal journal(folder.path() / "grid");
+  journal.append(journal_header(grid, "test"));
+  const StudyResult result = run_study(grid, journal, mechanics_models(), field_models());
+  double largest = 0;
+  std::vector<double> at;
+  for (std::size_t i = 0; i < result.points.size(); ++i) {
+    const auto& values = result.points[i][0].values;
+    if (!values[0] || *values[1] < 2e-3 || *values[0] <= largest) continue;
+    largest = *values[0];
+    at = grid.values_at(i);
+  }
+  EXPECT_LE(largest, best * (1 + 1e-6));
+  EXPECT_GE(largest, best * 0.98);
+  EXPECT_NEAR(optimum.designs[1].values[0], at.at(0), 2 * 0.025e-3);
+  EXPECT_NEAR(optimum.designs[1].values[1], at.at(1), 4 * 0.005);
+}
+
+// Oracle: the optima with the limit, or the bound, 0.5 % to both sides.
+TEST(Optimise, MultipliersAreTheGainOfARelaxedLimitAndBound) {
+  const auto solve = [](const std::string& range, const std::string& modulus) {
+    return optimum_of(volume,
+                      "[optimise]\nmaximise = \"dB_norm\"\nglobal_evaluations = 0\nstarts "
+                      "= 1\nat_least.range = \"" +
+                          range + " mN\"\n" + proportion + diameter +
+                          bounds("segment.base.young_modulus", "\"" + modulus + " MPa\"",
+                                 "\"3 MPa\"", "spacing = \"logarithmic\"\n"));
+  };
+  const Optimum middle = solve("2", "0.1");
+  ASSERT_TRUE(middle.found());
+  const LocalOptimum& optimum = middle.search.optima[0];
+  EXPECT_EQ(optimum.at_bound[2], -1);
+  EXPECT_LT(optimum.residual, 1e-6);
+  const double step = std::log(2.01 / 1.99);
+  const double by_limit =
+      std::log(best_value(solve("1.99", "0.1"), 0) / best_value(solve("2.01", "0.1"), 0)) / step;
+  const double by_bound =
+      std::log(best_value(solve("2", "0.0995"), 0) / best_value(solve("2", "0.1005"), 0)) / step;
+  EXPECT_NEAR(optimum.multipliers[0], by_limit, 1e-3 * by_limit);
+  // In u = ln(E/E_from)/ln(E_to/E_from).
+  EXPECT_NEAR(optimum.bound_multipliers[2] / std::log(30), by_bound, 1e-3 * by_bound);
+}
+
+TEST(Optimise, KeepsAnUpperLimitToo) {
+  const Optimum optimum = optimum_of(
+      "pairs = [\"elastica/volume\"]\noutputs = [\"B_z\", \"dB_norm\"]\n",
+      "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\nat_most.B_z = \"1 mT\"\n" +
+          diameter + proportion);
+  ASSERT_TRUE(optimum.found());
+  EXPECT_NEAR(best_value(optimum, 0), 1e-3, 2e-8 * 1e-3);
+  EXPECT_GE(best_value(optimum, 2), 2e-3 * (1 - 2e-8));
+  EXPECT_GT(optimum.search.optima[0].multipliers[1], 0);
+}
+
+// Without a limit the thinnest cilium that still bears the load, and loads 2 % around it, wins.
+TEST(Optimise, TheLoadItselfIsTheLimitWhereNoneIsStated) {
+  const Optimum optimum =
+      optimum_of("pairs = [\"elastica/volume\"]\noutputs = [\"range\", \"sensitivity\"]\n",
+                 "[optimise]\nmaximise = \"sensitivity\"\n" + diameter);
+  ASSERT_TRUE(optimum.found());
+  EXPECT_NEAR(best_value(optimum, 1), 1.021e-3, 1e-9);
+  // The start is the case's own diameter.
+  EXPECT_EQ(optimum.designs[0].values[0], 3e-3);
+}
+
+TEST(Optimise, AStartThatSlipsOffIsNoObstacle) {
+  const Optimum optimum =
+      optimum_of(volume,
+                 "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\n"
+                 "global_evaluations = 0\nstarts = 0\n" +
+                     bounds("diameter", "\"1 mm\"", "\"5 mm\"", "start = \"1.2 mm\"\n"));
+  EXPECT_EQ(optimum.designs[0].pairs[0].status, Status::slipped_off);
+  ASSERT_TRUE(optimum.found());
+  EXPECT_EQ(optimum.search.local_searches, 1u);
+  EXPECT_NEAR(best_value(optimum, 1), 2e-3, 2e-8 * 2e-3);
+}
+
+TEST(Optimise, WithoutADesignThatKeepsTheLimitsThereIsNone) {
+  const TemporaryFolder folder;
+  const Study study =
+      study_of(folder.path(), volume,
+               "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"1 N\"\n" + diameter);
+  const Optimum optimum = optimum_of(study, folder.path());
+  EXPECT_FALSE(optimum.found());
+  EXPECT_EQ(optimum.designs.size(), 1u);
+  EXPECT_THAT(optimum_text(study, optimum), HasSubstr("No design was found that keeps the limits"));
+  EXPECT_FALSE(optimum_json(study, optimum)["found"].get<bool>());
+}
+
+// |ΔB| = 5 T/rad² θ² with θ = 100 F/N · 3 mm/d: the largest at the smallest d that the model does
+// not break at; the other models do not share its range.
+TEST(Optimise, DesignsAtWhichTheModelFailsAreLeftOutAndOtherPairsConfirm) {
+  const TemporaryFolder folder;
+  Models models;
+  const auto entry = [](const std::string& id, double range) {
+    return test::mechanics_entry(id, [=](const Load& load) {
+      MechanicsStep step =
+          test::converged(load, test::tilted(0.02, 0.01, direction(load), 100 * magnitude(load)));
+      step.slip_off_force = range;
+      return step;
+    });
+  };
+  models.mechanics = {entry("elastica", 5e-3), entry("beam", 4.9e-3)};
+  models.fields = {test::field_entry("line", [](const Deformation& d, const Vector3& x) -> Vector3 {
+    if (x.z() > -1.2e-3) throw SolverError("too near");
+    const double theta = d.centreline.at(0.02).theta();
+    return 5e-6 * theta * theta / -x.z() * Vector3::UnitX();
+  })};
+  const Study study =
+      study_of(folder.path(),
+               "pairs = [\"elastica/line\", \"beam/line\"]\noutputs = [\"dB_norm\", \"range\"]\n",
+               "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"5 mN\"\n"
+               "[[parameter]]\npath = \"sensor.position.z\"\nname = \"z\"\nfrom = \"-3 mm\"\nto = "
+               "\"-1 mm\"\n");
+  const Optimum optimum = optimum_of(study, folder.path(), models);
+  ASSERT_TRUE(optimum.found());
+  EXPECT_NEAR(optimum.designs[1].values[0], -1.2e-3, 0.01e-3);
+  EXPECT_LE(optimum.designs[1].values[0], -1.2e-3);
+  ASSERT_EQ(optimum.designs[1].models.size(), 2u);
+  const std::string text = optimum_text(study, optimum);
+  EXPECT_THAT(text, HasSubstr("range missed by 2 %"));
+  EXPECT_THAT(text, HasSubstr("kept"));
+}
+
+TEST(Optimise, GoesOnFromTheJournalAndEvaluatesNothingTwice) {
+  const TemporaryFolder folder;
+  const Study study = study_of(folder.path(), volume,
+                               "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\n"
+                               "global_evaluations = 60\nstarts = 2\n" +
+                                   diameter + proportion);
+  int solved = 0;
+  int limit = 1'000'000;
+  Models models;
+  const auto genuine = models.mechanics.front();
+  ASSERT_EQ(genuine.id, "elastica");
+  models.mechanics.front().make = [&](const ModelOptions& options) {
+    if (solved++ == limit) throw RankFailure("stopped");
+    return genuine.make(options);
+  };
+  const auto run = [&](const std::string& name) {
+    Journal journal(folder.path() / name);
+    if (journal.header().empty()) journal.append(journal_header(study, "test"));
+    const Optimum optimum = run_optimisation(study, journal, models.mechanics, models.fields);
+    return optimum_text(study, optimum) + optimum_csv(study, optimum) +
+           optimum_json(study, optimum).dump();
+  };
+  const std::string whole = run("whole");
+  const int all = solved;
+  ASSERT_GT(all, 100);
+  for (const int part : {1, 30, 77, all - 1}) {
+    const std::string name = "part" + std::to_string(part);
+    solved = 0;
+    limit = part;
+    EXPECT_THROW(run(name), RankFailure);
+    limit = 1'000'000;
+    solved = 0;
+    EXPECT_EQ(run(name), whole);
+    EXPECT_EQ(solved, all - part);
+    EXPECT_EQ(test::read_text(folder.path() / name), test::read_text(folder.path() / "whole"));
+    const Journal journal(folder.path() / name);
+    EXPECT_EQ(kept_evaluations(study, journal), journal.records().size());
+  }
+}
+
+TEST(Optimise, ReportsEachDesignByEachPair) {
+  const TemporaryFolder folder;
+  const Study study = study_of(
+      folder.path(),
+      "pairs = [\"elastica/line\", \"elastica/volume\", \"beam/volume\"]\noutputs = [\"dB_norm\", "
+      "\"range\"]\n",
+      "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\nglobal_evaluations = 0\n"
+      "starts = 1\n" +
+          diameter);
+  const Optimum optimum = optimum_of(study, folder.path());
+  const std::string csv = optimum_csv(study, optimum);
+  EXPECT_THAT(csv, testing::StartsWith("# units: cilium.diameter m, dB_norm T, range N\n"
+                                       "design,cilium.diameter,pair,status,dB_norm,range,message\n"
+                                       "start,0.003,elastica/line,converged,"));
+  EXPECT_THAT(csv, HasSubstr("\noptimum 1,0.00"));
+  const auto json = optimum_json(study, optimum);
+  EXPECT_EQ(json["designs"].size(), 2u);
+  const auto& best = json["designs"][1];
+  EXPECT_EQ(best["pairs"].size(), 3u);
+  EXPECT_EQ(best["parameters"]["cilium.diameter"].get<double>(), optimum.designs[1].values[0]);
+  EXPECT_EQ(best["pairs"]["beam/volume"]["range"].get<double>(),
+            optimum.designs[1].pairs[2].values[1].value());
+  EXPECT_TRUE(best["constraints"][0]["reached"].get<bool>());
+  EXPECT_FALSE(best["constraints"][1]["reached"].get<bool>());
+  const std::string text = optimum_text(study, optimum);
+  for (const char* words : {"range >= 2 mN: reached; 1 % less would give", "diameter(mm)",
+                            "|dB| of start", "range missed by"})
+    EXPECT_THAT(text, HasSubstr(words));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare::study
