@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "compare/claims/ledger.h"
-#include "compare/errors.h"
 #include "compare/registry.h"
 #include "compare/study/evaluate.h"
 #include "compare/study/report.h"
@@ -42,17 +41,6 @@ StudyResult evaluated(const std::filesystem::path& file, std::vector<Output> out
   return result;
 }
 
-/// What the numerical errors of a pair make of ΔB at a point, T.
-double change_uncertainty_at(const study::Study& study, std::size_t point,
-                             const ModelPair& pair) {
-  Case problem = study.case_at(point);
-  problem.external.clear();
-  problem.mechanics = {pair.mechanics};
-  problem.fields = {pair.field};
-  const CaseResult result = ciliaval::compare::run(problem, mechanics_models(), field_models());
-  return change_uncertainty(result, result.fields.front(), 0, 0).value();
-}
-
 /// The first and the last point that have the output: the values increase.
 std::array<std::size_t, 2> ends(const StudyResult& result, std::size_t pair, std::size_t output) {
   std::array<std::size_t, 2> found{result.points.size(), 0};
@@ -82,8 +70,7 @@ void add_trends(const StudyResult& result, std::size_t output, const Holds& hold
                              1e6 * trend.first, 1e6 * trend.last, "uT", holds(trend));
     for (const std::size_t end : ends(result, pair, output))
       finding.uncertainty =
-          std::max(finding.uncertainty,
-                   1e6 * change_uncertainty_at(result.study, end, result.study.pairs[pair]));
+          std::max(finding.uncertainty, 1e6 * result.points[end][pair].uncertainty.value());
     claim.findings.push_back(std::move(finding));
   }
 }

@@ -222,7 +222,10 @@ Json optimum_json(const Study& study, const Optimum& optimum) {
                                   {"name", p.name},
                                   {"unit", p.number.quantity.unit},
                                   {"from", p.values.front()},
-                                  {"to", p.values.back()}});
+                                  {"to", p.values.back()},
+                                  {"shown_unit", p.unit},
+                                  {"shown_unit_size", p.unit_size},
+                                  {"logarithmic", p.is_logarithmic}});
   for (const Constraint& c : constraints_of(study))
     json["constraints"].push_back({{"output", id(c.output)},
                                    {c.is_lower ? "at_least" : "at_most", c.value},

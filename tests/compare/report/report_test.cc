@@ -45,6 +45,31 @@ TEST(Html, NothingInATextIsMarkup) {
   EXPECT_EQ(compare::report::identifier("fig 3\"b/x"), "fig-3-b-x");
 }
 
+// Oracle: study.json.
+TEST(Report, ShowsAnOptimumWithItsDesigns) {
+  const test::TemporaryFolder folder;
+  test::write_study_case(folder.path());
+  test::write_study(
+      folder.path(),
+      test::study_text("pairs = [\"elastica/volume\", \"beam/line\"]\n",
+                       "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\n"
+                       "global_evaluations = 0\nstarts = 0\n[[parameter]]\n"
+                       "path = \"cilium.diameter\"\nfrom = \"1 mm\"\nto = \"5 mm\"\n"));
+  ASSERT_EQ(test::run_program(folder.path(), "study varied.study.toml -o results").code, 0);
+  ASSERT_EQ(test::run_program(folder.path(), "report results").code, 0);
+  const std::string page = read_text(folder.path() / "results/report.html");
+  const auto optimum =
+      nlohmann::json::parse(read_text(folder.path() / "results/varied/study.json"))["optimum"];
+  expect_shown(page, "range: largest load ≥ 2 mN: reached; 1 % less would give ");
+  expect_shown(
+      page,
+      fmt::format("<td>{:.5g}</td>",
+                  optimum["designs"][1]["parameters"]["cilium.diameter"].get<double>() * 1e3));
+  for (const auto& design : optimum["designs"])
+    for (const auto& [pair, result] : design["pairs"].items())
+      expect_shown(page, fmt::format("<td>{:.5g}</td>", result["dB_norm"].get<double>() * 1e6));
+}
+
 // Oracle: the numbers of the result files, formatted here.
 TEST(Report, ShowsTheNumbersOfTheFilesOfEveryKind) {
   const test::Results results;

@@ -139,6 +139,22 @@ TEST(Optimise, MultipliersAreTheGainOfARelaxedLimitAndBound) {
   EXPECT_NEAR(optimum.bound_multipliers[2] / std::log(30), by_bound, 1e-3 * by_bound);
 }
 
+// Along E2 at E1 = 1 MPa |ΔB| has a trough at 0.17 MPa (docs/study.md): both ends are optima, the
+// lower one of a basin that a tenth of the starts hit.
+TEST(Optimise, ListsBothSidesOfATrough) {
+  const Optimum optimum =
+      optimum_of("pairs = [\"elastica/line\"]\noutputs = [\"dB_norm\"]\n",
+                 "[fixed]\ncilium.segment.base.young_modulus = \"1 MPa\"\n[optimise]\nmaximise = "
+                 "\"dB_norm\"\nstarts = 40\n" +
+                     bounds("segment.magnet.young_modulus", "\"0.1 MPa\"", "\"10 MPa\"",
+                            "spacing = \"logarithmic\"\n"));
+  ASSERT_EQ(optimum.designs.size(), 3u);
+  EXPECT_EQ(optimum.designs[1].values[0], 1e7);
+  EXPECT_EQ(optimum.designs[2].values[0], 1e5);
+  EXPECT_GT(best_value(optimum, 0), optimum.designs[2].pairs[0].values[0].value());
+  EXPECT_EQ(optimum.search.optima[0].starts + optimum.search.optima[1].starts, 42u);
+}
+
 TEST(Optimise, KeepsAnUpperLimitToo) {
   const Optimum optimum = optimum_of(
       "pairs = [\"elastica/volume\"]\noutputs = [\"B_z\", \"dB_norm\"]\n",
