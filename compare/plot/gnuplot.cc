@@ -93,7 +93,7 @@ std::string quoted(std::string_view text) {
 }
 
 std::string logarithmic_x_axis(double from, double to) {
-  const std::string script = fmt::format("set xrange [{}:{}]\nset logscale x\n", from, to);
+  std::string script = fmt::format("set xrange [{}:{}]\nset logscale x\n", from, to);
   constexpr double short_axis = 1000;
   if (to > short_axis * from) return script;
   std::vector<std::string> marks;

@@ -271,7 +271,7 @@ std::vector<std::string> remarks(const Json& summary) {
     for (const auto& [name, m] : of_step.at("mechanics").items()) {
       const std::string status = m.at("status").get<std::string>();
       const std::string message = text_at(m, "message");
-      if (status == "slipped_off" && !m.at("slip_off_force").is_null())
+      if (status == "slipped_off" && message.empty() && !m.at("slip_off_force").is_null())
         add(fmt::format("{}: slips off above {} mN", name, number(m["slip_off_force"], 1e-3, 4)),
             number_of);
       if (status == "failed" || !message.empty())
@@ -291,6 +291,7 @@ std::vector<std::string> remarks(const Json& summary) {
 
 std::string sensors_text(const Json& sensors) {
   std::vector<std::string> texts;
+  texts.reserve(sensors.size());
   for (const Json& s : sensors)
     texts.push_back(fmt::format("({}, {}, {}) mm", number(s.at(0), 1e-3), number(s.at(1), 1e-3),
                                 number(s.at(2), 1e-3)));

@@ -73,7 +73,7 @@ std::string script(const Curves& drawing) {
   }
   if (curves.empty()) return {};
   std::string text = fmt::format(
-      "set termoption font 'sans,14'\nset title {}\nset xlabel {} offset 0,0.3\nset ylabel {}\n"
+      "set termoption font 'sans,14'\nset title {}\nset xlabel {} offset 0,0.6\nset ylabel {}\n"
       "set grid lt 1 lc rgb '#e4e4e4'\nset tics nomirror\n"
       "set key below Left reverse samplen 2 maxcols 2 font ',12'\n"
       "set autoscale xfix\nset offsets 0, 0, graph 0.05, {}\n",

@@ -133,7 +133,8 @@ std::string pair_matrices(const Json& summary) {
   return heading(3, "Pairs of models") +
          paragraph(
              "Each cell is the model less its reference in %, ± the numerical uncertainty of "
-             "the two. The reference leaves out less; it is not the truth. Shaded: resolved, "
+             "the two, where it is more than a thousandth of it. The reference leaves out less; it "
+             "is not the truth. Shaded: resolved, "
              "from 0.1, 1, 5 and 20 % on. ~: below its uncertainty, nothing can be told from "
              "zero. ?: inconclusive, a model does not know its uncertainty. Fields: sensor "
              "0. Every comparison is in errors.csv.") +

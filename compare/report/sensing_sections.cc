@@ -86,7 +86,8 @@ std::string claims_content(const Json& json) {
     }
   }
   std::vector<std::string> parts;
-  for (const auto& [verdict, count] : counts) parts.push_back(fmt::format("{} {}", count, verdict));
+  parts.reserve(counts.size());
+  for (const auto& [verdict, count] : counts) parts.push_back(fmt::format("{} {}", verdict, count));
   return paragraph(fmt::format("{} claims: {}.", json["claims"].size(), in_words(parts))) +
          html(table);
 }

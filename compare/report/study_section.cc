@@ -307,9 +307,9 @@ std::string optimum_content(const Json& study) {
 
 std::string study_content(const Json& study, Figures& figures) {
   const std::vector<Parameter> parameters = parameters_of(study);
-  std::vector<std::string> pairs;
-  for (const Json& pair : study.at("pairs")) pairs.push_back(pair.get<std::string>());
+  const auto pairs = study.at("pairs").get<std::vector<std::string>>();
   std::vector<std::string> names;
+  names.reserve(parameters.size());
   for (const Parameter& p : parameters) names.push_back(p.name);
   const std::string points = study.contains("optimum")
                                  ? "An optimum"
@@ -321,6 +321,7 @@ std::string study_content(const Json& study, Figures& figures) {
   if (!parameters.empty() && !study["points"].empty()) {
     const std::vector<Family> families = families_of(study, parameters);
     std::vector<Drawing> drawings;
+    drawings.reserve(study.at("outputs").size());
     for (const Json& output : study.at("outputs"))
       drawings.push_back(drawing_of(study, parameters, families, output));
     text += figures.row(drawings);
@@ -333,10 +334,8 @@ std::string study_content(const Json& study, Figures& figures) {
     text += details("The points' numbers", tables);
   }
   text += tolerances(study) + optimum_content(study);
-  std::vector<std::string> resolved;
-  for (const Json& line : study.at("resolved")) resolved.push_back(line.get<std::string>());
   std::string lines;
-  for (const std::string& line : resolved) lines += line + "\n";
+  for (const Json& line : study.at("resolved")) lines += line.get<std::string>() + "\n";
   return text + details("Everything the results depend on, SI units",
                         verbatim("The study, resolved", lines));
 }

@@ -404,6 +404,40 @@ TEST(Waterfall, DrawsBarsFromThePapersModelToTheBest) {
   EXPECT_EQ(waterfall(Budget{}).script, "");
 }
 
+// The file gives back all that is drawn and listed: written again, it is the same text.
+TEST(BudgetReport, IsReadBackFromItsJson) {
+  World world;
+  world.tip_uncertainty["solid"] = std::nullopt;
+  world.uncertainty = Vector3::Constant(1e-7);
+  const Budget budget = world.budget({1e-3, 2e-3});
+  const auto json = nlohmann::ordered_json::parse(budget_json(budget, {}));
+  Budget again = read_budget(json);
+  const std::vector<WaterfallPanel> panels = waterfall_panels(again);
+  ASSERT_EQ(panels.size(), 4u);
+  EXPECT_EQ(panels[0].quantity, "tip x, mm");
+  EXPECT_EQ(panels[3].quantity, "dB_z, µT");
+  EXPECT_EQ(panels[1].step, 1u);
+  // Each bar of the drawing of all panels is in one of them.
+  const std::string all = waterfall(budget).script;
+  std::size_t bars = 0;
+  for (const WaterfallPanel& panel : panels) {
+    std::istringstream lines(panel.drawing.script);
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("set object rectangle")) {
+        ++bars;
+        EXPECT_THAT(all, HasSubstr(line + "\n"));
+      }
+  }
+  EXPECT_GT(bars, 12u);
+  again.load_path = budget.load_path;
+  EXPECT_EQ(budget_json(again, {}), budget_json(budget, {}));
+  auto damaged = json;
+  damaged["rows"][0]["total"]["verdict"] = "perhaps";
+  EXPECT_THROW(read_budget(damaged), FileError);
+  damaged["rows"][0].erase("total");
+  EXPECT_THROW(read_budget(damaged), nlohmann::json::exception);
+}
+
 // The paper's cilium by the rods. Oracle of dB/dF: the derivative of the polynomial through
 // fourteen Chebyshev points of B(F) over ±10 % of F, by the same two models run apart.
 TEST(Budget, RodsOfThePaperAddUpAndTheirSensitivityIsTheDerivative) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "../run/synthetic.h"
@@ -74,6 +75,20 @@ TEST(ConvergencePlot, IsEmptyWhereNothingDiffers) {
       quantity("steps/0/mechanics/beam/tip/deflection", {{1, 1.0}, {2, 1.0}, {4, 1.0}}));
   EXPECT_EQ(convergence_plot(problem, {still}).script, "");
   EXPECT_EQ(convergence_plot(problem, {}).script, "");
+}
+
+// The file gives back all that is drawn and listed: written again, it is the same text.
+TEST(RefinementStudy, IsReadBackFromItsJsonAndDrawnAlone) {
+  RefinementStudy failed{"beam", "degree", "2^-degree", {4, 2, 1}, {1, 2, 3}, {}, "it failed"};
+  const std::string text = study_json("case", {study(), failed}, {});
+  const std::vector<RefinementStudy> again = read_studies(nlohmann::ordered_json::parse(text));
+  EXPECT_EQ(study_json("case", again, {}), text);
+  const ConvergencePlot panel = convergence_panel(again.front());
+  EXPECT_THAT(panel.script, HasSubstr("solid, refinement, load step 2 of 2"));
+  EXPECT_THAT(panel.script, HasSubstr("tip: order 2.00"));
+  EXPECT_THAT(panel.script, Not(HasSubstr("multiplot")));
+  EXPECT_THAT(plot::draw_svg(panel.script, panel.size), HasSubstr("tip: order 2.00"));
+  EXPECT_EQ(convergence_panel(failed).script, "");
 }
 
 }  // namespace

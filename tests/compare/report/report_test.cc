@@ -10,7 +10,10 @@
 #include <regex>
 #include <string>
 
+#include "compare/plot/gnuplot.h"
+#include "compare/report/figures.h"
 #include "compare/report/html.h"
+#include "problem/error.h"
 #include "results.h"
 
 namespace ciliaval {
@@ -68,6 +71,29 @@ TEST(Report, ShowsAnOptimumWithItsDesigns) {
   for (const auto& design : optimum["designs"])
     for (const auto& [pair, result] : design["pairs"].items())
       expect_shown(page, fmt::format("<td>{:.5g}</td>", result["dB_norm"].get<double>() * 1e6));
+}
+
+// gnuplot's own text, and texts that would load or run something.
+TEST(Figures, HaveIdsOfTheirOwnAndNothingThatLoadsOrRuns) {
+  using compare::report::inlined;
+  const std::string svg =
+      compare::plot::draw_svg("set title " + compare::plot::quoted("id='gpPt0' href < on") +
+                                  "\nplot sin(x) with points pt 6\n",
+                              {});
+  const std::string first = inlined(svg, "a", "a <title>", {});
+  const std::string second = inlined(svg, "b", "", {});
+  EXPECT_THAT(first, HasSubstr("<title id=\"a-title\">a &lt;title&gt;</title>"));
+  EXPECT_THAT(first, HasSubstr("id='gpPt0' href &lt; on"));  // a text is none of our ids
+  EXPECT_THAT(first, HasSubstr(" id='a-gpPt5'"));
+  EXPECT_THAT(first, HasSubstr("xlink:href='#a-gpPt5'"));
+  EXPECT_THAT(second, HasSubstr(" id='b-gpPt5'"));
+  for (const char* planted : {"<script>1</script>", "<image href='x.png'/>", "<g onclick='1'/>",
+                              "<use href='http://x/#a'/>", "<style>a{}</style>"}) {
+    std::string bad = svg;
+    bad.insert(bad.find("</svg>"), planted);
+    EXPECT_THROW(inlined(bad, "a", "", {}), FileError) << planted;
+  }
+  EXPECT_THROW(inlined("<svg></svg>", "a", "", {}), FileError);
 }
 
 // Oracle: the numbers of the result files, formatted here.
