@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/study/optimise.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,25 +62,26 @@ double best_value(const Optimum& optimum, std::size_t output) {
 // Oracle: the peak of the scan of Fig. 4c, a parabola through its three highest points, 0.001
 // apart.
 TEST(Optimise, OneParametersOptimumIsThePeakOfItsScan) {
-  for (const std::string pair : {"elastica/line", "elastica/volume"}) {
+  const std::string fixed =
+      "[fixed]\ncilium.segment.base.young_modulus = \"0.5 MPa\"\n"
+      "cilium.segment.magnet.young_modulus = \"1 MPa\"\n";
+  const std::string scanned = fixed +
+                              "[[parameter]]\npath = \"cilium.segment.magnet.proportion\"\n"
+                              "from = 0.855\nto = 0.905\ncount = 51\n";
+  const std::string searched = fixed + "[optimise]\nmaximise = \"dB_norm\"\n" + proportion;
+  for (const char* field : {"line", "volume"}) {
     const TemporaryFolder folder;
-    const std::string header = "pairs = [\"" + pair + "\"]\noutputs = [\"dB_norm\"]\n";
-    const std::string fixed =
-        "[fixed]\ncilium.segment.base.young_modulus = \"0.5 MPa\"\n"
-        "cilium.segment.magnet.young_modulus = \"1 MPa\"\n";
-    const Study scan = study_of(folder.path(), header,
-                                fixed +
-                                    "[[parameter]]\npath = \"cilium.segment.magnet.proportion\"\n"
-                                    "from = 0.855\nto = 0.905\ncount = 51\n");
+    const std::string header =
+        fmt::format("pairs = [\"elastica/{}\"]\noutputs = [\"dB_norm\"]\n", field);
+    const Study scan = study_of(folder.path(), header, scanned);
     Journal journal(folder.path() / "scan");
     journal.append(journal_header(scan, "test"));
     const Trend peak = trend(run_study(scan, journal, mechanics_models(), field_models()), 0, 0);
     ASSERT_EQ(peak.kind, Trend::Kind::peak);
-    const Optimum optimum =
-        optimum_of(header, fixed + "[optimise]\nmaximise = \"dB_norm\"\n" + proportion);
+    const Optimum optimum = optimum_of(header, searched);
     ASSERT_TRUE(optimum.found());
-    EXPECT_NEAR(optimum.designs[1].values[0], peak.extreme_at, 1e-4) << pair;
-    EXPECT_NEAR(best_value(optimum, 0), peak.largest, 1e-6 * peak.largest) << pair;
+    EXPECT_NEAR(optimum.designs[1].values[0], peak.extreme_at, 1e-4) << field;
+    EXPECT_NEAR(best_value(optimum, 0), peak.largest, 1e-6 * peak.largest) << field;
     EXPECT_LT(optimum.search.optima[0].residual, 1e-6);
   }
 }
