@@ -76,13 +76,13 @@ std::string script(const Curves& drawing) {
       "set termoption font 'sans,14'\nset title {}\nset xlabel {} offset 0,0.6\nset ylabel {}\n"
       "set grid lt 1 lc rgb '#e4e4e4'\nset tics nomirror\n"
       "set key below Left reverse samplen 2 maxcols 2 font ',12'\n"
-      "set autoscale xfix\nset offsets 0, 0, graph 0.05, {}\n",
+      "set offsets 0, 0, graph 0.05, {}\n",
       plot::quoted(drawing.title), plot::quoted(drawing.x_label), plot::quoted(drawing.y_label),
       is_never_negative(drawing) ? "0" : "graph 0.05");
   if (drawing.window)
     text += fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\n", (*drawing.window)[0],
                         (*drawing.window)[1], (*drawing.window)[2], (*drawing.window)[3]);
-  if (drawing.equal_axes) text += "set size ratio -1\n";
+  text += drawing.equal_axes ? "set size ratio -1\n" : "set autoscale xfix\n";
   if (drawing.logarithmic_x) text += logarithmic_axis(drawing);
   for (const Label& label : drawing.labels)
     text += fmt::format("set label {} at {},{} offset 0.4,0.4 font ',11' front\n",

@@ -43,6 +43,7 @@ pid_t spawn(const std::vector<std::string>& words, int in, int out) {
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   std::vector<std::string> copies = words;
   std::vector<char*> arguments;
+  arguments.reserve(copies.size() + 1);
   for (std::string& word : copies) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t process = -1;
@@ -110,7 +111,7 @@ json Browser::receive() {
     received_.append(part.data(), static_cast<std::size_t>(n));
     end = received_.find('\0');
   }
-  const json message = json::parse(received_.substr(0, end));
+  json message = json::parse(received_.substr(0, end));
   received_.erase(0, end + 1);
   return message;
 }

@@ -24,7 +24,6 @@ using test::Outcome;
 using test::read_text;
 using test::run_program;
 using testing::HasSubstr;
-using testing::Not;
 
 /// A page is too long to be printed.
 bool shows(const std::string& page, const std::string& text) {
