@@ -7,4 +7,7 @@ target_compile_options(ciliaval_compiler INTERFACE
 if(CILIAVAL_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+  # With the sanitizer Eigen aligns by itself and frees accordingly; Gmsh's library has templates of Eigen in common with us and
+  # was built without, so that one would free what the other has allocated.
+  add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()

@@ -107,6 +107,7 @@ void expect_no_fault(const Budget& budget) {
 
 std::vector<std::string> names(const std::vector<Station>& stations) {
   std::vector<std::string> result;
+  result.reserve(stations.size());
   for (const Station& station : stations) result.push_back(station.name());
   return result;
 }
