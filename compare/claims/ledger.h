@@ -23,7 +23,8 @@ std::vector<Claim> claims(const std::filesystem::path& folder, bool with_solid,
 std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_solid,
                                 const Progress& progress);
 /// Section 3.4: the design studies.
-std::vector<Claim> design_claims(const std::filesystem::path& folder, const Progress& progress);
+std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_solid,
+                                 const Progress& progress);
 /// Section 3.5: the flow.
 std::vector<Claim> flow_claims(const std::filesystem::path& folder, bool with_solid,
                                const Progress& progress);

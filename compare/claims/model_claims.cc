@@ -77,9 +77,10 @@ Claim shapes(const CaseResult& result) {
     }
     if (r2.low > r2.high) continue;
     claim.findings.push_back(
-        span_in_range("elastica - " + reference.model + ": 1 - SSE/SST", r2, "", 0.99, 1));
-    claim.findings.push_back(span_in_range(
-        "elastica - " + reference.model + ": squared correlation", correlation, "", 0.99, 1));
+        span_in_range("elastica - " + reference.model + ": 1 - SSE/SST", r2, "", 0.99, infinity));
+    claim.findings.push_back(
+        span_in_range("elastica - " + reference.model + ": squared correlation", correlation, "",
+                      0.99, infinity));
   }
   return claim;
 }
@@ -355,7 +356,7 @@ std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_s
 std::vector<Claim> claims(const std::filesystem::path& folder, bool with_solid,
                           const Progress& progress) {
   std::vector<Claim> all = model_claims(folder, with_solid, progress);
-  for (Claim& claim : design_claims(folder, progress)) all.push_back(std::move(claim));
+  for (Claim& claim : design_claims(folder, with_solid, progress)) all.push_back(std::move(claim));
   for (Claim& claim : flow_claims(folder, with_solid, progress)) all.push_back(std::move(claim));
   return all;
 }

@@ -91,11 +91,13 @@ std::function<bool()> after(Seconds time) {
 
 const std::vector<std::string> to_out{"-o", "out"};
 
-/// The results without what says when and how they were made.
+/// The results without what says when and how they were made. The page, report.html, is made of the
+/// others and says it too.
 std::vector<std::pair<std::string, std::string>> contents(const fs::path& results) {
   std::vector<std::pair<std::string, std::string>> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(results))
-    if (entry.is_regular_file() && entry.path().filename() != "summary.json")
+    if (const fs::path name = entry.path().filename();
+        entry.is_regular_file() && name != "summary.json" && name != "report.html")
       files.emplace_back(entry.path().filename().string(), read_text(entry.path()));
   std::sort(files.begin(), files.end());
   auto summary = nlohmann::json::parse(read_text(results / "summary.json"));
