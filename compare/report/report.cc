@@ -127,6 +127,7 @@ std::string content_of(const Document& document, Figures& figures) {
 /// Throws FileError if the file is damaged.
 Section section_of(const Document& document, const std::string& id, Figures& figures) {
   try {
+    if (document.kind == Kind::run) case_row(document.json);  // what the overview will read
     return {id, title_of(document), content_of(document, figures)};
   } catch (const Json::exception& error) {
     throw FileError(fmt::format("{}: it is damaged: {}", document.file.string(), error.what()));
@@ -255,7 +256,6 @@ Report results_page(const fs::path& folder, const Provenance& maker, Figures& fi
       std::string id = "part-" + identifier(document.file.lexically_relative(folder).string());
       while (!ids.insert(id).second) id += "-";
       sections.push_back(section_of(document, id, figures));
-      if (document.kind == Kind::run) case_row(document.json);
       documents.push_back(std::move(document));
     } catch (const FileError& error) {
       report.damaged.emplace_back(error.what());
