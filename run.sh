@@ -55,6 +55,7 @@ fi
 if pvpython=$(scripts/paraview.sh); then
   mkdir -p results/pictures
   for script in results/*/vtk/open.py; do
+    [ -e "$script" ] || continue # nothing was run
     name=$(basename "${script%/vtk/open.py}")
     say "picture of $name"
     "$pvpython" "$script" "results/pictures/$name.png" >&2 ||

@@ -260,12 +260,13 @@ void append_solid(std::vector<Knob>& all) {
   all.push_back(number_knob(
       solid, &SolidOptions::max_cutbacks, "solid", "max_cutbacks", quantity::number, cutbacks_range,
       "Cuts, to a quarter, of a load step that does not converge, in a row."));
-  all.push_back(choice_knob(solid, &SolidOptions::solver, "solid", "solver",
-                            {{"auto", fem::SolverKind::automatic},
-                             {"direct", fem::SolverKind::direct},
-                             {"iterative", fem::SolverKind::iterative}},
-                            "Linear systems: sparse LU, or GMRES with multigrid; `auto` takes what "
-                            "is faster."));
+  all.push_back(
+      choice_knob(solid, &SolidOptions::solver, "solid", "solver",
+                  {{"auto", fem::SolverKind::automatic},
+                   {"direct", fem::SolverKind::direct},
+                   {"iterative", fem::SolverKind::iterative}},
+                  "Linear systems: sparse LU, or GMRES with multigrid; `auto` takes LU up "
+                  "to 100,000 unknowns (for whole cylinders too late: docs/solid.md)."));
 }
 
 void append_fields(std::vector<Knob>& all) {
