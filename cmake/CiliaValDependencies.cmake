@@ -7,13 +7,24 @@ find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
+# Debian's Ceres is a static library that asks for ATLAS. Linked to the program itself ATLAS would come before the BLAS that MUMPS uses
+# (libblas.so.3, which with scripts/packages.txt is OpenBLAS) and take its place: LU of the solid's tangent then takes twice as long.
+set(BLA_VENDOR Generic)
 find_package(Ceres 2.1 REQUIRED)
+unset(BLA_VENDOR)
+get_target_property(ceres_libraries Ceres::ceres INTERFACE_LINK_LIBRARIES)
+list(FILTER ceres_libraries EXCLUDE REGEX "lib(f77blas|atlas)")
+set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES "${ceres_libraries}")
 find_package(NLopt 2.7 REQUIRED)
 # Only these: every further component drags in VTK's own HDF5, beside the one of deal.II.
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
 # The library that deal.II itself is linked to: it costs no start-up time.
 find_path(GMSH_INCLUDE_DIR gmsh.h REQUIRED)
 find_library(GMSH_LIBRARY gmsh REQUIRED)
+find_path(MUMPS_INCLUDE_DIR dmumps_c.h REQUIRED)
+find_library(MUMPS_LIBRARY dmumps REQUIRED)
+find_path(METIS_INCLUDE_DIR metis.h REQUIRED)
+find_library(METIS_LIBRARY metis REQUIRED)
 find_path(UDUNITS2_INCLUDE_DIR udunits2.h PATH_SUFFIXES udunits2 REQUIRED)
 find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
 
@@ -40,4 +51,11 @@ if(NOT TARGET CiliaVal::gmsh)
   add_library(CiliaVal::gmsh INTERFACE IMPORTED)
   target_include_directories(CiliaVal::gmsh SYSTEM INTERFACE ${GMSH_INCLUDE_DIR})
   target_link_libraries(CiliaVal::gmsh INTERFACE ${GMSH_LIBRARY})
+endif()
+
+# With METIS, whose orderings it is given.
+if(NOT TARGET CiliaVal::mumps)
+  add_library(CiliaVal::mumps INTERFACE IMPORTED)
+  target_include_directories(CiliaVal::mumps SYSTEM INTERFACE ${MUMPS_INCLUDE_DIR} ${METIS_INCLUDE_DIR})
+  target_link_libraries(CiliaVal::mumps INTERFACE ${MUMPS_LIBRARY} ${METIS_LIBRARY})
 endif()

@@ -266,7 +266,7 @@ void append_solid(std::vector<Knob>& all) {
                    {"direct", fem::SolverKind::direct},
                    {"iterative", fem::SolverKind::iterative}},
                   "Linear systems: sparse LU, or GMRES with multigrid; `auto` takes LU up "
-                  "to 100,000 unknowns (for whole cylinders too late: docs/solid.md)."));
+                  "to 100,000 unknowns."));
 }
 
 void append_fields(std::vector<Knob>& all) {

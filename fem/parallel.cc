@@ -4,7 +4,6 @@
 #include <deal.II/base/multithread_info.h>
 #include <dlfcn.h>
 #include <mpi.h>
-#include <petscsys.h>
 
 #include <algorithm>
 #include <chrono>
@@ -34,9 +33,7 @@ bool running() {
 }
 
 void end_mpi() {
-  if (!running()) return;
-  PetscFinalize();
-  MPI_Finalize();
+  if (running()) MPI_Finalize();
 }
 
 /// Two ranks with two threads each would be twice as many as the cores they were given.
@@ -74,20 +71,14 @@ RowRange range_of(Row size, int part, int parts) {
 }  // namespace
 
 void start_mpi() {
-  if (!running()) {
-    int provided = 0;
-    if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
-      throw SolverError("MPI cannot be started");
-    std::atexit(end_mpi);
-    if (rank_count() > 1) MPI_Comm_dup(MPI_COMM_WORLD, &failures);
-  }
-  PetscBool started = PETSC_FALSE;
-  PetscInitialized(&started);
-  if (started) return;
-  if (PetscInitializeNoArguments() != 0) throw SolverError("PETSc cannot be started");
-  PetscPopSignalHandler();
-  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-  if (rank_count() > 1) use_one_thread();
+  if (running()) return;
+  int provided = 0;
+  if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+    throw SolverError("MPI cannot be started");
+  std::atexit(end_mpi);
+  if (rank_count() == 1) return;
+  MPI_Comm_dup(MPI_COMM_WORLD, &failures);
+  use_one_thread();
 }
 
 bool launched_on_several_ranks() {
@@ -162,7 +153,12 @@ void sum_over_ranks(std::span<double> values) {
   const bool root = rank() == 0;
   MPI_Reduce(root ? MPI_IN_PLACE : values.data(), root ? values.data() : nullptr,
              to_int(values.size()), MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
-  MPI_Bcast(values.data(), to_int(values.size()), MPI_DOUBLE, 0, MPI_COMM_WORLD);
+  spread_from_first_rank(values);
+}
+
+void spread_from_first_rank(std::span<double> values) {
+  if (rank_count() > 1)
+    MPI_Bcast(values.data(), to_int(values.size()), MPI_DOUBLE, 0, MPI_COMM_WORLD);
 }
 
 RowRange own_range(Row size) {

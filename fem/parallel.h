@@ -9,9 +9,8 @@
 
 namespace ciliaval::fem {
 
-/// Starts MPI and PETSc unless they run already, and ends them at the end of the program. With more
-/// than one rank each of them uses one thread. PETSc's errors come back as codes instead of ending
-/// the program. Throws SolverError if they cannot be started.
+/// Starts MPI unless it runs already, and ends it at the end of the program. With more than one
+/// rank each of them uses one thread. Throws SolverError if it cannot be started.
 void start_mpi();
 
 /// Whether a process manager (mpirun, srun …) has started this program on more than one rank. Does
@@ -40,6 +39,9 @@ std::string from_first_rank(const std::function<std::string()>& work);
 
 /// Replaces the values by their sums over the ranks: the same bits on all of them. Collective.
 void sum_over_ranks(std::span<double> values);
+
+/// Replaces the values by rank 0's. Collective.
+void spread_from_first_rank(std::span<double> values);
 
 using Row = dealii::types::global_dof_index;
 

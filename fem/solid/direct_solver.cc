@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/direct_solver.h"
 
-#include <petscksp.h>
+#include <dmumps_c.h>
+#include <metis.h>
+#include <mpi.h>
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -15,140 +16,173 @@
 namespace ciliaval::fem {
 namespace {
 
-/// PETSc's errors are those of one rank: the others wait for it.
-void check(PetscErrorCode code) {
-  if (code == 0) return;
-  const char* text = nullptr;
-  PetscErrorMessage(code, &text, nullptr);
-  const std::string message = std::string("the linear solver failed: ") +
-                              (text != nullptr ? text : "PETSc error " + std::to_string(code));
-  if (rank_count() > 1) throw RankFailure("rank " + std::to_string(rank()) + ": " + message);
-  throw SolverError(message);
+using dealii::SparsityPattern;
+
+// MUMPS's names of its jobs (users' guide 5.5, section 5.1) …
+constexpr int start = -1;
+constexpr int end = -2;
+constexpr int analyse_pattern = 1;
+constexpr int factorize_matrix = 2;
+constexpr int solve_system = 3;
+// … and of its error codes (section 8).
+constexpr int main_workspace_too_small = -9;
+constexpr int singular = -10;
+constexpr int integer_workspace_too_small = -8;
+constexpr int not_enough_memory = -13;
+
+constexpr int world = -987654;  ///< MPI_COMM_WORLD for MUMPS's C interface
+/// Memory beyond MUMPS's estimate, %, for pivoting: at first, and the most that is tried.
+constexpr int first_margin = 60;
+constexpr int largest_margin = 1000;
+
+/// Unknowns that stand together in blocks of three rows of the same columns, a node's
+/// displacements each, or else one by one.
+int block_size(const SparsityPattern& pattern) {
+  constexpr int block = 3;
+  if (pattern.n_rows() % block != 0) return 1;
+  for (Row row = 0; row < pattern.n_rows(); ++row)
+    if (pattern.row_length(row) != pattern.row_length(row - row % block) ||
+        pattern.row_length(row) % block != 0)
+      return 1;
+  return block;
 }
 
-PetscInt to_petsc(std::size_t value) {
-  return static_cast<PetscInt>(value);
+/// The position of each unknown, from 1, in a nested dissection of the graph of the blocks.
+std::vector<MUMPS_INT> nested_dissection(const SparsityPattern& pattern) {
+  const int block = block_size(pattern);
+  auto nodes = static_cast<idx_t>(pattern.n_rows()) / block;
+  std::vector<idx_t> starts{0};
+  std::vector<idx_t> neighbours;
+  for (idx_t node = 0; node < nodes; ++node) {
+    const auto row = static_cast<Row>(node * block);
+    for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry) {
+      const auto column = static_cast<idx_t>(entry->column());
+      if (column % block == 0 && column / block != node) neighbours.push_back(column / block);
+    }
+    starts.push_back(static_cast<idx_t>(neighbours.size()));
+  }
+  std::vector<idx_t> order(static_cast<std::size_t>(nodes));
+  std::vector<idx_t> positions(order.size());
+  if (METIS_NodeND(&nodes, starts.data(), neighbours.data(), nullptr, nullptr, order.data(),
+                   positions.data()) != METIS_OK)
+    return {};
+  std::vector<MUMPS_INT> result;
+  for (const idx_t position : positions)
+    for (int k = 1; k <= block; ++k) result.push_back(position * block + k);
+  return result;
 }
 
 }  // namespace
 
-struct DirectSolver::Handles {
-  Mat matrix = nullptr;
-  KSP solver = nullptr;
-  Vec rhs = nullptr;
-  Vec solution = nullptr;
-  RowRange own;
+struct DirectSolver::Mumps {
+  DMUMPS_STRUC_C data{};
+  std::vector<MUMPS_INT> rows;
+  std::vector<MUMPS_INT> columns;
+  std::vector<double> values;
+  std::vector<MUMPS_INT> order;
 
-  Handles() = default;
-  Handles(const Handles&) = delete;
-  Handles& operator=(const Handles&) = delete;
-  ~Handles() {
-    PetscBool ended = PETSC_FALSE;
-    PetscFinalized(&ended);
-    // On several ranks these wait for the others, which may not come where one rank has failed.
-    if (ended || (std::uncaught_exceptions() > 0 && rank_count() > 1)) return;
-    KSPDestroy(&solver);
-    MatDestroy(&matrix);
-    VecDestroy(&rhs);
-    VecDestroy(&solution);
+  /// An option by its number in the users' guide.
+  MUMPS_INT& option(std::size_t number) { return data.icntl[number - 1]; }
+
+  /// MUMPS's code: 0, a warning above, or an error below, the same on all ranks.
+  int run(int job) {
+    data.job = job;
+    dmumps_c(&data);
+    return data.infog[0];
+  }
+
+  explicit Mumps(Kind kind) {
+    data.par = 1;
+    data.sym = kind == Kind::symmetric_part ? 2 : 0;
+    data.comm_fortran = world;
+    check(run(start));
+    for (const std::size_t output : {1, 2, 3}) option(output) = -1;
+    option(4) = 0;
+    option(8) = 0;   // no scaling: it costs a fifth of the factorisation
+    option(18) = 3;  // each rank gives its entries
+    option(14) = first_margin;
+  }
+  Mumps(const Mumps&) = delete;
+  Mumps& operator=(const Mumps&) = delete;
+  ~Mumps() {
+    int ended = 0;
+    MPI_Finalized(&ended);
+    // On several ranks this waits for the others, which may not come where one rank has failed.
+    if (ended == 0 && (std::uncaught_exceptions() == 0 || rank_count() == 1)) run(end);
+  }
+
+  void check(int code) const {
+    if (code >= 0) return;
+    if (code == singular) throw SolverError("the stiffness matrix is singular");
+    if (code == not_enough_memory || code == main_workspace_too_small ||
+        code == integer_workspace_too_small)
+      throw SolverError("the memory does not suffice to factorise the stiffness matrix");
+    throw SolverError("the linear solver failed: MUMPS's error " + std::to_string(code) + ", " +
+                      std::to_string(data.infog[1]));
   }
 };
 
-DirectSolver::DirectSolver(const dealii::SparsityPattern& pattern, Kind kind) : kind_(kind) {
+DirectSolver::DirectSolver(const SparsityPattern& pattern, Kind kind, RowRange rows)
+    : kind_(kind), rows_(rows) {
   start_mpi();
-  handles_ = std::make_unique<Handles>();
-  Handles& h = *handles_;
-  h.own = own_range(pattern.n_rows());
-  std::vector<PetscInt> inside;
-  std::vector<PetscInt> outside;
-  const bool symmetric = kind == Kind::symmetric_part;
-  for (Row row = h.own.begin; row < h.own.end; ++row) {
-    inside.push_back(0);
-    outside.push_back(0);
-    for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry)
-      if (!symmetric || entry->column() >= row)
-        ++(h.own.contains(entry->column()) ? inside : outside).back();
-  }
-  const PetscInt size = to_petsc(pattern.n_rows());
-  const PetscInt own = to_petsc(h.own.end - h.own.begin);
-  if (symmetric)  // the upper triangle
-    check(MatCreateSBAIJ(PETSC_COMM_WORLD, 1, own, own, size, size, 0, inside.data(), 0,
-                         outside.data(), &h.matrix));
-  else
-    check(MatCreateAIJ(PETSC_COMM_WORLD, own, own, size, size, 0, inside.data(), 0, outside.data(),
-                       &h.matrix));
-  check(MatSetOption(h.matrix, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_TRUE));
-  check(MatCreateVecs(h.matrix, &h.solution, &h.rhs));
-  check(KSPCreate(PETSC_COMM_WORLD, &h.solver));
-  check(KSPSetType(h.solver, KSPPREONLY));
-  check(KSPSetOperators(h.solver, h.matrix, h.matrix));
-  PC pc = nullptr;
-  check(KSPGetPC(h.solver, &pc));
-  check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  check(PCFactorSetUpMatSolverType(pc));
-  Mat factor = nullptr;
-  check(PCFactorGetMatrix(pc, &factor));
-  check(MatMumpsSetIcntl(factor, 14, 60));  // % of memory above the estimate, for pivoting
-  check(MatMumpsSetIcntl(factor, 8, 0));    // no scaling: it costs a fifth of the factorisation
+  mumps_ = std::make_unique<Mumps>(kind);
+  analyse(pattern);
 }
 
 DirectSolver::~DirectSolver() = default;
 
-void DirectSolver::factorize(const dealii::SparseMatrix<double>& matrix, RowRange rows) {
-  const Handles& h = *handles_;
-  check(MatZeroEntries(h.matrix));
+void DirectSolver::analyse(const SparsityPattern& pattern) {
+  Mumps& m = *mumps_;
   const bool symmetric = kind_ == Kind::symmetric_part;
-  std::vector<PetscInt> columns;
-  std::vector<double> values;
-  for (Row row = rows.begin; row < rows.end; ++row) {
-    columns.clear();
-    values.clear();
-    const PetscInt index = to_petsc(row);
-    // The zeros too where they are stored, so that the pattern is the same for all matrices.
-    for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry) {
-      if (!h.own.contains(row) && entry->value() == 0) continue;
-      const PetscInt column = to_petsc(entry->column());
-      const double value = symmetric && column != index ? entry->value() / 2 : entry->value();
-      if (symmetric && column < index) {
-        check(MatSetValues(h.matrix, 1, &column, 1, &index, &value, ADD_VALUES));
-      } else {
-        columns.push_back(column);
-        values.push_back(value);
-      }
+  for (Row row = rows_.begin; row < rows_.end; ++row)
+    for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry) {
+      const auto i = static_cast<MUMPS_INT>(row) + 1;
+      const auto j = static_cast<MUMPS_INT>(entry->column()) + 1;
+      m.rows.push_back(symmetric ? std::min(i, j) : i);
+      m.columns.push_back(symmetric ? std::max(i, j) : j);
     }
-    check(MatSetValues(h.matrix, 1, &index, to_petsc(columns.size()), columns.data(), values.data(),
-                       ADD_VALUES));
+  m.values.resize(m.rows.size());
+  m.data.n = static_cast<MUMPS_INT>(pattern.n_rows());
+  m.data.nnz_loc = static_cast<MUMPS_INT8>(m.rows.size());
+  m.data.irn_loc = m.rows.data();
+  m.data.jcn_loc = m.columns.data();
+  m.data.a_loc = m.values.data();
+  // MUMPS's own choice, PORD, has the fewest operations, but its tree cannot be shared evenly.
+  if (rank_count() > 1 && rank() == 0) {
+    m.order = nested_dissection(pattern);
+    if (!m.order.empty()) m.option(7) = 1;
+    m.data.perm_in = m.order.data();
   }
-  check(MatAssemblyBegin(h.matrix, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(h.matrix, MAT_FINAL_ASSEMBLY));
-  check(KSPSetOperators(h.solver, h.matrix, h.matrix));
-  check(KSPSetUp(h.solver));
-  PC pc = nullptr;
-  check(KSPGetPC(h.solver, &pc));
-  PCFailedReason reason = PC_NOERROR;
-  check(PCGetFailedReason(pc, &reason));
-  if (reason == PC_FACTOR_OUTMEMORY)
-    throw SolverError("the memory does not suffice to factorise the stiffness matrix");
-  if (reason != PC_NOERROR) throw SolverError("the stiffness matrix is singular");
+  m.check(m.run(analyse_pattern));
+}
+
+void DirectSolver::factorize(const dealii::SparseMatrix<double>& matrix) {
+  Mumps& m = *mumps_;
+  const bool symmetric = kind_ == Kind::symmetric_part;
+  std::size_t k = 0;
+  for (Row row = rows_.begin; row < rows_.end; ++row)
+    for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
+      m.values[k++] = symmetric && entry->column() != row ? entry->value() / 2 : entry->value();
+  int code = m.run(factorize_matrix);
+  while ((code == main_workspace_too_small || code == integer_workspace_too_small) &&
+         m.option(14) < largest_margin) {
+    m.option(14) *= 2;
+    code = m.run(factorize_matrix);
+  }
+  m.check(code);
 }
 
 void DirectSolver::solve(const dealii::Vector<double>& rhs,
                          dealii::Vector<double>& solution) const {
-  const Handles& h = *handles_;
-  const auto own = static_cast<std::ptrdiff_t>(h.own.end - h.own.begin);
-  const auto first = static_cast<std::ptrdiff_t>(h.own.begin);
-  double* array = nullptr;
-  check(VecGetArray(h.rhs, &array));
-  std::copy(rhs.begin() + first, rhs.begin() + first + own, array);
-  check(VecRestoreArray(h.rhs, &array));
-  check(KSPSolve(h.solver, h.rhs, h.solution));
-  solution.reinit(rhs.size(), true);
-  const double* result = nullptr;
-  check(VecGetArrayRead(h.solution, &result));
-  std::copy(result, result + own, solution.begin() + first);
-  check(VecRestoreArrayRead(h.solution, &result));
-  gather_over_ranks({solution.begin(), solution.size()});
+  Mumps& m = *mumps_;
+  solution = rhs;
+  if (rank() == 0) {
+    m.data.rhs = solution.begin();
+    m.data.nrhs = 1;
+    m.data.lrhs = m.data.n;
+  }
+  m.check(m.run(solve_system));
+  spread_from_first_rank({solution.begin(), solution.size()});
   if (!std::isfinite(solution.l2_norm())) throw SolverError("the stiffness matrix is singular");
 }
 

@@ -6,36 +6,41 @@
 #include <deal.II/lac/vector.h>
 
 #include <memory>
+#include <vector>
 
 #include "fem/parallel.h"
 
 namespace ciliaval::fem {
 
-/// Sparse LU, or LDLᵀ of the symmetric part, by MUMPS (through PETSc), on all ranks. The symbolic
-/// factorisation is made once. Vectors are whole on every rank. All functions are collective.
+/// Sparse LU, or LDLᵀ of the symmetric part, by MUMPS, on all ranks. The symbolic factorisation is
+/// made once. Vectors are whole on every rank. All functions are collective, and throw SolverError
+/// on all ranks or on none.
 class DirectSolver {
  public:
   enum class Kind {
     general,        ///< A = LU
     symmetric_part  ///< (A + Aᵀ)/2 = LDLᵀ: half the work and memory
   };
-  /// The pattern must be symmetric. Starts MPI if need be.
-  DirectSolver(const dealii::SparsityPattern& pattern, Kind kind);
+  /// The matrix is the sum over the ranks of the rows `rows` of their matrices, all with this
+  /// pattern, which must be symmetric and outlive the solver. Starts MPI if need be.
+  DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, RowRange rows);
   ~DirectSolver();
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;
 
-  /// Factorises the sum over the ranks of the rows `rows` of their matrices. Throws SolverError if
-  /// it is singular or the memory does not suffice.
-  void factorize(const dealii::SparseMatrix<double>& matrix, RowRange rows);
+  /// Throws if the matrix is singular or the memory does not suffice.
+  void factorize(const dealii::SparseMatrix<double>& matrix);
 
-  /// Throws SolverError if the solution is not finite.
+  /// Throws if the solution is not finite.
   void solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution) const;
 
  private:
-  struct Handles;
+  struct Mumps;
+  void analyse(const dealii::SparsityPattern& pattern);
+
   Kind kind_;
-  std::unique_ptr<Handles> handles_;
+  RowRange rows_;
+  std::unique_ptr<Mumps> mumps_;
 };
 
 }  // namespace ciliaval::fem

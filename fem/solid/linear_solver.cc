@@ -51,7 +51,7 @@ LinearSolver::LinearSolver(const SolidSpace& space,
   if (kind == SolverKind::iterative)
     multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_);
   else
-    direct_ = std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general);
+    direct_ = std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general, rows_);
 }
 
 void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix, bool near_last) {
@@ -66,7 +66,7 @@ void LinearSolver::update() {
   if (multigrid_)
     multigrid_->update(*matrix_);
   else
-    direct_->factorize(*matrix_, rows_);
+    direct_->factorize(*matrix_);
   current_ = true;
   usual_ = 0;
 }

@@ -244,9 +244,20 @@ void Multigrid::make_prolongation(const SolidSpace& space,
   }
   coarse_pattern_.copy_from(pattern);
   coarse_matrix_.reinit(coarse_pattern_);
-  coarse_solver_ =
-      std::make_unique<DirectSolver>(coarse_pattern_, DirectSolver::Kind::symmetric_part);
+  coarse_solver_ = std::make_unique<DirectSolver>(
+      coarse_pattern_, DirectSolver::Kind::symmetric_part, own_coarse_rows());
   work_.resize(coarse_matrix_.m());
+}
+
+RowRange Multigrid::own_coarse_rows() const {
+  RowRange result{coarse_matrix_.m(), 0};
+  const auto add = [&result](Row row) {
+    result = {std::min(result.begin, row), std::max(result.end, row + 1)};
+  };
+  for (std::size_t k = prolongation_starts_[rows_.begin]; k < prolongation_starts_[rows_.end]; ++k)
+    add(prolongation_[k].column);
+  if (rank() == 0) std::for_each(fixed_.begin(), fixed_.end(), add);
+  return {std::min(result.begin, result.end), result.end};
 }
 
 void Multigrid::add_coarse_row(const SparseMatrix<double>& matrix, Row row) {
@@ -279,7 +290,7 @@ void Multigrid::update(const SparseMatrix<double>& matrix) {
   for (Row row = rows_.begin; row < rows_.end; ++row) add_coarse_row(matrix, row);
   if (rank() == 0)
     for (const Row dof : fixed_) coarse_matrix_.add(dof, dof, 1);
-  coarse_solver_->factorize(coarse_matrix_, {0, coarse_matrix_.m()});
+  coarse_solver_->factorize(coarse_matrix_);
 }
 
 void Multigrid::residual(Vector<double>& r, const Vector<double>& x,

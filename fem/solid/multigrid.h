@@ -86,6 +86,8 @@ class Multigrid {
   };
   void make_prolongation(const SolidSpace& space,
                          const dealii::AffineConstraints<double>& constraints);
+  /// Those that the own rows of the matrix add to, and on rank 0 the fixed ones.
+  RowRange own_coarse_rows() const;
   void add_coarse_row(const dealii::SparseMatrix<double>& matrix, Row row);
   void smooth(dealii::Vector<double>& x, const dealii::Vector<double>& b, bool from_zero) const;
   void correct(dealii::Vector<double>& x, const dealii::Vector<double>& b) const;

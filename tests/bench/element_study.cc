@@ -127,7 +127,7 @@ class Study {
       if (steps > 1) displacement_ = 0;
       if (steps > 1)
         for (CellPressure& pressure : pressures_) pressure.coefficients.setZero();
-      DirectSolver solver(sparsity_, DirectSolver::Kind::general);
+      DirectSolver solver(sparsity_, DirectSolver::Kind::general, {0, matrix_.m()});
       for (int step = 1; step <= steps && outcome.trouble.empty(); ++step)
         newton(solver, static_cast<double>(step) / steps, outcome);
       outcome.seconds = processor_seconds() - start;
@@ -151,7 +151,7 @@ class Study {
         return;
       }
       constraints_.set_zero(residual);
-      solver.factorize(matrix_, {0, matrix_.m()});
+      solver.factorize(matrix_);
       ++outcome.iterations;
       Vector<double> increment;
       solver.solve(residual, increment);

@@ -1,0 +1,11 @@
+# Fails if the program itself asks for a BLAS other than libblas.so.3.
+execute_process(COMMAND ${OBJDUMP} -p ${PROGRAM} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "NEEDED +[^\n]+" needed "${text}")
+if(NOT needed)
+  message(FATAL_ERROR "${PROGRAM} names no library at all")
+endif()
+foreach(library IN LISTS needed)
+  if(library MATCHES "atlas|blas" AND NOT library MATCHES "libblas.so.3")
+    message(FATAL_ERROR "${PROGRAM}: ${library}")
+  endif()
+endforeach()
