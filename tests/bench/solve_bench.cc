@@ -3,90 +3,17 @@
 // cilium (ν = 0.49, E₂/E₁ = 30) without load, the nodal forces of 1 mN at 16 mm.
 #include <benchmark/benchmark.h>
 #include <deal.II/base/multithread_info.h>
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <sys/resource.h>
 
-#include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "fem/solid/assembly.h"
-#include "fem/solid/fibres.h"
-#include "fem/solid/linear_solver.h"
-#include "fem/solid/load_path.h"
-#include "meshes/cylinder_mesh.h"
-#include "tests/bench/paper_cilium.h"
+#include "tests/bench/mesh_family.h"
 
 namespace ciliaval::fem {
 namespace {
 
-/// A family of meshes of nearly the same shape of cells.
-struct Mesh {
-  unsigned int square_cells;
-  unsigned int rings;
-  double ring_ratio;
-  double finest_layer;
-  double coarsest_layer;
-};
-const std::vector<Mesh> family{{4, 1, 1, 0.11, 0.4},
-                               {4, 3, 0.7, 0.07, 0.25},
-                               {6, 4, 0.8, 0.05, 0.15},
-                               {8, 5, 0.85, 0.036, 0.11},
-                               {10, 7, 0.87, 0.025, 0.066}};
-
-class Discretised {
- public:
-  explicit Discretised(const Mesh& mesh) {
-    meshes::CylinderMeshOptions options;
-    options.square_cells = mesh.square_cells;
-    options.rings = mesh.rings;
-    options.ring_ratio = mesh.ring_ratio;
-    options.finest_layer = mesh.finest_layer;
-    options.coarsest_layer = mesh.coarsest_layer;
-    options.growth = 0.3;
-    meshes::make_cylinder(paper_cilium(), options, triangulation_);
-    mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
-    std::vector<Hyperelastic> materials;
-    for (const Segment& segment : paper_cilium().segments)
-      materials.push_back(Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
-    space = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
-    const std::vector<DirichletCondition> clamped{{.boundary = meshes::base_id}};
-    constraints = increment_constraints(*space, clamped);
-    dealii::DynamicSparsityPattern dynamic(space->unknowns());
-    dealii::DoFTools::make_sparsity_pattern(space->dof_handler(), dynamic, constraints, true);
-    pattern.copy_from(dynamic);
-    matrix.reinit(pattern);
-    const SolidState state = space->undeformed();
-    add_stiffness(*space, state, *internal_forces(*space, state), constraints, matrix);
-    forces.reinit(space->unknowns());
-    const Fibres fibres(*space);
-    external_forces(*space, fibres, ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = 0.5},
-                    0.5e-3)(state.displacement, forces, constraints, &matrix);
-    constraints.set_zero(forces);
-  }
-
-  std::unique_ptr<SolidSpace> space;
-  dealii::AffineConstraints<double> constraints;
-  dealii::SparsityPattern pattern;
-  dealii::SparseMatrix<double> matrix;
-  dealii::Vector<double> forces;
-
- private:
-  dealii::Triangulation<3> triangulation_;
-  std::unique_ptr<dealii::MappingQCache<3>> mapping_;
-};
-
-/// Largest memory of the process so far.
-double gigabytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e9;
-}
-
 void solve(benchmark::State& run, SolverKind kind) {
-  const Discretised problem(family.at(static_cast<std::size_t>(run.range(0))));
+  const Discretised problem(mesh_family.at(static_cast<std::size_t>(run.range(0))));
   LinearSolver solver(*problem.space, problem.constraints, problem.pattern, kind);
   dealii::Vector<double> solution;
   int iterations = 0;
@@ -113,7 +40,7 @@ int main(int argc, char** argv) {
        {std::pair<std::string, SolverKind>{"iterative", SolverKind::iterative},
         {"direct", SolverKind::direct}}) {
     auto* bench = benchmark::RegisterBenchmark(("solve/" + name).c_str(), solve, kind);
-    const auto meshes = static_cast<int>(family.size()) - (kind == SolverKind::direct ? 2 : 0);
+    const auto meshes = static_cast<int>(mesh_family.size()) - (kind == SolverKind::direct ? 2 : 0);
     for (int mesh = 0; mesh < meshes; ++mesh) bench->Arg(mesh);
     bench->ArgName("mesh")->Iterations(1)->Unit(benchmark::kSecond)->MeasureProcessCPUTime();
   }
