@@ -31,7 +31,7 @@ struct Solution {
 };
 
 /// Whether the models of the study's pairs with this mechanics model may run in several threads
-/// beside each other: rods and closed forms do; the solid, the potential (MPI, PETSc) and CalculiX
+/// beside each other: rods and closed forms do; the solid, the potential (MPI) and CalculiX
 /// use the cores themselves.
 bool runs_in_threads(const Study& study, const std::string& mechanics) {
   if (mechanics != "elastica" && mechanics != "beam") return false;

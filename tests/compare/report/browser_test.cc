@@ -128,6 +128,8 @@ TEST_F(ReportInChromium, TheChecksSeeWhatTheyLookFor) {
               Contains("out of the page: planted"));
   EXPECT_THAT(faults("<div style='width:500px'>wide</div>"),
               Contains("the page is 516 wide on 360"));
+  EXPECT_THAT(faults("<div class='scroll'><div style='width:700px'>wide</div></div>"),
+              Contains("cannot be scrolled by keyboard"));
   EXPECT_THAT(faults("<p id='main'>again</p>"), Contains("id twice: main"));
   EXPECT_THAT(faults("<a href='#nowhere'>x</a>"), Contains("leads nowhere: #nowhere"));
 }
