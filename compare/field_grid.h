@@ -31,11 +31,11 @@ struct FieldGrid {
   std::function<std::optional<Step>(std::size_t)> sample;
 };
 
-/// The most detailed pointwise field model that needs no body (it reads the centreline), on the most detailed
-/// mechanics model, to be sampled in a box that holds the cilium at every step and the sensors no
-/// farther than two lengths from it, two diameters wider. Closed forms are used whatever the case
-/// asks: the picture checks no quadrature. None if no such pair converged at any step. The result
-/// refers to `result` and calls `progress`.
+/// The most detailed pointwise field model that needs no body (it reads the centreline), on the
+/// most detailed mechanics model, to be sampled in a box that holds the cilium at every step and
+/// the sensors no farther than two lengths from it, two diameters wider. Closed forms are used
+/// whatever the case asks: the picture checks no quadrature. None if no such pair converged at any
+/// step. The result refers to `result` and calls `progress`.
 std::optional<FieldGrid> field_grid(const CaseResult& result, std::span<const FieldEntry> fields,
                                     const Progress& progress = {});
 

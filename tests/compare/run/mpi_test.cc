@@ -152,14 +152,17 @@ TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
   EXPECT_EQ(run(folder.path(), 2, "two", "none.toml").code, 2);
 }
 
-/// Runs the case on two ranks and kills mpirun, and so the ranks, once the solid has finished its
-/// second step. Waits until no rank is left.
+/// Runs the case on two ranks and kills mpirun and the ranks (which would go on for a while) once
+/// the solid has finished its second step. Waits until no rank is left.
 void interrupt_two_ranks(const fs::path& folder) {
   const std::string kept = "out/.mpi.checkpoint/solid.0001";
-  execute(folder, "sh -c '\"" CILIAVAL_MPIEXEC "\" -n 2 \"" CILIAVAL_PROGRAM
-                  "\" run case.toml -o out & launcher=$!; "
-                  "while kill -0 $launcher && ! test -f " +
-                      kept + "; do sleep 0.02; done; kill -9 $launcher; wait'");
+  execute(
+      folder,
+      "sh -c '\"" CILIAVAL_MPIEXEC "\" -n 2 \"" CILIAVAL_PROGRAM
+      "\" run case.toml -o out & launcher=$!; "
+      "while kill -0 $launcher && ! test -f " +
+          kept +
+          "; do sleep 0.02; done; kill -9 $(cat /proc/$launcher/task/*/children) $launcher; wait'");
   ASSERT_TRUE(fs::exists(folder / kept)) << read_text(folder / "err.txt");
 }
 
