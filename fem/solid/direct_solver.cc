@@ -147,7 +147,8 @@ void DirectSolver::analyse(const SparsityPattern& pattern) {
   m.data.irn_loc = m.rows.data();
   m.data.jcn_loc = m.columns.data();
   m.data.a_loc = m.values.data();
-  // MUMPS's own choice, PORD, has the fewest operations, but its tree cannot be shared evenly.
+  // MUMPS's own choice, PORD, has fewer operations, but two ranks gain little with it
+  // (docs/solid.md).
   if (rank_count() > 1 && rank() == 0) {
     m.order = nested_dissection(pattern);
     if (!m.order.empty()) m.option(7) = 1;

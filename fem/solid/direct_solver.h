@@ -22,7 +22,7 @@ class DirectSolver {
     symmetric_part  ///< (A + Aᵀ)/2 = LDLᵀ: half the work and memory
   };
   /// The matrix is the sum over the ranks of the rows `rows` of their matrices, all with this
-  /// pattern, which must be symmetric and outlive the solver. Starts MPI if need be.
+  /// pattern, which must be symmetric. Starts MPI if need be.
   DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, RowRange rows);
   ~DirectSolver();
   DirectSolver(const DirectSolver&) = delete;
