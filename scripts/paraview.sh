@@ -27,14 +27,15 @@ if [ ! -x $program ]; then
   fi
   cat > "$new/pvpython" <<'END'
 #!/bin/sh
-# pvpython on a screen of its own.
+# pvpython on a screen of its own. -noreset: ParaView closes its connection and opens another, and an X server that resets
+# itself at the close drops the second one.
 root=$(cd "$(dirname "$0")" && pwd)/root
 if [ -d "$root" ]; then
   export LD_LIBRARY_PATH="$root/usr/lib/$(uname -m)-linux-gnu${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
   export PYTHONPATH="$root/usr/lib/python3/dist-packages"
   PATH="$root/usr/bin:$PATH"
 fi
-exec xvfb-run --auto-servernum --server-args='-screen 0 1280x1024x24' pvpython "$@"
+exec xvfb-run --auto-servernum --server-args='-screen 0 1280x1024x24 -noreset' pvpython "$@"
 END
   chmod +x "$new/pvpython"
   "$new/pvpython" -c 'import paraview.simple' >/dev/null || die "the unpacked ParaView does not start"

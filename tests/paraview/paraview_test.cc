@@ -273,5 +273,16 @@ TEST_F(ParaView, SaysWhatItCannotRead) {
               HasSubstr("centreline_beam.pvd: no points at time 0.002"));
 }
 
+TEST_F(ParaView, SeveralAtOnceEachHaveTheirScreen) {
+  std::ofstream(path() / "render.py")
+      << "from paraview.simple import *\nShow(Sphere())\nRender()\n";
+  for (int round = 0; round < 2; ++round) {
+    const std::string command =
+        "cd '" + path().string() + "' && for i in 1 2 3 4; do ('" + pvpython() +
+        "' render.py >>err.txt 2>&1 || echo $i >>failed) & done; wait; test ! -e failed";
+    EXPECT_EQ(std::system(command.c_str()), 0) << read_text(path() / "err.txt");
+  }
+}
+
 }  // namespace
 }  // namespace ciliaval
