@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -57,6 +58,19 @@ void idle_until_first_rank_sends(int& value) {
   }
 }
 
+/// Spares Open MPI what one rank, or the ranks of one machine, do not need: a daemon to start other
+/// ranks, and the search for fast networks, 0.3 s together. What the user has set stands; other MPI
+/// libraries do not know these names.
+void spare_open_mpi_the_network() {
+  constexpr int keep_what_is_set = 0;
+  const char* all = std::getenv("OMPI_COMM_WORLD_SIZE");
+  const char* here = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+  const bool alone = all == nullptr && !launched_on_several_ranks();
+  if (alone) setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_what_is_set);
+  if (alone || (all != nullptr && here != nullptr && std::string_view(all) == here))
+    setenv("OMPI_MCA_pml", "ob1", keep_what_is_set);
+}
+
 int to_int(std::size_t value) {
   return static_cast<int>(value);
 }
@@ -72,6 +86,7 @@ RowRange range_of(Row size, int part, int parts) {
 
 void start_mpi() {
   if (running()) return;
+  spare_open_mpi_the_network();
   int provided = 0;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     throw SolverError("MPI cannot be started");

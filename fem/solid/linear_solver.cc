@@ -18,8 +18,6 @@ constexpr unsigned int max_iterations = 300;
 constexpr unsigned int restart = 60;  ///< vectors of GMRES
 /// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
 constexpr unsigned int max_with_old_factors = 12;
-/// Such an iteration costs little: the residual goes on to this part of the one asked for.
-constexpr double margin_with_factors = 1e-3;
 
 /// The matrix on one rank, its own rows on several.
 struct Product {
@@ -78,8 +76,7 @@ std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
   // The flexible variant: the multigrid rounds to single precision, so that it is not quite linear,
   // which the stiffness of the volume would amplify when the solution is put together.
   using Solver = dealii::SolverFGMRES<Vector>;
-  const double margin = direct_ ? margin_with_factors : 1;
-  dealii::SolverControl control(max_iterations, margin * reduction * rhs.l2_norm());
+  dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
   Solver solver(control, Solver::AdditionalData(restart));
   const Product matrix{*matrix_, own_};
   solution.reinit(rhs.size());

@@ -51,7 +51,7 @@ double relative_residual(const InternalForces& internal, const Vector<double>& e
 /// or two iterations more reach the tolerance.
 constexpr double step_reduction = 1e-6;
 /// … where only the size of the solution is asked for.
-constexpr double estimate_reduction = 1e-2;
+constexpr double estimate_reduction = 1e-3;
 
 }  // namespace
 
