@@ -143,6 +143,17 @@ tolerance = 1e-2
   EXPECT_NEAR(field, mesh, 0.1 * std::abs(mesh));  // μ_r = 1.05 there, 1 here
 }
 
+// A transport that there is not, asked for by the user: Open MPI must hear of it.
+TEST(Mpi, WhatTheUserAsksOfOpenMpiStands) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "");
+  const Outcome outcome = execute(
+      folder.path(), "OMPI_MCA_pml=nowhere '" CILIAVAL_PROGRAM "' run case.toml -o results");
+  EXPECT_NE(outcome.code, 0);
+  EXPECT_NE(read_text(folder.path() / "err.txt").find("nowhere"), std::string::npos)
+      << read_text(folder.path() / "err.txt");
+}
+
 // Oracle: the contract of the exit codes.
 TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
   const TemporaryFolder folder;
