@@ -21,6 +21,8 @@ namespace {
 /// and what is wrong with it all ranks find at nearly the same time.
 constexpr double patience = 10;
 
+constexpr Row node_unknowns = 3;
+
 /// All ranks once more: on it they tell one another that they have failed, while some of them may
 /// be waiting for a message of the solver's.
 MPI_Comm failures = MPI_COMM_NULL;
@@ -77,7 +79,8 @@ int to_int(std::size_t value) {
 
 RowRange range_of(Row size, int part, int parts) {
   const auto bound = [&](int i) {
-    return static_cast<Row>(static_cast<long long>(size) * i / parts);
+    const auto exact = static_cast<Row>(static_cast<long long>(size) * i / parts);
+    return i == parts ? size : exact - exact % node_unknowns;
   };
   return {bound(part), bound(part + 1)};
 }

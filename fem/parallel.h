@@ -52,7 +52,8 @@ struct RowRange {
   bool contains(Row index) const { return index >= begin && index < end; }
 };
 
-/// This rank's part of 0 … size − 1; the ranks' parts are contiguous, in order and nearly equal.
+/// This rank's part of 0 … size − 1; the ranks' parts are contiguous, in order and nearly equal,
+/// and begin at multiples of three: the unknowns of a node stay together.
 RowRange own_range(Row size);
 
 /// Every rank holds its own_range() of the values; afterwards all of them. Collective.

@@ -6,7 +6,6 @@
 #include <deal.II/lac/vector.h>
 
 #include <memory>
-#include <vector>
 
 #include "fem/parallel.h"
 

@@ -16,22 +16,28 @@
 
 namespace ciliaval::fem {
 
-/// A copy of this rank's own rows of a matrix. In single precision, for a preconditioner, there is
-/// a third less to read.
+/// A copy of this rank's own rows of a matrix, in blocks of 3 × 3: the unknowns of a node stand
+/// together and are coupled with those of the same nodes, so that one column is kept for nine
+/// values. In single precision, for a preconditioner, a third of what the matrix itself has to
+/// read.
 template <typename Number>
 class OwnRows {
  public:
+  /// The rows of whole nodes.
   explicit OwnRows(RowRange rows) : rows_(rows) {}
-  /// The matrix must be complete in the own rows, and its pattern always the same.
+  /// The matrix must be complete in the own rows, and its pattern always the same. Throws
+  /// SolverError if the pattern is not one of nodes.
   void update(const dealii::SparseMatrix<double>& matrix);
   /// y = A x; vectors whole on every rank. Collective.
   void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const;
 
  private:
+  void make_pattern(const dealii::SparsityPattern& pattern);
+
   RowRange rows_;
-  std::vector<std::size_t> starts_;
-  std::vector<std::uint32_t> columns_;
-  std::vector<Number> values_;
+  std::vector<std::size_t> starts_;   ///< of the nodes' blocks
+  std::vector<std::uint32_t> nodes_;  ///< of the blocks' columns, ascending for each node
+  std::vector<Number> values_;        ///< of the blocks, each row by row
 };
 
 extern template class OwnRows<float>;
