@@ -17,7 +17,7 @@ void solve(benchmark::State& run, SolverKind kind) {
   LinearSolver solver(*problem.space, problem.constraints, problem.pattern, kind);
   dealii::Vector<double> solution;
   int iterations = 0;
-  for (auto _ : run) {
+  for ([[maybe_unused]] auto _ : run) {
     solver.prepare(problem.matrix);
     iterations = solver.solve(problem.forces, solution, 1e-6);
   }

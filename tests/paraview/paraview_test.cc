@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a real ParaView makes of a result folder. Oracle: ParaView's own readers and filters against
 // summary.json and the case.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -206,9 +207,10 @@ TEST_F(ParaView, ReadsEveryArrayWithItsNameTypeAndRange) {
       for (const std::string field : {"line", "volume", "potential"})
         for (const std::size_t axis : {0u, 1u, 2u})
           for (const std::string kind : {"B", "dB"}) {
-            const double value = step(i)["fields"][model + "/" + field][kind][0][axis];
-            expect_range(series["sensors"][i]["point_data"], kind + "_" + model + "_" + field, axis,
-                         value, value, 1e-15);
+            const double value =
+                step(i)["fields"][fmt::format("{}/{}", model, field)][kind][0][axis];
+            expect_range(series["sensors"][i]["point_data"],
+                         fmt::format("{}_{}_{}", kind, model, field), axis, value, value, 1e-15);
           }
     }
     expect_body(series["body_solid"][i], step(i)["mechanics"]["solid"]);
