@@ -21,8 +21,6 @@ namespace {
 /// and what is wrong with it all ranks find at nearly the same time.
 constexpr double patience = 10;
 
-constexpr Row node_unknowns = 3;
-
 /// All ranks once more: on it they tell one another that they have failed, while some of them may
 /// be waiting for a message of the solver's.
 MPI_Comm failures = MPI_COMM_NULL;

@@ -45,6 +45,8 @@ void spread_from_first_rank(std::span<double> values);
 
 using Row = dealii::types::global_dof_index;
 
+inline constexpr Row node_unknowns = 3;  ///< of a node of the solid, numbered one after the other
+
 /// A contiguous part of a range of rows.
 struct RowRange {
   Row begin = 0;

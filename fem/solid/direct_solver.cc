@@ -38,7 +38,7 @@ constexpr int largest_margin = 1000;
 /// Unknowns that stand together in blocks of three rows of the same columns, a node's
 /// displacements each, or else one by one.
 int block_size(const SparsityPattern& pattern) {
-  constexpr int block = 3;
+  constexpr int block = node_unknowns;
   if (pattern.n_rows() % block != 0) return 1;
   for (Row row = 0; row < pattern.n_rows(); ++row)
     if (pattern.row_length(row) != pattern.row_length(row - row % block) ||

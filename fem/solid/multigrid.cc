@@ -30,7 +30,6 @@ constexpr double smoother_range = 10;
 constexpr double safety = 1.05;  ///< tangents of compressed cells are not quite positive
 
 constexpr std::size_t corners = 8;
-constexpr unsigned int node_size = 3;  ///< unknowns of a node
 
 /// Lexicographic coordinates 0 … 2 of a node of the element.
 std::array<int, 3> coordinates(int node) {
@@ -88,46 +87,46 @@ void OwnRows<Number>::make_pattern(const dealii::SparsityPattern& pattern) {
   const auto require = [](bool holds) {
     if (!holds) throw SolverError("the unknowns of the solid's nodes do not stand together");
   };
-  require(rows_.begin % node_size == 0 && rows_.end % node_size == 0);
+  require(rows_.begin % node_unknowns == 0 && rows_.end % node_unknowns == 0);
   starts_.push_back(0);
-  for (Row row = rows_.begin; row < rows_.end; row += node_size) {
+  for (Row row = rows_.begin; row < rows_.end; row += node_unknowns) {
     for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry)
-      if (entry->column() % node_size == 0)
-        nodes_.push_back(static_cast<std::uint32_t>(entry->column() / node_size));
+      if (entry->column() % node_unknowns == 0)
+        nodes_.push_back(static_cast<std::uint32_t>(entry->column() / node_unknowns));
     std::sort(nodes_.begin() + static_cast<std::ptrdiff_t>(starts_.back()), nodes_.end());
     // All rows of the node have the columns of these nodes and no others.
-    for (Row k = 0; k < node_size; ++k) {
-      require(pattern.row_length(row + k) == node_size * (nodes_.size() - starts_.back()));
+    for (Row k = 0; k < node_unknowns; ++k) {
+      require(pattern.row_length(row + k) == node_unknowns * (nodes_.size() - starts_.back()));
       std::size_t block = starts_.back();
       for (auto entry = pattern.begin(row + k); entry != pattern.end(row + k); ++entry) {
         if (entry->column() == row + k) continue;
-        while (block < nodes_.size() && nodes_[block] < entry->column() / node_size) ++block;
-        require(block < nodes_.size() && nodes_[block] == entry->column() / node_size);
+        while (block < nodes_.size() && nodes_[block] < entry->column() / node_unknowns) ++block;
+        require(block < nodes_.size() && nodes_[block] == entry->column() / node_unknowns);
       }
     }
     starts_.push_back(nodes_.size());
   }
-  values_.resize(node_size * node_size * nodes_.size());
+  values_.resize(node_unknowns * node_unknowns * nodes_.size());
 }
 
 template <typename Number>
 void OwnRows<Number>::update(const SparseMatrix<double>& matrix) {
   if (starts_.empty()) make_pattern(matrix.get_sparsity_pattern());
   for_each(starts_.size() - 1, 64, [&](std::size_t i) {
-    const Row first = rows_.begin + static_cast<Row>(node_size * i);
+    const Row first = rows_.begin + static_cast<Row>(node_unknowns * i);
     const auto own = static_cast<std::size_t>(
         std::lower_bound(nodes_.begin() + static_cast<std::ptrdiff_t>(starts_[i]),
                          nodes_.begin() + static_cast<std::ptrdiff_t>(starts_[i + 1]),
-                         first / node_size) -
+                         first / node_unknowns) -
         nodes_.begin());
-    for (Row k = 0; k < node_size; ++k) {
+    for (Row k = 0; k < node_unknowns; ++k) {
       // The columns are sorted, but for the diagonal, which deal.II stores first.
       std::size_t block = starts_[i];
       for (auto entry = matrix.begin(first + k); entry != matrix.end(first + k); ++entry) {
         const bool diagonal = entry->column() == first + k;
-        while (!diagonal && nodes_[block] != entry->column() / node_size) ++block;
+        while (!diagonal && nodes_[block] != entry->column() / node_unknowns) ++block;
         const std::size_t at = diagonal ? own : block;
-        values_[node_size * (node_size * at + k) + entry->column() % node_size] =
+        values_[node_unknowns * (node_unknowns * at + k) + entry->column() % node_unknowns] =
             static_cast<Number>(entry->value());
       }
     }
@@ -139,17 +138,17 @@ void OwnRows<Number>::vmult(Vector<double>& y, const Vector<double>& x) const {
   const double* const X = x.begin();
   for_each(starts_.size() - 1, 64, [&](std::size_t i) {
     // Nine sums, so that no addition waits for the one before.
-    std::array<double, node_size * node_size> sums{};
+    std::array<double, node_unknowns * node_unknowns> sums{};
     for (std::size_t block = starts_[i]; block < starts_[i + 1]; ++block) {
-      const Number* const value = values_.data() + node_size * node_size * block;
-      const double* const at = X + std::size_t{node_size} * nodes_[block];
-      for (std::size_t k = 0; k < node_size; ++k)
-        for (std::size_t l = 0; l < node_size; ++l)
-          sums[node_size * k + l] += static_cast<double>(value[node_size * k + l]) * at[l];
+      const Number* const value = values_.data() + node_unknowns * node_unknowns * block;
+      const double* const at = X + std::size_t{node_unknowns} * nodes_[block];
+      for (std::size_t k = 0; k < node_unknowns; ++k)
+        for (std::size_t l = 0; l < node_unknowns; ++l)
+          sums[node_unknowns * k + l] += static_cast<double>(value[node_unknowns * k + l]) * at[l];
     }
-    for (std::size_t k = 0; k < node_size; ++k)
-      y[rows_.begin + static_cast<Row>(node_size * i + k)] =
-          sums[node_size * k] + sums[node_size * k + 1] + sums[node_size * k + 2];
+    for (std::size_t k = 0; k < node_unknowns; ++k)
+      y[rows_.begin + static_cast<Row>(node_unknowns * i + k)] =
+          sums[node_unknowns * k] + sums[node_unknowns * k + 1] + sums[node_unknowns * k + 2];
   });
   gather_over_ranks({y.begin(), y.size()});
 }

@@ -18,8 +18,8 @@ namespace ciliaval::fem {
 
 /// A copy of this rank's own rows of a matrix, in blocks of 3 × 3: the unknowns of a node stand
 /// together and are coupled with those of the same nodes, so that one column is kept for nine
-/// values. In single precision, for a preconditioner, a third of what the matrix itself has to
-/// read.
+/// values. In single precision, for a preconditioner, that is 4.4 bytes a value to read, of the
+/// matrix itself 12.
 template <typename Number>
 class OwnRows {
  public:

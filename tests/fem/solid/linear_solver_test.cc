@@ -10,10 +10,13 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "cube.h"
+#include "fem/solid/multigrid.h"
 #include "fem/solid/solid.h"
+#include "problem/error.h"
 #include "tests/bench/mesh_family.h"
 
 namespace ciliaval::fem {
@@ -91,6 +94,48 @@ TEST(SolidLinearSolver, VertexStarsHaveNoEigenvalueBeyondEight) {
   }
   EXPECT_LE(eigenvalue, VertexStars::largest_eigenvalue * (1 + 1e-5));  // single precision
   EXPECT_GE(eigenvalue, 0.5 * VertexStars::largest_eigenvalue);
+}
+
+// Oracle: deal.II's product, all rows and the last half of the nodes. Sums in another order.
+TEST(SolidLinearSolver, RowsInBlocksMultiplyAsTheMatrix) {
+  const System system(0.49);
+  const Row size = system.space.unknowns();
+  Vector<double> x(size);
+  std::iota(x.begin(), x.end(), -0.5 * size);
+  Vector<double> expected(size);
+  system.matrix.vmult(expected, x);
+  for (const Row begin : {Row{0}, size / 2 - size / 2 % node_unknowns}) {
+    OwnRows<double> rows({begin, size});
+    rows.update(system.matrix);
+    Vector<double> product(size);
+    rows.vmult(product, x);
+    for (Row row = 0; row < size; ++row)
+      EXPECT_NEAR(product[row], row < begin ? 0 : expected[row], 1e-13 * expected.linfty_norm());
+  }
+}
+
+TEST(SolidLinearSolver, RowsInBlocksRefuseAPatternThatIsNotOneOfNodes) {
+  const auto refuses = [](Row rows, const std::vector<std::pair<Row, Row>>& missing) {
+    dealii::DynamicSparsityPattern dynamic(rows);
+    for (Row i = 0; i < rows; ++i)
+      for (Row j = 0; j < rows; ++j)
+        if (std::find(missing.begin(), missing.end(), std::pair(i, j)) == missing.end())
+          dynamic.add(i, j);
+    dealii::SparsityPattern pattern;
+    pattern.copy_from(dynamic);
+    const dealii::SparseMatrix<double> matrix(pattern);
+    OwnRows<double> own({0, rows});
+    try {
+      own.update(matrix);
+    } catch (const SolverError&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(refuses(9, {}));
+  EXPECT_TRUE(refuses(8, {}));
+  EXPECT_TRUE(refuses(9, {{4, 1}}));
+  EXPECT_TRUE(refuses(9, {{3, 6}, {3, 7}, {3, 8}, {4, 0}, {4, 1}, {4, 2}, {5, 0}, {5, 1}, {5, 2}}));
 }
 
 // Oracle: the purpose of the vertex stars. A point or cell smoother would need √(K/μ) times as many
