@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# The speed-up by two ranks, table of docs/solid.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank and
+# under mpirun on two, each with one thread; start of the program, coarser meshes and VTK included. Ten minutes on a quiet machine.
+# Usage: tests/bench/ranks.sh [PROGRAM [ROW …]]   (default: build/release/ciliaval, all rows; a row is mesh:refinement:solver:loads)
+# SPDX-License-Identifier: LGPL-2.1-or-later
+set -euo pipefail
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+program=$(realpath "${1:-$source_dir/build/release/ciliaval}")
+shift || true
+rows=("$@")
+[ $# -gt 0 ] || rows=(half:1:direct:4 half:2:direct:4 half:2:direct:1 half:2:iterative:1 half:3:direct:1 half:3:iterative:1
+  whole:1:direct:1 whole:1:iterative:1 whole:2:direct:1 whole:2:iterative:1 whole:3:direct:1 whole:3:iterative:1)
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export DEAL_II_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+
+# fig3b up to its models, with one load or all four.
+write_case() {
+  local mesh=$1 refinement=$2 solver=$3 loads=$4 force
+  force='["2 mN"]'
+  [ "$loads" = 1 ] || force='["1 mN", "2 mN", "3 mN", "4 mN"]'
+  sed -e '/^\[models\]/,$d' -e "s/^name = \"fig3b\"/name = \"ranks\"/" -e "s/^force = .*/force = $force/" "$source_dir/cases/paper/fig3b.toml"
+  printf '[models]\nmechanics = ["solid"]\nfields = ["line"]\n[models.solid]\nrefinement = %s\nsolver = "%s"\nsymmetry = %s\n' \
+    "$refinement" "$solver" "$([ "$mesh" = half ] && echo true || echo false)"
+}
+
+# Wall seconds of a command; what it prints stands in `log`.
+seconds() {
+  local start=$EPOCHREALTIME
+  "$@" >log 2>&1 || { cat log >&2; echo "error: $* failed" >&2; exit 1; }
+  awk -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.2f", b - a }'
+}
+
+# The three numbers of each step's tip, in one column.
+tips() { tr -d ' \n' < "$1/ranks/summary.json" | grep -o '"tip":\[[^]]*\]' | sed 's/.*\[//; s/\]//' | tr ',' '\n'; }
+
+echo '| mesh | refinement | solver | loads | unknowns | one rank, s | two ranks, s | ratio | tips apart by, m |'
+echo '|---|---|---|---|---|---|---|---|---|'
+for row in "${rows[@]}"; do
+  IFS=: read -r mesh refinement solver loads <<< "$row"
+  write_case "$mesh" "$refinement" "$solver" "$loads" > case.toml
+  one=$(seconds "$program" run case.toml -o one)
+  two=$(seconds mpirun -np 2 "$program" run case.toml -o two)
+  unknowns=$(tr -d ' \n' < one/ranks/summary.json | grep -o '"unknowns":[0-9]*' | head -1 | cut -d: -f2)
+  apart=$(paste <(tips one) <(tips two) | awk '{ d = $1 - $2; d = d < 0 ? -d : d; m = d > m ? d : m } END { printf "%.1e", m }')
+  awk -v a="$one" -v b="$two" -v row="| $mesh | $refinement | $solver | $loads | $unknowns |" -v apart="$apart" \
+    'BEGIN { printf "%s %s | %s | %.2f | %s |\n", row, a, b, a / b, apart }'
+done
