@@ -35,30 +35,15 @@ constexpr int world = -987654;  ///< MPI_COMM_WORLD for MUMPS's C interface
 constexpr int first_margin = 60;
 constexpr int largest_margin = 1000;
 
-/// Unknowns that stand together in blocks of three rows of the same columns, a node's
-/// displacements each, or else one by one.
-int block_size(const SparsityPattern& pattern) {
-  constexpr int block = node_unknowns;
-  if (pattern.n_rows() % block != 0) return 1;
-  for (Row row = 0; row < pattern.n_rows(); ++row)
-    if (pattern.row_length(row) != pattern.row_length(row - row % block) ||
-        pattern.row_length(row) % block != 0)
-      return 1;
-  return block;
-}
-
-/// The position of each unknown, from 1, in a nested dissection of the graph of the blocks.
+/// The position of each unknown, from 1, in a nested dissection of the graph of the nodes.
 std::vector<MUMPS_INT> nested_dissection(const SparsityPattern& pattern) {
-  const int block = block_size(pattern);
-  auto nodes = static_cast<idx_t>(pattern.n_rows()) / block;
+  auto nodes = static_cast<idx_t>(pattern.n_rows() / node_unknowns);
   std::vector<idx_t> starts{0};
   std::vector<idx_t> neighbours;
-  for (idx_t node = 0; node < nodes; ++node) {
-    const auto row = static_cast<Row>(node * block);
-    for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry) {
-      const auto column = static_cast<idx_t>(entry->column());
-      if (column % block == 0 && column / block != node) neighbours.push_back(column / block);
-    }
+  for (Row row = 0; row < pattern.n_rows(); row += node_unknowns) {
+    for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry)
+      if (entry->column() % node_unknowns == 0 && entry->column() != row)
+        neighbours.push_back(static_cast<idx_t>(entry->column() / node_unknowns));
     starts.push_back(static_cast<idx_t>(neighbours.size()));
   }
   std::vector<idx_t> order(static_cast<std::size_t>(nodes));
@@ -68,7 +53,9 @@ std::vector<MUMPS_INT> nested_dissection(const SparsityPattern& pattern) {
     return {};
   std::vector<MUMPS_INT> result;
   for (const idx_t position : positions)
-    for (int k = 1; k <= block; ++k) result.push_back(position * block + k);
+    for (Row k = 1; k <= node_unknowns; ++k)
+      result.push_back(position * static_cast<MUMPS_INT>(node_unknowns) +
+                       static_cast<MUMPS_INT>(k));
   return result;
 }
 

@@ -21,7 +21,8 @@ class DirectSolver {
     symmetric_part  ///< (A + Aᵀ)/2 = LDLᵀ: half the work and memory
   };
   /// The matrix is the sum over the ranks of the rows `rows` of their matrices, all with this
-  /// pattern, which must be symmetric. Starts MPI if need be.
+  /// pattern, which must be symmetric and couple whole nodes (node_unknowns). Starts MPI if need
+  /// be.
   DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, RowRange rows);
   ~DirectSolver();
   DirectSolver(const DirectSolver&) = delete;
