@@ -195,7 +195,8 @@ TEST(CommandLine, AMistypedCommandIsNamedWithTheValidOnes) {
   EXPECT_THAT(outcome.err, HasSubstr("`rum`"));
   EXPECT_THAT(
       outcome.err,
-      HasSubstr("run, validate, mesh, check, converge, budget, sense, study, claims, report, list"));
+      HasSubstr(
+          "run, validate, mesh, check, converge, budget, sense, study, claims, report, list"));
 }
 
 TEST(CommandLine, AMessageWithAPlaceStartsWithIt) {
