@@ -2,6 +2,7 @@
 #include "compare/commands.h"
 
 #include <fmt/core.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <optional>
@@ -99,8 +100,10 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options) {
   const Provenance origin = provenance(options.command);
   write_text(folder.path() / "case.toml", to_toml(problem));
   write_results(result, comparisons, origin, folder.path());
-  vtk::write_vtk(result, grid, origin, folder.path() / "vtk");
-  write_case_report(folder.path());
+  fem::with_threads_of_all_ranks([&] {
+    tbb::parallel_invoke([&] { vtk::write_vtk(result, grid, origin, folder.path() / "vtk"); },
+                         [&] { write_case_report(folder.path()); });
+  });
   folder.commit();
   print(table(result, comparisons));
   if (prepared.checkpoints) end_checkpoints(*prepared.checkpoints, result);

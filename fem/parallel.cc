@@ -4,12 +4,15 @@
 #include <deal.II/base/multithread_info.h>
 #include <dlfcn.h>
 #include <mpi.h>
+#include <sched.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "problem/error.h"
@@ -24,6 +27,18 @@ constexpr double patience = 10;
 /// All ranks once more: on it they tell one another that they have failed, while some of them may
 /// be waiting for a message of the solver's.
 MPI_Comm failures = MPI_COMM_NULL;
+
+/// Of all ranks, those on this machine, and the processors that they may use.
+int ranks_here = 1;
+cpu_set_t processors_here{};
+
+/// Whether this rank works alone.
+bool alone = false;
+
+/// The ranks that work together.
+MPI_Comm together() {
+  return alone ? MPI_COMM_SELF : MPI_COMM_WORLD;
+}
 
 bool running() {
   int started = 0;
@@ -50,7 +65,7 @@ void use_one_thread() {
 void idle_until_first_rank_sends(int& value) {
   using namespace std::chrono_literals;
   MPI_Request request = MPI_REQUEST_NULL;
-  MPI_Ibcast(&value, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
+  MPI_Ibcast(&value, 1, MPI_INT, 0, together(), &request);
   int done = 0;
   for (auto nap = 0us; done == 0; nap = std::min(2 * nap + 10us, 10000us)) {
     MPI_Test(&request, &done, MPI_STATUS_IGNORE);
@@ -65,11 +80,41 @@ void spare_open_mpi_the_network() {
   constexpr int keep_what_is_set = 0;
   const char* all = std::getenv("OMPI_COMM_WORLD_SIZE");
   const char* here = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
-  const bool alone = all == nullptr && !launched_on_several_ranks();
-  if (alone) setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_what_is_set);
-  if (alone || (all != nullptr && here != nullptr && std::string_view(all) == here))
+  const bool single = all == nullptr && !launched_on_several_ranks();
+  if (single) setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_what_is_set);
+  if (single || (all != nullptr && here != nullptr && std::string_view(all) == here))
     setenv("OMPI_MCA_pml", "ob1", keep_what_is_set);
 }
+
+/// Counts the ranks on this machine and finds their processors: mpirun binds each to its own.
+void find_ranks_here() {
+  MPI_Comm here = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+  MPI_Comm_size(here, &ranks_here);
+  sched_getaffinity(0, sizeof processors_here, &processors_here);
+  MPI_Allreduce(MPI_IN_PLACE, &processors_here, sizeof processors_here, MPI_BYTE, MPI_BOR, here);
+  MPI_Comm_free(&here);
+}
+
+/// Lets the calling thread, and those that it starts, run on the processors of all ranks here.
+class ProcessorsOfAllRanks {
+ public:
+  ProcessorsOfAllRanks() {
+    dealii::MultithreadInfo::set_thread_limit(static_cast<unsigned int>(ranks_here));
+    known_ = sched_getaffinity(0, sizeof own_, &own_) == 0;
+    if (known_) sched_setaffinity(0, sizeof processors_here, &processors_here);
+  }
+  ~ProcessorsOfAllRanks() {
+    if (known_) sched_setaffinity(0, sizeof own_, &own_);
+    dealii::MultithreadInfo::set_thread_limit(1);
+  }
+  ProcessorsOfAllRanks(const ProcessorsOfAllRanks&) = delete;
+  ProcessorsOfAllRanks& operator=(const ProcessorsOfAllRanks&) = delete;
+
+ private:
+  bool known_ = false;
+  cpu_set_t own_{};
+};
 
 int to_int(std::size_t value) {
   return static_cast<int>(value);
@@ -94,6 +139,7 @@ void start_mpi() {
   std::atexit(end_mpi);
   if (rank_count() == 1) return;
   MPI_Comm_dup(MPI_COMM_WORLD, &failures);
+  find_ranks_here();
   use_one_thread();
 }
 
@@ -105,14 +151,32 @@ bool launched_on_several_ranks() {
 
 int rank() {
   int result = 0;
-  if (running()) MPI_Comm_rank(MPI_COMM_WORLD, &result);
+  if (running()) MPI_Comm_rank(together(), &result);
   return result;
 }
 
 int rank_count() {
   int result = 1;
-  if (running()) MPI_Comm_size(MPI_COMM_WORLD, &result);
+  if (running()) MPI_Comm_size(together(), &result);
   return result;
+}
+
+RankAlone::RankAlone(bool now) : before_(alone) {
+  alone = alone || now;
+}
+
+RankAlone::~RankAlone() {
+  alone = before_;
+}
+
+void with_threads_of_all_ranks(const std::function<void()>& work) {
+  if (rank_count() == 1) return work();
+  const ProcessorsOfAllRanks processors;
+  tbb::task_arena(ranks_here).execute(work);
+}
+
+int fortran_communicator() {
+  return MPI_Comm_c2f(together());
 }
 
 void abort_all_ranks(int exit_code) {
@@ -135,7 +199,7 @@ void require_failure_of_all_ranks(const std::string& message) {
 }
 
 int from_first_rank(int value) {
-  if (rank_count() > 1) MPI_Bcast(&value, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  if (rank_count() > 1) idle_until_first_rank_sends(value);
   return value;
 }
 
@@ -151,15 +215,21 @@ std::string from_first_rank(const std::function<std::string()>& work) {
       failed = 1;
     }
   }
-  unsigned long long size = text.size();
   idle_until_first_rank_sends(failed);
-  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+  text = from_rank(0, std::move(text));
+  if (failed != 0) throw CheckpointError(text);
+  return text;
+}
+
+std::string from_rank(int source, std::string text) {
+  if (rank_count() == 1) return text;
+  unsigned long long size = text.size();
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, source, together());
   text.resize(size);
   constexpr std::size_t part = std::size_t{1} << 30;
   for (std::size_t start = 0; start < text.size(); start += part)
-    MPI_Bcast(text.data() + start, to_int(std::min(part, text.size() - start)), MPI_CHAR, 0,
-              MPI_COMM_WORLD);
-  if (failed != 0) throw CheckpointError(text);
+    MPI_Bcast(text.data() + start, to_int(std::min(part, text.size() - start)), MPI_CHAR, source,
+              together());
   return text;
 }
 
@@ -168,13 +238,12 @@ void sum_over_ranks(std::span<double> values) {
   // Reduced at one place: MPI_Allreduce may sum in another order on another rank.
   const bool root = rank() == 0;
   MPI_Reduce(root ? MPI_IN_PLACE : values.data(), root ? values.data() : nullptr,
-             to_int(values.size()), MPI_DOUBLE, MPI_SUM, 0, MPI_COMM_WORLD);
+             to_int(values.size()), MPI_DOUBLE, MPI_SUM, 0, together());
   spread_from_first_rank(values);
 }
 
 void spread_from_first_rank(std::span<double> values) {
-  if (rank_count() > 1)
-    MPI_Bcast(values.data(), to_int(values.size()), MPI_DOUBLE, 0, MPI_COMM_WORLD);
+  if (rank_count() > 1) MPI_Bcast(values.data(), to_int(values.size()), MPI_DOUBLE, 0, together());
 }
 
 RowRange own_range(Row size) {
@@ -192,7 +261,7 @@ void gather_over_ranks(std::span<double> values) {
     counts.push_back(to_int(part.end - part.begin));
   }
   MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values.data(), counts.data(), starts.data(),
-                 MPI_DOUBLE, MPI_COMM_WORLD);
+                 MPI_DOUBLE, together());
 }
 
 }  // namespace ciliaval::fem

@@ -17,9 +17,30 @@ void start_mpi();
 /// not start MPI.
 bool launched_on_several_ranks();
 
-/// Number of this rank, and of all ranks: 0 and 1 unless MPI was started.
+/// Number of this rank, and of all ranks: 0 and 1 unless MPI was started, or while RankAlone lives.
 int rank();
 int rank_count();
+
+/// While it lives this rank works alone: rank() is 0, rank_count() is 1, and what is collective
+/// concerns no other rank. For work that the ranks do not share. A solver that was built meanwhile
+/// must be used meanwhile, and no other one may be.
+class RankAlone {
+ public:
+  explicit RankAlone(bool alone = true);
+  ~RankAlone();
+  RankAlone(const RankAlone&) = delete;
+  RankAlone& operator=(const RankAlone&) = delete;
+
+ private:
+  bool before_;
+};
+
+/// Does rank 0's work at the end of a case, for which the other ranks wait: with a thread for each
+/// rank on this machine, on the processors of all of them. On one rank it is done as it is.
+void with_threads_of_all_ranks(const std::function<void()>& work);
+
+/// The ranks that work together now, as MPI's Fortran interface names them.
+int fortran_communicator();
 
 /// Ends all ranks with the exit code, if there are several: after a failure of one rank alone, for
 /// which the others would wait forever.
@@ -30,12 +51,15 @@ void abort_all_ranks(int exit_code);
 /// wait for this one in that work: throws RankFailure with the message.
 void require_failure_of_all_ranks(const std::string& message);
 
-/// Rank 0's value, on all ranks. Collective.
+/// Rank 0's value, on all ranks, which sleep until it comes. Collective.
 int from_first_rank(int value);
 
 /// What the work, done by rank 0 alone, returns, on all ranks; so is a CheckpointError that it
 /// throws. Collective.
 std::string from_first_rank(const std::function<std::string()>& work);
+
+/// A rank's text, on all ranks. Collective.
+std::string from_rank(int source, std::string text);
 
 /// Replaces the values by their sums over the ranks: the same bits on all of them. Collective.
 void sum_over_ranks(std::span<double> values);

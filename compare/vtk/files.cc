@@ -23,18 +23,6 @@
 namespace ciliaval::compare::vtk {
 namespace {
 
-/// VTK reports to stderr by itself; here the exception does.
-class Quiet {
- public:
-  Quiet() : before_(vtkObject::GetGlobalWarningDisplay()) { vtkObject::GlobalWarningDisplayOff(); }
-  ~Quiet() { vtkObject::SetGlobalWarningDisplay(before_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  int before_;
-};
-
 vtkSmartPointer<vtkXMLWriter> writer_for(const vtkDataSet& data) {
   switch (const_cast<vtkDataSet&>(data).GetDataObjectType()) {  // not const in VTK
     case VTK_UNSTRUCTURED_GRID:
@@ -79,7 +67,7 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& 
 }
 
 void write(vtkDataSet& data, const std::filesystem::path& file) {
-  const Quiet quiet;
+  vtkObject::GlobalWarningDisplayOff();  // the exception reports
   const auto writer = writer_for(data);
   writer->SetInputData(&data);
   writer->SetFileName(file.c_str());

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/vtk/output.h"
 
+#include <tbb/parallel_for.h>
+#include <vtkDataSet.h>
+#include <vtkImageData.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <mutex>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "compare/results.h"
 #include "compare/vtk/datasets.h"
@@ -14,7 +24,7 @@
 namespace ciliaval::compare::vtk {
 namespace {
 
-/// The files of a folder, each part of a series.
+/// The files of a folder, each part of a series. Several threads may add files.
 class Output {
  public:
   Output(const std::filesystem::path& folder, const Provenance& provenance, const LoadPath& path)
@@ -29,6 +39,7 @@ class Output {
     const std::string kind = extension(data);
     add_provenance(data, provenance_, path_[step]);
     write(data, folder_ / step_file(series, step, kind));
+    const std::lock_guard lock(series_mutex_);
     series_[series] = kind;
   }
 
@@ -42,7 +53,8 @@ class Output {
   const std::filesystem::path& folder_;
   const Provenance& provenance_;
   const LoadPath& path_;
-  std::map<std::string, std::string> series_;
+  std::map<std::string, std::string> series_;  ///< the extension of each
+  std::mutex series_mutex_;
 };
 
 /// Whether any pair of models has B at any sensor.
@@ -58,26 +70,39 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
                const Provenance& provenance, const std::filesystem::path& folder) {
   const Case& problem = result.problem;
   Output output(folder, provenance, problem.load_path);
+  std::vector<std::function<void()>> files;
+  // `make` gives the data set, or none.
+  const auto add = [&](const std::string& series, std::size_t step, const auto& make) {
+    files.emplace_back([&output, series, step, make] {
+      if (const vtkSmartPointer<vtkDataSet> data = make()) output.add(series, step, *data);
+    });
+  };
   for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
     for (const MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
       if (!deformation) continue;
-      output.add("centreline_" + run.model, step,
-                 *rod_polyline(problem.cilium, deformation->centreline));
-      output.add(
-          "dipoles_" + run.model, step,
-          *dipoles(problem.cilium, deformation->centreline, problem.options.line.push_forward));
-      if (deformation->body) output.add("body_" + run.model, step, *solid_grid(*deformation->body));
+      add("centreline_" + run.model, step, [&problem, &centreline = deformation->centreline] {
+        return rod_polyline(problem.cilium, centreline);
+      });
+      add("dipoles_" + run.model, step, [&problem, &centreline = deformation->centreline] {
+        return dipoles(problem.cilium, centreline, problem.options.line.push_forward);
+      });
+      if (deformation->body)
+        add("body_" + run.model, step, [&body = *deformation->body] { return solid_grid(body); });
     }
     if (grid)
-      if (const auto B = grid->sample(step))
-        output.add("field_" + grid->mechanics + "_" + grid->field, step, *field_image(*grid, *B));
+      add("field_" + grid->mechanics + "_" + grid->field, step,
+          [&grid, step]() -> vtkSmartPointer<vtkDataSet> {
+            const auto B = grid->sample(step);
+            return B ? field_image(*grid, *B) : nullptr;
+          });
     for (const FieldRun& run : result.fields)
       if (run.steps[step] && run.steps[step]->mesh)
-        output.add("field_" + run.mechanics + "_" + run.field, step,
-                   *octree_grid(*run.steps[step]->mesh));
-    if (any_field(result, step)) output.add("sensors", step, *sensors(result, step));
+        add("field_" + run.mechanics + "_" + run.field, step,
+            [&mesh = *run.steps[step]->mesh] { return octree_grid(mesh); });
+    if (any_field(result, step)) add("sensors", step, [&, step] { return sensors(result, step); });
   }
+  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) { files[i](); });
   output.finish();
 }
 

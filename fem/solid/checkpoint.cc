@@ -1,105 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/checkpoint.h"
 
-#include <array>
-#include <boost/archive/archive_exception.hpp>
-#include <boost/archive/binary_iarchive.hpp>
-#include <boost/archive/binary_oarchive.hpp>
-#include <boost/serialization/array_wrapper.hpp>
-#include <boost/serialization/string.hpp>
-#include <boost/serialization/utility.hpp>
-#include <boost/serialization/vector.hpp>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <sstream>
-#include <variant>
 
 #include "fem/checkpoint_file.h"
 #include "fem/parallel.h"
+#include "fem/solid/archive.h"
 #include "problem/error.h"
-
-// What a state consists of. Each type is taken apart by structured bindings: a member that is added
-// to it and forgotten here does not compile.
-namespace boost::serialization {
-
-template <class Archive, class T>
-void serialize(Archive& archive, std::optional<T>& value, unsigned int /*version*/) {
-  bool there = value.has_value();
-  archive& there;
-  if (there && !value) value.emplace();
-  if (there)
-    archive&* value;
-  else
-    value.reset();
-}
-
-template <class Archive>
-void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/) {
-  std::size_t type = load.index();
-  archive& type;
-  if (type != load.index()) {
-    static const std::array<ciliaval::Load, 5> loads{ciliaval::ContactLoad{}, ciliaval::FlowLoad{},
-                                                     ciliaval::SectionLoad{}, ciliaval::DeadLoad{},
-                                                     ciliaval::ProbeLoad{}};
-    static_assert(std::variant_size_v<ciliaval::Load> == loads.size());
-    load = loads.at(type);
-  }
-  std::visit(
-      [&archive](auto& l) {
-        if constexpr (
-            requires { l.height; } || requires { l.arclength; }) {
-          auto& [magnitude, place, azimuth] = l;
-          archive& magnitude& place& azimuth;
-        } else {
-          auto& [magnitude, azimuth] = l;
-          archive& magnitude& azimuth;
-        }
-      },
-      load);
-}
-
-template <class Archive>
-void serialize(Archive& archive, ciliaval::fem::SolidState& state, unsigned int /*version*/) {
-  auto& [displacement, pressure] = state;
-  auto unknowns = displacement.size();
-  std::size_t elements = pressure.size();
-  archive& unknowns& elements;
-  if (unknowns != displacement.size()) displacement.reinit(unknowns);
-  pressure.resize(elements);
-  archive& make_array(displacement.begin(), unknowns);
-  for (auto& coefficients : pressure)
-    archive& make_array(coefficients.data(), static_cast<std::size_t>(coefficients.size()));
-}
-
-template <class Archive>
-void serialize(Archive& archive, ciliaval::fem::Equilibrium& equilibrium, unsigned int /*v*/) {
-  auto& [load, state, applied_force] = equilibrium;
-  archive& load& state& applied_force;
-}
-
-template <class Archive>
-void serialize(Archive& archive, ciliaval::fem::Ramp& ramp, unsigned int /*version*/) {
-  auto& [start, target, reached, step, cuts, overshoots, iterations, unguided] = ramp;
-  archive& start& target& reached& step& cuts& overshoots& iterations;
-}
-
-template <class Archive>
-void serialize(Archive& archive, ciliaval::fem::LoadPathState& state, unsigned int /*version*/) {
-  auto& [current, previous, slipped, ramp] = state;
-  archive& current& previous& slipped& ramp;
-}
-
-template <class Archive>
-void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
-  auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
-         contact_arclength, tip_uncertainty, unknowns, iterations, seconds] = step;
-  static_cast<void>(deformation);  // rebuilt from the state
-  archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
-      contact_arclength& tip_uncertainty& unknowns& iterations& seconds;
-}
-
-}  // namespace boost::serialization
 
 namespace ciliaval::fem {
 namespace {
@@ -138,21 +47,11 @@ std::string describe_file(const std::filesystem::path& file) {
   return text;
 }
 
-std::string serialized(const auto&... values) {
-  std::ostringstream stream;
-  {
-    boost::archive::binary_oarchive archive(stream);
-    (archive << ... << values);
-  }
-  return std::move(stream).str();
-}
-
 /// Reads the first of the values that were serialised together. `path` is for the message.
-void deserialize(const std::filesystem::path& path, const std::string& bytes, auto&... values) {
-  std::istringstream stream(bytes);
+void deserialize_file(const std::filesystem::path& path, const std::string& bytes,
+                      auto&... values) {
   try {
-    boost::archive::binary_iarchive archive(stream);
-    (archive >> ... >> values);
+    deserialize(bytes, values...);
   } catch (const std::exception& error) {
     throw CheckpointError(
         refusal(path, std::string("its content cannot be read: ") + error.what()));
@@ -238,11 +137,11 @@ std::string SolidCheckpoint::verified_content() const {
   Facts facts;
   std::vector<MechanicsStep> steps;
   std::vector<std::uint32_t> checksums;
-  deserialize(files_.path, *content, facts);
+  deserialize_file(files_.path, *content, facts);
   const std::string other = difference(facts, facts_);
   if (!other.empty())
     throw CheckpointError(refusal(files_.path, "it is that of another problem: " + other));
-  deserialize(files_.path, *content, facts, steps, checksums);
+  deserialize_file(files_.path, *content, facts, steps, checksums);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     if (steps[i].status != Status::converged) continue;
     const auto state = read_checkpoint_file(step_file(i), files_.program);
@@ -259,7 +158,7 @@ std::size_t SolidCheckpoint::verify() const {
   if (content.empty()) return 0;
   Facts facts;
   std::vector<MechanicsStep> steps;
-  deserialize(files_.path, content, facts, steps);
+  deserialize_file(files_.path, content, facts, steps);
   return steps.size();
 }
 
@@ -269,7 +168,7 @@ std::vector<std::optional<LoadPathState>> SolidCheckpoint::read() {
   const std::string content = from_first_rank([this] { return verified_content(); });
   if (content.empty()) return levels;
   Facts facts;
-  deserialize(files_.path, content, facts, steps_, checksums_, levels);
+  deserialize_file(files_.path, content, facts, steps_, checksums_, levels);
   saved_ = true;
   return levels;
 }
@@ -280,7 +179,7 @@ SolidState SolidCheckpoint::finished_state(std::size_t step) const {
   if (checksum(content) != checksums_.at(step))
     throw CheckpointError(refusal(step_file(step), "it was changed while it was read"));
   SolidState state;
-  deserialize(step_file(step), content, state);
+  deserialize_file(step_file(step), content, state);
   return state;
 }
 

@@ -30,7 +30,6 @@ constexpr int singular = -10;
 constexpr int integer_workspace_too_small = -8;
 constexpr int not_enough_memory = -13;
 
-constexpr int world = -987654;  ///< MPI_COMM_WORLD for MUMPS's C interface
 /// Memory beyond MUMPS's estimate, %, for pivoting: at first, and the most that is tried.
 constexpr int first_margin = 60;
 constexpr int largest_margin = 1000;
@@ -67,6 +66,7 @@ struct DirectSolver::Mumps {
   std::vector<MUMPS_INT> columns;
   std::vector<double> values;
   std::vector<MUMPS_INT> order;
+  const bool alone = rank_count() == 1;
 
   /// An option by its number in the users' guide.
   MUMPS_INT& option(std::size_t number) { return data.icntl[number - 1]; }
@@ -81,12 +81,15 @@ struct DirectSolver::Mumps {
   explicit Mumps(Kind kind) {
     data.par = 1;
     data.sym = kind == Kind::symmetric_part ? 2 : 0;
-    data.comm_fortran = world;
+    data.comm_fortran = fortran_communicator();
     check(run(start));
     for (const std::size_t output : {1, 2, 3}) option(output) = -1;
     option(4) = 0;
     option(8) = 0;   // no scaling: it costs a fifth of the factorisation
     option(18) = 3;  // each rank gives its entries
+    // The pattern is analysed node by node, in a third less time and, with PORD on one rank, the
+    // same operations to 3 %.
+    option(15) = -static_cast<MUMPS_INT>(node_unknowns);
     option(14) = first_margin;
   }
   Mumps(const Mumps&) = delete;
@@ -95,7 +98,7 @@ struct DirectSolver::Mumps {
     int ended = 0;
     MPI_Finalized(&ended);
     // On several ranks this waits for the others, which may not come where one rank has failed.
-    if (ended == 0 && (std::uncaught_exceptions() == 0 || rank_count() == 1)) run(end);
+    if (ended == 0 && (std::uncaught_exceptions() == 0 || alone)) run(end);
   }
 
   void check(int code) const {
@@ -121,6 +124,10 @@ DirectSolver::~DirectSolver() = default;
 void DirectSolver::analyse(const SparsityPattern& pattern) {
   Mumps& m = *mumps_;
   const bool symmetric = kind_ == Kind::symmetric_part;
+  std::size_t entries = 0;
+  for (Row row = rows_.begin; row < rows_.end; ++row) entries += pattern.row_length(row);
+  m.rows.reserve(entries);
+  m.columns.reserve(entries);
   for (Row row = rows_.begin; row < rows_.end; ++row)
     for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry) {
       const auto i = static_cast<MUMPS_INT>(row) + 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/level.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -18,6 +19,9 @@ namespace {
 /// Observed order of the tip in the thickness of the finest layer, to which rings and growth are
 /// tied (docs/solid.md): the singularities at the clamped rim and at the interfaces' rims govern.
 constexpr double tip_order = 1.5;
+
+/// The change of a correction from one load to the next is extrapolated to so many times as far.
+constexpr double farthest_extrapolation = 3;
 
 /// Says once, of however many levels, that it is not the finest mesh that is solved.
 Progress coarser_progress(const Progress& progress) {
@@ -62,15 +66,15 @@ Level::Level(const Cilium& cilium, const meshes::MeshFile& mesh,
 void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
   space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
   fibres_ = std::make_unique<Fibres>(*space_, extent);
-  newton_ = std::make_unique<Newton>(*space_, increment_constraints(*space_, supports(extent)),
-                                     options_.solver);
 }
 
 void Level::make_solver(const Load& first) {
-  if (!solver_)
-    solver_ = std::make_unique<LoadPathSolver>(
-        *space_, *fibres_, *newton_, first, options_.path,
-        [this](const Load& target, const Progress& report) { return first_guess(target, report); });
+  if (solver_) return;
+  newton_ = std::make_unique<Newton>(
+      *space_, increment_constraints(*space_, supports(fibres_->extent())), options_.solver);
+  solver_ = std::make_unique<LoadPathSolver>(
+      *space_, *fibres_, *newton_, first, options_.path,
+      [this](const Load& target, const Progress& report) { return first_guess(target, report); });
 }
 
 LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
@@ -95,25 +99,12 @@ void Level::restore(LoadPathState state) {
 Guess Level::first_guess(const Load& load, const Progress& progress) const {
   Guess guess;
   if (coarser_ != nullptr) {
-    const Progress report = coarser_progress(progress);
-    const std::optional<Equilibrium> before = coarser_at(solver().current().load);
-    const LoadPathOutcome outcome = coarser_->advance(load, report);
+    const std::vector<Correction> known = corrections(load);
+    const LoadPathOutcome outcome = coarser_->advance(load, coarser_progress(progress));
     guess.slip_off =
         outcome.slip_off_displacement ? outcome.slip_off_displacement : outcome.slip_off_force;
     guess.lost = outcome.status == Status::failed;
-    if (outcome.status == Status::converged) {
-      const Equilibrium& after = coarser_->solver().current();
-      guess.applied_force = after.applied_force;
-      guess.state = transferred(*coarser_->space_, *coarser_->fibres_, after.state, *space_);
-      if (before) {
-        // What separates the two meshes' states changes less than the states do.
-        const SolidState old =
-            transferred(*coarser_->space_, *coarser_->fibres_, before->state, *space_);
-        add(*guess.state, 1, solver().current().state);
-        add(*guess.state, -1, old);
-        guess.applied_force += solver().current().applied_force - before->applied_force;
-      }
-    }
+    if (outcome.status == Status::converged) guess.state = corrected(known, guess.applied_force);
   } else if (options_.beam_guess) {
     guess = beam_guess(load);
   }
@@ -121,12 +112,38 @@ Guess Level::first_guess(const Load& load, const Progress& progress) const {
   return guess;
 }
 
-std::optional<Equilibrium> Level::coarser_at(const Load& load) const {
-  if (!coarser_->solver_ || magnitude(load) == 0) return std::nullopt;
-  const Equilibrium& equilibrium = coarser_->solver().current();
-  if (!same_place(equilibrium.load, load) || magnitude(equilibrium.load) != magnitude(load))
-    return std::nullopt;
-  return equilibrium;
+std::vector<Level::Correction> Level::corrections(const Load& load) const {
+  if (!coarser_->solver_) return {};
+  const LoadPathState& own = solver().state();
+  const LoadPathState& coarse = coarser_->solver().state();
+  const auto same_load = [&load](const Equilibrium& a, const Equilibrium& b) {
+    return same_place(a.load, load) && same_place(b.load, load) &&
+           magnitude(a.load) == magnitude(b.load);
+  };
+  const double last = magnitude(own.current.load);
+  if (last == 0 || !same_load(own.current, coarse.current)) return {};
+  double factor = 0;
+  if (own.previous && coarse.previous && same_load(*own.previous, *coarse.previous) &&
+      magnitude(own.previous->load) != last)
+    factor = std::clamp((magnitude(load) - last) / (last - magnitude(own.previous->load)), -1.0,
+                        farthest_extrapolation);
+  std::vector<Correction> result{{1 + factor, &own.current, coarse.current}};
+  if (factor != 0) result.push_back({-factor, &*own.previous, *coarse.previous});
+  return result;
+}
+
+SolidState Level::corrected(const std::vector<Correction>& known, double& applied_force) const {
+  const Equilibrium& coarse = coarser_->solver().current();
+  SolidState difference = coarse.state;
+  applied_force = coarse.applied_force;
+  for (const Correction& correction : known) {
+    add(difference, -correction.factor, correction.coarse.state);
+    applied_force +=
+        correction.factor * (correction.own->applied_force - correction.coarse.applied_force);
+  }
+  SolidState result = transferred(*coarser_->space_, *coarser_->fibres_, difference, *space_);
+  for (const Correction& correction : known) add(result, correction.factor, correction.own->state);
+  return result;
 }
 
 Guess Level::beam_guess(const Load& load) const {

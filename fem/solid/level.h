@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "fem/solid/fibres.h"
 #include "fem/solid/load_path.h"
@@ -28,8 +29,9 @@ struct LevelOptions {
   bool beam_guess = true;  ///< start the coarsest level from the beam's solution
 };
 
-/// The discretised cilium on one mesh, in the frame of that mesh, with its solvers. Its members
-/// refer to one another: it stays where it is made.
+/// The discretised cilium on one mesh, in the frame of that mesh, with its solvers, which are made
+/// with the first load or state and belong to the ranks that work together then (RankAlone). Its
+/// members refer to one another: it stays where it is made.
 class Level {
  public:
   /// `coarser` gives the first guesses, and with its own tip the estimate of the error; without
@@ -67,15 +69,27 @@ class Level {
 
   double applied_force() const { return solver().current().applied_force; }
   std::size_t unknowns() const { return space_->unknowns(); }
+  bool solved_directly() const {
+    return chosen(options_.solver, space_->unknowns()) == SolverKind::direct;
+  }
 
  private:
-  /// What all constructors end with: the space and the solvers on the triangulation and its
-  /// mapping.
+  /// What all constructors end with: the space on the triangulation and its mapping.
   void discretise(Extent extent, std::span<const Hyperelastic> materials);
   void make_solver(const Load& first);
   Guess first_guess(const Load& load, const Progress& progress) const;
-  /// The coarser level's equilibrium if that is under this load.
-  std::optional<Equilibrium> coarser_at(const Load& load) const;
+  /// What separates this level's state from the coarser one's under a load behind, with the factor
+  /// that it has in the guess: such corrections change less than the states do, and nearly linearly
+  /// with the load.
+  struct Correction {
+    double factor;
+    const Equilibrium* own;
+    Equilibrium coarse;
+  };
+  /// Those of the last two loads, extrapolated to the next one; empty where there are none.
+  std::vector<Correction> corrections(const Load& load) const;
+  /// The coarser level's state, transferred, with the corrections; so is the applied force.
+  SolidState corrected(const std::vector<Correction>& known, double& applied_force) const;
   Guess beam_guess(const Load& load) const;
   const LoadPathSolver& solver() const { return *solver_; }
   Deformation deformation(const SolidState& state, const SpreadLoad& load, double azimuth) const;

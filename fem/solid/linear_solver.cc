@@ -17,7 +17,7 @@ namespace {
 constexpr unsigned int max_iterations = 300;
 constexpr unsigned int restart = 60;  ///< vectors of GMRES
 /// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
-constexpr unsigned int max_with_old_factors = 12;
+constexpr unsigned int max_with_old_factors = 20;
 
 /// The matrix on one rank, its own rows on several.
 struct Product {
@@ -40,13 +40,16 @@ struct Factors {
 
 }  // namespace
 
+SolverKind chosen(SolverKind kind, dealii::types::global_dof_index unknowns) {
+  if (kind != SolverKind::automatic) return kind;
+  return unknowns > direct_unknowns ? SolverKind::iterative : SolverKind::direct;
+}
+
 LinearSolver::LinearSolver(const SolidSpace& space,
                            const dealii::AffineConstraints<double>& constraints,
                            const dealii::SparsityPattern& pattern, SolverKind kind)
     : rows_((start_mpi(), own_range(space.unknowns()))), own_(rows_) {
-  if (kind == SolverKind::automatic)
-    kind = space.unknowns() > direct_unknowns ? SolverKind::iterative : SolverKind::direct;
-  if (kind == SolverKind::iterative)
+  if (chosen(kind, space.unknowns()) == SolverKind::iterative)
     multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_);
   else
     direct_ = std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general, rows_);

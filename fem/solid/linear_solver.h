@@ -20,6 +20,9 @@ namespace ciliaval::fem {
 /// Unknowns beyond which `automatic` is `iterative` (measured: docs/solid.md).
 inline constexpr dealii::types::global_dof_index direct_unknowns = 100000;
 
+/// What `automatic` is for this number of unknowns; any other kind as it is.
+SolverKind chosen(SolverKind kind, dealii::types::global_dof_index unknowns);
+
 /// Solves systems with the solid's tangent, which may be unsymmetric: by sparse LU (MUMPS), or by
 /// GMRES preconditioned from the right by one multigrid cycle. Vectors are whole on every rank, the
 /// work is shared by rows. All functions are collective and throw SolverError on failure, the same

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/solid/assembly.h"
 #include "fem/solid/linear_solver.h"
 #include "fem/solid/space.h"
 
@@ -37,18 +38,19 @@ struct NewtonOptions {
   double tolerance = 1e-9;  ///< of the remaining increment, relative to the displacement,
                             ///< and of the residual, relative to the force scale, as far as
                             ///< rounding errors let it fall
-  unsigned int max_iterations = 25;  ///< tangents assembled
+  unsigned int max_iterations = 25;  ///< increments
   double least_force = 0;            ///< lower bound of the force scale, N
 };
 
 struct NewtonResult {
   bool converged = false;
-  std::string reason;                  ///< why not
-  bool overshot = false;               ///< det F was not positive after the very first iteration
-  std::vector<double> residuals;       ///< relative, before each iteration and at the end
-  std::vector<double> increments;      ///< ‖Δu‖_max of each iteration, m
-  dealii::Vector<double> reactions;    ///< internal − external forces at the end, all rows, N
-  dealii::Vector<double> external;     ///< external forces at the end, N
+  std::string reason;                ///< why not
+  bool overshot = false;             ///< det F was not positive after the very first iteration
+  std::vector<double> residuals;     ///< relative, before each iteration and at the end
+  std::vector<double> increments;    ///< ‖Δu‖_max of each iteration, m
+  dealii::Vector<double> reactions;  ///< internal − external forces before the last increment, all
+                                     ///< rows, N
+  dealii::Vector<double> external;     ///< external forces there, N
   std::vector<int> linear_iterations;  ///< of GMRES in each iteration; 1: solved directly
   int iterations() const { return static_cast<int>(increments.size()); }
 };
@@ -63,8 +65,9 @@ using NewtonProgress = std::function<void(int, double)>;
 /// The force scale of the residual is the l₂ norm of the nodal external forces or, if they vanish,
 /// of the reactions at the constrained degrees of freedom. Once the residual is below the
 /// tolerance, or below 1e-4, where rounding errors may keep it, the increment that the last
-/// tangent gives for it estimates the error of the displacement that is left; that must be
-/// below the tolerance.
+/// tangent gives for it estimates the error of the displacement that is left; when that is below
+/// the tolerance, it is added, and the state has converged. An increment that is a hundredth of the
+/// one before is taken without a new tangent.
 class Newton {
  public:
   Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints,
@@ -82,6 +85,17 @@ class Newton {
                      const NewtonProgress& progress = {});
 
  private:
+  struct Step {
+    dealii::Vector<double> increment;
+    double amplitude = 0;  ///< increment of the unknown force's, if there is one
+    int linear_iterations = 0;
+    double size() const { return increment.linfty_norm(); }
+  };
+  Step last_tangents_step(const SolidState& state, const dealii::Vector<double>& residual,
+                          Border* border);
+  Step own_tangents_step(const ExternalForces& external, const SolidState& state,
+                         const InternalForces& internal, const dealii::Vector<double>& residual,
+                         bool first, Border* border);
   NewtonResult iterate(const ExternalForces& external, Border* border, SolidState& state,
                        const NewtonOptions& options, const NewtonProgress& progress);
 

@@ -18,6 +18,7 @@
 #include "fem/solid/checkpoint.h"
 #include "fem/solid/level.h"
 #include "fem/solid/load_path.h"
+#include "fem/solid/round.h"
 #include "meshes/cylinder_mesh.h"
 #include "problem/error.h"
 
@@ -179,27 +180,146 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
   return step;
 }
 
-std::vector<const LoadPathState*> states(const std::vector<std::unique_ptr<Level>>& levels) {
-  std::vector<const LoadPathState*> result;
-  for (const auto& level : levels) result.push_back(level->state());
-  return result;
-}
+/// The levels on their way along a load path.
+class PathRun {
+ public:
+  PathRun(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
+          const Progress& progress)
+      : path_(path),
+        options_(options),
+        progress_(progress),
+        levels_(make_levels(cilium, path, options)),
+        apart_(rank_count() > 1 && static_cast<std::size_t>(rank_count()) <= path.size() &&
+               options.initial_guess == InitialGuess::beam && finest().solved_directly()) {}
 
-/// Puts the levels and the finished steps where the checkpoint, if there is one, left them.
-void go_on_from(SolidCheckpoint& saved, const std::vector<std::unique_ptr<Level>>& levels,
-                const SolidOptions& options, MechanicsResult& result) {
-  std::vector<std::optional<LoadPathState>> states = saved.read();
-  for (std::size_t i = 0; i < states.size(); ++i)
-    if (states[i]) levels.at(i)->restore(std::move(*states[i]));
-  for (std::size_t i = 0; i < saved.steps().size(); ++i) {
-    MechanicsStep step = saved.steps()[i];
-    if (step.status == Status::converged)
-      step.deformation = levels.back()->deformation(
-          {in_mesh_frame(options, step.load), saved.finished_state(i), step.applied_force},
-          mesh_azimuth(options, step.load));
-    result.steps.push_back(std::move(step));
+  const Level& finest() const { return *levels_.back(); }
+
+  /// Whether each rank solves steps of its own, in place of sharing all of them: where there are at
+  /// least as many steps as ranks, each with a guess of its own, and LU solves them, which gains
+  /// less by sharing.
+  bool apart() const { return apart_; }
+
+  /// Puts the levels and the finished steps where the checkpoint, if there is one, left them.
+  void go_on_from(SolidCheckpoint& saved, MechanicsResult& result) {
+    restore(saved.read());
+    for (std::size_t i = 0; i < saved.steps().size(); ++i) {
+      MechanicsStep step = saved.steps()[i];
+      if (step.status == Status::converged) add_deformation(step, saved.finished_state(i));
+      result.steps.push_back(std::move(step));
+    }
   }
-}
+
+  /// All ranks share each step.
+  void follow_together(SolidCheckpoint& saved, MechanicsResult& result) {
+    bool failed = false;
+    while (result.steps.size() < path_.size()) {
+      const std::size_t i = result.steps.size();
+      MechanicsStep step = solve(i, label(i, 1), saved, !failed);
+      failed = failed || step.status == Status::failed;
+      if (!failed) {
+        saved.add(step, step.deformation ? &finest().state()->current.state : nullptr);
+        saved.save(states());
+      }
+      result.steps.push_back(std::move(step));
+    }
+  }
+
+  /// In rounds, after each of which all ranks are in the state of its last step.
+  void follow_apart(SolidCheckpoint& saved, MechanicsResult& result) {
+    const auto usual = static_cast<std::size_t>(rank_count());
+    bool failed = false;
+    for (std::size_t most = usual; result.steps.size() < path_.size();) {
+      const std::size_t first = result.steps.size();
+      const std::size_t count = std::min(most, path_.size() - first);
+      std::vector<SolvedStep> solved = solve_round(count, [&](std::size_t number) {
+        MechanicsStep step =
+            solve(first + number, label(first, count), saved, count == 1 && !failed);
+        return SolvedStep{std::move(step), copied_states()};
+      });
+      for (auto& [step, levels] : solved) {
+        const bool converged = step.status == Status::converged;
+        if (converged && !step.deformation) add_deformation(step, levels.back()->current.state);
+        failed = failed || step.status == Status::failed;
+        if (!failed) saved.add(step, converged ? &levels.back()->current.state : nullptr);
+        result.steps.push_back(std::move(step));
+      }
+      restore(after(solved));
+      if (!failed) saved.save(states());
+      // What did not converge is solved as on one rank: by itself, from the step before it.
+      const bool well = solved.size() == count && result.steps.back().status == Status::converged;
+      most = well ? usual : 1;
+    }
+  }
+
+ private:
+  /// "step 2/4, ", "steps 1-2/4, "
+  std::string label(std::size_t first, std::size_t count) const {
+    return (count > 1 ? "steps " + std::to_string(first + 1) + "-" : std::string("step ")) +
+           std::to_string(first + count) + "/" + std::to_string(path_.size()) + ", ";
+  }
+
+  /// Step i. If `keep`, saves each equilibrium on the way.
+  MechanicsStep solve(std::size_t i, const std::string& shown, SolidCheckpoint& saved, bool keep) {
+    const auto start = std::chrono::steady_clock::now();
+    const Progress report =
+        progress_ ? Progress([&](const std::string& text) { progress_(shown + text); })
+                  : Progress();
+    const auto save = [&] { saved.save(states()); };
+    const LoadPathOutcome outcome = levels_.back()->advance(
+        in_mesh_frame(options_, path_[i]), report, keep ? std::function<void()>(save) : nullptr);
+    MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
+    if (step.status == Status::failed) {
+      step.message = label(i, 1) + step.message;
+      if (saved.file())
+        step.message +=
+            "; what converged up to the first failure is kept in `" + saved.file()->string() + "`";
+    }
+    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return step;
+  }
+
+  void add_deformation(MechanicsStep& step, const SolidState& state) const {
+    step.deformation =
+        finest().deformation({in_mesh_frame(options_, step.load), state, step.applied_force},
+                             mesh_azimuth(options_, step.load));
+  }
+
+  std::vector<const LoadPathState*> states() const {
+    std::vector<const LoadPathState*> result;
+    for (const auto& level : levels_) result.push_back(level->state());
+    return result;
+  }
+
+  std::vector<std::optional<LoadPathState>> copied_states() const {
+    std::vector<std::optional<LoadPathState>> result;
+    for (const LoadPathState* state : states())
+      result.push_back(state != nullptr ? std::optional(*state) : std::nullopt);
+    return result;
+  }
+
+  /// What the levels go on from after a round: the states of its last step and, where that is by
+  /// another rank, of the one before it.
+  static std::vector<std::optional<LoadPathState>> after(std::vector<SolvedStep>& solved) {
+    std::vector<std::optional<LoadPathState>> states = std::move(solved.back().levels);
+    if (solved.size() == 1) return states;
+    const std::vector<std::optional<LoadPathState>>& before = solved[solved.size() - 2].levels;
+    for (std::size_t i = 0; i < states.size(); ++i)
+      if (states[i] && before[i]) states[i]->previous = before[i]->current;
+    return states;
+  }
+
+  void restore(std::vector<std::optional<LoadPathState>> states) {
+    const RankAlone alone(apart_);
+    for (std::size_t i = 0; i < states.size(); ++i)
+      if (states[i]) levels_.at(i)->restore(std::move(*states[i]));
+  }
+
+  const LoadPath& path_;
+  const SolidOptions& options_;
+  const Progress& progress_;
+  std::vector<std::unique_ptr<Level>> levels_;  ///< the coarsest first
+  bool apart_;
+};
 
 }  // namespace
 
@@ -278,37 +398,15 @@ MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
 
 MechanicsResult Solid::follow(const Cilium& cilium, const LoadPath& path,
                               const Checkpoint& checkpoint, const Progress& progress) const {
-  const std::vector<std::unique_ptr<Level>> levels = make_levels(cilium, path, options_);
-  Level& finest = *levels.back();
-  MechanicsResult result{finest.undeformed(path.empty() ? 0 : mesh_azimuth(options_, path.front())),
-                         {}};
+  PathRun run{cilium, path, options_, progress};
+  MechanicsResult result{
+      run.finest().undeformed(path.empty() ? 0 : mesh_azimuth(options_, path.front())), {}};
   SolidCheckpoint saved(checkpoint, facts(cilium, path, options_));
-  go_on_from(saved, levels, options_, result);
-  const auto save = [&] { saved.save(states(levels)); };
-  bool failed = false;
-  for (std::size_t i = result.steps.size(); i < path.size(); ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    const std::string label =
-        "step " + std::to_string(i + 1) + "/" + std::to_string(path.size()) + ", ";
-    const Progress report =
-        progress ? Progress([&](const std::string& text) { progress(label + text); }) : Progress();
-    const LoadPathOutcome outcome = finest.advance(in_mesh_frame(options_, path[i]), report,
-                                                   failed ? std::function<void()>() : save);
-    MechanicsStep step = finished(outcome, path[i], mesh_azimuth(options_, path[i]), finest);
-    failed = failed || step.status == Status::failed;
-    if (step.status == Status::failed) {
-      step.message = label + step.message;
-      if (saved.file())
-        step.message +=
-            "; what converged up to the first failure is kept in `" + saved.file()->string() + "`";
-    }
-    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!failed) {
-      saved.add(step, step.deformation ? &finest.state()->current.state : nullptr);
-      save();
-    }
-    result.steps.push_back(std::move(step));
-  }
+  run.go_on_from(saved, result);
+  if (run.apart())
+    run.follow_apart(saved, result);
+  else
+    run.follow_together(saved, result);
   return result;
 }
 

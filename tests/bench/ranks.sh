@@ -1,25 +1,26 @@
 #!/usr/bin/env bash
-# The speed-up by two ranks, table of docs/solid.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank and
-# under mpirun on two, each with one thread; start of the program, coarser meshes and VTK included. Ten minutes on a quiet machine.
+# The speed-up by two ranks, table of docs/solid.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank with one
+# thread and under mpirun on two; start of the program, coarser meshes and VTK included. Ten minutes on a quiet machine.
 # Usage: tests/bench/ranks.sh [PROGRAM [ROW …]]   (default: build/release/ciliaval, all rows; a row is mesh:refinement:solver:loads)
+# Loads: 2 mN with 1, else so many equal steps up to 4 mN.
 # SPDX-License-Identifier: LGPL-2.1-or-later
 set -euo pipefail
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 program=$(realpath "${1:-$source_dir/build/release/ciliaval}")
 shift || true
 rows=("$@")
-[ $# -gt 0 ] || rows=(half:1:direct:4 half:2:direct:4 half:2:direct:1 half:2:iterative:1 half:3:direct:1 half:3:iterative:1
+[ $# -gt 0 ] || rows=(half:1:direct:4 half:1:direct:16 half:2:direct:4 half:2:direct:16 half:2:direct:1 half:2:iterative:1 half:3:direct:1 half:3:iterative:1
   whole:1:direct:1 whole:1:iterative:1 whole:2:direct:1 whole:2:iterative:1 whole:3:direct:1 whole:3:iterative:1)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-export DEAL_II_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OPENBLAS_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
-# fig3b up to its models, with one load or all four.
+# fig3b up to its models, with these loads.
 write_case() {
   local mesh=$1 refinement=$2 solver=$3 loads=$4 force
-  force='["2 mN"]'
-  [ "$loads" = 1 ] || force='["1 mN", "2 mN", "3 mN", "4 mN"]'
+  force=$(awk -v n="$loads" 'BEGIN { if (n == 1) { print "[\"2 mN\"]"; exit }
+    for (i = 1; i <= n; ++i) printf "%s\"%.4g mN\"", i == 1 ? "[" : ", ", 4 * i / n; print "]" }')
   sed -e '/^\[models\]/,$d' -e "s/^name = \"fig3b\"/name = \"ranks\"/" -e "s/^force = .*/force = $force/" "$source_dir/cases/paper/fig3b.toml"
   printf '[models]\nmechanics = ["solid"]\nfields = ["line"]\n[models.solid]\nrefinement = %s\nsolver = "%s"\nsymmetry = %s\n' \
     "$refinement" "$solver" "$([ "$mesh" = half ] && echo true || echo false)"
@@ -40,7 +41,7 @@ echo '|---|---|---|---|---|---|---|---|---|'
 for row in "${rows[@]}"; do
   IFS=: read -r mesh refinement solver loads <<< "$row"
   write_case "$mesh" "$refinement" "$solver" "$loads" > case.toml
-  one=$(seconds "$program" run case.toml -o one)
+  one=$(DEAL_II_NUM_THREADS=1 seconds "$program" run case.toml -o one)
   two=$(seconds mpirun -np 2 "$program" run case.toml -o two)
   unknowns=$(tr -d ' \n' < one/ranks/summary.json | grep -o '"unknowns":[0-9]*' | head -1 | cut -d: -f2)
   apart=$(paste <(tips one) <(tips two) | awk '{ d = $1 - $2; d = d < 0 ? -d : d; m = d > m ? d : m } END { printf "%.1e", m }')

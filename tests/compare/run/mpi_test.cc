@@ -82,6 +82,32 @@ TEST(Mpi, TwoRanksGiveTheTipOfOneTo1e9AndWriteOnce) {
   }
 }
 
+/// Expects the solid's steps of two runs to end alike.
+void expect_same_steps(const fs::path& results, const fs::path& reference, std::size_t steps) {
+  for (std::size_t step = 0; step < steps; ++step) {
+    const nlohmann::json own = solid_step(results, step);
+    const nlohmann::json expected = solid_step(reference, step);
+    ASSERT_EQ(own.at("status"), expected.at("status")) << step;
+    if (own.at("status") == "converged")
+      expect_same_tip(results, reference, step, 1e-9, results.filename().string());
+    else
+      EXPECT_NEAR(own.at("slip_off_force").get<double>(),
+                  expected.at("slip_off_force").get<double>(),
+                  1e-9 * expected.at("slip_off_force").get<double>());
+  }
+}
+
+// Two ranks take a step each at a time; the second step of the first round slips off, so that it
+// and the following ones are solved one by one. Oracle: the run on one rank.
+TEST(Mpi, RanksThatSolveStepsApartGiveWhatOneGives) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "", R"(["4 mN", "7 mN", "8 mN", "1 mN", "2 mN", "3 mN"])");
+  ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
+  ASSERT_EQ(run(folder.path(), 2, "two").code, 0) << read_text(folder.path() / "err.txt");
+  EXPECT_EQ(solid_step(folder.path() / "one", 1).at("status"), "slipped_off");
+  expect_same_steps(folder.path() / "two", folder.path() / "one", 6);
+}
+
 // Oracle: the run on one rank. The meshes are the same, the sums are in another order, and the
 // algebraic multigrid is another one: what is left is the residual of 1e-8 of conjugate gradients.
 TEST(Mpi, TwoRanksGiveThePotentialsFieldOfOne) {
@@ -164,15 +190,15 @@ TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
 }
 
 /// Runs the case on two ranks and kills mpirun and the ranks (which would go on for a while) once
-/// the solid has finished its second step. Waits until no rank is left.
+/// the solid has saved its second step. Waits until no rank is left.
 void interrupt_two_ranks(const fs::path& folder) {
   const std::string kept = "out/.mpi.checkpoint/solid.0001";
   execute(
       folder,
       "sh -c '\"" CILIAVAL_MPIEXEC "\" -n 2 \"" CILIAVAL_PROGRAM
       "\" run case.toml -o out & launcher=$!; "
-      "while kill -0 $launcher && ! test -f " +
-          kept +
+      "while kill -0 $launcher && ! { test -f " +
+          kept + " && test -f out/.mpi.checkpoint/solid; }" +
           "; do sleep 0.02; done; kill -9 $(cat /proc/$launcher/task/*/children) $launcher; wait'");
   ASSERT_TRUE(fs::exists(folder / kept)) << read_text(folder / "err.txt");
 }
@@ -203,6 +229,29 @@ TEST(MpiSlow, AKilledRunOfTwoRanksGoesOnOnTwoAndOnOne) {
       expect_same_tip(folder.path() / "out", folder.path() / "undisturbed", step,
                       ranks == 2 ? 1e-12 : 1e-9, std::to_string(ranks) + " ranks");
   }
+}
+
+// Rank 1 finds no memory once, somewhere in its own step: rank 0 solves that step. Oracle: the run
+// on one rank. Where the memory is missing outside the steps, the whole run ends as below.
+TEST(MpiSlow, AStepThatARankCannotSolveIsSolvedByTheFirst) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "", R"(["1 mN", "2 mN"])");
+  ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
+  const std::string program = "'" CILIAVAL_PROGRAM "' run case.toml -o two";
+  int survived = 0;
+  for (const int allocation : {20, 40, 80}) {
+    fs::remove_all(folder.path() / "two");
+    const Outcome outcome =
+        execute(folder.path(), "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 " + program +
+                                   " : -n 1 env LD_PRELOAD='" CILIAVAL_FAILING_NEW
+                                   "' CILIAVAL_FAIL_ONCE=1 CILIAVAL_FAIL_AT=" +
+                                   std::to_string(allocation) + " " + program);
+    if (outcome.code == 3) continue;
+    ASSERT_EQ(outcome.code, 0) << allocation << ": " << read_text(folder.path() / "err.txt");
+    expect_same_steps(folder.path() / "two", folder.path() / "one", 2);
+    ++survived;
+  }
+  EXPECT_GE(survived, 1);
 }
 
 /// How often a text occurs.

@@ -165,7 +165,9 @@ TEST(SolidLinearSolverSlow, AMillionUnknownsTakeNoMoreThanTwiceTheIterations) {
     iterations.push_back(solver.solve(problem.forces, solution, 1e-6));
     RecordProperty("unknowns", static_cast<int>(problem.space->unknowns()));
     RecordProperty("iterations", iterations.back());
-    if (iterations.size() == 2) EXPECT_GT(problem.space->unknowns(), 950000U);
+    if (iterations.size() == 2) {
+      EXPECT_GT(problem.space->unknowns(), 950000U);
+    }
   }
   EXPECT_LE(iterations.back(), 2 * iterations.front());
   EXPECT_LT(gigabytes(), 16);

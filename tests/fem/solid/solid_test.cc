@@ -426,6 +426,19 @@ TEST(Solid, IsStraightAgainWhenUnloaded) {
   EXPECT_NEAR((tip(converged(result, 1)) - 20e-3 * Vector3::UnitZ()).norm(), 0, 1e-12);
 }
 
+// Oracle: the same loads one by one, each from the beam's guess.
+TEST(Solid, LaterLoadsGoOnFromTheLastTwoAndEndAsTheyWouldAlone) {
+  const LoadPath path{ContactLoad{1e-3, 16e-3, 0}, ContactLoad{2e-3, 16e-3, 0},
+                      ContactLoad{3e-3, 16e-3, 0}};
+  const MechanicsResult together = coarse().solve(stub_and_magnet(), path);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const MechanicsResult alone = coarse().solve(stub_and_magnet(), {path[i]});
+    EXPECT_LT((tip(converged(together, i)) - tip(converged(alone))).norm(), 1e-10 * 20e-3) << i;
+    EXPECT_LE(together.steps[i].iterations, alone.steps[0].iterations) << i;
+  }
+  EXPECT_LE(together.steps[1].iterations, 2);
+}
+
 TEST(Solid, ReportsItsProgress) {
   std::vector<std::string> lines;
   coarse().solve({1e-3, {{"rod", 5e-3, 1e6, 0.3, 0}}}, {DeadLoad{1e-3, 0}},

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <array>
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/array_wrapper.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "fem/solid/load_path.h"
+#include "problem/mechanics_model.h"
+
+// What a state consists of. Each type is taken apart by structured bindings: a member that is added
+// to it and forgotten here does not compile.
+namespace boost::serialization {
+
+template <class Archive, class T>
+void serialize(Archive& archive, std::optional<T>& value, unsigned int /*version*/) {
+  bool there = value.has_value();
+  archive& there;
+  if (there && !value) value.emplace();
+  if (there)
+    archive&* value;
+  else
+    value.reset();
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/) {
+  std::size_t type = load.index();
+  archive& type;
+  if (type != load.index()) {
+    static const std::array<ciliaval::Load, 5> loads{ciliaval::ContactLoad{}, ciliaval::FlowLoad{},
+                                                     ciliaval::SectionLoad{}, ciliaval::DeadLoad{},
+                                                     ciliaval::ProbeLoad{}};
+    static_assert(std::variant_size_v<ciliaval::Load> == loads.size());
+    load = loads.at(type);
+  }
+  std::visit(
+      [&archive](auto& l) {
+        if constexpr (
+            requires { l.height; } || requires { l.arclength; }) {
+          auto& [magnitude, place, azimuth] = l;
+          archive& magnitude& place& azimuth;
+        } else {
+          auto& [magnitude, azimuth] = l;
+          archive& magnitude& azimuth;
+        }
+      },
+      load);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::SolidState& state, unsigned int /*version*/) {
+  auto& [displacement, pressure] = state;
+  auto unknowns = displacement.size();
+  std::size_t elements = pressure.size();
+  archive& unknowns& elements;
+  if (unknowns != displacement.size()) displacement.reinit(unknowns);
+  pressure.resize(elements);
+  archive& make_array(displacement.begin(), unknowns);
+  for (auto& coefficients : pressure)
+    archive& make_array(coefficients.data(), static_cast<std::size_t>(coefficients.size()));
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::Equilibrium& equilibrium, unsigned int /*v*/) {
+  auto& [load, state, applied_force] = equilibrium;
+  archive& load& state& applied_force;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::Ramp& ramp, unsigned int /*version*/) {
+  auto& [start, target, reached, step, cuts, overshoots, iterations, unguided] = ramp;
+  archive& start& target& reached& step& cuts& overshoots& iterations& unguided;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::LoadPathState& state, unsigned int /*version*/) {
+  auto& [current, previous, slipped, ramp] = state;
+  archive& current& previous& slipped& ramp;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
+  auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
+         contact_arclength, tip_uncertainty, unknowns, iterations, seconds] = step;
+  static_cast<void>(deformation);  // rebuilt from the state
+  archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
+      contact_arclength& tip_uncertainty& unknowns& iterations& seconds;
+}
+
+}  // namespace boost::serialization
+
+namespace ciliaval::fem {
+
+/// The values, one after the other, as bytes.
+inline std::string serialized(const auto&... values) {
+  std::ostringstream stream;
+  {
+    boost::archive::binary_oarchive archive(stream);
+    (archive << ... << values);
+  }
+  return std::move(stream).str();
+}
+
+/// Reads the first of the values that were serialised together. Throws std::exception if the bytes
+/// are others.
+void deserialize(const std::string& bytes, auto&... values) {
+  std::istringstream stream(bytes);
+  boost::archive::binary_iarchive archive(stream);
+  (archive >> ... >> values);
+}
+
+}  // namespace ciliaval::fem
