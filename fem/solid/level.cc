@@ -20,7 +20,7 @@ namespace {
 /// tied (docs/solid.md): the singularities at the clamped rim and at the interfaces' rims govern.
 constexpr double tip_order = 1.5;
 
-/// The change of a correction from one load to the next is extrapolated to so many times as far.
+/// Corrections of two loads are extrapolated to so many times their distance.
 constexpr double farthest_extrapolation = 3;
 
 /// Says once, of however many levels, that it is not the finest mesh that is solved.
@@ -120,16 +120,18 @@ std::vector<Level::Correction> Level::corrections(const Load& load) const {
     return same_place(a.load, load) && same_place(b.load, load) &&
            magnitude(a.load) == magnitude(b.load);
   };
-  const double last = magnitude(own.current.load);
-  if (last == 0 || !same_load(own.current, coarse.current)) return {};
-  double factor = 0;
-  if (own.previous && coarse.previous && same_load(*own.previous, *coarse.previous) &&
-      magnitude(own.previous->load) != last)
-    factor = std::clamp((magnitude(load) - last) / (last - magnitude(own.previous->load)), -1.0,
-                        farthest_extrapolation);
-  std::vector<Correction> result{{1 + factor, &own.current, coarse.current}};
-  if (factor != 0) result.push_back({-factor, &*own.previous, *coarse.previous});
-  return result;
+  const double F = magnitude(load);
+  const double F1 = magnitude(own.current.load);
+  if (F1 == 0 || !same_load(own.current, coarse.current)) return {};
+  // Lagrange's polynomial in the load through no correction without load and the ones known.
+  if (own.previous && coarse.previous && same_load(*own.previous, *coarse.previous)) {
+    const double F0 = magnitude(own.previous->load);
+    if (F0 != 0 && F0 != F1 && std::abs(F - F1) <= farthest_extrapolation * std::abs(F1 - F0))
+      return {{F * (F - F0) / (F1 * (F1 - F0)), &own.current, coarse.current},
+              {F * (F - F1) / (F0 * (F0 - F1)), &*own.previous, *coarse.previous}};
+  }
+  return {{std::clamp(F / F1, -farthest_extrapolation, farthest_extrapolation), &own.current,
+           coarse.current}};
 }
 
 SolidState Level::corrected(const std::vector<Correction>& known, double& applied_force) const {

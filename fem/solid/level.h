@@ -79,8 +79,8 @@ class Level {
   void make_solver(const Load& first);
   Guess first_guess(const Load& load, const Progress& progress) const;
   /// What separates this level's state from the coarser one's under a load behind, with the factor
-  /// that it has in the guess: such corrections change less than the states do, and nearly linearly
-  /// with the load.
+  /// that it has in the guess: such corrections change less than the states do, and smoothly with
+  /// the load.
   struct Correction {
     double factor;
     const Equilibrium* own;
