@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <mutex>
 
 #include "problem/error.h"
 
@@ -23,6 +24,7 @@ Progress ProgressLine::callback() {
 
 void ProgressLine::show(const std::string& text) {
   using namespace std::chrono_literals;
+  const std::lock_guard lock(mutex_);
   const auto now = Clock::now();
   if (now - start_ < 2s || now - last_ < 100ms) return;
   fmt::print(stderr, "\r\033[K{}", text);

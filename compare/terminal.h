@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <string>
 
 #include "problem/mechanics_model.h"
@@ -17,7 +18,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// Empty unless stderr is a terminal.
+  /// Empty unless stderr is a terminal. Several threads may call it.
   Progress callback();
 
  private:
@@ -27,6 +28,7 @@ class ProgressLine {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;
   bool shown_ = false;
+  std::mutex mutex_;
 };
 
 /// Writes to stdout, which is the result: throws FileError if it cannot be written.

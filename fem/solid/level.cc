@@ -70,8 +70,9 @@ void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
 
 void Level::make_solver(const Load& first) {
   if (solver_) return;
-  newton_ = std::make_unique<Newton>(
-      *space_, increment_constraints(*space_, supports(fibres_->extent())), options_.solver);
+  if (!newton_)
+    newton_ = std::make_unique<Newton>(
+        *space_, increment_constraints(*space_, supports(fibres_->extent())), options_.solver);
   solver_ = std::make_unique<LoadPathSolver>(
       *space_, *fibres_, *newton_, first, options_.path,
       [this](const Load& target, const Progress& report) { return first_guess(target, report); });
@@ -83,17 +84,18 @@ LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
   return solver_->advance(load, progress, on_equilibrium);
 }
 
-void Level::restore(LoadPathState state) {
+void Level::restore(std::optional<LoadPathState> state) {
+  if (!state) return solver_.reset();
   const auto fits = [this](const Equilibrium& equilibrium) {
     return equilibrium.state.displacement.size() == space_->unknowns() &&
            equilibrium.state.pressure.size() == space_->elements().size();
   };
-  if (!fits(state.current) || (state.previous && !fits(*state.previous)))
+  if (!fits(state->current) || (state->previous && !fits(*state->previous)))
     throw CheckpointError(
         "the checkpoint cannot be used: its states are those of other meshes; start anew with "
         "--fresh, which deletes it");
-  make_solver(state.current.load);
-  solver_->restore(std::move(state));
+  make_solver(state->current.load);
+  solver_->restore(std::move(*state));
 }
 
 Guess Level::first_guess(const Load& load, const Progress& progress) const {

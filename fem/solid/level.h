@@ -53,8 +53,9 @@ class Level {
 
   /// What the level goes on from; null before the first load.
   const LoadPathState* state() const { return solver_ ? &solver_->state() : nullptr; }
-  /// Throws CheckpointError if it is not the state of a mesh of this size.
-  void restore(LoadPathState state);
+  /// Without a state, goes back to before the first load. Throws CheckpointError if it is not the
+  /// state of a mesh of this size.
+  void restore(std::optional<LoadPathState> state);
 
   /// The level's state, or another one of its mesh, in the frame of the cilium, turned by
   /// `azimuth`.

@@ -183,7 +183,11 @@ NewtonResult Newton::iterate(const ExternalForces& external, Border* border, Sol
         step = own_tangents_step(external, state, *internal, residual, iteration == 0, border);
       if (border != nullptr) border->advance(step.amplitude);
       advance(space_, *internal, step.increment, state);
-      if (result.converged) return result;
+      if (result.converged) {
+        result.external = 0;
+        external(state.displacement, result.external, constraints_, nullptr);
+        return result;
+      }
       result.linear_iterations.push_back(step.linear_iterations);
       result.increments.push_back(step.size());
     } catch (const SolverError& error) {

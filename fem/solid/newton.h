@@ -50,7 +50,7 @@ struct NewtonResult {
   std::vector<double> increments;    ///< ‖Δu‖_max of each iteration, m
   dealii::Vector<double> reactions;  ///< internal − external forces before the last increment, all
                                      ///< rows, N
-  dealii::Vector<double> external;     ///< external forces there, N
+  dealii::Vector<double> external;     ///< external forces at the end, N
   std::vector<int> linear_iterations;  ///< of GMRES in each iteration; 1: solved directly
   int iterations() const { return static_cast<int>(increments.size()); }
 };

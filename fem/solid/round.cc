@@ -13,7 +13,7 @@ namespace ciliaval::fem {
 namespace {
 
 /// What became of a step on its rank, as the other ranks are told.
-enum class Ending { solved, checkpoint_error, other_error };
+enum class Ending { solved, checkpoint_error, input_error, other_error };
 
 struct Attempt {
   Ending ending = Ending::other_error;
@@ -31,6 +31,8 @@ Attempt attempt(std::size_t number, const std::function<SolvedStep(std::size_t)>
     return {Ending::solved, {}, solve(number)};
   } catch (const CheckpointError& error) {
     return {Ending::checkpoint_error, error.what(), {}};
+  } catch (const InputError& error) {
+    return {Ending::input_error, error.what(), {}};
   } catch (const std::exception& error) {
     return {Ending::other_error, error.what(), {}};
   }
@@ -62,10 +64,10 @@ std::vector<SolvedStep> solve_round(std::size_t count,
         from_rank(static_cast<int>(number), number == own ? packed(mine) : std::string());
     Attempt one = number == own ? std::move(mine) : unpacked(bytes);
     if (number == 0 && one.ending == Ending::checkpoint_error) throw CheckpointError(one.message);
+    if (number == 0 && one.ending == Ending::input_error) throw InputError(one.message);
     if (number == 0 && one.ending == Ending::other_error) throw SolverError(one.message);
-    if (number > 0 && !one.converged()) break;
+    if (count > 1 && !one.converged()) break;
     result.push_back(std::move(one.solved));
-    if (result.back().step.status != Status::converged) break;
   }
   return result;
 }

@@ -19,11 +19,11 @@ struct SolvedStep {
 
 /// A round: the next `count` steps of a load path, each solved by one rank alone (RankAlone) by
 /// `solve`, which is given its number, 0 … count − 1, and goes on from where all ranks are.
-/// Returns, on all ranks, those that hold: the first step, and the following ones up to one that
-/// did not converge; that is to be solved again, in a round of its own, from the step before it, as
-/// on a single rank. The caller puts the levels where the last step left them. Collective; count
-/// must not exceed the number of ranks. Throws what the first step threw, a CheckpointError or
-/// SolverError, on all ranks.
+/// Returns, on all ranks, those up to the first one that did not converge, which is to be solved
+/// again, in a round of its own, from the step before it, as on a single rank. A step in a round of
+/// its own is returned as it is. The caller puts the levels where the last step returned left them.
+/// Collective; count must not exceed the number of ranks. Throws what the first step threw, a
+/// CheckpointError, InputError or SolverError, on all ranks.
 std::vector<SolvedStep> solve_round(std::size_t count,
                                     const std::function<SolvedStep(std::size_t)>& solve);
 

@@ -190,13 +190,15 @@ class PathRun {
         progress_(progress),
         levels_(make_levels(cilium, path, options)),
         apart_(rank_count() > 1 && static_cast<std::size_t>(rank_count()) <= path.size() &&
+               std::none_of(path.begin(), path.end(),
+                            [](const Load& load) { return magnitude(load) == 0; }) &&
                options.initial_guess == InitialGuess::beam && finest().solved_directly()) {}
 
   const Level& finest() const { return *levels_.back(); }
 
   /// Whether each rank solves steps of its own, in place of sharing all of them: where there are at
-  /// least as many steps as ranks, each with a guess of its own, and LU solves them, which gains
-  /// less by sharing.
+  /// least as many steps as ranks, each with a load and a guess of its own, and LU solves them,
+  /// which gains less by sharing.
   bool apart() const { return apart_; }
 
   /// Puts the levels and the finished steps where the checkpoint, if there is one, left them.
@@ -228,14 +230,24 @@ class PathRun {
   void follow_apart(SolidCheckpoint& saved, MechanicsResult& result) {
     const auto usual = static_cast<std::size_t>(rank_count());
     bool failed = false;
-    for (std::size_t most = usual; result.steps.size() < path_.size();) {
+    const auto next = [&] {
+      return result.steps.empty() || result.steps.back().status == Status::converged ? usual : 1;
+    };
+    for (std::size_t most = next(); result.steps.size() < path_.size();) {
       const std::size_t first = result.steps.size();
+      const std::vector<std::optional<LoadPathState>> before = copied_states();
       const std::size_t count = std::min(most, path_.size() - first);
       std::vector<SolvedStep> solved = solve_round(count, [&](std::size_t number) {
         MechanicsStep step =
             solve(first + number, label(first, count), saved, count == 1 && !failed);
         return SolvedStep{std::move(step), copied_states()};
       });
+      // What did not converge is solved as on one rank: by itself, from the step before it.
+      most = 1;
+      if (solved.empty()) {
+        restore(before);
+        continue;
+      }
       for (auto& [step, levels] : solved) {
         const bool converged = step.status == Status::converged;
         if (converged && !step.deformation) add_deformation(step, levels.back()->current.state);
@@ -243,11 +255,9 @@ class PathRun {
         if (!failed) saved.add(step, converged ? &levels.back()->current.state : nullptr);
         result.steps.push_back(std::move(step));
       }
+      if (solved.size() == count) most = next();
       restore(after(solved));
       if (!failed) saved.save(states());
-      // What did not converge is solved as on one rank: by itself, from the step before it.
-      const bool well = solved.size() == count && result.steps.back().status == Status::converged;
-      most = well ? usual : 1;
     }
   }
 
@@ -297,21 +307,24 @@ class PathRun {
     return result;
   }
 
-  /// What the levels go on from after a round: the states of its last step and, where that is by
-  /// another rank, of the one before it.
+  /// What the levels go on from after a round: the states of its last step and of the one before
+  /// it.
   static std::vector<std::optional<LoadPathState>> after(std::vector<SolvedStep>& solved) {
     std::vector<std::optional<LoadPathState>> states = std::move(solved.back().levels);
     if (solved.size() == 1) return states;
     const std::vector<std::optional<LoadPathState>>& before = solved[solved.size() - 2].levels;
-    for (std::size_t i = 0; i < states.size(); ++i)
-      if (states[i] && before[i]) states[i]->previous = before[i]->current;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      if (!states[i]) continue;
+      states[i]->previous.reset();
+      if (before[i] && same_place(before[i]->current.load, states[i]->current.load))
+        states[i]->previous = before[i]->current;
+    }
     return states;
   }
 
   void restore(std::vector<std::optional<LoadPathState>> states) {
     const RankAlone alone(apart_);
-    for (std::size_t i = 0; i < states.size(); ++i)
-      if (states[i]) levels_.at(i)->restore(std::move(*states[i]));
+    for (std::size_t i = 0; i < states.size(); ++i) levels_.at(i)->restore(std::move(states[i]));
   }
 
   const LoadPath& path_;
