@@ -113,8 +113,8 @@ std::vector<std::pair<std::string, std::string>> contents(const fs::path& result
 }
 
 /// Kills the program at random moments until it comes to its end, and again from the beginning,
-/// until it was killed so often. The results must be those of a run that nothing has disturbed, to
-/// the last digit: the text of all files.
+/// until it was killed so often and has gone on from a checkpoint at least once. The results must
+/// be those of a run that nothing has disturbed, to the last digit: the text of all files.
 void kill_and_compare(int kills_wanted) {
   const TemporaryFolder folder;
   write_case(folder.path());
@@ -126,7 +126,7 @@ void kill_and_compare(int kills_wanted) {
   std::uniform_real_distribution<double> moment(0, 0.8);
   int kills = 0;
   int continued = 0;
-  while (kills < kills_wanted) {
+  while (kills < kills_wanted || (continued == 0 && kills < 10 * kills_wanted)) {
     fs::remove_all(folder.path() / "out");
     Outcome outcome;
     do {
