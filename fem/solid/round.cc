@@ -62,7 +62,9 @@ std::vector<SolvedStep> solve_round(std::size_t count,
   for (std::size_t number = 0; number < count; ++number) {
     const std::string bytes =
         from_rank(static_cast<int>(number), number == own ? packed(mine) : std::string());
-    Attempt one = number == own ? std::move(mine) : unpacked(bytes);
+    Attempt theirs;
+    if (number != own) theirs = unpacked(bytes);
+    Attempt& one = number == own ? mine : theirs;
     if (number == 0 && one.ending == Ending::checkpoint_error) throw CheckpointError(one.message);
     if (number == 0 && one.ending == Ending::input_error) throw InputError(one.message);
     if (number == 0 && one.ending == Ending::other_error) throw SolverError(one.message);
