@@ -268,11 +268,12 @@ TEST(MpiSlow, AStepThatARankCannotSolveIsSolvedByTheFirst) {
   int survived = 0;
   for (const int allocation : {20, 40, 80}) {
     fs::remove_all(folder.path() / "two");
-    const Outcome outcome =
-        execute(folder.path(), "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 " + program +
-                                   " : -n 1 env LD_PRELOAD='" CILIAVAL_FAILING_NEW
-                                   "' CILIAVAL_FAIL_ONCE=1 CILIAVAL_FAIL_AT=" +
-                                   std::to_string(allocation) + " " + program);
+    std::string words = "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 ";
+    words += program;
+    words +=
+        " : -n 1 env LD_PRELOAD='" CILIAVAL_FAILING_NEW "' CILIAVAL_FAIL_ONCE=1 CILIAVAL_FAIL_AT=";
+    words += std::to_string(allocation) + " " + program;
+    const Outcome outcome = execute(folder.path(), words);
     if (outcome.code == 3) continue;
     ASSERT_EQ(outcome.code, 0) << allocation << ": " << read_text(folder.path() / "err.txt");
     expect_same_steps(folder.path() / "two", folder.path() / "one", 2);
