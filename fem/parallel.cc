@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <limits>
+#include <memory>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -27,6 +29,9 @@ constexpr double patience = 10;
 /// All ranks once more: on it they tell one another that they have failed, while some of them may
 /// be waiting for a message of the solver's.
 MPI_Comm failures = MPI_COMM_NULL;
+
+/// All ranks once more, for Mail.
+MPI_Comm mails = MPI_COMM_NULL;
 
 /// Of all ranks, those on this machine, and the processors that they may use.
 int ranks_here = 1;
@@ -139,6 +144,7 @@ void start_mpi() {
   std::atexit(end_mpi);
   if (rank_count() == 1) return;
   MPI_Comm_dup(MPI_COMM_WORLD, &failures);
+  MPI_Comm_dup(MPI_COMM_WORLD, &mails);
   find_ranks_here();
   use_one_thread();
 }
@@ -231,6 +237,60 @@ std::string from_rank(int source, std::string text) {
     MPI_Bcast(text.data() + start, to_int(std::min(part, text.size() - start)), MPI_CHAR, source,
               together());
   return text;
+}
+
+struct Mail::Letters {
+  std::vector<std::shared_ptr<const std::string>> texts;
+  std::vector<MPI_Request> requests;
+};
+
+Mail::Mail() : posted_(std::make_unique<Letters>()) {}
+
+Mail::~Mail() {
+  int gone = 0;
+  if (running())
+    MPI_Testall(to_int(posted_->requests.size()), posted_->requests.data(), &gone,
+                MPI_STATUSES_IGNORE);
+  // MPI may still read what has not gone.
+  if (gone == 0) static_cast<void>(posted_.release());
+}
+
+void Mail::post(int number, std::string text) {
+  int ranks = 0;
+  int own = 0;
+  MPI_Comm_size(mails, &ranks);
+  MPI_Comm_rank(mails, &own);
+  if (text.size() > std::numeric_limits<int>::max())
+    throw SolverError("a state is too large for a message between ranks");
+  const auto letter = std::make_shared<const std::string>(std::move(text));
+  for (int rank = 0; rank < ranks; ++rank) {
+    if (rank == own) continue;
+    posted_->texts.push_back(letter);
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Isend(letter->data(), to_int(letter->size()), MPI_CHAR, rank, number, mails, &request);
+    posted_->requests.push_back(request);
+  }
+}
+
+bool Mail::arrived(int source, int number) const {
+  int there = 0;
+  MPI_Iprobe(source, number, mails, &there, MPI_STATUS_IGNORE);
+  return there != 0;
+}
+
+std::string Mail::collect(int source, int number) const {
+  MPI_Status status;
+  MPI_Probe(source, number, mails, &status);
+  int size = 0;
+  MPI_Get_count(&status, MPI_CHAR, &size);
+  std::string text(static_cast<std::size_t>(size), '\0');
+  MPI_Recv(text.data(), size, MPI_CHAR, source, number, mails, MPI_STATUS_IGNORE);
+  return text;
+}
+
+void Mail::finish() {
+  MPI_Waitall(to_int(posted_->requests.size()), posted_->requests.data(), MPI_STATUSES_IGNORE);
+  *posted_ = {};
 }
 
 void sum_over_ranks(std::span<double> values) {

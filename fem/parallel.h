@@ -4,6 +4,7 @@
 #include <deal.II/base/types.h>
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -60,6 +61,28 @@ std::string from_first_rank(const std::function<std::string()>& work);
 
 /// A rank's text, on all ranks. Collective.
 std::string from_rank(int source, std::string text);
+
+/// Texts that ranks send one another while each works alone: what one posts under a number, every
+/// other one collects.
+class Mail {
+ public:
+  Mail();
+  /// What has not been collected by then is lost, with its memory; finish() waits for that.
+  ~Mail();
+  Mail(const Mail&) = delete;
+  Mail& operator=(const Mail&) = delete;
+
+  void post(int number, std::string text);
+  /// Whether collect() would not wait. To be called now and then in long work, whatever it returns:
+  /// what was posted here leaves meanwhile.
+  bool arrived(int source, int number) const;
+  std::string collect(int source, int number) const;
+  void finish();
+
+ private:
+  struct Letters;
+  std::unique_ptr<Letters> posted_;
+};
 
 /// Replaces the values by their sums over the ranks: the same bits on all of them. Collective.
 void sum_over_ranks(std::span<double> values);

@@ -38,6 +38,32 @@ void add(SolidState& sum, double factor, const SolidState& state) {
     sum.pressure[e] += factor * state.pressure[e];
 }
 
+/// What separates two levels' states under a load, with the factor that it has in a guess.
+struct Correction {
+  double factor;
+  EquilibriumPair equilibria;
+};
+
+/// Lagrange's polynomial in the load through no correction without load and those known, as far as
+/// they are of this load's place and extrapolated not too far.
+std::vector<Correction> corrections(const Load& load, std::span<const EquilibriumPair> behind) {
+  const auto usable = [&load](const EquilibriumPair& pair) {
+    return same_place(pair.own->load, load) && same_place(pair.coarse->load, load) &&
+           magnitude(pair.own->load) == magnitude(pair.coarse->load) &&
+           magnitude(pair.own->load) != 0;
+  };
+  if (behind.empty() || !usable(behind[0])) return {};
+  const double F = magnitude(load);
+  const double F1 = magnitude(behind[0].own->load);
+  if (behind.size() > 1 && usable(behind[1])) {
+    const double F0 = magnitude(behind[1].own->load);
+    if (F0 != F1 && std::abs(F - F1) <= farthest_extrapolation * std::abs(F1 - F0))
+      return {{F * (F - F0) / (F1 * (F1 - F0)), behind[0]},
+              {F * (F - F1) / (F0 * (F0 - F1)), behind[1]}};
+  }
+  return {{std::clamp(F / F1, -farthest_extrapolation, farthest_extrapolation), behind[0]}};
+}
+
 /// A clamped base; on the plane of symmetry, where there is one, no displacement across it.
 std::vector<DirichletCondition> supports(Extent extent) {
   std::vector<DirichletCondition> conditions{{.boundary = meshes::base_id}};
@@ -47,6 +73,13 @@ std::vector<DirichletCondition> supports(Extent extent) {
 }
 
 }  // namespace
+
+std::vector<EquilibriumPair> pairs(const LoadPathState* own, const LoadPathState* coarse) {
+  if (own == nullptr || coarse == nullptr) return {};
+  std::vector<EquilibriumPair> result{{&own->current, &coarse->current}};
+  if (own->previous && coarse->previous) result.push_back({&*own->previous, &*coarse->previous});
+  return result;
+}
 
 Level::Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser)
@@ -68,20 +101,35 @@ void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
   fibres_ = std::make_unique<Fibres>(*space_, extent);
 }
 
-void Level::make_solver(const Load& first) {
-  if (solver_) return;
+Newton& Level::newton() {
   if (!newton_)
     newton_ = std::make_unique<Newton>(
         *space_, increment_constraints(*space_, supports(fibres_->extent())), options_.solver);
+  return *newton_;
+}
+
+void Level::start_from_rest(const Load& first) {
+  if (solver_) return;
   solver_ = std::make_unique<LoadPathSolver>(
-      *space_, *fibres_, *newton_, first, options_.path,
+      *space_, *fibres_, [this]() -> Newton& { return newton(); }, first, options_.path,
       [this](const Load& target, const Progress& report) { return first_guess(target, report); });
 }
 
 LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
                                const std::function<void()>& on_equilibrium) {
-  make_solver(load);
+  start_from_rest(load);
   return solver_->advance(load, progress, on_equilibrium);
+}
+
+std::optional<Equilibrium> Level::solve(const Load& load, Guess guess, int& iterations,
+                                        const Progress& progress) {
+  start_from_rest(load);
+  return solver_->solve(load, std::move(guess), iterations, progress);
+}
+
+void Level::go_to(Equilibrium equilibrium) {
+  start_from_rest(equilibrium.load);
+  solver_->go_to(std::move(equilibrium));
 }
 
 void Level::restore(std::optional<LoadPathState> state) {
@@ -94,67 +142,49 @@ void Level::restore(std::optional<LoadPathState> state) {
     throw CheckpointError(
         "the checkpoint cannot be used: its states are those of other meshes; start anew with "
         "--fresh, which deletes it");
-  make_solver(state->current.load);
+  start_from_rest(state->current.load);
   solver_->restore(std::move(*state));
 }
 
 Guess Level::first_guess(const Load& load, const Progress& progress) const {
-  Guess guess;
-  if (coarser_ != nullptr) {
-    const std::vector<Correction> known = corrections(load);
-    const LoadPathOutcome outcome = coarser_->advance(load, coarser_progress(progress));
-    guess.slip_off =
-        outcome.slip_off_displacement ? outcome.slip_off_displacement : outcome.slip_off_force;
-    guess.lost = outcome.status == Status::failed;
-    if (outcome.status == Status::converged) guess.state = corrected(known, guess.applied_force);
-  } else if (options_.beam_guess) {
-    guess = beam_guess(load);
-  }
-  if (guess.state) prescribe(*space_, supports(fibres_->extent()), *guess.state);
-  return guess;
-}
-
-std::vector<Level::Correction> Level::corrections(const Load& load) const {
-  if (!coarser_->solver_) return {};
-  const LoadPathState& own = solver().state();
-  const LoadPathState& coarse = coarser_->solver().state();
-  const auto same_load = [&load](const Equilibrium& a, const Equilibrium& b) {
-    return same_place(a.load, load) && same_place(b.load, load) &&
-           magnitude(a.load) == magnitude(b.load);
-  };
-  const double F = magnitude(load);
-  const double F1 = magnitude(own.current.load);
-  if (F1 == 0 || !same_load(own.current, coarse.current)) return {};
-  // Lagrange's polynomial in the load through no correction without load and the ones known.
-  if (own.previous && coarse.previous && same_load(*own.previous, *coarse.previous)) {
-    const double F0 = magnitude(own.previous->load);
-    if (F0 != 0 && F0 != F1 && std::abs(F - F1) <= farthest_extrapolation * std::abs(F1 - F0))
-      return {{F * (F - F0) / (F1 * (F1 - F0)), &own.current, coarse.current},
-              {F * (F - F1) / (F0 * (F0 - F1)), &*own.previous, *coarse.previous}};
-  }
-  return {{std::clamp(F / F1, -farthest_extrapolation, farthest_extrapolation), &own.current,
-           coarse.current}};
-}
-
-SolidState Level::corrected(const std::vector<Correction>& known, double& applied_force) const {
-  const Equilibrium& coarse = coarser_->solver().current();
-  SolidState difference = coarse.state;
-  applied_force = coarse.applied_force;
-  for (const Correction& correction : known) {
-    add(difference, -correction.factor, correction.coarse.state);
-    applied_force +=
-        correction.factor * (correction.own->applied_force - correction.coarse.applied_force);
-  }
-  SolidState result = transferred(*coarser_->space_, *coarser_->fibres_, difference, *space_);
-  for (const Correction& correction : known) add(result, correction.factor, correction.own->state);
+  if (coarser_ == nullptr) return guess(load);
+  const std::optional<LoadPathState> before =
+      coarser_->state() != nullptr ? std::optional(*coarser_->state()) : std::nullopt;
+  const LoadPathOutcome outcome = coarser_->advance(load, coarser_progress(progress));
+  Guess result;
+  if (outcome.status == Status::converged)
+    result = guess(load, coarser_->solver().current(), pairs(state(), before ? &*before : nullptr));
+  result.slip_off =
+      outcome.slip_off_displacement ? outcome.slip_off_displacement : outcome.slip_off_force;
+  result.lost = outcome.status == Status::failed;
   return result;
 }
 
-Guess Level::beam_guess(const Load& load) const {
+Guess Level::guess(const Load& load, const Equilibrium& coarse,
+                   std::span<const EquilibriumPair> behind) const {
+  const std::vector<Correction> known = corrections(load, behind);
+  SolidState difference = coarse.state;
+  Guess result;
+  result.applied_force = coarse.applied_force;
+  for (const auto& [factor, equilibria] : known) {
+    add(difference, -factor, equilibria.coarse->state);
+    result.applied_force +=
+        factor * (equilibria.own->applied_force - equilibria.coarse->applied_force);
+  }
+  result.state = transferred(*coarser_->space_, *coarser_->fibres_, difference, *space_);
+  for (const auto& [factor, equilibria] : known) add(*result.state, factor, equilibria.own->state);
+  prescribe(*space_, supports(fibres_->extent()), *result.state);
+  return result;
+}
+
+Guess Level::guess(const Load& load) const {
+  if (!options_.beam_guess) return {};
   const MechanicsResult beam = Beam().solve(cilium_, {load});
   const MechanicsStep& step = beam.steps.front();
   if (!step.deformation) return {};
-  return {lifted(step.deformation->centreline, cilium_, *space_), step.applied_force};
+  Guess result{lifted(step.deformation->centreline, cilium_, *space_), step.applied_force};
+  prescribe(*space_, supports(fibres_->extent()), *result.state);
+  return result;
 }
 
 Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
@@ -181,8 +211,7 @@ Deformation Level::undeformed(double azimuth) const {
 }
 
 Vector3 Level::tip() const {
-  const Centreline line = centreline(*space_, *fibres_, solver().current().state);
-  return line.at(line.length()).position;
+  return tip_position(*space_, *fibres_, solver().current().state);
 }
 
 std::optional<double> Level::tip_uncertainty() const {

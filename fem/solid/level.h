@@ -29,9 +29,17 @@ struct LevelOptions {
   bool beam_guess = true;  ///< start the coarsest level from the beam's solution
 };
 
+/// Equilibria of a level and of the coarser one under the same load.
+struct EquilibriumPair {
+  const Equilibrium* own;
+  const Equilibrium* coarse;
+};
+/// Those that two levels go on from, the last one first; at most two.
+std::vector<EquilibriumPair> pairs(const LoadPathState* own, const LoadPathState* coarse);
+
 /// The discretised cilium on one mesh, in the frame of that mesh, with its solvers, which are made
-/// with the first load or state and belong to the ranks that work together then (RankAlone). Its
-/// members refer to one another: it stays where it is made.
+/// with the first load and belong to the ranks that work together then (RankAlone). Its members
+/// refer to one another: it stays where it is made.
 class Level {
  public:
   /// `coarser` gives the first guesses, and with its own tip the estimate of the error; without
@@ -50,6 +58,21 @@ class Level {
   /// a half mesh). Calls `on_equilibrium` after each one on the way (LoadPathSolver::advance()).
   LoadPathOutcome advance(const Load& load, const Progress& progress,
                           const std::function<void()>& on_equilibrium = {});
+
+  /// The first guess of a load: the coarser level's equilibrium with it, transferred, and
+  /// corrected by what separates the levels under two loads behind (the nearest first), which
+  /// changes less than the states do, and smoothly with the load.
+  Guess guess(const Load& load, const Equilibrium& coarse,
+              std::span<const EquilibriumPair> behind) const;
+  /// Without a coarser level: the beam's solution, if the options say so.
+  Guess guess(const Load& load) const;
+  /// Makes what the first load would make.
+  void make_solver() { newton(); }
+  /// The equilibrium found from the guess alone (LoadPathSolver::solve()). state() stays.
+  std::optional<Equilibrium> solve(const Load& load, Guess guess, int& iterations,
+                                   const Progress& progress);
+  /// Goes on from an equilibrium as if advance() had found it.
+  void go_to(Equilibrium equilibrium);
 
   /// What the level goes on from; null before the first load.
   const LoadPathState* state() const { return solver_ ? &solver_->state() : nullptr; }
@@ -77,21 +100,9 @@ class Level {
  private:
   /// What all constructors end with: the space on the triangulation and its mapping.
   void discretise(Extent extent, std::span<const Hyperelastic> materials);
-  void make_solver(const Load& first);
+  Newton& newton();
+  void start_from_rest(const Load& first);
   Guess first_guess(const Load& load, const Progress& progress) const;
-  /// What separates this level's state from the coarser one's under a load behind, with the factor
-  /// that it has in the guess: such corrections change less than the states do, and smoothly with
-  /// the load.
-  struct Correction {
-    double factor;
-    const Equilibrium* own;
-    Equilibrium coarse;
-  };
-  /// Those of the last two loads, extrapolated to the next one; empty where there are none.
-  std::vector<Correction> corrections(const Load& load) const;
-  /// The coarser level's state, transferred, with the corrections; so is the applied force.
-  SolidState corrected(const std::vector<Correction>& known, double& applied_force) const;
-  Guess beam_guess(const Load& load) const;
   const LoadPathSolver& solver() const { return *solver_; }
   Deformation deformation(const SolidState& state, const SpreadLoad& load, double azimuth) const;
   Vector3 tip() const;

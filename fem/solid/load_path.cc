@@ -94,11 +94,11 @@ struct LoadPathSolver::Attempt {
   Equilibrium equilibrium;
 };
 
-LoadPathSolver::LoadPathSolver(const SolidSpace& space, const Fibres& fibres, Newton& newton,
+LoadPathSolver::LoadPathSolver(const SolidSpace& space, const Fibres& fibres, NewtonSource newton,
                                const Load& first, LoadPathOptions options, FirstGuess first_guess)
     : space_(space),
       fibres_(fibres),
-      newton_(newton),
+      newton_(std::move(newton)),
       options_(options),
       first_guess_(std::move(first_guess)),
       now_{{with_magnitude(first, 0), space.undeformed(), 0}, {}, {}, {}} {}
@@ -150,11 +150,11 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   if (const auto* probe = std::get_if<ProbeLoad>(&load)) {
     UnknownForce force = probe_force(space_, fibres_, *probe, options_.kernel_width,
                                      attempt.equilibrium.applied_force);
-    result = newton_.solve(force, state, options_.newton, report);
+    result = newton_().solve(force, state, options_.newton, report);
     contact_force = force.amplitude;
   } else {
-    result = newton_.solve(external_forces(space_, fibres_, load, options_.kernel_width), state,
-                           options_.newton, report);
+    result = newton_().solve(external_forces(space_, fibres_, load, options_.kernel_width), state,
+                             options_.newton, report);
     if (const auto* contact = std::get_if<ContactLoad>(&load)) contact_force = contact->force;
   }
   iterations += result.iterations();
@@ -169,6 +169,22 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   attempt.applied = !contact_height(load) || attempt.equilibrium.applied_force >=
                                                  contact_force * (1 - options_.force_shortfall);
   return attempt;
+}
+
+std::optional<Equilibrium> LoadPathSolver::solve(const Load& load, Guess guess, int& iterations,
+                                                 const Progress& progress) {
+  if (!guess.state) return std::nullopt;
+  Attempt result =
+      attempt_from({load, std::move(*guess.state), guess.applied_force}, iterations, progress);
+  if (!result.converged || !result.applied) return std::nullopt;
+  return std::move(result.equilibrium);
+}
+
+void LoadPathSolver::go_to(Equilibrium equilibrium) {
+  if (!same_place(now_.current.load, equilibrium.load)) restart(equilibrium.load);
+  now_.previous = std::move(now_.current);
+  now_.current = std::move(equilibrium);
+  now_.ramp.reset();
 }
 
 Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) const {

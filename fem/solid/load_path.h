@@ -43,6 +43,8 @@ struct Guess {
   bool lost = false;  ///< it failed, and costs more than it gives on the rest of the way
 };
 using FirstGuess = std::function<Guess(const Load&, const Progress&)>;
+/// The solver, made when it is first asked for.
+using NewtonSource = std::function<Newton&()>;
 
 struct LoadPathOptions {
   NewtonOptions newton;
@@ -90,16 +92,23 @@ struct LoadPathState {
 /// slip off under loads that nobody asked for.
 class LoadPathSolver {
  public:
-  /// Starts from the straight solid under no load of the path's type. The space, fibres and Newton
-  /// solver must outlive it.
-  LoadPathSolver(const SolidSpace& space, const Fibres& fibres, Newton& newton, const Load& first,
-                 LoadPathOptions options, FirstGuess first_guess = {});
+  /// Starts from the straight solid under no load of the path's type. The space and fibres must
+  /// outlive it.
+  LoadPathSolver(const SolidSpace& space, const Fibres& fibres, NewtonSource newton,
+                 const Load& first, LoadPathOptions options, FirstGuess first_guess = {});
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
   /// a load fully applied. Calls `on_equilibrium` after each one on the way: from the state()
   /// that is there at that time, the same advance() finds the same bits.
   LoadPathOutcome advance(const Load& target, const Progress& progress = {},
                           const std::function<void()>& on_equilibrium = {});
+
+  /// The equilibrium that Newton's method finds from this guess alone; none where it finds none, or
+  /// one in which the load is not applied in full. state() stays.
+  std::optional<Equilibrium> solve(const Load& load, Guess guess, int& iterations,
+                                   const Progress& progress);
+  /// Goes on from an equilibrium as if advance() had found it.
+  void go_to(Equilibrium equilibrium);
 
   const Equilibrium& current() const { return now_.current; }
   const LoadPathState& state() const { return now_; }
@@ -126,7 +135,7 @@ class LoadPathSolver {
 
   const SolidSpace& space_;
   const Fibres& fibres_;
-  Newton& newton_;
+  NewtonSource newton_;
   LoadPathOptions options_;
   FirstGuess first_guess_;
   LoadPathState now_;

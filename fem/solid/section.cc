@@ -251,6 +251,13 @@ Centreline centreline(const SolidSpace& space, const Fibres& fibres, const Solid
   return centreline(extraction, layers, tops);
 }
 
+Vector3 tip_position(const SolidSpace& space, const Fibres& fibres, const SolidState& state) {
+  const SpreadLoad none;
+  const Extraction extraction{space, fibres, state, none};
+  const Station tip = extraction.station(layers_of(space, fibres).back(), 1);
+  return tip.x / tip.area;
+}
+
 Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
                                  const SolidState& state, const SpreadLoad& load,
                                  const std::optional<PlaneForce>& plane) {

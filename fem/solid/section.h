@@ -30,6 +30,9 @@ namespace ciliaval::fem {
 Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
                       const SpreadLoad& load = {});
 
+/// r of the section Z = L.
+Vector3 tip_position(const SolidSpace& space, const Fibres& fibres, const SolidState& state);
+
 /// A dead force on the plane Z = arclength of the whole body, spread evenly over it.
 struct PlaneForce {
   double arclength = 0;             ///< m

@@ -17,8 +17,7 @@
 #include "fem/parallel.h"
 #include "fem/solid/checkpoint.h"
 #include "fem/solid/level.h"
-#include "fem/solid/load_path.h"
-#include "fem/solid/round.h"
+#include "fem/solid/path_run.h"
 #include "meshes/cylinder_mesh.h"
 #include "problem/error.h"
 
@@ -61,35 +60,6 @@ std::vector<Hyperelastic> materials(const Cilium& cilium, const SolidOptions& op
   std::vector<Hyperelastic> result;
   for (const Segment& segment : cilium.segments) result.push_back(material(segment, options));
   return result;
-}
-
-/// Azimuth of the mesh's x axis: the load's direction; a user's mesh stays as it is.
-double mesh_azimuth(const SolidOptions& options, const Load& load) {
-  return options.mesh.empty() ? azimuth(load) : 0;
-}
-
-/// The load in the frame of the mesh.
-Load in_mesh_frame(const SolidOptions& options, Load load) {
-  const double turn = mesh_azimuth(options, load);
-  std::visit([turn](auto& l) { l.azimuth -= turn; }, load);
-  return load;
-}
-
-/// S of the centreline's lowest point at z = h; empty if there is none.
-std::optional<double> contact_arclength(const Centreline& centreline, double height) {
-  for (std::size_t i = 0; i < centreline.pieces().size(); ++i) {
-    double low = centreline.breaks()[i];
-    double high = centreline.breaks()[i + 1];
-    if (!(centreline.at(low, i).position.z() <= height &&
-          centreline.at(high, i).position.z() >= height))
-      continue;
-    while (true) {
-      const double middle = low + (high - low) / 2;
-      if (!(middle > low && middle < high)) return middle;
-      (centreline.at(middle, i).position.z() < height ? low : high) = middle;
-    }
-  }
-  return std::nullopt;
 }
 
 /// Force scale under which a residual is rounding error: J − 1 carries a few ε, which the bulk
@@ -159,180 +129,6 @@ Facts facts(const Cilium& cilium, const LoadPath& path, const SolidOptions& opti
       meshes.push_back(path_mesh(i, options, path));
   return solid_facts(cilium, path, options, meshes);
 }
-
-/// What is made of a step that the finest mesh has ended with.
-MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double mesh_azimuth,
-                       const Level& finest) {
-  MechanicsStep step;
-  step.load = load;
-  step.status = outcome.status;
-  step.message = outcome.message;
-  step.slip_off_force = outcome.slip_off_force;
-  step.slip_off_displacement = outcome.slip_off_displacement;
-  step.iterations = outcome.iterations;
-  step.unknowns = finest.unknowns();
-  if (outcome.status != Status::converged) return step;
-  step.deformation = finest.deformation(mesh_azimuth);
-  step.applied_force = finest.applied_force();
-  step.tip_uncertainty = finest.tip_uncertainty();
-  if (const auto height = contact_height(load))
-    step.contact_arclength = contact_arclength(step.deformation->centreline, *height);
-  return step;
-}
-
-/// The levels on their way along a load path.
-class PathRun {
- public:
-  PathRun(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
-          const Progress& progress)
-      : path_(path),
-        options_(options),
-        progress_(progress),
-        levels_(make_levels(cilium, path, options)),
-        apart_(rank_count() > 1 && static_cast<std::size_t>(rank_count()) <= path.size() &&
-               std::none_of(path.begin(), path.end(),
-                            [](const Load& load) { return magnitude(load) == 0; }) &&
-               options.initial_guess == InitialGuess::beam && finest().solved_directly()) {}
-
-  const Level& finest() const { return *levels_.back(); }
-
-  /// Whether each rank solves steps of its own, in place of sharing all of them: where there are at
-  /// least as many steps as ranks, each with a load and a guess of its own, and LU solves them,
-  /// which gains less by sharing.
-  bool apart() const { return apart_; }
-
-  /// Puts the levels and the finished steps where the checkpoint, if there is one, left them.
-  void go_on_from(SolidCheckpoint& saved, MechanicsResult& result) {
-    restore(saved.read());
-    for (std::size_t i = 0; i < saved.steps().size(); ++i) {
-      MechanicsStep step = saved.steps()[i];
-      if (step.status == Status::converged) add_deformation(step, saved.finished_state(i));
-      result.steps.push_back(std::move(step));
-    }
-  }
-
-  /// All ranks share each step.
-  void follow_together(SolidCheckpoint& saved, MechanicsResult& result) {
-    bool failed = false;
-    while (result.steps.size() < path_.size()) {
-      const std::size_t i = result.steps.size();
-      MechanicsStep step = solve(i, label(i, 1), saved, !failed);
-      failed = failed || step.status == Status::failed;
-      if (!failed) {
-        saved.add(step, step.deformation ? &finest().state()->current.state : nullptr);
-        saved.save(states());
-      }
-      result.steps.push_back(std::move(step));
-    }
-  }
-
-  /// In rounds, after each of which all ranks are in the state of its last step.
-  void follow_apart(SolidCheckpoint& saved, MechanicsResult& result) {
-    const auto usual = static_cast<std::size_t>(rank_count());
-    bool failed = false;
-    const auto next = [&] {
-      return result.steps.empty() || result.steps.back().status == Status::converged ? usual : 1;
-    };
-    for (std::size_t most = next(); result.steps.size() < path_.size();) {
-      const std::size_t first = result.steps.size();
-      const std::vector<std::optional<LoadPathState>> before = copied_states();
-      const std::size_t count = std::min(most, path_.size() - first);
-      std::vector<SolvedStep> solved = solve_round(count, [&](std::size_t number) {
-        MechanicsStep step =
-            solve(first + number, label(first, count), saved, count == 1 && !failed);
-        return SolvedStep{std::move(step), copied_states()};
-      });
-      // What did not converge is solved as on one rank: by itself, from the step before it.
-      most = 1;
-      if (solved.empty()) {
-        restore(before);
-        continue;
-      }
-      for (auto& [step, levels] : solved) {
-        const bool converged = step.status == Status::converged;
-        if (converged && !step.deformation) add_deformation(step, levels.back()->current.state);
-        failed = failed || step.status == Status::failed;
-        if (!failed) saved.add(step, converged ? &levels.back()->current.state : nullptr);
-        result.steps.push_back(std::move(step));
-      }
-      if (solved.size() == count) most = next();
-      restore(after(solved));
-      if (!failed) saved.save(states());
-    }
-  }
-
- private:
-  /// "step 2/4, ", "steps 1-2/4, "
-  std::string label(std::size_t first, std::size_t count) const {
-    return (count > 1 ? "steps " + std::to_string(first + 1) + "-" : std::string("step ")) +
-           std::to_string(first + count) + "/" + std::to_string(path_.size()) + ", ";
-  }
-
-  /// Step i. If `keep`, saves each equilibrium on the way.
-  MechanicsStep solve(std::size_t i, const std::string& shown, SolidCheckpoint& saved, bool keep) {
-    const auto start = std::chrono::steady_clock::now();
-    const Progress report =
-        progress_ ? Progress([&](const std::string& text) { progress_(shown + text); })
-                  : Progress();
-    const auto save = [&] { saved.save(states()); };
-    const LoadPathOutcome outcome = levels_.back()->advance(
-        in_mesh_frame(options_, path_[i]), report, keep ? std::function<void()>(save) : nullptr);
-    MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
-    if (step.status == Status::failed) {
-      step.message = label(i, 1) + step.message;
-      if (saved.file())
-        step.message +=
-            "; what converged up to the first failure is kept in `" + saved.file()->string() + "`";
-    }
-    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return step;
-  }
-
-  void add_deformation(MechanicsStep& step, const SolidState& state) const {
-    step.deformation =
-        finest().deformation({in_mesh_frame(options_, step.load), state, step.applied_force},
-                             mesh_azimuth(options_, step.load));
-  }
-
-  std::vector<const LoadPathState*> states() const {
-    std::vector<const LoadPathState*> result;
-    for (const auto& level : levels_) result.push_back(level->state());
-    return result;
-  }
-
-  std::vector<std::optional<LoadPathState>> copied_states() const {
-    std::vector<std::optional<LoadPathState>> result;
-    for (const LoadPathState* state : states())
-      result.push_back(state != nullptr ? std::optional(*state) : std::nullopt);
-    return result;
-  }
-
-  /// What the levels go on from after a round: the states of its last step and of the one before
-  /// it.
-  static std::vector<std::optional<LoadPathState>> after(std::vector<SolvedStep>& solved) {
-    std::vector<std::optional<LoadPathState>> states = std::move(solved.back().levels);
-    if (solved.size() == 1) return states;
-    const std::vector<std::optional<LoadPathState>>& before = solved[solved.size() - 2].levels;
-    for (std::size_t i = 0; i < states.size(); ++i) {
-      if (!states[i]) continue;
-      states[i]->previous.reset();
-      if (before[i] && same_place(before[i]->current.load, states[i]->current.load))
-        states[i]->previous = before[i]->current;
-    }
-    return states;
-  }
-
-  void restore(std::vector<std::optional<LoadPathState>> states) {
-    const RankAlone alone(apart_);
-    for (std::size_t i = 0; i < states.size(); ++i) levels_.at(i)->restore(std::move(states[i]));
-  }
-
-  const LoadPath& path_;
-  const SolidOptions& options_;
-  const Progress& progress_;
-  std::vector<std::unique_ptr<Level>> levels_;  ///< the coarsest first
-  bool apart_;
-};
 
 }  // namespace
 
@@ -411,16 +207,9 @@ MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
 
 MechanicsResult Solid::follow(const Cilium& cilium, const LoadPath& path,
                               const Checkpoint& checkpoint, const Progress& progress) const {
-  PathRun run{cilium, path, options_, progress};
-  MechanicsResult result{
-      run.finest().undeformed(path.empty() ? 0 : mesh_azimuth(options_, path.front())), {}};
+  PathRun run(make_levels(cilium, path, options_), path, options_, progress);
   SolidCheckpoint saved(checkpoint, facts(cilium, path, options_));
-  run.go_on_from(saved, result);
-  if (run.apart())
-    run.follow_apart(saved, result);
-  else
-    run.follow_together(saved, result);
-  return result;
+  return run.follow(saved);
 }
 
 }  // namespace ciliaval::fem

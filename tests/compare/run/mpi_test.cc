@@ -97,8 +97,27 @@ void expect_same_steps(const fs::path& results, const fs::path& reference, std::
   }
 }
 
-// Two ranks take a step each at a time; the second step of the first round slips off, so that it
-// and the following ones are solved one by one. Oracle: the run on one rank.
+// Five steps in one block, of which rank 0 leads with the first. Oracle: the run on one rank. That
+// the ranks worked apart shows in the second step, which takes more iterations where it is solved
+// beside the first, without its corrections.
+TEST(Mpi, RanksThatShareTheTasksOfABlockGiveWhatOneGives) {
+  for (const int steps : {5, 2}) {
+    const TemporaryFolder folder;
+    write_case(
+        folder.path(), "",
+        steps == 5 ? R"(["1 mN", "2 mN", "3 mN", "3.5 mN", "4 mN"])" : R"(["2 mN", "2.1 mN"])");
+    ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
+    ASSERT_EQ(run(folder.path(), 2, "two").code, 0) << read_text(folder.path() / "err.txt");
+    expect_same_steps(folder.path() / "two", folder.path() / "one",
+                      static_cast<std::size_t>(steps));
+    if (steps == 5) continue;
+    const int beside = solid_step(folder.path() / "two", 1).at("iterations").get<int>();
+    EXPECT_GT(beside, solid_step(folder.path() / "one", 1).at("iterations").get<int>());
+  }
+}
+
+// The second step of the first block slips off, so that it and the following ones are solved one by
+// one. Oracle: the run on one rank.
 TEST(Mpi, RanksThatSolveStepsApartGiveWhatOneGives) {
   const TemporaryFolder folder;
   write_case(folder.path(), "", R"(["4 mN", "7 mN", "8 mN", "1 mN", "2 mN", "3 mN"])");
@@ -218,9 +237,9 @@ TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
 }
 
 /// Runs the case on two ranks and kills mpirun and the ranks (which would go on for a while) once
-/// the solid has saved its second step. Waits until no rank is left.
+/// the solid has saved its fourth step, the last of the first block.
 void interrupt_two_ranks(const fs::path& folder) {
-  const std::string kept = "out/.mpi.checkpoint/solid.0001";
+  const std::string kept = "out/.mpi.checkpoint/solid.0003";
   execute(
       folder,
       "sh -c '\"" CILIAVAL_MPIEXEC "\" -n 2 \"" CILIAVAL_PROGRAM
@@ -246,14 +265,15 @@ Outcome go_on(const fs::path& folder, int ranks) {
 // cilium: MUMPS adds the ranks' contributions as they come.
 TEST(MpiSlow, AKilledRunOfTwoRanksGoesOnOnTwoAndOnOne) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "", R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN"])");
+  write_case(folder.path(), "",
+             R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN", "2.5 mN", "3 mN", "3.5 mN", "4 mN"])");
   ASSERT_EQ(run(folder.path(), 2, "undisturbed").code, 0);
   for (const int ranks : {2, 1}) {
     fs::remove_all(folder.path() / "out");
     interrupt_two_ranks(folder.path());
     ASSERT_EQ(go_on(folder.path(), ranks).code, 0) << read_text(folder.path() / "err.txt");
     EXPECT_NE(read_text(folder.path() / "err.txt").find("goes on at step"), std::string::npos);
-    for (std::size_t step = 0; step < 4; ++step)
+    for (std::size_t step = 0; step < 8; ++step)
       expect_same_tip(folder.path() / "out", folder.path() / "undisturbed", step,
                       ranks == 2 ? 1e-12 : 1e-9, std::to_string(ranks) + " ranks");
   }
