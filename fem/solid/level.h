@@ -66,8 +66,6 @@ class Level {
               std::span<const EquilibriumPair> behind) const;
   /// Without a coarser level: the beam's solution, if the options say so.
   Guess guess(const Load& load) const;
-  /// Makes what the first load would make.
-  void make_solver() { newton(); }
   /// The equilibrium found from the guess alone (LoadPathSolver::solve()). state() stays.
   std::optional<Equilibrium> solve(const Load& load, Guess guess, int& iterations,
                                    const Progress& progress);

@@ -196,7 +196,6 @@ std::size_t PathRun::solve_block(std::size_t count, SolidCheckpoint* saved) {
   const std::vector<std::optional<LoadPathState>> before = copied_states();
   const Progress progress = shown_as(label(first, count));
   tasks.run(
-      [&](const SolidTask& task) { levels_[task.level]->make_solver(); },
       [&](const SolidTask& task) { return solve_task(task, tasks, before, first, progress); });
   std::size_t solved = 0;
   for (; solved < count && is_solved(tasks, solved, levels_.size()); ++solved) {

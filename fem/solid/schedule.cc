@@ -17,28 +17,20 @@ namespace {
 /// one gives a guess, …
 constexpr double cost_exponent = 1.4;
 constexpr double cost_of_coarsest = 3;
-/// … times one of these without corrections of its guess (the first step of a path is as a rule the
-/// smallest), with one from a step further away than the next, and else nothing more, …
+/// … times this where nothing corrects its guess (the first step of a path is as a rule the
+/// smallest), …
 constexpr double cost_of_first_step = 1.35;
 constexpr double cost_uncorrected = 1.55;
-constexpr double cost_of_far_correction = 1.5;
-/// … and before it its rank makes the level's solver, if it has none, in this part of the time.
+/// … and this part more when its rank makes the level's solver.
 constexpr double set_up = 0.25;
-
-/// Who takes which task.
-enum class Way {
-  each_its_own,  ///< each rank takes the next step and solves it on all levels
-  first_leads,   ///< rank 0 leads with the first step, the others follow it level by level
-  two_lead       ///< the same, and from the third step on they wait for two corrections
-};
 
 class Schedule {
  public:
   Schedule(std::span<const std::size_t> unknowns, std::size_t steps, int ranks,
-           Corrections corrections, Way way)
+           Corrections corrections, bool first_leads)
       : steps_(steps),
         corrections_(corrections),
-        way_(way),
+        first_leads_(first_leads),
         free_(static_cast<std::size_t>(ranks), 0.0),
         end_(unknowns.size(), std::vector<std::optional<double>>(steps)),
         has_solver_(unknowns.size(), std::vector<bool>(free_.size(), false)) {
@@ -52,27 +44,20 @@ class Schedule {
   std::vector<SolidTask> tasks() && { return std::move(tasks_); }
 
  private:
-  bool has_leader() const { return way_ != Way::each_its_own; }
-
-  /// When all that the task needs, and its corrections, are there; empty before that is known, if
-  /// the task is taken, or if it is not for this rank.
+  /// When all that the task needs is there; empty before that is known, if the task is taken, or if
+  /// it is not for this rank.
   std::optional<double> ready(std::size_t step, std::size_t level, std::size_t rank) const {
-    if (end_[level][step] || (has_leader() && step == 0 && rank != 0)) return std::nullopt;
+    if (end_[level][step] || (first_leads_ && step == 0 && rank != 0)) return std::nullopt;
     if (level == 0) return 0;
     const std::optional<double> coarser = end_[level - 1][step];
-    if (!coarser || !has_leader() || step == 0) return coarser;
-    std::vector<double> others;
-    for (const std::optional<double>& end : end_[level])
-      if (end) others.push_back(*end);
-    std::sort(others.begin(), others.end());
-    const std::size_t awaited = way_ == Way::two_lead && step > 1 ? 2 : 1;
-    if (others.size() < awaited) return std::nullopt;
-    return std::max(*coarser, others[awaited - 1]);
+    if (!first_leads_ || step == 0) return coarser;
+    const std::optional<double> leader = end_[level][0];
+    return coarser && leader ? std::optional(std::max(*coarser, *leader)) : std::nullopt;
   }
 
   /// Which of the tasks that can be begun at the same time goes first.
   std::tuple<bool, std::size_t, std::size_t> order(std::size_t step, std::size_t level) const {
-    if (has_leader()) return {step != 0, level, step};
+    if (first_leads_) return {step != 0, level, step};
     return {false, step, level};
   }
 
@@ -90,8 +75,7 @@ class Schedule {
         for (std::size_t step = 0; step < steps_; ++step) {
           const std::optional<double> from = ready(step, level, rank);
           if (!from) continue;
-          const double begin = std::max(*from - set_up_time(level, rank), free_[rank]);
-          const Choice choice{begin, order(step, level)};
+          const Choice choice{std::max(*from, free_[rank]), order(step, level)};
           if (best && !(choice < *best)) continue;
           best = choice;
           task = {step, level, static_cast<int>(rank)};
@@ -103,42 +87,38 @@ class Schedule {
   void assign(SolidTask task, double start) {
     const auto [step, level] = std::pair(task.step, task.level);
     const auto rank = static_cast<std::size_t>(task.rank);
-    start += set_up_time(level, rank);
     if (corrections_ == Corrections::within && level > 0) task.corrected_by = known(task, start);
+    double cost = relative_cost(task);
+    if (!has_solver_[level][rank]) cost += set_up;
     has_solver_[level][rank] = true;
-    free_[rank] = start + relative_cost(task) * cost_[level];
+    free_[rank] = start + cost * cost_[level];
     end_[level][step] = free_[rank];
     tasks_.push_back(std::move(task));
   }
 
-  double set_up_time(std::size_t level, std::size_t rank) const {
-    return has_solver_[level][rank] ? 0 : set_up * cost_[level];
-  }
-
   double relative_cost(const SolidTask& task) const {
     if (corrections_ == Corrections::before || task.level == 0) return 1;
-    if (task.corrected_by.empty()) return task.step == 0 ? cost_of_first_step : cost_uncorrected;
-    const bool far = task.corrected_by.size() < 2 && distance(task.step, task.corrected_by[0]) > 1;
-    return far ? cost_of_far_correction : 1;
+    if (!task.corrected_by.empty()) return 1;
+    return task.step == 0 ? cost_of_first_step : cost_uncorrected;
   }
-
-  static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
 
   /// The two steps nearest to the task's whose equilibria are there by then.
   std::vector<std::size_t> known(const SolidTask& task, double time) const {
     std::vector<std::size_t> result;
     for (std::size_t other = 0; other < steps_; ++other)
       if (end_[task.level][other] && *end_[task.level][other] <= time) result.push_back(other);
-    std::stable_sort(result.begin(), result.end(), [&task](auto a, auto b) {
-      return distance(a, task.step) < distance(b, task.step);
-    });
+    const auto distance = [&task](std::size_t other) {
+      return other < task.step ? task.step - other : other - task.step;
+    };
+    std::stable_sort(result.begin(), result.end(),
+                     [&](auto a, auto b) { return distance(a) < distance(b); });
     if (result.size() > 2) result.resize(2);
     return result;
   }
 
   std::size_t steps_;
   Corrections corrections_;
-  Way way_;
+  bool first_leads_;
   std::vector<double> cost_;                             ///< of each level
   std::vector<double> free_;                             ///< from when on each rank is free
   std::vector<std::vector<std::optional<double>>> end_;  ///< of each level's tasks
@@ -150,13 +130,11 @@ class Schedule {
 
 std::vector<SolidTask> schedule(std::span<const std::size_t> unknowns, std::size_t steps, int ranks,
                                 Corrections corrections) {
-  Schedule best(unknowns, steps, ranks, corrections, Way::each_its_own);
-  if (corrections != Corrections::within) return std::move(best).tasks();
-  for (const Way way : {Way::two_lead, Way::first_leads}) {
-    Schedule other(unknowns, steps, ranks, corrections, way);
-    if (other.duration() < best.duration()) best = std::move(other);
-  }
-  return std::move(best).tasks();
+  Schedule each_its_own(unknowns, steps, ranks, corrections, false);
+  if (corrections != Corrections::within) return std::move(each_its_own).tasks();
+  Schedule first_leads(unknowns, steps, ranks, corrections, true);
+  return first_leads.duration() < each_its_own.duration() ? std::move(first_leads).tasks()
+                                                          : std::move(each_its_own).tasks();
 }
 
 }  // namespace ciliaval::fem

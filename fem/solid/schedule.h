@@ -24,11 +24,10 @@ enum class Corrections { before, within, none };
 
 /// Distributes a block of steps over the ranks: the tasks in an order in which each comes after
 /// those that it needs, so that ranks which do theirs in this order never wait for one another in
-/// vain. Each rank makes a level's solver before it waits for what its first task there needs. Of
-/// several ways the one is taken that a model of the tasks' times finds the shortest:
+/// vain. Of two ways the one is taken that a model of the tasks' times finds shorter:
 /// - each rank takes the next step and solves it on all levels;
 /// - rank 0 leads with the first step, and the others follow it level by level with the next ones,
-///   which so have its corrections, or those of two steps; then all share what is left.
+///   which so have its corrections; then all share what is left.
 /// Depends on nothing but its arguments: the ranks agree on it without a word.
 std::vector<SolidTask> schedule(std::span<const std::size_t> unknowns, std::size_t steps, int ranks,
                                 Corrections corrections);

@@ -21,6 +21,17 @@ TaskResult unpacked(const std::string& bytes) {
   return result;
 }
 
+/// Without an equilibrium if `solve` throws: whoever solves the step again meets that again.
+TaskResult attempt(const SolidTask& task,
+                   const std::function<TaskResult(const SolidTask&)>& solve) {
+  const RankAlone alone;
+  try {
+    return solve(task);
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 SharedTasks::SharedTasks(std::vector<SolidTask> tasks, std::size_t steps, std::size_t levels)
@@ -56,28 +67,15 @@ void SharedTasks::move_mail() const {
   mail_.arrived(rank_, 0);
 }
 
-void SharedTasks::run(const std::function<void(const SolidTask&)>& prepare,
-                      const std::function<TaskResult(const SolidTask&)>& solve) {
+void SharedTasks::run(const std::function<TaskResult(const SolidTask&)>& solve) {
   for (std::size_t i = 0; i < tasks_.size(); ++i) {
     if (tasks_[i].rank != rank_) continue;
-    const RankAlone alone;
     bool possible = true;
-    // Whoever solves the step again meets again what is caught here.
-    const auto attempt = [&possible](const auto& work) {
-      try {
-        if (possible) work();
-      } catch (const std::exception&) {
-        possible = false;
-      }
-    };
-    attempt([&] { prepare(tasks_[i]); });
     for (const std::size_t needed : needed_by(tasks_[i])) {
       collect(needed);
       possible = possible && results_[needed]->equilibrium;
     }
-    TaskResult found;
-    attempt([&] { found = solve(tasks_[i]); });
-    results_[i] = std::move(found);
+    results_[i] = possible ? attempt(tasks_[i], solve) : TaskResult{};
     mail_.post(static_cast<int>(i), packed(*results_[i]));
   }
   for (std::size_t i = 0; i < tasks_.size(); ++i) collect(i);

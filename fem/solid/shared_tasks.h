@@ -26,11 +26,10 @@ class SharedTasks {
   /// The tasks of all steps and levels, the same on all ranks.
   SharedTasks(std::vector<SolidTask> tasks, std::size_t steps, std::size_t levels);
 
-  /// Does this rank's tasks, alone (RankAlone): each is prepared by `prepare` and, when those that
-  /// it needs have been done, done by `solve`; what they throw counts as no equilibrium. Returns
-  /// when the results of all tasks are here. Collective.
-  void run(const std::function<void(const SolidTask&)>& prepare,
-           const std::function<TaskResult(const SolidTask&)>& solve);
+  /// Does this rank's tasks by `solve`, alone (RankAlone), each when those that it needs have been
+  /// done; what `solve` throws counts as no equilibrium. Returns when the results of all tasks are
+  /// here. Collective.
+  void run(const std::function<TaskResult(const SolidTask&)>& solve);
 
   /// The result of a task; null if it is not here yet. For `solve`: what its task needs is here,
   /// with its equilibrium.

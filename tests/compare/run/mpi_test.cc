@@ -261,8 +261,7 @@ Outcome go_on(const fs::path& folder, int ranks) {
   return outcome;
 }
 
-// Oracle: an undisturbed run on two ranks. Two such runs differ by some 1e-15 lengths of the
-// cilium: MUMPS adds the ranks' contributions as they come.
+// Oracle: an undisturbed run on two ranks.
 TEST(MpiSlow, AKilledRunOfTwoRanksGoesOnOnTwoAndOnOne) {
   const TemporaryFolder folder;
   write_case(folder.path(), "",

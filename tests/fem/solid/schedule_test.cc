@@ -68,11 +68,11 @@ TEST(SolidSchedule, HasEachTaskOnceAfterThoseThatItNeeds) {
         }
 }
 
-// fig3b: rank 0 leads, rank 1 finds the others' coarser equilibria, with corrections.
-TEST(SolidSchedule, FirstRankLeadsWhereTheOthersGainByItsCorrections) {
-  const auto tasks = schedule(default_levels, 4, 2, Corrections::within);
+// fig3b: rank 0 leads with the first step, rank 1 finds the others' coarser equilibria; no other
+// step goes without corrections, and both ranks have finest tasks.
+TEST(SolidSchedule, FirstStepLeadsWhereTheOthersGainByItsCorrections) {
   std::size_t finest_of_rank_1 = 0;
-  for (const SolidTask& task : tasks) {
+  for (const SolidTask& task : schedule(default_levels, 4, 2, Corrections::within)) {
     const bool leads = task.step == 0;
     const bool finest = task.level == 3;
     if (leads || !finest) {
