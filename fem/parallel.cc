@@ -33,6 +33,10 @@ MPI_Comm failures = MPI_COMM_NULL;
 /// All ranks once more, for Mail.
 MPI_Comm mails = MPI_COMM_NULL;
 
+/// The tag that the next Mail begins with, of those that each MPI library has.
+int next_tag = 0;
+constexpr int tags = 32768;
+
 /// Of all ranks, those on this machine, and the processors that they may use.
 int ranks_here = 1;
 cpu_set_t processors_here{};
@@ -244,7 +248,12 @@ struct Mail::Letters {
   std::vector<MPI_Request> requests;
 };
 
-Mail::Mail() : posted_(std::make_unique<Letters>()) {}
+Mail::Mail(std::size_t numbers) : posted_(std::make_unique<Letters>()) {
+  if (numbers > tags) throw SolverError("too many tasks for messages between ranks");
+  if (next_tag + to_int(numbers) > tags) next_tag = 0;
+  first_tag_ = next_tag;
+  next_tag += to_int(numbers);
+}
 
 Mail::~Mail() {
   int gone = 0;
@@ -267,24 +276,25 @@ void Mail::post(int number, std::string text) {
     if (rank == own) continue;
     posted_->texts.push_back(letter);
     MPI_Request request = MPI_REQUEST_NULL;
-    MPI_Isend(letter->data(), to_int(letter->size()), MPI_CHAR, rank, number, mails, &request);
+    MPI_Isend(letter->data(), to_int(letter->size()), MPI_CHAR, rank, first_tag_ + number, mails,
+              &request);
     posted_->requests.push_back(request);
   }
 }
 
 bool Mail::arrived(int source, int number) const {
   int there = 0;
-  MPI_Iprobe(source, number, mails, &there, MPI_STATUS_IGNORE);
+  MPI_Iprobe(source, first_tag_ + number, mails, &there, MPI_STATUS_IGNORE);
   return there != 0;
 }
 
 std::string Mail::collect(int source, int number) const {
   MPI_Status status;
-  MPI_Probe(source, number, mails, &status);
+  MPI_Probe(source, first_tag_ + number, mails, &status);
   int size = 0;
   MPI_Get_count(&status, MPI_CHAR, &size);
   std::string text(static_cast<std::size_t>(size), '\0');
-  MPI_Recv(text.data(), size, MPI_CHAR, source, number, mails, MPI_STATUS_IGNORE);
+  MPI_Recv(text.data(), size, MPI_CHAR, source, first_tag_ + number, mails, MPI_STATUS_IGNORE);
   return text;
 }
 

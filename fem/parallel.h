@@ -3,6 +3,7 @@
 
 #include <deal.II/base/types.h>
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -62,11 +63,12 @@ std::string from_first_rank(const std::function<std::string()>& work);
 /// A rank's text, on all ranks. Collective.
 std::string from_rank(int source, std::string text);
 
-/// Texts that ranks send one another while each works alone: what one posts under a number, every
-/// other one collects.
+/// Texts that ranks send one another while each works alone: what one posts under a number, from 0
+/// to `numbers` − 1, every other one collects. All ranks make the same ones in the same order: what
+/// one has left behind never gets into the next.
 class Mail {
  public:
-  Mail();
+  explicit Mail(std::size_t numbers);
   /// What has not been collected by then is lost, with its memory; finish() waits for that.
   ~Mail();
   Mail(const Mail&) = delete;
@@ -82,6 +84,7 @@ class Mail {
  private:
   struct Letters;
   std::unique_ptr<Letters> posted_;
+  int first_tag_;
 };
 
 /// Replaces the values by their sums over the ranks: the same bits on all of them. Collective.

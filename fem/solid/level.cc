@@ -132,6 +132,11 @@ void Level::go_to(Equilibrium equilibrium) {
   solver_->go_to(std::move(equilibrium));
 }
 
+void Level::set_out(const Load& load) {
+  start_from_rest(load);
+  solver_->set_out(load);
+}
+
 void Level::restore(std::optional<LoadPathState> state) {
   if (!state) return solver_.reset();
   const auto fits = [this](const Equilibrium& equilibrium) {

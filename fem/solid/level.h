@@ -71,6 +71,8 @@ class Level {
                                    const Progress& progress);
   /// Goes on from an equilibrium as if advance() had found it.
   void go_to(Equilibrium equilibrium);
+  /// Begins the way to the next load, which advance() goes.
+  void set_out(const Load& load);
 
   /// What the level goes on from; null before the first load.
   const LoadPathState* state() const { return solver_ ? &solver_->state() : nullptr; }

@@ -182,9 +182,10 @@ std::optional<Equilibrium> LoadPathSolver::solve(const Load& load, Guess guess, 
 
 void LoadPathSolver::go_to(Equilibrium equilibrium) {
   if (!same_place(now_.current.load, equilibrium.load)) restart(equilibrium.load);
+  now_.ramp.reset();
+  if (magnitude(now_.current.load) == magnitude(equilibrium.load)) return;
   now_.previous = std::move(now_.current);
   now_.current = std::move(equilibrium);
-  now_.ramp.reset();
 }
 
 Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) const {
@@ -216,11 +217,15 @@ bool LoadPathSolver::cut(Ramp& ramp, bool overshot) const {
   return ramp.step >= std::pow(cut_factor, options_.max_cutbacks + ramp.overshoots);
 }
 
-LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
-                                        const std::function<void()>& on_equilibrium) {
+void LoadPathSolver::set_out(const Load& target) {
   if (!same_place(now_.current.load, target)) restart(target);
   if (!now_.ramp || magnitude(now_.ramp->target) != magnitude(target))
     now_.ramp = Ramp{now_.current.load, target};
+}
+
+LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
+                                        const std::function<void()>& on_equilibrium) {
+  set_out(target);
   const auto finish = [this](LoadPathOutcome outcome) {
     outcome.iterations = now_.ramp->iterations;
     now_.ramp.reset();

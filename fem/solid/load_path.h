@@ -109,6 +109,8 @@ class LoadPathSolver {
                                    const Progress& progress);
   /// Goes on from an equilibrium as if advance() had found it.
   void go_to(Equilibrium equilibrium);
+  /// Begins the way to the next load, which advance() goes.
+  void set_out(const Load& target);
 
   const Equilibrium& current() const { return now_.current; }
   const LoadPathState& state() const { return now_; }

@@ -132,18 +132,22 @@ void PathRun::follow_together(SolidCheckpoint& saved) {
 
 void PathRun::follow_apart(SolidCheckpoint& saved) {
   bool failed = false;
-  bool alone = false;
+  bool guesses_fail = false;
+  bool again = false;  // the next step has been tried in a block
   while (result_.steps.size() < path_.size()) {
+    // After what does not converge the next steps are solved as on one rank, up to one that does.
+    const bool alone = again || guesses_fail ||
+                       (!result_.steps.empty() && result_.steps.back().status != Status::converged);
     const std::size_t count = alone ? 1 : block_size();
     if (count > 1) {
-      // What does not converge is solved as on one rank: by itself, from the step before it.
-      alone = solve_block(count, failed ? nullptr : &saved) < count;
-    } else {
-      solve_alone(saved, !failed);
-      const Status status = result_.steps.back().status;
-      failed = failed || status == Status::failed;
-      alone = status != Status::converged;
+      again = solve_block(count, failed ? nullptr : &saved) < count;
+      continue;
     }
+    solve_alone(saved, !failed);
+    const Status status = result_.steps.back().status;
+    failed = failed || status == Status::failed;
+    guesses_fail = guesses_fail || (again && status == Status::converged);
+    again = false;
   }
 }
 
@@ -202,7 +206,9 @@ std::size_t PathRun::solve_block(std::size_t count, SolidCheckpoint* saved) {
     add(tasks, solved);
     if (saved != nullptr) add_to(*saved, result_.steps.back());
   }
-  // Not before: what goes on from here makes the same blocks as what was not killed.
+  // What goes on from what is saved makes the same blocks: the step that ended this one is on its
+  // way, by itself.
+  if (solved < count) levels_.back()->set_out(in_mesh_frame(options_, path_[first + solved]));
   if (saved != nullptr && solved > 0) saved->save(states());
   return solved;
 }

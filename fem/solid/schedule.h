@@ -25,7 +25,7 @@ enum class Corrections { before, within, none };
 /// Distributes a block of steps over the ranks: the tasks in an order in which each comes after
 /// those that it needs, so that ranks which do theirs in this order never wait for one another in
 /// vain. Of two ways the one is taken that a model of the tasks' times finds shorter:
-/// - each rank takes the next step and solves it on all levels;
+/// - each rank takes the next step and solves it on all levels, as long as there are enough steps;
 /// - rank 0 leads with the first step, and the others follow it level by level with the next ones,
 ///   which so have its corrections; then all share what is left.
 /// Depends on nothing but its arguments: the ranks agree on it without a word.

@@ -38,7 +38,8 @@ SharedTasks::SharedTasks(std::vector<SolidTask> tasks, std::size_t steps, std::s
     : tasks_(std::move(tasks)),
       index_(levels, std::vector<std::size_t>(steps)),
       results_(tasks_.size()),
-      rank_(rank()) {
+      rank_(rank()),
+      mail_(tasks_.size()) {
   for (std::size_t i = 0; i < tasks_.size(); ++i) index_[tasks_[i].level][tasks_[i].step] = i;
 }
 
