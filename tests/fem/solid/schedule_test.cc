@@ -29,8 +29,10 @@ bool possible(const SolidTask& task, const Done& done) {
 /// one task if it can; 0 if they wait for one another forever.
 std::size_t turns(const std::vector<SolidTask>& tasks, int ranks) {
   std::vector<std::vector<SolidTask>> left(static_cast<std::size_t>(ranks));
-  for (auto task = tasks.rbegin(); task != tasks.rend(); ++task)
-    left.at(static_cast<std::size_t>(task->rank)).push_back(*task);
+  for (const SolidTask& task : tasks) {
+    auto& own = left.at(static_cast<std::size_t>(task.rank));
+    own.insert(own.begin(), task);
+  }
   Done done;
   for (std::size_t turn = 1;; ++turn) {
     const Done before = done;
