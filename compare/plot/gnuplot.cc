@@ -14,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "compare/results.h"
@@ -80,6 +81,21 @@ int run_gnuplot(std::FILE* in, std::FILE* out, std::FILE* err) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// The complete SVG documents in what gnuplot wrote one after the other.
+std::vector<std::string> documents(std::string_view text) {
+  constexpr std::string_view head = "<?xml";
+  constexpr std::string_view tail = "</svg>\n";
+  std::vector<std::string> result;
+  for (std::size_t begin = text.find(head); begin != std::string_view::npos;) {
+    const std::size_t next = text.find(head, begin + head.size());
+    std::string_view document = text.substr(begin, next - begin);
+    document = document.substr(0, document.find_last_not_of('\n') + 2);
+    if (document.ends_with(tail)) result.emplace_back(document);
+    begin = next;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string quoted(std::string_view text) {
@@ -107,23 +123,31 @@ std::string logarithmic_x_axis(double from, double to) {
   return script + fmt::format("set xtics ({})\n", fmt::join(marks, ", "));
 }
 
-std::string draw_svg(std::string_view script, Size size) {
+std::vector<std::string> draw_svgs(std::span<const Script> scripts) {
   const File in = temporary_file();
   const File out = temporary_file();
   const File err = temporary_file();
-  fmt::print(in.get(),
-             "set encoding utf8\nset terminal svg size {},{} font 'sans,12' background 'white'\n{}",
-             size.width, size.height, script);
-  if (std::fflush(in.get()) != 0)
+  std::string input;
+  for (const Script& script : scripts)
+    input += fmt::format(
+        "reset session\nset encoding utf8\n"
+        "set terminal svg size {},{} font 'sans,12' background 'white'\n{}\n",
+        script.size.width, script.size.height, script.text);
+  if (std::fwrite(input.data(), 1, input.size(), in.get()) != input.size() ||
+      std::fflush(in.get()) != 0)
     throw FileError(fmt::format("cannot write a script for gnuplot: {}", std::strerror(errno)));
   std::rewind(in.get());
   const int code = run_gnuplot(in.get(), out.get(), err.get());
-  std::string svg = content(out.get());
-  if (code != 0 || !svg.ends_with("</svg>\n\n"))
+  std::vector<std::string> drawings = documents(content(out.get()));
+  if (code != 0 || drawings.size() != scripts.size())
     throw FileError(
         fmt::format("cannot plot: gnuplot ended with {}: {}", code, complaint(content(err.get()))));
-  svg.pop_back();
-  return svg;
+  return drawings;
+}
+
+std::string draw_svg(std::string_view script, Size size) {
+  const std::array<Script, 1> one{{{std::string(script), size}}};
+  return std::move(draw_svgs(one).front());
 }
 
 void write_svg(const std::filesystem::path& file, std::string_view script, Size size) {

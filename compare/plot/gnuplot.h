@@ -3,8 +3,10 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace ciliaval::compare::plot {
 
@@ -25,9 +27,18 @@ std::string logarithmic_x_axis(double from, double to);
 /// escaped that gnuplot's enhanced mode reads as markup; line breaks become blanks.
 std::string quoted(std::string_view text);
 
-/// What gnuplot draws from a script without a terminal of its own, as SVG. Starts gnuplot directly,
-/// without a shell and without the user's settings. Throws FileError if it is not installed, with
-/// what to install, or if it refuses the script, with its message.
+/// What is to be drawn: a script without a terminal of its own.
+struct Script {
+  std::string text;
+  Size size;
+};
+
+/// What gnuplot draws from each script, as SVG. Starts gnuplot once and directly, without a shell
+/// and without the user's settings; no script sees the settings and data of another. Throws
+/// FileError if it is not installed, with what to install, or if it refuses a script, with its
+/// message.
+std::vector<std::string> draw_svgs(std::span<const Script> scripts);
+/// One script alone.
 std::string draw_svg(std::string_view script, Size size);
 
 /// Draws the script into a file. Throws FileError.

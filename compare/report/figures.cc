@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/archive/iterators/base64_from_binary.hpp>
 #include <boost/archive/iterators/transform_width.hpp>
 #include <string>
@@ -45,6 +46,11 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
+/// Around the id of a figure that is not drawn yet. No text of a result can be this: its `<` is
+/// escaped. Nor has a page other comments.
+constexpr std::string_view place_begin = "<!--";
+constexpr std::string_view place_end = "-->\n";
+
 }  // namespace
 
 std::string inlined(std::string_view svg, const std::string& id, std::string_view title,
@@ -75,10 +81,45 @@ std::string Figures::next_id() {
 
 std::string Figures::add(const Drawing& drawing) {
   if (drawing.script.empty()) return {};
+  added_.push_back({next_id(), drawing});
+  return fmt::format("{}{}{}", place_begin, added_.back().id, place_end);
+}
+
+std::string Figures::drawn(std::string_view page) {
+  std::vector<plot::Script> scripts;
+  for (const Added& added : added_) scripts.push_back({added.drawing.script, added.drawing.size});
+  std::vector<std::string> svgs;
   try {
-    const std::string svg = draw_(drawing.script, drawing.size);
+    if (!scripts.empty()) svgs = draw_(scripts);
+  } catch (const FileError&) {
+    svgs.clear();  // one after the other, then: each says what is wrong with it
+  }
+  std::string text;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t place = page.find(place_begin, begin);
+    text += page.substr(begin, place - begin);
+    if (place == std::string_view::npos) break;
+    const std::size_t id = place + place_begin.size();
+    const std::size_t end = page.find(place_end, id);
+    const auto added = std::find_if(added_.begin(), added_.end(), [&](const Added& a) {
+      return a.id == page.substr(id, end - id);
+    });
+    const auto i = static_cast<std::size_t>(added - added_.begin());
+    text += html(added_.at(i), svgs.empty() ? nullptr : &svgs.at(i));
+    begin = end + place_end.size();
+  }
+  added_.clear();
+  return text;
+}
+
+std::string Figures::html(const Added& added, const std::string* svg) {
+  const Drawing& drawing = added.drawing;
+  try {
+    const std::array<plot::Script, 1> alone{{{drawing.script, drawing.size}}};
     return fmt::format("<figure><div class=\"plot\">{}</div><figcaption>{}</figcaption></figure>\n",
-                       inlined(svg, next_id(), drawing.title, drawing.size),
+                       inlined(svg != nullptr ? *svg : draw_(alone).front(), added.id,
+                               drawing.title, drawing.size),
                        escaped(drawing.caption));
   } catch (const FileError& error) {
     if (failure_.empty()) failure_ = error.what();

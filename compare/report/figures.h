@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,14 +20,15 @@ struct Drawing {
   plot::Size size;
 };
 
-/// The figures of a page, each with ids of its own. Where one cannot be drawn, gnuplot not being
-/// installed, a sentence stands in its place.
+/// The figures of a page, each with ids of its own, drawn all at once when the page is complete.
+/// Where one cannot be drawn, gnuplot not being installed, a sentence stands in its place.
 class Figures {
  public:
-  using Draw = std::function<std::string(std::string_view script, plot::Size size)>;
-  explicit Figures(Draw draw = plot::draw_svg) : draw_(std::move(draw)) {}
+  using Draw = std::function<std::vector<std::string>(std::span<const plot::Script> scripts)>;
+  explicit Figures(Draw draw = plot::draw_svgs) : draw_(std::move(draw)) {}
 
-  /// The figure as HTML; empty if there is nothing to draw.
+  /// What stands for the figure in the page's HTML until it is drawn; empty if there is nothing to
+  /// draw.
   std::string add(const Drawing& drawing);
   /// Figures beside each other where there is room.
   enum class Width { normal, wide };
@@ -34,12 +36,22 @@ class Figures {
   /// A picture from a file, as a `data:` URI; `size` in pixels.
   std::string picture(std::string_view png, plot::Size size, const std::string& title);
 
+  /// The page with the figures that were added to it.
+  std::string drawn(std::string_view page);
+
   /// Why figures could not be drawn: the first reason, or empty.
   const std::string& failure() const { return failure_; }
 
  private:
   std::string next_id();
+  struct Added {
+    std::string id;
+    Drawing drawing;
+  };
+  /// Drawn by itself where there is no SVG of it yet.
+  std::string html(const Added& added, const std::string* svg);
 
+  std::vector<Added> added_;
   Draw draw_;
   int count_ = 0;
   std::string failure_;

@@ -233,9 +233,9 @@ std::string case_page(const fs::path& folder, Figures& figures) {
   const Document document = parse(folder / "summary.json");
   if (document.kind != Kind::run)
     throw FileError(document.file.string() + ": it is not the summary of a case");
-  return page(fmt::format("CiliaVal: {}", document.name), "",
-              {section_of(document, "case", figures)},
-              "Made by `ciliaval run` from summary.json and the centrelines beside it.");
+  return figures.drawn(
+      page(fmt::format("CiliaVal: {}", document.name), "", {section_of(document, "case", figures)},
+           "Made by `ciliaval run` from summary.json and the centrelines beside it."));
 }
 
 Report results_page(const fs::path& folder, const Provenance& maker, Figures& figures) {
@@ -276,13 +276,13 @@ Report results_page(const fs::path& folder, const Provenance& maker, Figures& fi
   if (!absent.empty())
     sections.push_back({"missing", "What is not here, and how to make it", list(absent)});
   sections.push_back({"provenance", "Provenance", origins(documents, folder)});
-  report.html = page("CiliaVal: report of results",
-                     "Models of a magnetic-cilium tactile sensor beside each other, and what "
-                     "separates them. Every "
-                     "number is read from the result files named under Provenance.",
-                     sections,
-                     fmt::format("Page made by ciliaval {} (git {}) on {}: {}", maker.version,
-                                 maker.git, maker.date, maker.command));
+  report.html = figures.drawn(
+      page("CiliaVal: report of results",
+           "Models of a magnetic-cilium tactile sensor beside each other, and what separates them. "
+           "Every number is read from the result files named under Provenance.",
+           sections,
+           fmt::format("Page made by ciliaval {} (git {}) on {}: {}", maker.version, maker.git,
+                       maker.date, maker.command)));
   return report;
 }
 

@@ -13,9 +13,12 @@
 #include <vtkTriQuadraticHexahedron.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <Eigen/LU>
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compare/results.h"
 
@@ -100,28 +103,73 @@ vtkSmartPointer<vtkPolyData> vertices(const std::vector<Vector3>& positions) {
   return data;
 }
 
-/// Value at ξ of what is given at the nodes of a cell.
-template <class T>
-T interpolate(const LagrangeBasis& nodes, const std::vector<T>& nodal, const Vector3& xi, T value) {
-  const std::size_t n = nodes.size();
-  std::array<std::vector<double>, 3> basis;
-  for (std::size_t a = 0; a < 3; ++a) {
-    basis[a].resize(n);
-    nodes.values(xi[static_cast<Eigen::Index>(a)], basis[a]);
+/// A linear combination of what is given at the nodes of a cell, without the nodes that have no
+/// part in it: where a point is itself a node, that is most of them.
+class Combination {
+ public:
+  void add(std::size_t node, double weight) {
+    if (weight != 0) parts_.emplace_back(node, weight);
   }
-  std::size_t node = 0;
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < n; ++i, ++node)
-        value += basis[0][i] * basis[1][j] * basis[2][k] * nodal[node];
-  return value;
+  template <class Nodal, class T>
+  T of(const Nodal& nodal, T sum) const {
+    for (const auto& [node, weight] : parts_) sum += weight * nodal[node];
+    return sum;
+  }
+  Vector3 of(const std::vector<Vector3>& nodal) const { return of(nodal, Vector3(0, 0, 0)); }
+
+ private:
+  std::vector<std::pair<std::size_t, double>> parts_;
+};
+
+/// Value and derivatives by ξ, η, ζ at a point of the unit cell.
+struct PointOfCell {
+  Vector3 position;
+  Combination value;
+  std::array<Combination, 3> slope;
+
+  PointOfCell(const LagrangeBasis& nodes, const Vector3& xi) : position(xi) {
+    const std::size_t n = nodes.size();
+    std::array<std::vector<double>, 3> N;
+    std::array<std::vector<double>, 3> dN;
+    for (std::size_t d = 0; d < 3; ++d) {
+      N[d].resize(n);
+      dN[d].resize(n);
+      nodes.values_and_derivatives(xi[static_cast<Eigen::Index>(d)], N[d], dN[d]);
+    }
+    std::size_t node = 0;
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t j = 0; j < n; ++j)
+        for (std::size_t i = 0; i < n; ++i, ++node) {
+          value.add(node, N[0][i] * N[1][j] * N[2][k]);
+          slope[0].add(node, dN[0][i] * N[1][j] * N[2][k]);
+          slope[1].add(node, N[0][i] * dN[1][j] * N[2][k]);
+          slope[2].add(node, N[0][i] * N[1][j] * dN[2][k]);
+        }
+  }
+
+  /// ∂v/∂ξ: column d is the derivative by ξ_d.
+  Matrix3 gradient(const std::vector<Vector3>& nodal) const {
+    Matrix3 result;
+    for (std::size_t d = 0; d < 3; ++d)
+      result.col(static_cast<Eigen::Index>(d)) = slope[d].of(nodal);
+    return result;
+  }
+};
+
+/// The points of a triquadratic hexahedron in VTK's order.
+std::vector<PointOfCell> triquadratic_points(const LagrangeBasis& nodes) {
+  const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
+  const double* coordinates = hexahedron->GetParametricCoords();
+  std::vector<PointOfCell> points;
+  for (int i = 0; i < hexahedron->GetNumberOfPoints(); ++i)
+    points.emplace_back(nodes, Vector3(coordinates + std::ptrdiff_t{3} * i));
+  return points;
 }
 
 }  // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
-  const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
-  const double* coordinates = hexahedron->GetParametricCoords();  // VTK's order of the 27 points
+  const std::vector<PointOfCell> points_of_cell = triquadratic_points(body.nodes);
   const vtkNew<vtkPoints> points = double_points();
   Column displacement("displacement", 3, "m");
   Column jacobian("J", 1, "1");
@@ -139,17 +187,16 @@ vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
   for (const SolidCell& cell : body.cells) {
     std::array<vtkIdType, 27> ids{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      const Vector3 xi(coordinates + 3 * i);
-      const SolidPoint point = evaluate(body.nodes, cell, xi);
-      const Matrix3& F = point.deformation_gradient;
+      const PointOfCell& at = points_of_cell[i];
+      const Vector3 X = at.value.of(cell.reference);
+      const Matrix3 F = at.gradient(cell.current) * at.gradient(cell.reference).inverse();
       ids[i] = points->GetNumberOfPoints();
-      add_point(*points, point.reference);
-      displacement.add(Vector3(point.current - point.reference));
+      add_point(*points, X);
+      displacement.add(Vector3(at.value.of(cell.current) - X));
       magnetization.add(Vector3(F * cell.magnetization / F.determinant()));
-      if (with_jacobian) jacobian.add(interpolate(body.nodes, cell.jacobian, xi, 0.0));
+      if (with_jacobian) jacobian.add(at.value.of(cell.jacobian, 0.0));
       if (with_stress)
-        stress.add_symmetric(
-            interpolate<Matrix3>(body.nodes, cell.cauchy_stress, xi, Matrix3::Zero()));
+        stress.add_symmetric(at.value.of(cell.cauchy_stress, Matrix3(Matrix3::Zero())));
     }
     grid->InsertNextCell(VTK_TRIQUADRATIC_HEXAHEDRON, static_cast<vtkIdType>(ids.size()),
                          ids.data());
@@ -165,9 +212,7 @@ vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh) {
-  const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
-  const double* coordinates = hexahedron->GetParametricCoords();  // VTK's order of the 27 points
-  const LagrangeBasis basis({0, 0.5, 1});
+  const std::vector<PointOfCell> points_of_cell = triquadratic_points(LagrangeBasis({0, 0.5, 1}));
   const vtkNew<vtkPoints> points = double_points();
   Column psi("psi", 1, "A");
   Column H("H", 3, "A/m");
@@ -181,26 +226,13 @@ vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh) {
   for (const FieldMesh::Leaf& leaf : mesh.leaves) {
     std::array<vtkIdType, 27> ids{};
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      const Vector3 xi(coordinates + 3 * i);
-      std::array<std::array<double, 3>, 3> value{};
-      std::array<std::array<double, 3>, 3> slope{};
+      const PointOfCell& at = points_of_cell[i];
+      Vector3 gradient;
       for (std::size_t d = 0; d < 3; ++d)
-        basis.values_and_derivatives(xi[static_cast<Eigen::Index>(d)], value[d], slope[d]);
-      double potential = 0;
-      Vector3 gradient = Vector3::Zero();
-      for (std::size_t node = 0; node < 27; ++node) {
-        const std::size_t a = node % 3;
-        const std::size_t b = node / 3 % 3;
-        const std::size_t c = node / 9;
-        potential += leaf.psi[node] * value[0][a] * value[1][b] * value[2][c];
-        gradient += leaf.psi[node] / leaf.size *
-                    Vector3(slope[0][a] * value[1][b] * value[2][c],
-                            value[0][a] * slope[1][b] * value[2][c],
-                            value[0][a] * value[1][b] * slope[2][c]);
-      }
+        gradient[static_cast<Eigen::Index>(d)] = at.slope[d].of(leaf.psi, 0.0) / leaf.size;
       ids[i] = points->GetNumberOfPoints();
-      add_point(*points, leaf.lower + leaf.size * xi);
-      psi.add(potential);
+      add_point(*points, leaf.lower + leaf.size * at.position);
+      psi.add(at.value.of(leaf.psi, 0.0));
       H.add(Vector3(-gradient));
       B.add(Vector3(vacuum_permeability *
                     (leaf.magnetization - leaf.relative_permeability * gradient)));

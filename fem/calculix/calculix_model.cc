@@ -156,7 +156,7 @@ Deformation CalculixMesh::deformation(const Cilium& cilium,
     plane = PlaneForce{section->arclength, section->force * Vector3::UnitX()};
   return {
       centreline_by_statics(*space_, *fibres_, at, spread, plane),
-      std::make_shared<const SolidBody>(solid_body(*space_, *fibres_, cilium, at, element_degree))};
+      std::make_shared<const SolidBody>(solid_body(*space_, *fibres_, cilium, at))};
 }
 
 /// The last lines of a log that say what went wrong, in one line; empty if none do.

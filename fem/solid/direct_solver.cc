@@ -64,7 +64,7 @@ struct DirectSolver::Mumps {
   DMUMPS_STRUC_C data{};
   std::vector<MUMPS_INT> rows;
   std::vector<MUMPS_INT> columns;
-  std::vector<double> values;
+  std::vector<double> values;  ///< of the symmetric part
   std::vector<MUMPS_INT> order;
   const bool alone = rank_count() == 1;
 
@@ -126,21 +126,21 @@ void DirectSolver::analyse(const SparsityPattern& pattern) {
   const bool symmetric = kind_ == Kind::symmetric_part;
   std::size_t entries = 0;
   for (Row row = rows_.begin; row < rows_.end; ++row) entries += pattern.row_length(row);
-  m.rows.reserve(entries);
-  m.columns.reserve(entries);
+  m.rows.resize(entries);
+  m.columns.resize(entries);
+  std::size_t k = 0;
   for (Row row = rows_.begin; row < rows_.end; ++row)
-    for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry) {
+    for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry, ++k) {
       const auto i = static_cast<MUMPS_INT>(row) + 1;
       const auto j = static_cast<MUMPS_INT>(entry->column()) + 1;
-      m.rows.push_back(symmetric ? std::min(i, j) : i);
-      m.columns.push_back(symmetric ? std::max(i, j) : j);
+      m.rows[k] = symmetric ? std::min(i, j) : i;
+      m.columns[k] = symmetric ? std::max(i, j) : j;
     }
-  m.values.resize(m.rows.size());
+  if (symmetric) m.values.resize(entries);
   m.data.n = static_cast<MUMPS_INT>(pattern.n_rows());
-  m.data.nnz_loc = static_cast<MUMPS_INT8>(m.rows.size());
+  m.data.nnz_loc = static_cast<MUMPS_INT8>(entries);
   m.data.irn_loc = m.rows.data();
   m.data.jcn_loc = m.columns.data();
-  m.data.a_loc = m.values.data();
   // MUMPS's own choice, PORD, has fewer operations, but two ranks gain little with it
   // (docs/solid.md).
   if (rank_count() > 1 && rank() == 0) {
@@ -153,11 +153,18 @@ void DirectSolver::analyse(const SparsityPattern& pattern) {
 
 void DirectSolver::factorize(const dealii::SparseMatrix<double>& matrix) {
   Mumps& m = *mumps_;
-  const bool symmetric = kind_ == Kind::symmetric_part;
-  std::size_t k = 0;
-  for (Row row = rows_.begin; row < rows_.end; ++row)
-    for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
-      m.values[k++] = symmetric && entry->column() != row ? entry->value() / 2 : entry->value();
+  if (kind_ == Kind::symmetric_part) {
+    std::size_t k = 0;
+    for (Row row = rows_.begin; row < rows_.end; ++row)
+      for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
+        m.values[k++] = entry->column() == row ? entry->value() : entry->value() / 2;
+    m.data.a_loc = m.values.data();
+  } else if (rows_.begin < rows_.end) {
+    // deal.II stores the entries of a square matrix one after the other, row by row as its
+    // iterators find them, each row from its diagonal on. MUMPS only reads them.
+    m.data.a_loc =
+        &const_cast<dealii::SparseMatrix<double>&>(matrix).diag_element(rows_.begin);  // NOLINT
+  }
   int code = m.run(factorize_matrix);
   while ((code == main_workspace_too_small || code == integer_workspace_too_small) &&
          m.option(14) < largest_margin) {

@@ -2,7 +2,6 @@
 #include "fem/solid/fibres.h"
 
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/full_matrix.h>
 
 #include <algorithm>
@@ -16,8 +15,26 @@
 namespace ciliaval::fem {
 namespace {
 
+/// Of the nine plane polynomials, from what is given of those in ξ and in η.
+Eigen::Matrix<double, 9, 1> product(const Eigen::Vector3d& of_xi, const Eigen::Vector3d& of_eta) {
+  return (of_xi * of_eta.transpose()).reshaped<Eigen::ColMajor>();
+}
+
 Eigen::Matrix<double, 9, 1> plane_values(double xi, double eta) {
-  return (quadratic_basis(xi) * quadratic_basis(eta).transpose()).reshaped<Eigen::ColMajor>();
+  return product(quadratic_basis(xi), quadratic_basis(eta));
+}
+
+/// The third local coordinate must run along Z: each triple of nodes above one another.
+void require_straight(const SolidElement& element, const FibreCell& cell) {
+  for (Eigen::Index a = 0; a < element_nodes; ++a) {
+    const double Z = cell.bottom + 0.5 * static_cast<double>(a / 9) * (cell.top - cell.bottom);
+    const Vector3 offset = (element.nodes.row(a) - element.nodes.row(9 + a % 9)).transpose();
+    if (!(std::hypot(offset.x(), offset.y(), element.nodes(a, 2) - Z) <= 1e-9 * element.size) ||
+        !(cell.top > cell.bottom))
+      throw InputError(
+          "the loads of the solid need a mesh extruded along z: a cell's third local coordinate "
+          "is not parallel to z");
+  }
 }
 
 /// Roots in (0, 1) of the quadratic polynomial with the values z at 0, ½, 1, less `level`.
@@ -136,42 +153,31 @@ Eigen::Vector3d quadratic_derivative(double zeta) {
 }
 
 Fibres::Fibres(const SolidSpace& space, Extent extent) : extent_(extent) {
-  const dealii::QGauss<1> gauss(section_points_1d);
   const dealii::QGauss<2> section(section_points_1d);
-  std::vector<dealii::Point<3>> points;
+  std::array<Eigen::Matrix<double, 9, section_points>, 2> derivatives;  // by ξ and η
   for (int q = 0; q < section_points; ++q) {
     const dealii::Point<2>& x = section.point(static_cast<unsigned int>(q));
     values_.col(q) = plane_values(x[0], x[1]);
+    derivatives[0].col(q) = product(quadratic_derivative(x[0]), quadratic_basis(x[1]));
+    derivatives[1].col(q) = product(quadratic_basis(x[0]), quadratic_derivative(x[1]));
     points_.row(q) << x[0], x[1];
-    for (const double zeta : {0.0, 0.5, 1.0}) points.emplace_back(x[0], x[1], zeta);
   }
-  dealii::FEValues<3> values(space.mapping(), space.scalar_element(), dealii::Quadrature<3>(points),
-                             dealii::update_jacobians | dealii::update_quadrature_points);
   double volume = 0;
   double lowest = std::numeric_limits<double>::infinity();
   for (const SolidElement& element : space.elements()) {
-    values.reinit(element.cell);
     FibreCell cell;
     cell.bottom = element.cell->vertex(0)[2];
     cell.top = element.cell->vertex(4)[2];
+    require_straight(element, cell);
+    const Eigen::Matrix<double, 9, 2> XY = element.nodes.block<9, 2>(9, 0);
     for (unsigned int q = 0; q < section_points; ++q) {
-      const auto& jacobian = values.jacobian(3 * q + 1);
-      cell.area[q] =
-          section.weight(q) * (jacobian[0][0] * jacobian[1][1] - jacobian[0][1] * jacobian[1][0]);
-      cell.X[q] = values.quadrature_point(3 * q + 1)[0];
-      cell.Y[q] = values.quadrature_point(3 * q + 1)[1];
+      const Eigen::Vector2d at = XY.transpose() * values_.col(q);
+      const Eigen::Vector2d by_xi = XY.transpose() * derivatives[0].col(q);
+      const Eigen::Vector2d by_eta = XY.transpose() * derivatives[1].col(q);
+      cell.area[q] = section.weight(q) * (by_xi[0] * by_eta[1] - by_eta[0] * by_xi[1]);
+      cell.X[q] = at[0];
+      cell.Y[q] = at[1];
       volume += cell.area[q] * (cell.top - cell.bottom);
-      for (unsigned int m = 0; m < 3; ++m) {
-        const dealii::Point<3>& X = values.quadrature_point(3 * q + m);
-        const dealii::Point<3>& middle = values.quadrature_point(3 * q + 1);
-        const double Z = cell.bottom + 0.5 * m * (cell.top - cell.bottom);
-        if (!(std::hypot(X[0] - middle[0], X[1] - middle[1], X[2] - Z) <= 1e-9 * element.size) ||
-            !(cell.top > cell.bottom))
-          throw InputError(
-              "the loads of the solid need a mesh extruded along z: a cell's third local "
-              "coordinate "
-              "is not parallel to z");
-      }
     }
     lowest = std::min(lowest, cell.bottom);
     height_ = std::max(height_, cell.top);

@@ -195,8 +195,7 @@ Guess Level::guess(const Load& load) const {
 Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
                                double azimuth) const {
   return turned({centreline(*space_, *fibres_, state, load),
-                 std::make_shared<const SolidBody>(
-                     solid_body(*space_, *fibres_, cilium_, state, element_degree))},
+                 std::make_shared<const SolidBody>(solid_body(*space_, *fibres_, cilium_, state))},
                 azimuth);
 }
 

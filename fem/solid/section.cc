@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/section.h"
 
-#include <deal.II/base/quadrature.h>
-#include <deal.II/fe/fe_values.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
@@ -121,21 +118,12 @@ Station Extraction::station(const Layer& layer, double zeta) const {
 /// tolerance, since rigid motions are in the element's space.
 Wrench Extraction::top_wrench(const Layer& layer) const {
   Wrench result;
-  std::vector<dealii::Point<3>> nodes;
-  for (const double eta : {0.0, 0.5, 1.0})
-    for (const double xi : {0.0, 0.5, 1.0}) nodes.emplace_back(xi, eta, 1);
-  dealii::FEValues<3> values(space.mapping(), space.scalar_element(), dealii::Quadrature<3>(nodes),
-                             dealii::update_quadrature_points);
   for (const std::size_t e : layer.cells) {
     const SolidElement& element = space.elements()[e];
     const auto f = element_forces(element, state, e);
     const auto u = nodal_displacements(element, state.displacement);
-    values.reinit(element.cell);
-    for (unsigned int a = 0; a < nodes.size(); ++a) {
-      const auto& X = values.quadrature_point(a);
-      const auto row = Eigen::Index{18} + a;
-      result.add(Vector3(X[0], X[1], X[2]) + u.row(row).transpose(), f.row(row).transpose());
-    }
+    for (Eigen::Index a = 18; a < element_nodes; ++a)
+      result.add((element.nodes.row(a) + u.row(a)).transpose(), f.row(a).transpose());
   }
   for_each_fibre(layer, [&](const FibreCell& cell, const Matrix3& x, int q) {
     integrate_load(load, x.row(2).transpose(), cell.top - cell.bottom, 0, 1,

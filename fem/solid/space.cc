@@ -40,6 +40,15 @@ class DisplacementFunction : public dealii::Function<3> {
   const std::function<Vector3(const Vector3&)>& field_;
 };
 
+/// Where the nodes of an element lie in the unit cell, lexicographic.
+dealii::Quadrature<3> unit_nodes() {
+  std::vector<dealii::Point<3>> points;
+  for (const double zeta : {0.0, 0.5, 1.0})
+    for (const double eta : {0.0, 0.5, 1.0})
+      for (const double xi : {0.0, 0.5, 1.0}) points.emplace_back(xi, eta, zeta);
+  return dealii::Quadrature<3>(points);
+}
+
 std::map<global_dof_index, double> boundary_values(const SolidSpace& space,
                                                    const DirichletCondition& condition) {
   dealii::ComponentMask mask(3, false);
@@ -78,14 +87,16 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
     for (unsigned int a = 0; a < element_nodes; ++a)
       shape_values_(lexicographic_[a], q) = scalar_element_.shape_value(a, gauss.point(q));
 
-  dealii::FEValues<3> values(
-      mapping_, scalar_element_, gauss,
-      dealii::update_gradients | dealii::update_JxW_values | dealii::update_quadrature_points);
+  dealii::FEValues<3> values(mapping_, scalar_element_, gauss,
+                             dealii::update_gradients | dealii::update_JxW_values);
+  dealii::FEValues<3> nodes(mapping_, scalar_element_, unit_nodes(),
+                            dealii::update_quadrature_points);
   std::vector<global_dof_index> dofs(element_dofs);
   for (const auto& cell : dof_handler_.active_cell_iterators()) {
-    values.reinit(static_cast<dealii::Triangulation<3>::active_cell_iterator>(cell));
     SolidElement element;
     element.cell = cell;
+    values.reinit(element.cell);
+    nodes.reinit(element.cell);
     cell->get_dof_indices(dofs);
     for (unsigned int i = 0; i < element_dofs; ++i) {
       const auto [component, node] = element_.system_to_component_index(i);
@@ -94,13 +105,16 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
     element.gradients.resize(element_nodes, 3 * element_points);
     element.weights.resize(element_points);
     element.pressure_values.resize(element_pressures, element_points);
+    for (unsigned int a = 0; a < element_nodes; ++a)
+      for (unsigned int J = 0; J < 3; ++J) element.nodes(a, J) = nodes.quadrature_point(a)[J];
+    const Eigen::Matrix<double, element_points, 3> points =
+        shape_values_.transpose() * element.nodes;
     const dealii::Point<3> centre = cell->center();
     element.centre = Vector3(centre[0], centre[1], centre[2]);
     element.size = cell->diameter();
     for (unsigned int q = 0; q < element_points; ++q) {
       element.weights[q] = values.JxW(q);
-      const dealii::Point<3>& X = values.quadrature_point(q);
-      element.pressure_values.col(q) = element.pressure_basis(Vector3(X[0], X[1], X[2]));
+      element.pressure_values.col(q) = element.pressure_basis(points.row(q).transpose());
       for (unsigned int a = 0; a < element_nodes; ++a)
         for (unsigned int J = 0; J < 3; ++J)
           element.gradients(lexicographic_[a], 3 * q + J) = values.shape_grad(a, q)[J];

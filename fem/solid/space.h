@@ -37,8 +37,9 @@ struct SolidElement {
   dealii::Triangulation<3>::active_cell_iterator cell;
   std::array<dealii::types::global_dof_index, element_dofs> dofs;
   Hyperelastic material;
-  Vector3 centre;             ///< origin of the pressure's linear basis, m
-  double size = 1;            ///< its unit of length, m
+  Eigen::Matrix<double, element_nodes, 3> nodes;  ///< X of the nodes, m: row a
+  Vector3 centre;                                 ///< origin of the pressure's linear basis, m
+  double size = 1;                                ///< its unit of length, m
   Eigen::MatrixXd gradients;  ///< ∂N_a/∂X_J at Gauss point q: row a, column 3q + J, 1/m
   Eigen::VectorXd weights;    ///< det(∂X/∂ξ) w_q, m³
   Eigen::Matrix<double, element_pressures, Eigen::Dynamic> pressure_values;  ///< ψ_m at the points
@@ -55,7 +56,8 @@ struct SolidState {
 };
 
 /// Finite-element space of a hexahedral mesh. The triangulation and the mapping must outlive it.
-/// The mapping's degree should not exceed element_degree, or linear fields are not in the space.
+/// The mapping's degree must not exceed element_degree: X(ξ) is then the polynomial through the
+/// nodes, and linear fields are in the space.
 class SolidSpace {
  public:
   /// `materials[i]` is that of the cells with material id i. Throws InputError if one is missing.

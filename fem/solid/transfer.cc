@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/transfer.h"
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -19,21 +16,6 @@ namespace ciliaval::fem {
 namespace {
 
 using PlaneNodes = Eigen::Matrix<double, 2, 9>;
-
-Vector3 vector(const dealii::Point<3>& p) {
-  return {p[0], p[1], p[2]};
-}
-
-/// The 27 nodes of an element, lexicographic, and its 27 Gauss points.
-std::vector<dealii::Point<3>> element_nodes_and_points() {
-  std::vector<dealii::Point<3>> points;
-  for (const double zeta : {0.0, 0.5, 1.0})
-    for (const double eta : {0.0, 0.5, 1.0})
-      for (const double xi : {0.0, 0.5, 1.0}) points.emplace_back(xi, eta, zeta);
-  const dealii::QGauss<3> gauss(element_degree + 1);
-  points.insert(points.end(), gauss.get_points().begin(), gauss.get_points().end());
-  return points;
-}
 
 /// Values and derivatives of the nine plane polynomials at (ξ, η).
 struct PlaneBasis {
@@ -62,18 +44,11 @@ struct SectionPoint {
 class Locator {
  public:
   Locator(const SolidSpace& space, const Fibres& fibres) {
-    dealii::FEValues<3> values(space.mapping(), space.scalar_element(),
-                               dealii::Quadrature<3>(element_nodes_and_points()),
-                               dealii::update_quadrature_points);
     for (std::size_t e = 0; e < fibres.cells().size(); ++e) {
-      values.reinit(space.elements()[e].cell);
-      PlaneNodes nodes;
-      for (unsigned int a = 0; a < 9; ++a)
-        nodes.col(a) = vector(values.quadrature_point(a)).head<2>();
       Layer& layer = layers_[fibres.cells()[e].bottom];
       layer.top = fibres.cells()[e].top;
       layer.elements.push_back(e);
-      layer.sections.push_back(nodes);
+      layer.sections.emplace_back(space.elements()[e].nodes.topLeftCorner<9, 2>().transpose());
     }
   }
 
@@ -143,22 +118,20 @@ template <typename Displacement, typename Pressure>
 SolidState filled(const SolidSpace& space, const Displacement& displacement,
                   const Pressure& pressure) {
   SolidState state = space.undeformed();
-  dealii::FEValues<3> values(space.mapping(), space.scalar_element(),
-                             dealii::Quadrature<3>(element_nodes_and_points()),
-                             dealii::update_quadrature_points);
   for (std::size_t e = 0; e < space.elements().size(); ++e) {
     const SolidElement& element = space.elements()[e];
-    values.reinit(element.cell);
     const std::size_t segment = element.cell->material_id();
     for (unsigned int a = 0; a < element_nodes; ++a) {
-      const Vector3 u = displacement(vector(values.quadrature_point(a)), segment);
+      const Vector3 u = displacement(element.nodes.row(a).transpose(), segment);
       for (std::size_t c = 0; c < 3; ++c)
         state.displacement[element.dofs[c * element_nodes + a]] = u[static_cast<Eigen::Index>(c)];
     }
+    const Eigen::Matrix<double, element_points, 3> points =
+        space.shape_values().transpose() * element.nodes;
     PressureVector moment = PressureVector::Zero();
     for (unsigned int q = 0; q < element_points; ++q)
       moment += element.weights[q] * element.pressure_values.col(q) *
-                pressure(vector(values.quadrature_point(element_nodes + q)), segment);
+                pressure(points.row(q).transpose(), segment);
     state.pressure[e] = element.inverse_compliance * moment / element.material.bulk_modulus;
   }
   return state;

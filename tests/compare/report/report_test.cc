@@ -5,10 +5,13 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "compare/plot/gnuplot.h"
 #include "compare/report/figures.h"
@@ -24,6 +27,7 @@ using test::Outcome;
 using test::read_text;
 using test::run_program;
 using testing::HasSubstr;
+using testing::Not;
 
 /// A page is too long to be printed.
 bool shows(const std::string& page, const std::string& text) {
@@ -93,6 +97,57 @@ TEST(Figures, HaveIdsOfTheirOwnAndNothingThatLoadsOrRuns) {
     EXPECT_THROW(inlined(bad, "a", "", {}), FileError) << planted;
   }
   EXPECT_THROW(inlined("<svg></svg>", "a", "", {}), FileError);
+}
+
+using compare::plot::Script;
+
+/// Without the colour of pens: a drawing begins with the one that the drawing before ended with.
+std::string without_pens(const std::string& svg) {
+  return std::regex_replace(svg, std::regex("stroke=\"(currentColor|black)\""), "");
+}
+
+// What a script sets or defines is gone for the next one.
+TEST(Figures, AreDrawnAtOnceAsEachByItself) {
+  const std::array<Script, 3> scripts{{{"set xrange [3:4]\nset logscale y\nset multiplot layout "
+                                        "1,2\na = 5\nplot a*x\nplot x**2\nunset multiplot\n",
+                                        {400, 300}},
+                                       {"plot exists('a') ? 1 : sin(x)\n", {}},
+                                       {"$data << EOD\n1 2\n3 4\nEOD\nplot $data\n", {}}}};
+  const std::vector<std::string> together = compare::plot::draw_svgs(scripts);
+  ASSERT_EQ(together.size(), scripts.size());
+  for (std::size_t i = 0; i < scripts.size(); ++i)
+    EXPECT_EQ(without_pens(together[i]),
+              without_pens(compare::plot::draw_svg(scripts[i].text, scripts[i].size)))
+        << i;
+}
+
+TEST(Figures, ComeToTheirPlacesAndOneThatCannotBeDrawnSpoilsNoOther) {
+  std::vector<std::size_t> drawn;  // how many in each call of gnuplot
+  compare::report::Figures figures([&](std::span<const Script> scripts) {
+    drawn.push_back(scripts.size());
+    return compare::plot::draw_svgs(scripts);
+  });
+  const std::string sine = figures.add({"sine", "", "plot sin(x)\n", {}});
+  const std::string cosine = figures.add({"cosine", "", "plot cos(x)\n", {}});
+  const std::string given_up = figures.add({"tangent", "", "plot tan(x)\n", {}});
+  EXPECT_EQ(figures.add({"nothing", "", "", {}}), "");
+  const std::string page = figures.drawn("<p>1</p>" + cosine + "<p>2</p>" + sine);
+  EXPECT_EQ(drawn, std::vector<std::size_t>{3});
+  std::size_t at = 0;
+  for (const char* part : {"<p>1</p><figure>", ">cosine</title>", "</figure>\n<p>2</p><figure>",
+                           ">sine</title>", "</figure>\n"}) {
+    at = page.find(part, at);
+    ASSERT_NE(at, std::string::npos) << part;
+  }
+  EXPECT_THAT(page, Not(HasSubstr("tangent")));
+  EXPECT_EQ(figures.failure(), "");
+
+  const std::string good = figures.add({"good", "", "plot x\n", {}});
+  const std::string bad = figures.add({"bad", "", "plot nonsense(x)\n", {}});
+  const std::string mended = figures.drawn(bad + good);
+  EXPECT_THAT(mended, HasSubstr("No figure &quot;bad&quot;: cannot plot"));
+  EXPECT_THAT(mended, HasSubstr(">good<"));
+  EXPECT_THAT(figures.failure(), HasSubstr("nonsense"));
 }
 
 // Oracle: the numbers of the result files, formatted here.
