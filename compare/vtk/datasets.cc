@@ -161,6 +161,7 @@ std::vector<PointOfCell> triquadratic_points(const LagrangeBasis& nodes) {
   const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
   const double* coordinates = hexahedron->GetParametricCoords();
   std::vector<PointOfCell> points;
+  points.reserve(static_cast<std::size_t>(hexahedron->GetNumberOfPoints()));
   for (int i = 0; i < hexahedron->GetNumberOfPoints(); ++i)
     points.emplace_back(nodes, Vector3(coordinates + std::ptrdiff_t{3} * i));
   return points;

@@ -154,9 +154,8 @@ Deformation CalculixMesh::deformation(const Cilium& cilium,
     spread.per_volume = displacements.empty() ? 0 : dead->force_per_length / fibres_->area();
   if (const auto* section = std::get_if<SectionLoad>(&load); section && !displacements.empty())
     plane = PlaneForce{section->arclength, section->force * Vector3::UnitX()};
-  return {
-      centreline_by_statics(*space_, *fibres_, at, spread, plane),
-      std::make_shared<const SolidBody>(solid_body(*space_, *fibres_, cilium, at))};
+  return {centreline_by_statics(*space_, *fibres_, at, spread, plane),
+          std::make_shared<const SolidBody>(solid_body(*space_, *fibres_, cilium, at))};
 }
 
 /// The last lines of a log that say what went wrong, in one line; empty if none do.

@@ -27,7 +27,8 @@ Eigen::Matrix<double, 9, 1> plane_values(double xi, double eta) {
 /// The third local coordinate must run along Z: each triple of nodes above one another.
 void require_straight(const SolidElement& element, const FibreCell& cell) {
   for (Eigen::Index a = 0; a < element_nodes; ++a) {
-    const double Z = cell.bottom + 0.5 * static_cast<double>(a / 9) * (cell.top - cell.bottom);
+    const Eigen::Index plane = a / 9;
+    const double Z = cell.bottom + 0.5 * static_cast<double>(plane) * (cell.top - cell.bottom);
     const Vector3 offset = (element.nodes.row(a) - element.nodes.row(9 + a % 9)).transpose();
     if (!(std::hypot(offset.x(), offset.y(), element.nodes(a, 2) - Z) <= 1e-9 * element.size) ||
         !(cell.top > cell.bottom))

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The speed-up by two ranks, table of docs/solid.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank with one
-# thread and under mpirun on two; start of the program, coarser meshes and VTK included. 20 minutes on a quiet machine.
+# thread and under mpirun on two; start of the program, coarser meshes and VTK included. 15 minutes on a quiet machine.
 # Usage: tests/bench/ranks.sh [PROGRAM [ROW …]]   (default: build/release/ciliaval, all rows; a row is mesh:refinement:solver:loads)
 # Loads: 2 mN with 1, else so many equal steps up to 4 mN.
 # SPDX-License-Identifier: LGPL-2.1-or-later
