@@ -105,8 +105,10 @@ void spare_open_mpi_the_network() {
 /// 0.04 s for the acknowledgement of another, which the receiver delays that long.
 void send_short_messages_at_once() {
   std::error_code unreadable;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", unreadable)) {
-    const std::string name = entry.path().filename().string();
+  std::filesystem::directory_iterator entry("/proc/self/fd", unreadable);
+  for (; !unreadable && entry != std::filesystem::directory_iterator();
+       entry.increment(unreadable)) {
+    const std::string name = entry->path().filename().string();
     int descriptor = 0;
     const int on = 1;
     if (std::from_chars(name.data(), name.data() + name.size(), descriptor).ec == std::errc())
@@ -132,7 +134,8 @@ class ThreadsOfAllRanks : public tbb::task_scheduler_observer {
     dealii::MultithreadInfo::set_thread_limit(static_cast<unsigned int>(ranks_here));
     cpu_set_t own{};
     if (sched_getaffinity(0, sizeof own, &own) == 0) {
-      CPU_XOR(&elsewhere_, &processors_here, &own);  // the own ones are among those here
+      CPU_AND(&elsewhere_, &processors_here, &own);  // not those that the rank was moved to since
+      CPU_XOR(&elsewhere_, &processors_here, &elsewhere_);
       // Without binding all ranks have the same processors.
       if (CPU_COUNT(&elsewhere_) == 0) elsewhere_ = processors_here;
       observe(true);

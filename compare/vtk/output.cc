@@ -9,6 +9,7 @@
 #include <vtkUnstructuredGrid.h>
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -64,6 +65,14 @@ bool any_field(const CaseResult& result, std::size_t step) {
   });
 }
 
+/// The first files first, which are the largest: the threads then end at about the same time.
+void write_in_order(const std::vector<std::function<void()>>& files) {
+  std::atomic<std::size_t> next = 0;
+  tbb::parallel_for(
+      std::size_t{0}, files.size(), [&](std::size_t) { files[next++](); },
+      tbb::simple_partitioner());
+}
+
 }  // namespace
 
 void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
@@ -77,19 +86,14 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
       if (const vtkSmartPointer<vtkDataSet> data = make()) output.add(series, step, *data);
     });
   };
-  for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
+  const std::size_t steps = problem.load_path.size();
+  for (std::size_t step = 0; step < steps; ++step)
     for (const MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
-      if (!deformation) continue;
-      add("centreline_" + run.model, step, [&problem, &centreline = deformation->centreline] {
-        return rod_polyline(problem.cilium, centreline);
-      });
-      add("dipoles_" + run.model, step, [&problem, &centreline = deformation->centreline] {
-        return dipoles(problem.cilium, centreline, problem.options.line.push_forward);
-      });
-      if (deformation->body)
+      if (deformation && deformation->body)
         add("body_" + run.model, step, [&body = *deformation->body] { return solid_grid(body); });
     }
+  for (std::size_t step = 0; step < steps; ++step) {
     if (grid)
       add("field_" + grid->mechanics + "_" + grid->field, step,
           [&grid, step]() -> vtkSmartPointer<vtkDataSet> {
@@ -100,9 +104,21 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
       if (run.steps[step] && run.steps[step]->mesh)
         add("field_" + run.mechanics + "_" + run.field, step,
             [&mesh = *run.steps[step]->mesh] { return octree_grid(mesh); });
+  }
+  for (std::size_t step = 0; step < steps; ++step) {
+    for (const MechanicsRun& run : result.mechanics) {
+      const auto& deformation = run.result.steps[step].deformation;
+      if (!deformation) continue;
+      add("centreline_" + run.model, step, [&problem, &centreline = deformation->centreline] {
+        return rod_polyline(problem.cilium, centreline);
+      });
+      add("dipoles_" + run.model, step, [&problem, &centreline = deformation->centreline] {
+        return dipoles(problem.cilium, centreline, problem.options.line.push_forward);
+      });
+    }
     if (any_field(result, step)) add("sensors", step, [&, step] { return sensors(result, step); });
   }
-  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) { files[i](); });
+  write_in_order(files);
   output.finish();
 }
 

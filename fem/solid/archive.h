@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
@@ -8,13 +9,16 @@
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "fem/solid/load_path.h"
+#include "problem/deformation.h"
 #include "problem/mechanics_model.h"
 
 // What a state consists of. Each type is taken apart by structured bindings: a member that is added
@@ -68,6 +72,66 @@ void serialize(Archive& archive, ciliaval::fem::SolidState& state, unsigned int 
   archive& make_array(displacement.begin(), unknowns);
   for (auto& coefficients : pressure)
     archive& make_array(coefficients.data(), static_cast<std::size_t>(coefficients.size()));
+}
+
+/// Vectors or matrices of fixed size as the numbers that they are.
+template <class Archive, int rows, int columns>
+void serialize_numbers(Archive& archive, std::vector<Eigen::Matrix<double, rows, columns>>& all) {
+  std::size_t size = all.size();
+  archive& size;
+  all.resize(size);
+  if (size > 0) archive& make_array(all.front().data(), size * rows * columns);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::SectionState& state, unsigned int /*version*/) {
+  auto& [position, rotation, curvature, forces] = state;
+  auto& [force, moment] = forces;
+  archive& make_array(rotation.coeffs().data(), 4);
+  for (ciliaval::Vector3* vector : {&position, &curvature, &force, &moment})
+    archive& make_array(vector->data(), 3);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::Centreline::Piece& piece, unsigned int /*version*/) {
+  auto& [S, states] = piece;
+  archive& S& states;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::SolidCell& cell, unsigned int /*version*/) {
+  auto& [segment, magnetization, reference, current, jacobian, cauchy_stress] = cell;
+  archive& segment& make_array(magnetization.data(), 3) & jacobian;
+  serialize_numbers(archive, reference);
+  serialize_numbers(archive, current);
+  serialize_numbers(archive, cauchy_stress);
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::ChargedFace& face, unsigned int /*version*/) {
+  auto& [magnetization_jump, reference, current] = face;
+  archive& make_array(magnetization_jump.data(), 3);
+  serialize_numbers(archive, reference);
+  serialize_numbers(archive, current);
+}
+
+/// Of a solid: there is a body.
+template <class Archive>
+void serialize(Archive& archive, ciliaval::Deformation& deformation, unsigned int /*version*/) {
+  auto& [centreline, shared_body] = deformation;
+  if constexpr (Archive::is_saving::value) {
+    const auto& [nodes, cells, charged_faces] = *shared_body;
+    archive << centreline.pieces() << nodes.nodes() << cells << charged_faces;
+  } else {
+    std::vector<ciliaval::Centreline::Piece> pieces;
+    std::vector<double> places;
+    ciliaval::SolidBody body;
+    auto& [nodes, cells, charged_faces] = body;
+    archive >> pieces >> places >> cells >> charged_faces;
+    nodes = ciliaval::LagrangeBasis(std::move(places));
+    centreline = ciliaval::Centreline(std::move(pieces));
+    shared_body = std::make_shared<const ciliaval::SolidBody>(std::move(body));
+  }
 }
 
 template <class Archive>

@@ -80,6 +80,17 @@ constexpr double step_reduction = 1e-6;
 constexpr double estimate_reduction = 1e-3;
 /// Part of the last increment below which the next one is taken as the last tangent gives it.
 constexpr double chord_reduction = 1e-2;
+/// That is tried from larger residuals than the rounding level on, up to this one, where the last
+/// increment was so much smaller than the one before: with quadratic convergence each ratio is the
+/// square of the one before. From a beam's guess, which is far in stiff directions, it would fail.
+constexpr double chord_residual = 1e-2;
+constexpr double fast_reduction = 0.1;
+
+bool converges_fast(double residual, const std::vector<double>& increments) {
+  const std::size_t n = increments.size();
+  return residual <= chord_residual && n > 1 &&
+         increments[n - 1] <= fast_reduction * increments[n - 2];
+}
 
 }  // namespace
 
@@ -166,7 +177,8 @@ NewtonResult Newton::iterate(const ExternalForces& external, Border* border, Sol
     try {
       Step step;
       bool enough = false;  // the last tangent's step is the last one, or much smaller than that
-      if (iteration > 0 && norm <= std::max(options.tolerance, rounding_level)) {
+      if (iteration > 0 && (norm <= std::max(options.tolerance, rounding_level) ||
+                            converges_fast(norm, result.increments))) {
         step = last_tangents_step(state, residual, border);
         const double scale = std::max(state.displacement.linfty_norm(), 1e-6 * size_);
         result.converged = step.size() <= options.tolerance * scale;

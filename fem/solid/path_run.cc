@@ -50,9 +50,10 @@ std::optional<double> contact_arclength(const Centreline& centreline, double hei
   return std::nullopt;
 }
 
-/// What is made of a step that the finest mesh has ended with.
+/// What is made of a step that the finest mesh has ended with; its deformation too if there is none
+/// yet.
 MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double mesh_azimuth,
-                       const Level& finest) {
+                       const Level& finest, std::optional<Deformation> deformation = {}) {
   MechanicsStep step;
   step.load = load;
   step.status = outcome.status;
@@ -62,7 +63,7 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
   step.iterations = outcome.iterations;
   step.unknowns = finest.unknowns();
   if (outcome.status != Status::converged) return step;
-  step.deformation = finest.deformation(mesh_azimuth);
+  step.deformation = deformation ? std::move(deformation) : finest.deformation(mesh_azimuth);
   step.applied_force = finest.applied_force();
   step.tip_uncertainty = finest.tip_uncertainty();
   if (const auto height = contact_height(load))
@@ -216,6 +217,7 @@ std::size_t PathRun::solve_block(std::size_t count, SolidCheckpoint* saved) {
 TaskResult PathRun::solve_task(const SolidTask& task, const SharedTasks& tasks,
                                const std::vector<std::optional<LoadPathState>>& before,
                                std::size_t first, const Progress& progress) {
+  if (task.level == levels_.size()) return make_deformation(task, tasks, first);
   const auto start = Clock::now();
   Level& level = *levels_[task.level];
   const Load load = in_mesh_frame(options_, path_[first + task.step]);
@@ -241,6 +243,14 @@ TaskResult PathRun::solve_task(const SolidTask& task, const SharedTasks& tasks,
   return result;
 }
 
+TaskResult PathRun::make_deformation(const SolidTask& task, const SharedTasks& tasks,
+                                     std::size_t first) const {
+  TaskResult result;
+  result.deformation = finest().deformation(*tasks.result(task.step, task.level - 1)->equilibrium,
+                                            mesh_azimuth(options_, path_[first + task.step]));
+  return result;
+}
+
 void PathRun::add(const SharedTasks& tasks, std::size_t step) {
   LoadPathOutcome outcome;
   outcome.status = Status::converged;
@@ -252,7 +262,8 @@ void PathRun::add(const SharedTasks& tasks, std::size_t step) {
     seconds += result.seconds;
   }
   const Load& load = path_[result_.steps.size()];
-  result_.steps.push_back(finished(outcome, load, mesh_azimuth(options_, load), finest()));
+  result_.steps.push_back(finished(outcome, load, mesh_azimuth(options_, load), finest(),
+                                   tasks.result(step, levels_.size())->deformation));
   result_.steps.back().seconds = seconds;
 }
 

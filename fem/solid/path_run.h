@@ -51,6 +51,9 @@ class PathRun {
   TaskResult solve_task(const SolidTask& task, const SharedTasks& tasks,
                         const std::vector<std::optional<LoadPathState>>& before, std::size_t first,
                         const Progress& progress);
+  /// A task of the block that makes a deformation.
+  TaskResult make_deformation(const SolidTask& task, const SharedTasks& tasks,
+                              std::size_t first) const;
   /// Adds a step of the block that all its levels have solved to the results.
   void add(const SharedTasks& tasks, std::size_t step);
   /// The next step, by rank 0 for all.

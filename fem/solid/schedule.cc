@@ -22,6 +22,8 @@ constexpr double cost_of_first_step = 1.35;
 constexpr double cost_uncorrected = 1.55;
 /// … and this part more when its rank makes the level's solver.
 constexpr double set_up = 0.25;
+/// A deformation takes this part of the time of its equilibrium.
+constexpr double cost_of_deformation = 0.025;
 
 class Schedule {
  public:
@@ -37,6 +39,7 @@ class Schedule {
       cost_.push_back(static_cast<double>(n) * std::sqrt(static_cast<double>(n)));
     cost_.front() *= cost_of_coarsest;
     while (tasks_.size() < steps * cost_.size()) assign_next();
+    assign_deformations();
   }
 
   double duration() const { return *std::max_element(free_.begin(), free_.end()); }
@@ -93,6 +96,27 @@ class Schedule {
     free_[rank] = start + cost * cost_[level];
     end_[level][step] = free_[rank];
     tasks_.push_back(std::move(task));
+  }
+
+  /// Each to the rank that can begin it first; of several to the one that has found its equilibrium
+  /// and need not send it.
+  void assign_deformations() {
+    std::vector<std::size_t> steps(steps_);
+    std::iota(steps.begin(), steps.end(), std::size_t{0});
+    const auto& end = end_.back();
+    std::stable_sort(steps.begin(), steps.end(),
+                     [&end](auto a, auto b) { return *end[a] < *end[b]; });
+    for (const std::size_t step : steps) {
+      const auto has_solved = std::find_if(tasks_.begin(), tasks_.end(), [&](const auto& task) {
+        return task.step == step && task.level + 1 == cost_.size();
+      });
+      auto best = static_cast<std::size_t>(has_solved->rank);
+      const auto start = [&](std::size_t rank) { return std::max(free_[rank], *end[step]); };
+      for (std::size_t rank = 0; rank < free_.size(); ++rank)
+        if (start(rank) < start(best)) best = rank;
+      free_[best] = start(best) + cost_of_deformation * cost_.back();
+      tasks_.push_back({step, cost_.size(), static_cast<int>(best)});
+    }
   }
 
   double relative_cost(const SolidTask& task) const {

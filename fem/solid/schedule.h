@@ -8,7 +8,8 @@
 namespace ciliaval::fem {
 
 /// Finding the equilibrium of one level under the load of one step of a block, the work of one rank
-/// at a time. It needs the equilibrium of the coarser level under the same load.
+/// at a time. It needs the equilibrium of the coarser level under the same load. With the level
+/// beyond the finest: making the deformation of the finest one's equilibrium.
 struct SolidTask {
   std::size_t step = 0;   ///< in the block
   std::size_t level = 0;  ///< 0: the coarsest
@@ -28,6 +29,7 @@ enum class Corrections { before, within, none };
 /// - each rank takes the next step and solves it on all levels, as long as there are enough steps;
 /// - rank 0 leads with the first step, and the others follow it level by level with the next ones,
 ///   which so have its corrections; then all share what is left.
+/// The deformations come last, each on the rank that can begin it first.
 /// Depends on nothing but its arguments: the ranks agree on it without a word.
 std::vector<SolidTask> schedule(std::span<const std::size_t> unknowns, std::size_t steps, int ranks,
                                 Corrections corrections);

@@ -36,11 +36,19 @@ struct Wrench {
   }
 };
 
-/// The cells between two planes of the mesh: indices of the elements.
+/// A fibre of a cell, deformed.
+struct DeformedFibre {
+  Matrix3 x;  ///< at ζ = 0, ½, 1: columns
+  double area = 0;
+  Eigen::Vector2d XY = Eigen::Vector2d::Zero();
+};
+
+/// The cells between two planes of the mesh.
 struct Layer {
   double bottom = 0;
   double top = 0;
-  std::vector<std::size_t> cells;
+  std::vector<std::size_t> cells;     ///< indices of the elements
+  std::vector<DeformedFibre> fibres;  ///< of all of them
 };
 
 /// Section integrals in one plane, and the load between it and the top of its layer.
@@ -60,17 +68,6 @@ struct Station {
   }
 };
 
-/// x of a fibre at ζ = 0, ½, 1: columns.
-Matrix3 fibre_positions(const Fibres& fibres, const FibreCell& cell,
-                        const Eigen::Matrix<double, element_nodes, 3>& u, int q) {
-  const auto i = static_cast<std::size_t>(q);
-  Matrix3 x;
-  for (int k = 0; k < 3; ++k)
-    x.col(k) = Vector3(cell.X[i], cell.Y[i], cell.bottom + 0.5 * k * (cell.top - cell.bottom)) +
-               u.middleRows<9>(Eigen::Index{9} * k).transpose() * fibres.section_values().col(q);
-  return x;
-}
-
 /// What the centreline is made from.
 struct Extraction {
   const SolidSpace& space;
@@ -78,37 +75,70 @@ struct Extraction {
   const SolidState& state;
   const SpreadLoad& load;
 
-  /// Calls visit(cell, x at ζ = 0, ½, 1, section point) for each fibre of the layer.
-  template <typename Visit>
-  void for_each_fibre(const Layer& layer, const Visit& visit) const {
-    for (const std::size_t e : layer.cells) {
-      const FibreCell& cell = fibres.cells()[e];
-      const auto u = nodal_displacements(space.elements()[e], state.displacement);
-      for (int q = 0; q < section_points; ++q) visit(cell, fibre_positions(fibres, cell, u, q), q);
-    }
-  }
-
+  /// The layers of the mesh from base to tip.
+  std::vector<Layer> layers() const;
+  Layer uppermost_layer() const;
   Station station(const Layer& layer, double zeta) const;
   Wrench top_wrench(const Layer& layer) const;
   std::vector<double> breaks(const Layer& layer) const;
+
+ private:
+  void add_cell(Layer& layer, std::size_t index) const;
 };
+
+void Extraction::add_cell(Layer& layer, std::size_t index) const {
+  const FibreCell& cell = fibres.cells()[index];
+  layer.bottom = cell.bottom;
+  layer.top = cell.top;
+  layer.cells.push_back(index);
+  const auto u = nodal_displacements(space.elements()[index], state.displacement);
+  for (std::size_t i = 0; i < section_points; ++i) {
+    DeformedFibre fibre;
+    fibre.area = cell.area[i];
+    fibre.XY = Eigen::Vector2d(cell.X[i], cell.Y[i]);
+    for (int k = 0; k < 3; ++k)
+      fibre.x.col(k) =
+          Vector3(cell.X[i], cell.Y[i], cell.bottom + 0.5 * k * (cell.top - cell.bottom)) +
+          u.middleRows<9>(Eigen::Index{9} * k).transpose() *
+              fibres.section_values().col(static_cast<Eigen::Index>(i));
+    layer.fibres.push_back(fibre);
+  }
+}
+
+std::vector<Layer> Extraction::layers() const {
+  std::map<double, Layer> by_bottom;
+  for (std::size_t e = 0; e < space.elements().size(); ++e)
+    add_cell(by_bottom[fibres.cells()[e].bottom], e);
+  std::vector<Layer> result;
+  result.reserve(by_bottom.size());
+  for (auto& [bottom, layer] : by_bottom) result.push_back(std::move(layer));
+  return result;
+}
+
+Layer Extraction::uppermost_layer() const {
+  const auto& cells = fibres.cells();
+  const auto highest = std::max_element(
+      cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.bottom < b.bottom; });
+  Layer layer;
+  for (std::size_t e = 0; e < cells.size(); ++e)
+    if (cells[e].bottom == highest->bottom) add_cell(layer, e);
+  return layer;
+}
 
 Station Extraction::station(const Layer& layer, double zeta) const {
   Station result;
-  for_each_fibre(layer, [&](const FibreCell& cell, const Matrix3& x, int q) {
-    const auto i = static_cast<std::size_t>(q);
-    const double dA = cell.area[i];
-    const Eigen::Vector2d XY(cell.X[i], cell.Y[i]);
-    const Vector3 here = x * quadratic_basis(zeta);
+  const Eigen::Vector3d basis = quadratic_basis(zeta);
+  for (const auto& [x, dA, XY] : layer.fibres) {
+    const Vector3 here = x * basis;
     result.area += dA;
     result.XY += dA * XY;
     result.x += dA * here;
     result.xX += dA * here * XY.transpose();
-    integrate_load(load, x.row(2).transpose(), cell.top - cell.bottom, zeta, 1,
-                   [&](double at, double force) {
+    integrate_load(load, x.row(2).transpose(), layer.top - layer.bottom, zeta, 1,
+                   [&, &x = x, &dA = dA](double at, double force) {
                      result.load.add(x * quadratic_basis(at), dA * force * load.direction);
                    });
-  });
+  }
   if (fibres.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
@@ -125,13 +155,11 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
     for (Eigen::Index a = 18; a < element_nodes; ++a)
       result.add((element.nodes.row(a) + u.row(a)).transpose(), f.row(a).transpose());
   }
-  for_each_fibre(layer, [&](const FibreCell& cell, const Matrix3& x, int q) {
-    integrate_load(load, x.row(2).transpose(), cell.top - cell.bottom, 0, 1,
-                   [&](double at, double force) {
-                     result.add(x.col(2), -cell.area[static_cast<std::size_t>(q)] * force *
-                                              quadratic_basis(at)[2] * load.direction);
+  for (const auto& [x, dA, XY] : layer.fibres)
+    integrate_load(load, x.row(2).transpose(), layer.top - layer.bottom, 0, 1,
+                   [&, &x = x, &dA = dA](double at, double force) {
+                     result.add(x.col(2), -dA * force * quadratic_basis(at)[2] * load.direction);
                    });
-  });
   if (fibres.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
@@ -143,20 +171,19 @@ std::vector<double> Extraction::breaks(const Layer& layer) const {
   if (!load.per_height || !load.per_height->support) return result;
   double low = 1;
   double high = 0;
-  double length = 0;
-  for_each_fibre(layer, [&](const FibreCell& cell, const Matrix3& x, int) {
-    length = cell.top - cell.bottom;
-    if (const auto part = loaded_part(x.row(2).transpose(), *load.per_height)) {
-      low = std::min(low, (*part)[0]);
-      high = std::max(high, (*part)[1]);
-    }
-  });
+  for (const DeformedFibre& fibre : layer.fibres) {
+    const auto part = loaded_part(fibre.x.row(2).transpose(), *load.per_height);
+    if (!part) continue;
+    low = std::min(low, (*part)[0]);
+    high = std::max(high, (*part)[1]);
+  }
   constexpr double shortest = 1e-3;  // a piece shorter than that is not worth its own
   if (!(high - low > shortest)) return result;
   if (low < shortest) low = 0;
   if (high > 1 - shortest) high = 1;
   const auto [lower, upper] = *load.per_height->support;
-  const auto count = static_cast<int>(std::ceil((high - low) * length / ((upper - lower) / 2)));
+  const double length = (high - low) * (layer.top - layer.bottom);
+  const auto count = static_cast<int>(std::ceil(length / ((upper - lower) / 2)));
   for (int i = 0; i < count; ++i) result.push_back(low + (high - low) * i / count);
   result.push_back(high);
   std::sort(result.begin(), result.end());
@@ -182,21 +209,6 @@ Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const 
   }
   differentiate_rotation(piece);
   return piece;
-}
-
-/// The layers of the mesh from base to tip.
-std::vector<Layer> layers_of(const SolidSpace& space, const Fibres& fibres) {
-  std::map<double, Layer> layers;  // by the Z of their lower planes
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
-    Layer& layer = layers[fibres.cells()[e].bottom];
-    layer.bottom = fibres.cells()[e].bottom;
-    layer.top = fibres.cells()[e].top;
-    layer.cells.push_back(e);
-  }
-  std::vector<Layer> result;
-  result.reserve(layers.size());
-  for (auto& [bottom, layer] : layers) result.push_back(std::move(layer));
-  return result;
 }
 
 /// The centreline, given what acts on the upper plane of each layer.
@@ -231,8 +243,8 @@ Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B) {
 
 Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
                       const SpreadLoad& load) {
-  const std::vector<Layer> layers = layers_of(space, fibres);
   const Extraction extraction{space, fibres, state, load};
+  const std::vector<Layer> layers = extraction.layers();
   std::vector<Wrench> tops;
   tops.reserve(layers.size());
   for (const Layer& layer : layers) tops.push_back(extraction.top_wrench(layer));
@@ -242,15 +254,15 @@ Centreline centreline(const SolidSpace& space, const Fibres& fibres, const Solid
 Vector3 tip_position(const SolidSpace& space, const Fibres& fibres, const SolidState& state) {
   const SpreadLoad none;
   const Extraction extraction{space, fibres, state, none};
-  const Station tip = extraction.station(layers_of(space, fibres).back(), 1);
+  const Station tip = extraction.station(extraction.uppermost_layer(), 1);
   return tip.x / tip.area;
 }
 
 Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
                                  const SolidState& state, const SpreadLoad& load,
                                  const std::optional<PlaneForce>& plane) {
-  const std::vector<Layer> layers = layers_of(space, fibres);
   const Extraction extraction{space, fibres, state, load};
+  const std::vector<Layer> layers = extraction.layers();
   std::vector<Wrench> tops(layers.size());
   Wrench above;
   for (std::size_t i = layers.size(); i-- > 0;) {

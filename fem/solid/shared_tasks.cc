@@ -12,16 +12,16 @@ namespace ciliaval::fem {
 namespace {
 
 std::string packed(const TaskResult& result) {
-  return serialized(result.equilibrium, result.iterations, result.seconds);
+  return serialized(result.equilibrium, result.deformation, result.iterations, result.seconds);
 }
 
 TaskResult unpacked(const std::string& bytes) {
   TaskResult result;
-  deserialize(bytes, result.equilibrium, result.iterations, result.seconds);
+  deserialize(bytes, result.equilibrium, result.deformation, result.iterations, result.seconds);
   return result;
 }
 
-/// Without an equilibrium if `solve` throws: whoever solves the step again meets that again.
+/// Without a result if `solve` throws: whoever does the same again meets that again.
 TaskResult attempt(const SolidTask& task,
                    const std::function<TaskResult(const SolidTask&)>& solve) {
   const RankAlone alone;
@@ -36,7 +36,7 @@ TaskResult attempt(const SolidTask& task,
 
 SharedTasks::SharedTasks(std::vector<SolidTask> tasks, std::size_t steps, std::size_t levels)
     : tasks_(std::move(tasks)),
-      index_(levels, std::vector<std::size_t>(steps)),
+      index_(levels + 1, std::vector<std::size_t>(steps)),
       results_(tasks_.size()),
       rank_(rank()),
       mail_(tasks_.size()) {

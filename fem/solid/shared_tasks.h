@@ -9,12 +9,14 @@
 #include "fem/parallel.h"
 #include "fem/solid/load_path.h"
 #include "fem/solid/schedule.h"
+#include "problem/deformation.h"
 
 namespace ciliaval::fem {
 
 /// What a task ended with; no equilibrium where it, or one that it needs, found none.
 struct TaskResult {
   std::optional<Equilibrium> equilibrium{};
+  std::optional<Deformation> deformation{};  ///< of a task that makes one
   int iterations = 0;
   double seconds = 0;
 };
@@ -23,11 +25,11 @@ struct TaskResult {
 /// find.
 class SharedTasks {
  public:
-  /// The tasks of all steps and levels, the same on all ranks.
+  /// The tasks of all steps and levels, those of the deformations included, the same on all ranks.
   SharedTasks(std::vector<SolidTask> tasks, std::size_t steps, std::size_t levels);
 
   /// Does this rank's tasks by `solve`, alone (RankAlone), each when those that it needs have been
-  /// done; what `solve` throws counts as no equilibrium. Returns when the results of all tasks are
+  /// done; what `solve` throws counts as no result. Returns when the results of all tasks are
   /// here. Collective.
   void run(const std::function<TaskResult(const SolidTask&)>& solve);
 

@@ -83,19 +83,22 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
 
   const dealii::QGauss<3> gauss(element_degree + 1);
   shape_values_.resize(element_nodes, element_points);
+  Eigen::MatrixXd unit_gradients(element_nodes, 3 * element_points);  // ∂N_a/∂ξ_j: column 3q + j
   for (unsigned int q = 0; q < gauss.size(); ++q)
-    for (unsigned int a = 0; a < element_nodes; ++a)
+    for (unsigned int a = 0; a < element_nodes; ++a) {
       shape_values_(lexicographic_[a], q) = scalar_element_.shape_value(a, gauss.point(q));
+      for (unsigned int j = 0; j < 3; ++j)
+        unit_gradients(lexicographic_[a], 3 * q + j) =
+            scalar_element_.shape_grad(a, gauss.point(q))[j];
+    }
 
-  dealii::FEValues<3> values(mapping_, scalar_element_, gauss,
-                             dealii::update_gradients | dealii::update_JxW_values);
   dealii::FEValues<3> nodes(mapping_, scalar_element_, unit_nodes(),
                             dealii::update_quadrature_points);
   std::vector<global_dof_index> dofs(element_dofs);
+  elements_.reserve(triangulation.n_active_cells());
   for (const auto& cell : dof_handler_.active_cell_iterators()) {
     SolidElement element;
     element.cell = cell;
-    values.reinit(element.cell);
     nodes.reinit(element.cell);
     cell->get_dof_indices(dofs);
     for (unsigned int i = 0; i < element_dofs; ++i) {
@@ -112,12 +115,12 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
     const dealii::Point<3> centre = cell->center();
     element.centre = Vector3(centre[0], centre[1], centre[2]);
     element.size = cell->diameter();
-    for (unsigned int q = 0; q < element_points; ++q) {
-      element.weights[q] = values.JxW(q);
+    for (Eigen::Index q = 0; q < element_points; ++q) {
+      const auto gradients = unit_gradients.middleCols<3>(3 * q);
+      const Matrix3 jacobian = element.nodes.transpose() * gradients;  // ∂X/∂ξ
+      element.weights[q] = jacobian.determinant() * gauss.weight(static_cast<unsigned int>(q));
       element.pressure_values.col(q) = element.pressure_basis(points.row(q).transpose());
-      for (unsigned int a = 0; a < element_nodes; ++a)
-        for (unsigned int J = 0; J < 3; ++J)
-          element.gradients(lexicographic_[a], 3 * q + J) = values.shape_grad(a, q)[J];
+      element.gradients.middleCols<3>(3 * q).noalias() = gradients * jacobian.inverse();
     }
     initialize(element, materials);
     elements_.push_back(std::move(element));

@@ -57,14 +57,15 @@ TEST(SolidSchedule, HasEachTaskOnceAfterThoseThatItNeeds) {
                                    std::to_string(steps) + " steps, " + std::to_string(ranks) +
                                    " ranks";
           const std::vector<SolidTask> tasks = schedule(levels, steps, ranks, corrections);
-          EXPECT_EQ(tasks.size(), steps * levels.size()) << what;
+          EXPECT_EQ(tasks.size(), steps * (levels.size() + 1)) << what;
           Done done;
           for (const SolidTask& task : tasks) {
             EXPECT_LT(task.step, steps) << what;
-            EXPECT_LT(task.level, levels.size()) << what;
+            EXPECT_LE(task.level, levels.size()) << what;
             EXPECT_TRUE(possible(task, done)) << what;
             EXPECT_TRUE(done.insert({task.step, task.level}).second) << what;
             EXPECT_LE(task.corrected_by.size(), corrections == Corrections::within ? 2U : 0U);
+            EXPECT_TRUE(task.level < levels.size() || task.corrected_by.empty()) << what;
           }
           EXPECT_GT(turns(tasks, ranks), 0U) << what;
         }
@@ -75,6 +76,7 @@ TEST(SolidSchedule, HasEachTaskOnceAfterThoseThatItNeeds) {
 TEST(SolidSchedule, FirstStepLeadsWhereTheOthersGainByItsCorrections) {
   std::size_t finest_of_rank_1 = 0;
   for (const SolidTask& task : schedule(default_levels, 4, 2, Corrections::within)) {
+    if (task.level == default_levels.size()) continue;
     const bool leads = task.step == 0;
     const bool finest = task.level == 3;
     if (leads || !finest) {
@@ -87,6 +89,14 @@ TEST(SolidSchedule, FirstStepLeadsWhereTheOthersGainByItsCorrections) {
   EXPECT_EQ(finest_of_rank_1, 1U);
 }
 
+// … which has time left at the end, and makes deformations then.
+TEST(SolidSchedule, DeformationsAreMadeByTheRankThatIsFree) {
+  std::set<int> ranks;
+  for (const SolidTask& task : schedule(default_levels, 4, 2, Corrections::within))
+    if (task.level == default_levels.size() && task.step < 3) ranks.insert(task.rank);
+  EXPECT_EQ(ranks, std::set<int>{1});
+}
+
 // Where corrections are known, or there are none, each rank follows its own steps.
 TEST(SolidSchedule, EachRankTakesItsOwnStepsOtherwise) {
   for (const Corrections corrections : {Corrections::before, Corrections::none})
@@ -97,6 +107,7 @@ TEST(SolidSchedule, EachRankTakesItsOwnStepsOtherwise) {
 // The nearest steps serve: of those behind, the last two.
 TEST(SolidSchedule, CorrectsByTheNearestSteps) {
   for (const SolidTask& task : schedule(default_levels, 6, 1, Corrections::within)) {
+    if (task.level == default_levels.size()) continue;
     std::vector<std::size_t> expected;
     if (task.level > 0 && task.step > 0) expected.push_back(task.step - 1);
     if (task.level > 0 && task.step > 1) expected.push_back(task.step - 2);
