@@ -80,7 +80,7 @@ constexpr double step_reduction = 1e-6;
 constexpr double estimate_reduction = 1e-3;
 /// Part of the last increment below which the next one is taken as the last tangent gives it.
 constexpr double chord_reduction = 1e-2;
-/// That is tried from larger residuals than the rounding level on, up to this one, where the last
+/// It is tried from larger residuals than the rounding level on, up to this one, where the last
 /// increment was so much smaller than the one before: with quadratic convergence each ratio is the
 /// square of the one before. From a beam's guess, which is far in stiff directions, it would fail.
 constexpr double chord_residual = 1e-2;
@@ -177,11 +177,11 @@ NewtonResult Newton::iterate(const ExternalForces& external, Border* border, Sol
     try {
       Step step;
       bool enough = false;  // the last tangent's step is the last one, or much smaller than that
-      if (iteration > 0 && (norm <= std::max(options.tolerance, rounding_level) ||
-                            converges_fast(norm, result.increments))) {
+      const bool is_small = norm <= std::max(options.tolerance, rounding_level);
+      if (iteration > 0 && (is_small || converges_fast(norm, result.increments))) {
         step = last_tangents_step(state, residual, border);
         const double scale = std::max(state.displacement.linfty_norm(), 1e-6 * size_);
-        result.converged = step.size() <= options.tolerance * scale;
+        result.converged = is_small && step.size() <= options.tolerance * scale;
         enough = result.converged ||
                  (may_go_on && step.size() <= chord_reduction * result.increments.back());
       }
