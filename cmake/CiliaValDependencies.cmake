@@ -37,20 +37,8 @@ if(NOT TARGET CiliaVal::dealii)
   target_include_directories(CiliaVal::dealii SYSTEM INTERFACE ${DEAL_II_INCLUDE_DIRS})
   target_compile_definitions(CiliaVal::dealii INTERFACE $<$<CONFIG:Debug>:${DEAL_II_USER_DEFINITIONS_DEBUG}>)
   target_link_options(CiliaVal::dealii BEFORE INTERFACE -Wl,--as-needed)
-  set(dealii_flavour $<IF:$<CONFIG:Debug>,${DEAL_II_TARGET_DEBUG},${DEAL_II_TARGET_RELEASE}>)
-  target_link_libraries(CiliaVal::dealii INTERFACE ${dealii_flavour})
-  # The dynamic linker looks for each of 340,000 symbols in library after library, in the order in which they are named, first those
-  # that the program names. Most are found in deal.II and in the OpenCASCADE below it, which would be among the last of 220: naming
-  # these first, of those that deal.II needs anyway, takes a sixth off the start of each program, 0.25 to 0.21 s.
-  get_target_property(dealii_file ${DEAL_II_TARGET_RELEASE} LOCATION)
-  execute_process(COMMAND ldd ${dealii_file} OUTPUT_VARIABLE dealii_needs ERROR_QUIET)
-  set(named_first $<TARGET_FILE:${dealii_flavour}>)
-  foreach(toolkit TKSTEPBase TKBO TKIGES TKGeomAlgo TKMath TKernel TKXSBase TKSTEPAttr TKG3d TKV3d TKGeomBase TKSTEP TKTopAlgo TKBRep TKBool)
-    if(dealii_needs MATCHES "=> (/[^ \n]*/lib${toolkit}\\.so[^ \n]*)")
-      string(APPEND named_first " ${CMAKE_MATCH_1}")
-    endif()
-  endforeach()
-  target_link_options(CiliaVal::dealii INTERFACE "SHELL:-Wl,--push-state,--no-as-needed ${named_first} -Wl,--pop-state")
+  target_link_libraries(CiliaVal::dealii INTERFACE
+    $<IF:$<CONFIG:Debug>,${DEAL_II_TARGET_DEBUG},${DEAL_II_TARGET_RELEASE}>)
 endif()
 
 if(NOT TARGET CiliaVal::udunits)

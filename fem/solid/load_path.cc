@@ -183,8 +183,8 @@ std::optional<Equilibrium> LoadPathSolver::solve(const Load& load, Guess guess, 
 void LoadPathSolver::go_to(Equilibrium equilibrium) {
   if (!same_place(now_.current.load, equilibrium.load)) restart(equilibrium.load);
   now_.ramp.reset();
-  if (magnitude(now_.current.load) == magnitude(equilibrium.load)) return;
-  now_.previous = std::move(now_.current);
+  if (magnitude(now_.current.load) != magnitude(equilibrium.load))
+    now_.previous = std::move(now_.current);
   now_.current = std::move(equilibrium);
 }
 

@@ -13,7 +13,8 @@
 
 namespace ciliaval::fem {
 
-/// What a task ended with; no equilibrium where it, or one that it needs, found none.
+/// What a task ended with: an equilibrium, or a deformation of the tasks that make one; neither
+/// where it, or one that it needs, found none.
 struct TaskResult {
   std::optional<Equilibrium> equilibrium{};
   std::optional<Deformation> deformation{};  ///< of a task that makes one
