@@ -3,20 +3,16 @@
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_handler.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_dgq.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/grid/tria.h>
-#include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/sparse_direct.h>
-#include <deal.II/lac/sparse_matrix.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include "fem/beam/band_matrix.h"
 #include "fem/beam/kinematics.h"
 #include "problem/error.h"
 
@@ -106,12 +102,9 @@ struct System::DofSpace {
   dealii::Triangulation<1, 3> triangulation;
   dealii::FESystem<1, 3> fe;
   dealii::DoFHandler<1, 3> dof_handler;
-  dealii::AffineConstraints<double> constraints;
-  dealii::SparsityPattern sparsity;
-  dealii::SparseMatrix<double> matrix;
-  dealii::SparseDirectUMFPACK factors;
   /// Global unknowns of each element in the order of ReferenceElement.
   std::vector<std::vector<dealii::types::global_dof_index>> unknowns;
+  BandMatrix matrix;
 
   explicit DofSpace(unsigned int degree)
       : fe(dealii::FE_Q<1, 3>(degree), 6,
@@ -130,6 +123,8 @@ struct System::DofSpace {
     triangulation.create_triangulation(points, cells, dealii::SubCellData());
     dof_handler.distribute_dofs(fe);
     for (const auto& cell : dof_handler.active_cell_iterators()) number(cell, reference);
+    number_along_the_beam(reference);
+    matrix = BandMatrix(dof_handler.n_dofs(), unknowns.front().size() - 1);
   }
 
   template <class Cell>
@@ -151,14 +146,22 @@ struct System::DofSpace {
     unknowns.push_back(std::move(ordered));
   }
 
-  void constrain(const std::vector<bool>& supported) {
-    for (dealii::types::global_dof_index i = 0; i < dof_handler.n_dofs(); ++i)
-      if (supported[i]) constraints.add_line(i);
-    constraints.close();
-    dealii::DynamicSparsityPattern pattern(dof_handler.n_dofs());
-    dealii::DoFTools::make_sparsity_pattern(dof_handler, pattern, constraints, false);
-    sparsity.copy_from(pattern);
-    matrix.reinit(sparsity);
+  /// First vertex, interior nodes, Gauss points, second vertex, which is the first of the next
+  /// element: the unknowns of an element are then consecutive.
+  void number_along_the_beam(const ReferenceElement& reference) {
+    const std::size_t last_node = 6 * (reference.n_nodes() - 1);
+    const std::size_t points = 6 * reference.n_points();
+    std::vector<dealii::types::global_dof_index> numbers(dof_handler.n_dofs());
+    for (std::size_t e = 0; e < unknowns.size(); ++e)
+      for (std::size_t row = 0; row < unknowns[e].size(); ++row) {
+        std::size_t place = row;
+        if (row >= last_node) place = row < last_node + 6 ? row + points : row - 6;
+        numbers[unknowns[e][row]] =
+            static_cast<dealii::types::global_dof_index>(e * (last_node + points) + place);
+      }
+    dof_handler.renumber_dofs(numbers);
+    for (auto& element : unknowns)
+      for (auto& unknown : element) unknown = numbers[unknown];
   }
 };
 
@@ -186,7 +189,6 @@ System::System(ReferenceCurve curve, Mesh mesh, std::vector<Support> supports)
       if (support.rotation) supported_[node_unknown(vertex_node(support.vertex), 3 + c)] = true;
     }
   }
-  space_->constrain(supported_);
 }
 
 System::~System() = default;
@@ -351,37 +353,39 @@ Eigen::VectorXd System::point_load_derivative(const Loads& loads) const {
 }
 
 void System::factorize(const State& state, const Loads& loads) {
-  DofSpace& space = *space_;
-  space.matrix = 0;
+  BandMatrix& matrix = space_->matrix;
+  matrix.set_zero();
   const Eigen::VectorXd scales = element_scales();
-  const auto n = static_cast<unsigned int>(reference_.n_unknowns());
-  dealii::FullMatrix<double> cell_matrix(n, n);
   Eigen::VectorXd residual;
   Eigen::MatrixXd local;
   for (std::size_t e = 0; e < mesh_.n_elements(); ++e) {
     element_residual(reference_, element_data(state, loads, e), element_state(state, e), residual,
                      &local);
-    for (unsigned int i = 0; i < n; ++i)
-      for (unsigned int j = 0; j < n; ++j)
-        cell_matrix(i, j) = scales[i] * local(i, j) * scales[j] / (force_scale_ * length_scale_);
-    space.constraints.distribute_local_to_global(cell_matrix, space.unknowns[e], space.matrix);
+    const auto& unknowns = space_->unknowns[e];
+    for (Index j = 0; j < local.cols(); ++j) {
+      const auto column = unknowns[static_cast<std::size_t>(j)];
+      if (supported_[column]) continue;
+      for (Index i = 0; i < local.rows(); ++i)
+        if (const auto row = unknowns[static_cast<std::size_t>(i)]; !supported_[row])
+          matrix.add(row, column,
+                     scales[i] * local(i, j) * scales[j] / (force_scale_ * length_scale_));
+    }
   }
-  if (!std::isfinite(space.matrix.frobenius_norm()))
-    throw SolverError("the tangent of the beam is not a number");
+  for (std::size_t i = 0; i < n_unknowns(); ++i)
+    if (supported_[i]) matrix.add(i, i, 1);
   try {
-    space.factors.initialize(space.matrix);
-  } catch (const dealii::ExceptionBase&) {
-    throw SolverError("the tangent of the beam is singular");
+    matrix.factorize();
+  } catch (const SolverError& error) {
+    throw SolverError("the tangent of the beam " + std::string(error.what()));
   }
 }
 
 Eigen::VectorXd System::solve(const Eigen::VectorXd& right_hand_side) const {
-  dealii::Vector<double> vector(static_cast<unsigned int>(n_unknowns()));
+  Eigen::VectorXd solution = right_hand_side;
   for (std::size_t i = 0; i < n_unknowns(); ++i)
-    vector[static_cast<unsigned int>(i)] =
-        supported_[i] ? 0.0 : right_hand_side[static_cast<Index>(i)];
-  space_->factors.solve(vector);
-  return Eigen::Map<const Eigen::VectorXd>(vector.begin(), static_cast<Index>(n_unknowns()));
+    if (supported_[i]) solution[static_cast<Index>(i)] = 0;
+  space_->matrix.solve(solution);
+  return solution;
 }
 
 void System::update(State& state, const Eigen::VectorXd& increment) const {

@@ -132,7 +132,7 @@ class System {
   Vector3 reaction(const Eigen::VectorXd& residual, std::size_t vertex) const;
 
  private:
-  struct DofSpace;  // deal.II: triangulation, degrees of freedom, matrix and factors
+  struct DofSpace;  // deal.II: triangulation, degrees of freedom; matrix and factors
 
   ElementState element_state(const State& state, std::size_t element) const;
   void add_point_loads(const Loads& loads, double factor, Eigen::VectorXd& residual) const;

@@ -184,7 +184,9 @@ Guess Level::guess(const Load& load, const Equilibrium& coarse,
 
 Guess Level::guess(const Load& load) const {
   if (!options_.beam_guess) return {};
-  const MechanicsResult beam = Beam().solve(cilium_, {load});
+  // Far closer than a beam is to the solid.
+  const BeamOptions rough{.degree = 4, .tolerance = 1e-6};
+  const MechanicsResult beam = Beam(rough).solve(cilium_, {load});
   const MechanicsStep& step = beam.steps.front();
   if (!step.deformation) return {};
   Guess result{lifted(step.deformation->centreline, cilium_, *space_), step.applied_force};

@@ -3,6 +3,7 @@
 // far from equilibrium.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <random>
 
@@ -113,6 +114,25 @@ TEST(BeamDerivatives, TangentIsTheDerivativeOfTheResidual) {
   const Scene s = scene();
   EXPECT_LT(measured("conservative", tangent_error(s, s.conservative)), 2e-11);
   EXPECT_LT(measured("flow", tangent_error(s, s.height)), 2e-11);
+}
+
+// Oracle: Eigen's dense LU of the rows and columns that no support holds.
+TEST(BeamDerivatives, FactorsAreThoseOfTheTangent) {
+  Scene s = scene();
+  const Loads loads = combine(1, s.conservative, 1, s.height);
+  Eigen::MatrixXd K = s.system.tangent(s.state, loads);
+  Eigen::VectorXd R = s.system.residual(s.state, loads);
+  s.system.factorize(s.state, loads);
+  const Eigen::VectorXd solution = s.system.solve(R);
+  for (Index i = 0; i < K.rows(); ++i) {
+    if (!s.system.supported()[static_cast<std::size_t>(i)]) continue;
+    K.row(i).setZero();
+    K.col(i).setZero();
+    K(i, i) = 1;
+    R[i] = 0;
+  }
+  const Eigen::VectorXd exact = K.fullPivLu().solve(R);
+  EXPECT_LT(measured("solution", (solution - exact).norm() / exact.norm()), 1e-11);
 }
 
 TEST(BeamDerivatives, TangentIsSymmetricButForTheMomentsOutOfBalance) {
