@@ -1,7 +1,7 @@
 # Start-up time of our programs. The dynamic linker looks for each of 340,000 symbols in library after library, in the order in which they
 # are named, first those that the program names itself. Most are found in deal.II and in the OpenCASCADE below it, which would be among the
 # last of 220: naming these first takes a sixth off the start of each program, 0.25 to 0.21 s. Only libraries that deal.II needs anyway, and
-# only where the dynamic linker finds them by itself; elsewhere the order stays as it is.
+# only from folders that need not be told to a linker; elsewhere the order stays as it is.
 if(NOT CMAKE_CROSSCOMPILING AND DEAL_II_TARGET_RELEASE)
   get_target_property(dealii_file ${DEAL_II_TARGET_RELEASE} LOCATION)
   execute_process(COMMAND ldd ${dealii_file} OUTPUT_VARIABLE dealii_needs ERROR_QUIET)

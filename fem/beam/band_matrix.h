@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/lac/lapack_support.h>
+
 #include <Eigen/Core>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -19,13 +22,15 @@ class BandMatrix {
   void set_zero();
   /// Adds to the entry (i, j), |i − j| ≤ half bandwidth, of a matrix that is not factorised.
   void add(std::size_t i, std::size_t j, double value) {
+    assert(i <= j + half_bandwidth_ && j <= i + half_bandwidth_);
     const auto row = static_cast<Eigen::Index>(2 * half_bandwidth_ + i - j);
     entries_(row, static_cast<Eigen::Index>(j)) += value;
   }
 
-  /// Puts the factors in place of the entries. Throws SolverError, "is singular" or "is not a
-  /// number"; the matrix is then good for set_zero() only.
-  void factorize();
+  bool is_finite() const { return entries_.allFinite(); }
+  /// Puts the factors in place of the entries; false if a pivot vanishes: the matrix is singular,
+  /// and good for set_zero() only.
+  [[nodiscard]] bool factorize();
   /// Replaces the right-hand side by the solution, with the factors.
   void solve(Eigen::VectorXd& right_hand_side) const;
 
@@ -33,7 +38,7 @@ class BandMatrix {
   std::size_t half_bandwidth_ = 0;
   /// Column by column (i, j) at row 2 k + i − j; the first k rows are for what pivoting fills.
   Eigen::MatrixXd entries_;
-  std::vector<int> pivots_;
+  std::vector<dealii::types::blas_int> pivots_;
 };
 
 }  // namespace ciliaval::fem::beam

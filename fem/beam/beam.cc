@@ -140,7 +140,8 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
   result.undeformed.centreline =
       beam::centreline(straight.system, straight.system.reference_state());
   result.steps = solve_path(cilium, path, options_, progress);
-  if (options_.degree > 1) estimate_tip_uncertainty(cilium, path, options_, result.steps);
+  if (options_.tip_uncertainty && options_.degree > 1)
+    estimate_tip_uncertainty(cilium, path, options_, result.steps);
   return result;
 }
 

@@ -312,22 +312,28 @@ Eigen::VectorXd System::residual(const State& state, const Loads& loads) const {
   return residual;
 }
 
-Eigen::MatrixXd System::tangent(const State& state, const Loads& loads) const {
-  const auto n = static_cast<Index>(n_unknowns());
-  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(n, n);
+template <class Visit>
+void System::for_each_stiffness(const State& state, const Loads& loads, const Visit& visit) const {
   const Eigen::VectorXd scales = element_scales();
   Eigen::VectorXd residual;
   Eigen::MatrixXd local;
   for (std::size_t e = 0; e < mesh_.n_elements(); ++e) {
     element_residual(reference_, element_data(state, loads, e), element_state(state, e), residual,
                      &local);
-    const auto& rows = space_->unknowns[e];
-    for (Index i = 0; i < local.rows(); ++i)
-      for (Index j = 0; j < local.cols(); ++j)
-        tangent(static_cast<Index>(rows[static_cast<std::size_t>(i)]),
-                static_cast<Index>(rows[static_cast<std::size_t>(j)])) +=
-            scales[i] * local(i, j) * scales[j] / (force_scale_ * length_scale_);
+    const auto& unknowns = space_->unknowns[e];
+    for (Index j = 0; j < local.cols(); ++j)
+      for (Index i = 0; i < local.rows(); ++i)
+        visit(unknowns[static_cast<std::size_t>(i)], unknowns[static_cast<std::size_t>(j)],
+              scales[i] * local(i, j) * scales[j] / (force_scale_ * length_scale_));
   }
+}
+
+Eigen::MatrixXd System::tangent(const State& state, const Loads& loads) const {
+  const auto n = static_cast<Index>(n_unknowns());
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(n, n);
+  for_each_stiffness(state, loads, [&](std::size_t i, std::size_t j, double value) {
+    tangent(static_cast<Index>(i), static_cast<Index>(j)) += value;
+  });
   return tangent;
 }
 
@@ -355,29 +361,13 @@ Eigen::VectorXd System::point_load_derivative(const Loads& loads) const {
 void System::factorize(const State& state, const Loads& loads) {
   BandMatrix& matrix = space_->matrix;
   matrix.set_zero();
-  const Eigen::VectorXd scales = element_scales();
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd local;
-  for (std::size_t e = 0; e < mesh_.n_elements(); ++e) {
-    element_residual(reference_, element_data(state, loads, e), element_state(state, e), residual,
-                     &local);
-    const auto& unknowns = space_->unknowns[e];
-    for (Index j = 0; j < local.cols(); ++j) {
-      const auto column = unknowns[static_cast<std::size_t>(j)];
-      if (supported_[column]) continue;
-      for (Index i = 0; i < local.rows(); ++i)
-        if (const auto row = unknowns[static_cast<std::size_t>(i)]; !supported_[row])
-          matrix.add(row, column,
-                     scales[i] * local(i, j) * scales[j] / (force_scale_ * length_scale_));
-    }
-  }
+  for_each_stiffness(state, loads, [&](std::size_t i, std::size_t j, double value) {
+    if (!supported_[i] && !supported_[j]) matrix.add(i, j, value);
+  });
   for (std::size_t i = 0; i < n_unknowns(); ++i)
     if (supported_[i]) matrix.add(i, i, 1);
-  try {
-    matrix.factorize();
-  } catch (const SolverError& error) {
-    throw SolverError("the tangent of the beam " + std::string(error.what()));
-  }
+  if (!matrix.is_finite()) throw SolverError("the tangent of the beam is not a number");
+  if (!matrix.factorize()) throw SolverError("the tangent of the beam is singular");
 }
 
 Eigen::VectorXd System::solve(const Eigen::VectorXd& right_hand_side) const {

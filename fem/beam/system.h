@@ -135,6 +135,9 @@ class System {
   struct DofSpace;  // deal.II: triangulation, degrees of freedom; matrix and factors
 
   ElementState element_state(const State& state, std::size_t element) const;
+  /// visit(i, j, value) for each entry of the elements' dimensionless tangents.
+  template <class Visit>
+  void for_each_stiffness(const State& state, const Loads& loads, const Visit& visit) const;
   void add_point_loads(const Loads& loads, double factor, Eigen::VectorXd& residual) const;
   Eigen::VectorXd element_scales() const;
 

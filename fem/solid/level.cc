@@ -184,8 +184,8 @@ Guess Level::guess(const Load& load, const Equilibrium& coarse,
 
 Guess Level::guess(const Load& load) const {
   if (!options_.beam_guess) return {};
-  // Far closer than a beam is to the solid.
-  const BeamOptions rough{.degree = 4, .tolerance = 1e-6};
+  // Its error is far below what separates any beam from the solid.
+  const BeamOptions rough{.degree = 4, .tolerance = 1e-6, .tip_uncertainty = false};
   const MechanicsResult beam = Beam(rough).solve(cilium_, {load});
   const MechanicsStep& step = beam.steps.front();
   if (!step.deformation) return {};

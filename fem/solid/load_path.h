@@ -107,7 +107,7 @@ class LoadPathSolver {
   /// one in which the load is not applied in full. state() stays.
   std::optional<Equilibrium> solve(const Load& load, Guess guess, int& iterations,
                                    const Progress& progress);
-  /// Goes on from an equilibrium as if advance() had found it.
+  /// Goes on from an equilibrium as if advance() had found it; it replaces one under an equal load.
   void go_to(Equilibrium equilibrium);
   /// Begins the way to the next load, which advance() goes.
   void set_out(const Load& target);

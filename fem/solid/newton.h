@@ -67,8 +67,9 @@ using NewtonProgress = std::function<void(int, double)>;
 /// tolerance, or below 1e-4, where rounding errors may keep it, the increment that the last
 /// tangent gives for it estimates the error of the displacement that is left; when that is below
 /// the tolerance, it is added, and the state has converged. An increment of the last tangent that
-/// is a hundredth of the one before is taken in place of one of a new tangent; it is tried below
-/// 1e-4 too, or below 1e-2 where the last increment was a tenth of the one before.
+/// is a hundredth of the one before is taken in place of one of a new tangent. It is tried at
+/// residuals below the same bound, and below 1e-2 where the last increment was at most a tenth of
+/// the one before.
 class Newton {
  public:
   Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints,
