@@ -9,12 +9,12 @@
 #include <variant>
 #include <vector>
 
-#include "analytic/elastica.h"
-#include "analytic/elastica_arclength.h"
-#include "analytic/elastica_planar.h"
-#include "analytic/end_discs.h"
-#include "analytic/field_models.h"
-#include "analytic/order_raising.h"
+#include "analytic/elastica/elastica.h"
+#include "analytic/elastica/arclength.h"
+#include "analytic/elastica/planar.h"
+#include "analytic/rod/end_discs.h"
+#include "analytic/rod/field_models.h"
+#include "analytic/sources/adaptive_order.h"
 #include "problem/error.h"
 
 namespace ciliaval::analytic {

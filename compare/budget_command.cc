@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/budget_command.h"
+#include "compare/app/commands/budget_command.h"
 
 #include <stdexcept>
 
 #include "compare/budget/budget.h"
 #include "compare/budget/report.h"
-#include "compare/case_files.h"
-#include "compare/provenance.h"
-#include "compare/registry.h"
-#include "compare/results.h"
-#include "compare/terminal.h"
+#include "compare/app/case_files.h"
+#include "compare/output/provenance.h"
+#include "compare/models/registry.h"
+#include "compare/output/results.h"
+#include "compare/app/terminal.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 

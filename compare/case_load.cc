@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "compare/case_sections.h"
+#include "compare/input/case_sections.h"
 
 namespace ciliaval::compare {
 namespace {

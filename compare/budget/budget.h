@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "compare/budget/chain.h"
-#include "compare/errors.h"
-#include "compare/registry.h"
+#include "compare/models/errors.h"
+#include "compare/models/registry.h"
 
 namespace ciliaval::compare {
 

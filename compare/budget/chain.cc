@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "problem/error.h"
-#include "problem/words.h"
+#include "problem/support/words.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/case.h"
+#include "compare/input/case.h"
 
 namespace ciliaval::compare {
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-#include "compare/table.h"
+#include "compare/output/table.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "compare/budget/budget.h"
 #include "compare/plot/gnuplot.h"
-#include "compare/provenance.h"
+#include "compare/output/provenance.h"
 
 namespace ciliaval::compare {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "compare/run.h"
+#include "compare/models/run.h"
 
 namespace ciliaval::compare {
 

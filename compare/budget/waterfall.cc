@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compare/budget/report.h"
-#include "compare/table.h"
+#include "compare/output/table.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/provenance.h"
+#include "compare/output/provenance.h"
 
 namespace ciliaval::compare {
 

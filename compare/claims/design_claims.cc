@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "compare/claims/ledger.h"
-#include "compare/registry.h"
+#include "compare/models/registry.h"
 #include "compare/study/evaluate.h"
 #include "compare/study/report.h"
 #include "problem/error.h"

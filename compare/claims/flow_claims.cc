@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "compare/claims/ledger.h"
-#include "compare/sense/bench.h"
+#include "compare/sensing/bench.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {

@@ -10,12 +10,12 @@
 #include <limits>
 #include <utility>
 
-#include "analytic/field_models.h"
+#include "analytic/rod/field_models.h"
 #include "compare/claims/ledger.h"
 #include "compare/claims/misprint.h"
-#include "compare/errors.h"
-#include "compare/registry.h"
-#include "compare/run.h"
+#include "compare/models/errors.h"
+#include "compare/models/registry.h"
+#include "compare/models/run.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {

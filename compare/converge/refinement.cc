@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/converge/refinement.h"
+#include "compare/convergence/refinement.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "compare/results.h"
+#include "compare/output/results.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::plot {

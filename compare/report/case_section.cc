@@ -11,10 +11,10 @@
 #include <set>
 #include <utility>
 
-#include "compare/csv.h"
+#include "compare/input/csv.h"
 #include "compare/report/curves.h"
 #include "compare/report/sections.h"
-#include "compare/table.h"
+#include "compare/output/table.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::report {

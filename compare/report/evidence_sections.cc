@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "compare/budget/report.h"
-#include "compare/converge/plot.h"
+#include "compare/convergence/plot.h"
 #include "compare/report/sections.h"
 
 namespace ciliaval::compare::report {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/provenance.h"
+#include "compare/output/provenance.h"
 #include "compare/report/figures.h"
 
 namespace ciliaval::compare::report {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "compare/case_sections.h"
+#include "compare/input/case_sections.h"
 
 namespace ciliaval::compare::study {
 namespace {

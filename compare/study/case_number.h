@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "compare/case.h"
-#include "compare/case_keys.h"
+#include "compare/input/case.h"
+#include "compare/input/case_keys.h"
 
 namespace ciliaval::compare::study {
 

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "compare/budget/sensitivity.h"
-#include "compare/errors.h"
-#include "compare/run.h"
+#include "compare/models/errors.h"
+#include "compare/models/run.h"
 #include "compare/study/range.h"
 #include "problem/error.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/registry.h"
+#include "compare/models/registry.h"
 #include "compare/study/study.h"
 #include "problem/mechanics_model.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "compare/results.h"
+#include "compare/output/results.h"
 #include "compare/study/optimise.h"
 #include "compare/study/record.h"
 #include "compare/study/report.h"

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <utility>
 
-#include "compare/case_sections.h"
+#include "compare/input/case_sections.h"
 #include "compare/study/reading.h"
-#include "problem/words.h"
+#include "problem/support/words.h"
 
 namespace ciliaval::compare::study {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "analytic/elastica.h"
+#include "analytic/elastica/elastica.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::compare::study {

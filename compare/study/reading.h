@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/case_toml.h"
+#include "compare/input/case_toml.h"
 #include "compare/study/study.h"
 
 namespace ciliaval::compare::study {

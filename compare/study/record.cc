@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "compare/results.h"
+#include "compare/output/results.h"
 
 namespace ciliaval::compare::study {
 namespace {

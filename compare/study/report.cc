@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "compare/results.h"
+#include "compare/output/results.h"
 #include "compare/study/record.h"
 #include "compare/study/tolerances.h"
-#include "compare/units.h"
+#include "compare/input/units.h"
 
 namespace ciliaval::compare::study {
 namespace {

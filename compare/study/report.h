@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compare/plot/gnuplot.h"
-#include "compare/provenance.h"
+#include "compare/output/provenance.h"
 #include "compare/study/sweep.h"
 
 namespace ciliaval::compare::study {

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "compare/units.h"
+#include "compare/input/units.h"
 #include "fem/checkpoint_file.h"
 
 namespace ciliaval::compare::study {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/case.h"
-#include "compare/model_pair.h"
+#include "compare/input/case.h"
+#include "compare/models/model_pair.h"
 #include "compare/study/case_number.h"
 
 namespace ciliaval::compare::study {

@@ -13,11 +13,11 @@
 #include <system_error>
 #include <utility>
 
-#include "compare/case_sections.h"
-#include "compare/case_syntax.h"
+#include "compare/input/case_sections.h"
+#include "compare/input/case_syntax.h"
 #include "compare/study/reading.h"
 #include "problem/error.h"
-#include "problem/words.h"
+#include "problem/support/words.h"
 
 namespace ciliaval::compare::study {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "compare/results.h"
+#include "compare/output/results.h"
 #include "compare/study/record.h"
 #include "compare/study/report.h"
 

@@ -17,7 +17,7 @@
 #include <system_error>
 #include <variant>
 
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

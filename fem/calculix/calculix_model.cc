@@ -21,12 +21,12 @@
 #include <vector>
 
 #include "fem/calculix/calculix.h"
-#include "fem/calculix/child_process.h"
+#include "problem/support/child_process.h"
 #include "fem/parallel.h"
-#include "fem/solid/body.h"
-#include "fem/solid/section.h"
+#include "fem/solid/postprocessing/body.h"
+#include "fem/solid/postprocessing/centreline.h"
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

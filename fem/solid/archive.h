@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-#include "fem/solid/load_path.h"
+#include "fem/solid/equilibrium/load_path.h"
 #include "problem/deformation.h"
 #include "problem/mechanics_model.h"
 

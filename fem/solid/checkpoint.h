@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "fem/solid/load_path.h"
+#include "fem/solid/equilibrium/load_path.h"
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::fem {

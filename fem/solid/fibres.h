@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "fem/solid/space.h"
+#include "fem/solid/discretisation/space.h"
 
 namespace ciliaval::fem {
 

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "fem/beam/beam.h"
-#include "fem/solid/body.h"
-#include "fem/solid/section.h"
-#include "fem/solid/transfer.h"
-#include "meshes/gmsh_mesh.h"
+#include "fem/solid/postprocessing/body.h"
+#include "fem/solid/postprocessing/centreline.h"
+#include "fem/solid/equilibrium/initial_guess.h"
+#include "meshes/gmsh/gmsh_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "fem/solid/fibres.h"
-#include "fem/solid/load_path.h"
-#include "fem/solid/material.h"
-#include "fem/solid/newton.h"
-#include "fem/solid/space.h"
-#include "meshes/cylinder_mesh.h"
+#include "fem/solid/equilibrium/load_path.h"
+#include "fem/solid/material/hyperelastic.h"
+#include "fem/solid/equilibrium/newton.h"
+#include "fem/solid/discretisation/space.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "meshes/mesh_file.h"
 #include "problem/cilium.h"
 #include "problem/deformation.h"

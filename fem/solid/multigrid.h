@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "fem/parallel.h"
-#include "fem/solid/direct_solver.h"
-#include "fem/solid/space.h"
+#include "fem/solid/solvers/direct_solver.h"
+#include "fem/solid/discretisation/space.h"
 
 namespace ciliaval::fem {
 

@@ -4,8 +4,8 @@
 #include <deal.II/lac/vector.h>
 
 #include "fem/solid/fibres.h"
-#include "fem/solid/newton.h"
-#include "fem/solid/space.h"
+#include "fem/solid/equilibrium/newton.h"
+#include "fem/solid/discretisation/space.h"
 #include "problem/load.h"
 
 namespace ciliaval::fem {

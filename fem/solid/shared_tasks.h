@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/parallel.h"
-#include "fem/solid/load_path.h"
+#include "fem/solid/equilibrium/load_path.h"
 #include "fem/solid/schedule.h"
 #include "problem/deformation.h"
 

@@ -18,7 +18,7 @@
 #include "fem/solid/checkpoint.h"
 #include "fem/solid/level.h"
 #include "fem/solid/path_run.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

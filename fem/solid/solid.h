@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "fem/solid/solver_kind.h"
+#include "fem/solid/solvers/solver_kind.h"
 #include "problem/load.h"
 #include "problem/mechanics_model.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "fem/solid/load_path.h"
+#include "fem/solid/equilibrium/load_path.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::fem {

@@ -17,9 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "fem/solid/assembly.h"
+#include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem {

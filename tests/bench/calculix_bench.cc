@@ -22,7 +22,7 @@
 #include "fem/calculix/calculix.h"
 #include "fem/parallel.h"
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 #include "tests/bench/paper_cilium.h"
 

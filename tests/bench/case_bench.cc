@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "compare/case.h"
-#include "compare/errors.h"
-#include "compare/field_grid.h"
-#include "compare/provenance.h"
-#include "compare/registry.h"
-#include "compare/results.h"
-#include "compare/run.h"
-#include "compare/vtk/output.h"
+#include "compare/input/case.h"
+#include "compare/models/errors.h"
+#include "compare/output/field_grid.h"
+#include "compare/output/provenance.h"
+#include "compare/models/registry.h"
+#include "compare/output/results.h"
+#include "compare/models/run.h"
+#include "compare/output/vtk/output.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -26,12 +26,12 @@
 
 #include "fem/beam/beam.h"
 #include "fem/parallel.h"
-#include "fem/solid/direct_solver.h"
-#include "fem/solid/material.h"
+#include "fem/solid/solvers/direct_solver.h"
+#include "fem/solid/material/hyperelastic.h"
 #include "fem/solid/solid.h"
-#include "fem/solid/space.h"
-#include "fem/solid/transfer.h"
-#include "meshes/cylinder_mesh.h"
+#include "fem/solid/discretisation/space.h"
+#include "fem/solid/equilibrium/initial_guess.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 #include "tests/bench/paper_cilium.h"
 

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "analytic/design_field.h"
-#include "analytic/elastica.h"
-#include "analytic/elliptic.h"
-#include "analytic/field_models.h"
+#include "analytic/elastica/elastica.h"
+#include "analytic/sources/elliptic.h"
+#include "analytic/rod/field_models.h"
 #include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::analytic {

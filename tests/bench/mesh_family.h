@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "fem/solid/assembly.h"
+#include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/fibres.h"
-#include "fem/solid/linear_solver.h"
-#include "fem/solid/load_path.h"
-#include "meshes/cylinder_mesh.h"
+#include "fem/solid/solvers/linear_solver.h"
+#include "fem/solid/equilibrium/load_path.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem {

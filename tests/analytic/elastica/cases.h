@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analytic/elastica.h"
+#include "analytic/elastica/elastica.h"
 #include "problem/cilium.h"
 #include "problem/mechanics_model.h"
 

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/dipole.h"
-#include "analytic/field_models.h"
+#include "analytic/sources/dipole.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "derby_olbert.h"
 #include "problem/lagrange.h"

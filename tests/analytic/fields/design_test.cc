@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "analytic/design_field.h"
-#include "analytic/elastica.h"
-#include "analytic/field_models.h"
+#include "analytic/elastica/elastica.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "problem/error.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "analytic/field_models.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "cylinder_body.h"
 #include "problem/error.h"

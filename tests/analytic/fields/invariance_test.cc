@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/field_models.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 
 namespace ciliaval::analytic {

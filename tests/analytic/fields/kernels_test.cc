@@ -10,11 +10,11 @@
 #include <numbers>
 #include <vector>
 
-#include "analytic/charged_disc.h"
-#include "analytic/current_loop.h"
-#include "analytic/dipole.h"
-#include "analytic/elliptic.h"
-#include "analytic/order_raising.h"
+#include "analytic/sources/charged_disc.h"
+#include "analytic/sources/current_loop.h"
+#include "analytic/sources/dipole.h"
+#include "analytic/sources/elliptic.h"
+#include "analytic/sources/adaptive_order.h"
 #include "bent_rods.h"
 #include "derby_olbert.h"
 #include "problem/field_model.h"

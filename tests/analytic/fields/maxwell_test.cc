@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "analytic/field_models.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "problem/lagrange.h"
 

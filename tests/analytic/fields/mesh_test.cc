@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/dipole.h"
-#include "analytic/field_models.h"
+#include "analytic/sources/dipole.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "cylinder_body.h"
 #include "derby_olbert.h"

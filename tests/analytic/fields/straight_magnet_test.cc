@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analytic/field_models.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "derby_olbert.h"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/field_models.h"
-#include "analytic/field_points.h"
+#include "analytic/rod/field_models.h"
+#include "analytic/sources/field_points.h"
 #include "bent_rods.h"
 #include "cylinder_body.h"
 #include "problem/error.h"

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/dipole.h"
-#include "analytic/elastica.h"
-#include "analytic/field_models.h"
+#include "analytic/sources/dipole.h"
+#include "analytic/elastica/elastica.h"
+#include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "problem/error.h"
 

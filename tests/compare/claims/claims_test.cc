@@ -12,8 +12,8 @@
 #include <numbers>
 
 #include "../run/program.h"
-#include "analytic/elastica.h"
-#include "analytic/field_models.h"
+#include "analytic/elastica/elastica.h"
+#include "analytic/rod/field_models.h"
 #include "compare/claims/ledger.h"
 #include "compare/claims/misprint.h"
 

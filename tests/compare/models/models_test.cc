@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <string>
 
-#include "analytic/elastica.h"
-#include "analytic/field_models.h"
-#include "compare/case.h"
+#include "analytic/elastica/elastica.h"
+#include "analytic/rod/field_models.h"
+#include "compare/input/case.h"
 #include "fem/beam/beam.h"
 #include "fem/solid/solid.h"
 

@@ -9,7 +9,7 @@
 #include "../run/program.h"
 #include "../study/study_texts.h"
 #include "compare/claims/claim.h"
-#include "compare/provenance.h"
+#include "compare/output/provenance.h"
 
 namespace ciliaval::test {
 

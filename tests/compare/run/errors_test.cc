@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/errors.h"
+#include "compare/models/errors.h"
 
 #include <gtest/gtest.h>
 

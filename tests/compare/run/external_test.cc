@@ -10,12 +10,12 @@
 #include <fstream>
 #include <string>
 
-#include "compare/case.h"
-#include "compare/errors.h"
-#include "compare/registry.h"
-#include "compare/results.h"
-#include "compare/run.h"
-#include "compare/table.h"
+#include "compare/input/case.h"
+#include "compare/models/errors.h"
+#include "compare/models/registry.h"
+#include "compare/output/results.h"
+#include "compare/models/run.h"
+#include "compare/output/table.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/field_grid.h"
+#include "compare/output/field_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "compare/case_keys.h"
-#include "compare/registry.h"
+#include "compare/input/case_keys.h"
+#include "compare/models/registry.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -11,8 +11,8 @@
 #include <array>
 #include <cmath>
 
-#include "compare/vtk/mesh.h"
-#include "meshes/cylinder_mesh.h"
+#include "compare/output/vtk/mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 
 namespace ciliaval::compare::vtk {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/output_folder.h"
+#include "compare/output/output_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include <stdexcept>
 
-#include "compare/results.h"
+#include "compare/output/results.h"
 #include "problem/error.h"
 #include "synthetic.h"
 

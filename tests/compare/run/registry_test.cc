@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/registry.h"
+#include "compare/models/registry.h"
 
 #include <gtest/gtest.h>
 
-#include "compare/case_keys.h"
+#include "compare/input/case_keys.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/results.h"
+#include "compare/output/results.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/run.h"
+#include "compare/models/run.h"
 
 #include <gtest/gtest.h>
 

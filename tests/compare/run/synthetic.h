@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "compare/run.h"
+#include "compare/models/run.h"
 
 /// Deformations and models of known shape, to test what is made of them.
 namespace ciliaval::test {

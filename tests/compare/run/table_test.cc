@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/table.h"
+#include "compare/output/table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

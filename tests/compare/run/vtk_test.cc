@@ -17,9 +17,9 @@
 #include <numbers>
 #include <regex>
 
-#include "compare/vtk/datasets.h"
-#include "compare/vtk/files.h"
-#include "compare/vtk/output.h"
+#include "compare/output/vtk/datasets.h"
+#include "compare/output/vtk/files.h"
+#include "compare/output/vtk/output.h"
 #include "problem/error.h"
 #include "synthetic.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "compare/registry.h"
+#include "compare/models/registry.h"
 #include "compare/study/report.h"
 #include "problem/error.h"
 #include "study_texts.h"

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "analytic/elastica.h"
-#include "compare/registry.h"
+#include "analytic/elastica/elastica.h"
+#include "compare/models/registry.h"
 #include "compare/study/range.h"
 #include "compare/study/sweep.h"
-#include "compare/table.h"
+#include "compare/output/table.h"
 #include "problem/error.h"
 #include "study_texts.h"
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "analytic/field_models.h"
+#include "analytic/rod/field_models.h"
 #include "bodies.h"
 #include "cylinder_body.h"
 #include "derby_olbert.h"

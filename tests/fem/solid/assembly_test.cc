@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/solid/assembly.h"
+#include "fem/solid/discretisation/assembly.h"
 
 #include <deal.II/base/multithread_info.h>
 #include <deal.II/dofs/dof_tools.h>

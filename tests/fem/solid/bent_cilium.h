@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "fem/solid/assembly.h"
+#include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/fibres.h"
-#include "fem/solid/load_path.h"
-#include "meshes/cylinder_mesh.h"
+#include "fem/solid/equilibrium/load_path.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 
 namespace ciliaval::fem {
 

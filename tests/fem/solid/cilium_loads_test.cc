@@ -8,11 +8,11 @@
 #include <numbers>
 #include <random>
 
-#include "fem/solid/assembly.h"
+#include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/fibres.h"
-#include "fem/solid/forces.h"
-#include "fem/solid/load_path.h"
-#include "fem/solid/section.h"
+#include "fem/solid/loads/dead_forces.h"
+#include "fem/solid/equilibrium/load_path.h"
+#include "fem/solid/postprocessing/centreline.h"
 #include "problem/error.h"
 #include "tests/fem/solid/bent_cilium.h"
 #include "tests/fem/solid/cube.h"

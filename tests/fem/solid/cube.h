@@ -10,10 +10,10 @@
 #include <functional>
 #include <vector>
 
-#include "fem/solid/assembly.h"
-#include "fem/solid/forces.h"
-#include "fem/solid/newton.h"
-#include "fem/solid/space.h"
+#include "fem/solid/discretisation/assembly.h"
+#include "fem/solid/loads/dead_forces.h"
+#include "fem/solid/equilibrium/newton.h"
+#include "fem/solid/discretisation/space.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

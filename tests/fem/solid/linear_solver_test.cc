@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The linear solvers of the solid against each other and against what theory says of them.
-#include "fem/solid/linear_solver.h"
+#include "fem/solid/solvers/linear_solver.h"
 
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>

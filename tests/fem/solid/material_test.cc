@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/solid/material.h"
+#include "fem/solid/material/hyperelastic.h"
 
 #include <gtest/gtest.h>
 

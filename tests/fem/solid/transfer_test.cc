@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // First guesses: states carried from mesh to mesh and from a rod to the solid.
-#include "fem/solid/transfer.h"
+#include "fem/solid/equilibrium/initial_guess.h"
 
 #include <deal.II/dofs/dof_tools.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "fem/solid/level.h"
-#include "fem/solid/material.h"
+#include "fem/solid/material/hyperelastic.h"
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "fem/solid/solid.h"
-#include "meshes/cylinder_mesh.h"
-#include "meshes/write_gmsh.h"
+#include "meshes/cylinder/cylinder_mesh.h"
+#include "meshes/gmsh/write_gmsh.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem {

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytic/body/body_quadrature.h"
+#include "analytic/rod/field_models.h"
+#include "analytic/sources/field_points.h"
+#include "problem/error.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+/// The cells that carry magnetisation and the boxes around their nodes, a quarter larger than the
+/// nodes need, because a polynomial may bulge beyond them.
+struct MagneticCell {
+  const SolidCell* cell;
+  Eigen::AlignedBox3d box;
+};
+
+std::vector<MagneticCell> magnetic_cells(const SolidBody& body) {
+  std::vector<MagneticCell> cells;
+  for (const SolidCell& cell : body.cells) {
+    if (cell.magnetization.isZero(0)) continue;
+    Eigen::AlignedBox3d box;
+    for (const Vector3& x : cell.current) box.extend(x);
+    const Vector3 margin = Vector3::Constant(0.25 * box.diagonal().norm());
+    cells.push_back({&cell, {box.min() - margin, box.max() + margin}});
+  }
+  return cells;
+}
+
+/// ξ with x(ξ) = x by Newton's method from the middle of the cell, if it is in the cell (its
+/// surface included, to 1e-10 of its size).
+std::optional<Vector3> locate(const LagrangeBasis& nodes, const SolidCell& cell, const Vector3& x) {
+  Vector3 xi = Vector3::Constant(0.5);
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    const SolidPoint point = evaluate(nodes, cell, xi);
+    const Matrix3 gradient = point.deformation_gradient * point.reference_gradient;
+    const Vector3 step = gradient.partialPivLu().solve(x - point.current);
+    if (!step.allFinite()) return std::nullopt;
+    xi = (xi + step).cwiseMax(-0.5).cwiseMin(1.5);
+    if (step.norm() > 1e-13) continue;
+    const bool inside = xi.minCoeff() >= -1e-10 && xi.maxCoeff() <= 1 + 1e-10;
+    return inside ? std::optional(xi) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// m = F·M/J (A/m) if x is in a magnetised cell.
+std::optional<Vector3> magnetization_at(const LagrangeBasis& nodes,
+                                        const std::vector<MagneticCell>& cells, const Vector3& x) {
+  for (const MagneticCell& magnetic : cells) {
+    if (!magnetic.box.contains(x)) continue;
+    const auto xi = locate(nodes, *magnetic.cell, x);
+    if (!xi) continue;
+    const Matrix3 F = evaluate(nodes, *magnetic.cell, *xi).deformation_gradient;
+    return F * magnetic.cell->magnetization / F.determinant();
+  }
+  return std::nullopt;
+}
+
+/// The reference charge [M·N] dA₀ at a point of a deformed face.
+PatchPoint<double> charge(const SolidBody& body, const ChargedFace& face,
+                          const std::array<double, 2>& xi) {
+  const FacePoint point = evaluate(body.nodes, face, xi[0], xi[1]);
+  return {point.current, face.magnetization_jump.dot(point.reference_area)};
+}
+
+/// The moment R·M J dV₀ at a point of a cell, R the rotation of F = R·U.
+PatchPoint<Vector3> rotated_moment(const SolidBody& body, const SolidCell& cell,
+                                   const std::array<double, 3>& xi) {
+  const SolidPoint point = evaluate(body.nodes, cell, Vector3(xi[0], xi[1], xi[2]));
+  const Matrix3& F = point.deformation_gradient;
+  const double J = F.determinant();
+  if (!(J > 0))
+    throw SolverError("det F is not positive in a cell of the magnet near " +
+                      to_string(point.current) +
+                      ", so that F has no rotation: refine the solid model or lower the load");
+  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix3 R = svd.matrixU() * svd.matrixV().transpose();
+  return {point.current, R * cell.magnetization * (J * point.reference_gradient.determinant())};
+}
+
+Field field_of_charges(const SolidBody& body, double tolerance, std::span<const Vector3> points) {
+  const std::vector<MagneticCell> cells = magnetic_cells(body);
+  const PatchIntegral<2, double> integral(
+      body.charged_faces.size(),
+      [&](std::size_t face, const std::array<double, 2>& xi) {
+        return charge(body, body.charged_faces[face], xi);
+      },
+      "field of the charged faces of the mesh");
+  return field_at(points, 1, [&](const Vector3& x) {
+    const auto m = magnetization_at(body.nodes, cells, x);
+    const Vector3 inside = m ? Vector3(vacuum_permeability * *m) : Vector3(Vector3::Zero());
+    return integral.field(x, inside, tolerance);
+  });
+}
+
+Field field_of_moments(const SolidBody& body, double tolerance, std::span<const Vector3> points) {
+  const std::vector<MagneticCell> cells = magnetic_cells(body);
+  const PatchIntegral<3, Vector3> integral(
+      cells.size(),
+      [&](std::size_t cell, const std::array<double, 3>& xi) {
+        return rotated_moment(body, *cells[cell].cell, xi);
+      },
+      "field of the dipoles R·M of the mesh");
+  return field_at(points, 1, [&](const Vector3& x) {
+    if (magnetization_at(body.nodes, cells, x))
+      throw SolverError("the field inside the magnet was asked at " + to_string(x) +
+                        ": with the push-forward R it is not available, take F");
+    return integral.field(x, Vector3::Zero(), tolerance);
+  });
+}
+
+}  // namespace
+
+Field MeshField::field(const Cilium&, const Deformation& deformation,
+                       std::span<const Vector3> points) const {
+  if (!deformation.body)
+    throw InputError(
+        "the field model `mesh` was asked for a deformation without a body: only the "
+        "solid model has one, take `line` or `volume`");
+  return options_.push_forward == PushForward::F
+             ? field_of_charges(*deformation.body, options_.tolerance, points)
+             : field_of_moments(*deformation.body, options_.tolerance, points);
+}
+
+}  // namespace ciliaval::analytic

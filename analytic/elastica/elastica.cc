@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/elastica/elastica.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "analytic/elastica/arclength.h"
+#include "analytic/elastica/height.h"
+#include "analytic/elastica/planar.h"
+#include "analytic/elastica/probe.h"
+#include "problem/error.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+/// Slip-off of the last contact height asked for: the same all along most load paths.
+struct SlipOff {
+  double height = -1;                  ///< h, m
+  double force = 0;                    ///< N
+  std::optional<double> displacement;  ///< m, for a probe
+};
+
+bool has_height_form(const ElasticaOptions& options) {
+  return options.form == ElasticaOptions::Form::height;
+}
+
+PlanarSolver solver(const ElasticaOptions& options) {
+  if (has_height_form(options)) return [](const PlanarProblem& p) { return solve_height(p); };
+  return [options](const PlanarProblem& p) { return solve_arclength(p, options.tolerance); };
+}
+
+/// Of a probe's displacement found by its force; the height form's quadrature holds 1e-9 near 90°.
+double probe_tolerance(const ElasticaOptions& options) {
+  return has_height_form(options) ? 1e-9 : 1e-12;
+}
+
+SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options,
+                 const SlipOff& known) {
+  const double height = contact_height(load).value();
+  const bool probes = std::holds_alternative<ProbeLoad>(load);
+  if (known.height == height && (known.displacement || !probes)) return known;
+  PlanarProblem problem = planar_problem(cilium, ContactLoad{1, height, 0});
+  const double of_one_newton = problem.load;
+  problem.load = has_height_form(options) ? slip_off_height(problem)
+                                          : slip_off_arclength(problem, options.tolerance);
+  SlipOff result{height, problem.load / of_one_newton, {}};
+  if (!probes) return result;
+  const auto deflection = slip_off_deflection(problem, solver(options), !has_height_form(options),
+                                              probe_tolerance(options));
+  if (deflection) result.displacement = cilium.length() * *deflection;
+  return result;
+}
+
+/// The contact force (N) that a probe's displacement takes, and the shape under it.
+struct ProbeForce {
+  double force = 0;
+  std::optional<PlanarShape> shape;
+};
+
+ProbeForce probe_force(const Cilium& cilium, const ProbeLoad& load, double slip_off_force,
+                       const ElasticaOptions& options) {
+  PlanarProblem problem = planar_problem(cilium, load);
+  const double of_one_newton = problem.load;
+  if (load.displacement == 0) {
+    problem.load = 0;
+    return {0, solver(options)(problem)};
+  }
+  const double deflection = load.displacement / cilium.length();
+  const double limit = slip_off_force * of_one_newton;
+  auto probe = probe_by_load(problem, deflection, limit, solver(options), probe_tolerance(options));
+  if (!probe && has_height_form(options))
+    throw SolverError(
+        "elastica, height form: theta at the contact is so near to 90 deg that the last bits of "
+        "the force move the contact point by more than 1e-9; use form = \"arclength\"");
+  if (!probe) probe = probe_by_arclength(problem, deflection, limit, solver(options));
+  return {probe->load / of_one_newton, std::move(probe->shape)};
+}
+
+/// The horizontal force along e: F, q z_tip or q L.
+double applied_force(const Load& load, const PlanarUnits& units, const Deformation& deformation) {
+  const Centreline& centreline = deformation.centreline;
+  if (const auto* flow = std::get_if<FlowLoad>(&load))
+    return flow->force_per_height * centreline.at(centreline.length()).position.z();
+  if (const auto* dead = std::get_if<DeadLoad>(&load))
+    return dead->force_per_length * centreline.length();
+  return units.force;
+}
+
+std::string slipped_off(const Load& load, double force, std::optional<double> displacement) {
+  std::ostringstream message;
+  message << std::setprecision(8) << "the contact slips off: ";
+  if (std::holds_alternative<ProbeLoad>(load))
+    message << "the largest displacement in an equilibrium, at which the tip sinks to the contact "
+               "height, is "
+            << 1e3 * displacement.value_or(0) << " mm, under " << 1e3 * force << " mN";
+  else
+    message << "the largest force an equilibrium bears, at which the tip sinks to the contact "
+               "height, is "
+            << 1e3 * force << " mN";
+  return message.str();
+}
+
+void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsStep& step) {
+  const PlanarProblem problem = planar_problem(cilium, step.load);
+  PlanarUnits units = planar_units(cilium, step.load);
+  const bool height_form = has_height_form(options);
+  std::optional<PlanarShape> shape;
+  const std::optional<double> limit = std::holds_alternative<ProbeLoad>(step.load)
+                                          ? step.slip_off_displacement
+                                          : step.slip_off_force;
+  if (!limit || magnitude(step.load) <= *limit) {
+    if (const auto* probe = std::get_if<ProbeLoad>(&step.load)) {
+      ProbeForce found = probe_force(cilium, *probe, step.slip_off_force.value(), options);
+      units.force = found.force;
+      shape = std::move(found.shape);
+    } else {
+      shape = solver(options)(problem);
+    }
+  }
+  if (!shape) {
+    step.status = Status::slipped_off;
+    step.message =
+        slipped_off(step.load, step.slip_off_force.value_or(0), step.slip_off_displacement);
+    return;
+  }
+  // Near 90° the height form has noise of some 1e-11, which finer pieces would resolve.
+  const double resolution = std::max(options.tolerance / 10, height_form ? 1e-11 : 1e-13);
+  step.deformation =
+      Deformation{planar_centreline(*shape, units, direction(step.load), resolution), nullptr};
+  step.status = Status::converged;
+  step.applied_force = applied_force(step.load, units, *step.deformation);
+  if (shape->contact) step.contact_arclength = *shape->contact * units.length;
+  step.tip_uncertainty =
+      units.length * std::max(shape->error, std::numeric_limits<double>::epsilon());
+  step.unknowns = 1;
+  step.iterations = shape->iterations;
+}
+
+}  // namespace
+
+MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
+                                const Progress& progress) const {
+  if (!(options_.tolerance > 0 && options_.tolerance <= 1e-3))
+    throw InputError("elastica: the tolerance must lie between 0 and 1e-3");
+  require_valid(cilium);
+  for (const Load& load : path) require_valid(load, cilium);
+
+  MechanicsResult result;
+  result.undeformed.centreline = straight_centreline(cilium.interfaces());
+  SlipOff known;
+  for (const Load& load : path) {
+    const auto begin = std::chrono::steady_clock::now();
+    MechanicsStep step;
+    step.load = load;
+    try {
+      if (contact_height(load)) {
+        known = slip_off(cilium, load, options_, known);
+        step.slip_off_force = known.force;
+        if (std::holds_alternative<ProbeLoad>(load))
+          step.slip_off_displacement = known.displacement;
+      }
+      solve_step(cilium, options_, step);
+    } catch (const SolverError& error) {
+      step.status = Status::failed;
+      step.message = error.what();
+    }
+    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.steps.push_back(std::move(step));
+    if (progress)
+      progress("elastica: step " + std::to_string(result.steps.size()) + "/" +
+               std::to_string(path.size()));
+  }
+  return result;
+}
+
+}  // namespace ciliaval::analytic

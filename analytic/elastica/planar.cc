@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/elastica/planar.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "problem/error.h"
+#include "problem/lagrange.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+constexpr std::size_t node_count = 16;
+constexpr std::size_t check_count = 4;
+constexpr int max_bisections = 40;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// Values of the nodes' Lagrange polynomials at points between nodes near both ends and the middle,
+/// where interpolation errs most.
+struct CheckPoints {
+  LagrangeBasis basis{chebyshev_points(node_count, 0, 1)};
+  std::array<double, check_count> position{0.005, 0.09, 0.5, 0.86};
+  std::array<std::array<double, node_count>, check_count> values{};
+
+  CheckPoints() {
+    for (std::size_t i = 0; i < check_count; ++i) basis.values(position[i], values[i]);
+  }
+};
+
+/// What is interpolated: w, z, the two quaternion components, θ', M and H.
+std::array<double, 7> components(const PlanarState& s) {
+  return {s.w, s.z, std::sin(s.theta / 2), std::cos(s.theta / 2), s.curvature, s.moment, s.force};
+}
+
+class CentrelineBuilder {
+ public:
+  CentrelineBuilder(const PlanarShape& shape, const PlanarUnits& units, Vector3 direction,
+                    double tolerance)
+      : shape_(shape),
+        units_(units),
+        direction_(std::move(direction)),
+        axis_(Vector3::UnitZ().cross(direction_)),
+        tolerance_(tolerance) {}
+
+  Centreline build() {
+    for (std::size_t i = 0; i + 1 < shape_.breaks.size(); ++i)
+      add(shape_.breaks[i], shape_.breaks[i + 1], i, 0);
+    return Centreline(std::move(pieces_));
+  }
+
+ private:
+  void add(double a, double b, std::size_t piece, int bisections) {
+    std::array<PlanarState, node_count> nodes;
+    const std::vector<double>& position = checks_.basis.nodes();
+    for (std::size_t i = 0; i < node_count; ++i) {
+      nodes[i] = shape_.state(std::min(std::lerp(a, b, position[i]), b), piece);
+      for (const double value : components(nodes[i]))
+        if (!std::isfinite(value)) throw SolverError("elastica: the shape is not finite");
+    }
+    if (!resolved(nodes, a, b, piece)) {
+      if (bisections == max_bisections)
+        throw SolverError(
+            "elastica: the shape cannot be interpolated to the tolerance asked; if it is of the "
+            "height form, whose quadrature loses digits near 90 deg, use the arc-length form");
+      const double middle = std::midpoint(a, b);
+      add(a, middle, piece, bisections + 1);
+      add(middle, b, piece, bisections + 1);
+      return;
+    }
+    Centreline::Piece out;
+    out.S = chebyshev_points(node_count, a * units_.length, b * units_.length);
+    for (const PlanarState& state : nodes) out.states.push_back(section(state));
+    pieces_.push_back(std::move(out));
+  }
+
+  bool resolved(const std::array<PlanarState, node_count>& nodes, double a, double b,
+                std::size_t piece) const {
+    std::array<std::array<double, 7>, node_count> values{};
+    std::array<double, 7> scale{};
+    std::array<double, 7> allowed{};
+    for (std::size_t i = 0; i < node_count; ++i) {
+      values[i] = components(nodes[i]);
+      for (std::size_t c = 0; c < scale.size(); ++c)
+        scale[c] = std::max(scale[c], std::abs(values[i][c]));
+    }
+    for (std::size_t c = 0; c < scale.size(); ++c) {
+      // κL, M and H are relative to 1 or more: less bends nothing. And the last bits of S move a
+      // value by its slope: no interpolation resolves that.
+      double slope = 0;
+      for (std::size_t i = 0; i + 1 < node_count; ++i)
+        slope = std::max(slope,
+                         std::abs(values[i + 1][c] - values[i][c]) / (nodes[i + 1].S - nodes[i].S));
+      allowed[c] = tolerance_ * std::max(scale[c], 1.0) + 4 * epsilon * b * slope;
+    }
+    for (std::size_t j = 0; j < check_count; ++j) {
+      const auto exact = components(shape_.state(std::lerp(a, b, checks_.position[j]), piece));
+      for (std::size_t c = 0; c < exact.size(); ++c) {
+        double interpolated = 0;
+        for (std::size_t i = 0; i < node_count; ++i)
+          interpolated += checks_.values[j][i] * values[i][c];
+        if (!(std::abs(interpolated - exact[c]) <= allowed[c])) return false;
+      }
+    }
+    return true;
+  }
+
+  SectionState section(const PlanarState& state) const {
+    SectionState out;
+    out.position = units_.length * (state.w * direction_ + state.z * Vector3::UnitZ());
+    out.rotation = Quaternion(Eigen::AngleAxisd(state.theta, axis_));
+    out.curvature = state.curvature / units_.length * axis_;
+    out.forces.force = units_.force * state.force * direction_;
+    out.forces.moment = units_.force * units_.length * state.moment * axis_;
+    return out;
+  }
+
+  inline static const CheckPoints checks_;
+  const PlanarShape& shape_;
+  PlanarUnits units_;
+  Vector3 direction_;
+  Vector3 axis_;
+  double tolerance_;
+  std::vector<Centreline::Piece> pieces_;
+};
+
+struct KindAndPoint {
+  PlanarLoad kind;
+  double point;  // m
+};
+
+KindAndPoint kind_and_point(const ContactLoad& load) {
+  return {PlanarLoad::contact, load.height};
+}
+KindAndPoint kind_and_point(const FlowLoad& /*load*/) {
+  return {PlanarLoad::flow, 0};
+}
+KindAndPoint kind_and_point(const SectionLoad& load) {
+  return {PlanarLoad::section, load.arclength};
+}
+KindAndPoint kind_and_point(const DeadLoad& /*load*/) {
+  return {PlanarLoad::dead, 0};
+}
+KindAndPoint kind_and_point(const ProbeLoad& load) {
+  return {PlanarLoad::contact, load.height};
+}
+
+}  // namespace
+
+PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
+  const double length = cilium.length();
+  if (std::holds_alternative<ProbeLoad>(load)) return {length, 1};
+  const bool distributed =
+      std::holds_alternative<FlowLoad>(load) || std::holds_alternative<DeadLoad>(load);
+  return {length, distributed ? magnitude(load) * length : magnitude(load)};
+}
+
+PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
+  const PlanarUnits units = planar_units(cilium, load);
+  PlanarProblem problem;
+  const KindAndPoint where = std::visit([](const auto& l) { return kind_and_point(l); }, load);
+  problem.kind = where.kind;
+  problem.point = where.point / units.length;
+  for (const double end : cilium.interfaces()) problem.ends.push_back(end / units.length);
+  problem.ends.back() = 1;
+  double stiffest = 0;  // Pa
+  for (const Segment& segment : cilium.segments)
+    stiffest = std::max(stiffest, segment.young_modulus);
+  for (const Segment& segment : cilium.segments)
+    problem.compliance.push_back(stiffest / segment.young_modulus);
+  problem.load = units.force * units.length * units.length / (stiffest * cilium.second_moment());
+  const double softest = *std::max_element(problem.compliance.begin(), problem.compliance.end());
+  if (!std::isfinite(problem.load * softest))
+    throw InputError(
+        "elastica: the load over the bending stiffness, PL^2/EI, is not finite; check "
+        "the units of force, length and Young's modulus");
+  return problem;
+}
+
+void add_break(std::vector<double>& breaks, double S) {
+  const auto above = std::lower_bound(breaks.begin(), breaks.end(), S);
+  if (above != breaks.end() && *above - S < shortest_piece) return;
+  if (above != breaks.begin() && S - *std::prev(above) < shortest_piece) return;
+  breaks.insert(above, S);
+}
+
+Centreline planar_centreline(const PlanarShape& shape, const PlanarUnits& units,
+                             const Vector3& direction, double tolerance) {
+  return CentrelineBuilder(shape, units, direction, tolerance).build();
+}
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/rod/loop_stack.h"
+
+#include <Eigen/Core>
+#include <Eigen/StdVector>
+#include <algorithm>
+#include <array>
+#include <boost/container/small_vector.hpp>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "analytic/sources/current_loop.h"
+#include "analytic/rod/end_discs.h"
+#include "analytic/sources/adaptive_order.h"
+#include "problem/error.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr int lanes = 4;
+using Lanes = Eigen::Array<double, lanes, 1>;
+
+/// Some loops side by side, in radii, so that one pass of the arithmetic-geometric mean, which
+/// waits for one square root after the other, is shared.
+struct Loops {
+  std::array<Lanes, 3> centre;  ///< from the middle of their part
+  std::array<Lanes, 3> normal;
+  Lanes strength;  ///< μ₀ M dS over the radius, T
+};
+
+/// Σ strength·H at the offset x (in radii) from the middle of the loops' part.
+Vector3 field_of(std::span<const Loops> all, const Vector3& x) {
+  std::array<Lanes, 3> B{Lanes::Zero(), Lanes::Zero(), Lanes::Zero()};
+  for (const Loops& loops : all) {
+    const Lanes ox = x[0] - loops.centre[0];
+    const Lanes oy = x[1] - loops.centre[1];
+    const Lanes oz = x[2] - loops.centre[2];
+    const Lanes zeta = ox * loops.normal[0] + oy * loops.normal[1] + oz * loops.normal[2];
+    const std::array<Lanes, 3> radial{ox - zeta * loops.normal[0], oy - zeta * loops.normal[1],
+                                      oz - zeta * loops.normal[2]};
+    const Lanes rho =
+        (radial[0] * radial[0] + radial[1] * radial[1] + radial[2] * radial[2]).sqrt();
+    const LoopField<Lanes> H = loop_field(rho, zeta);
+    for (std::size_t i = 0; i < 3; ++i)
+      B[i] += loops.strength * (H.radial_over_rho * radial[i] + H.axial * loops.normal[i]);
+  }
+  return {B[0].sum(), B[1].sum(), B[2].sum()};
+}
+
+std::size_t level_of(std::size_t order) {
+  return static_cast<std::size_t>(
+      std::find(std::begin(quadrature_orders), std::end(quadrature_orders), order) -
+      std::begin(quadrature_orders));
+}
+
+}  // namespace
+
+/// A part of a stretch: the whole, or a half of another part. Its sections are placed by their
+/// distances ΔS from its middle, which keep their digits however short the part is.
+class LoopStack::Part {
+ public:
+  /// The whole stretch.
+  Part(const RodMagnet& magnet, const RodStretch& stretch)
+      : Part(magnet, stretch, std::midpoint(stretch.begin, stretch.end),
+             stretch.end - stretch.begin) {
+    from_whole_ = middle_.position;
+  }
+
+  /// The lower (−1) or upper (1) half of a part.
+  Part(const Part& whole, double side)
+      : Part(whole.magnet_, whole.stretch_, whole.middle_S_ + side * whole.extent_ / 4,
+             whole.extent_ / 2) {
+    from_whole_ = whole.offset(side * whole.extent_ / 4);
+  }
+
+  const RodStretch& stretch() const { return stretch_; }
+  double length() const { return extent_ * middle_.derivative.norm(); }
+  /// r at the middle, from that of the whole; of a whole stretch, r itself.
+  const Vector3& from_whole() const { return from_whole_; }
+
+  /// The distance (m) of the middle section's edge from a point at the offset a from its centre.
+  double distance(const Vector3& a) const {
+    const double zeta = a.dot(normal_);
+    const double rho = std::sqrt(std::max(a.squaredNorm() - zeta * zeta, 0.0));
+    return std::hypot(rho - magnet_.radius, zeta);
+  }
+
+  /// The error (m) of the distance between a loop and a point at the offset a, as far as it differs
+  /// from loop to loop.
+  double rounding(const Vector3& a) const {
+    const double size = a.norm() + magnet_.radius;
+    return 2 * epsilon * size;
+  }
+
+  const std::array<std::unique_ptr<Part>, 2>& halves() const {
+    std::call_once(split_, [&] {
+      halves_ = {std::make_unique<Part>(*this, -1), std::make_unique<Part>(*this, 1)};
+    });
+    return halves_;
+  }
+
+  /// The loops at the nodes of a rule.
+  std::span<const Loops> loops(std::size_t order) const {
+    const std::size_t level = level_of(order);
+    std::call_once(made_[level], [&] { loops_[level] = make_loops(order); });
+    return loops_[level];
+  }
+
+ private:
+  Part(const RodMagnet& magnet, const RodStretch& stretch, double middle_S, double extent)
+      : magnet_(magnet),
+        stretch_(stretch),
+        middle_S_(middle_S),
+        extent_(extent),
+        is_short_(extent < 0.01 * magnet.centreline.length()),
+        middle_(at(magnet, stretch, middle_S)),
+        normal_(middle_.normal()) {}
+
+  /// r at ΔS from the middle, less r there, by integration of dr/dS, with the digits of the small
+  /// difference: the loops beside a point that is close to the mantle must not shift against each
+  /// other.
+  Vector3 offset(double dS) const {
+    const std::size_t nodes = magnet_.centreline.pieces()[stretch_.piece].S.size();
+    const QuadratureRule& rule = unit_gauss_legendre(nodes / 2 + 1);
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t i = 0; i < rule.nodes.size(); ++i)
+      sum += rule.weights[i] * at(magnet_, stretch_, middle_S_ + rule.nodes[i] * dS).derivative;
+    return dS * sum;
+  }
+
+  std::vector<Loops> make_loops(std::size_t order) const {
+    const QuadratureRule& rule = unit_gauss_legendre(order);
+    const double R = magnet_.radius;
+    std::vector<Loops> all((order + lanes - 1) / lanes);
+    for (std::size_t i = 0; i < lanes * all.size(); ++i) {
+      const std::size_t node = std::min(i, order - 1);  // the last ones only fill up
+      const double dS = (rule.nodes[node] - 0.5) * extent_;
+      const CentrelinePoint point = at(magnet_, stretch_, middle_S_ + dS);
+      // The loops of a long part are too far from any point for the last bits of r to matter.
+      const Vector3 centre = (is_short_ ? offset(dS) : point.position - middle_.position) / R;
+      const Vector3 normal = point.normal();
+      Loops& loops = all[i / lanes];
+      const auto lane = static_cast<Eigen::Index>(i % lanes);
+      for (std::size_t d = 0; d < 3; ++d) {
+        loops.centre[d][lane] = centre[static_cast<Eigen::Index>(d)];
+        loops.normal[d][lane] = normal[static_cast<Eigen::Index>(d)];
+      }
+      loops.strength[lane] = i < order ? vacuum_permeability * stretch_.magnetization *
+                                             rule.weights[node] * extent_ / R
+                                       : 0;
+    }
+    return all;
+  }
+
+  const RodMagnet& magnet_;
+  RodStretch stretch_;
+  double middle_S_;
+  double extent_;  // in S, m
+  bool is_short_;
+  CentrelinePoint middle_;
+  Vector3 normal_;  // at the middle
+  Vector3 from_whole_ = Vector3::Zero();
+  mutable std::once_flag split_;
+  mutable std::array<std::unique_ptr<Part>, 2> halves_;
+  mutable std::array<std::once_flag, std::size(quadrature_orders)> made_;
+  mutable std::array<std::vector<Loops>, std::size(quadrature_orders)> loops_;
+};
+
+LoopStack::LoopStack(const RodMagnet& magnet) : magnet_(magnet) {
+  for (const RodStretch& stretch : magnet.stretches)
+    roots_.push_back(std::make_unique<Part>(magnet, stretch));
+}
+
+LoopStack::~LoopStack() = default;
+
+/// Bound of |∇B|, T/m: μ₀σ/(distance from the rim) of each end within three radii, its charge's
+/// μ₀σR²/a³ beyond.
+double LoopStack::gradient_bound(const Vector3& x) const {
+  double bound = 0;
+  for (const RodEnd& end : magnet_.ends) {
+    const double a = (x - end.section.centre).norm();
+    const double R = end.section.radius;
+    const double strength = vacuum_permeability * std::abs(end.magnetization_jump);
+    bound +=
+        a > 3 * R ? strength * R * R / (a * a * a) : strength / distance_from_line(end.section, x);
+  }
+  return bound;
+}
+
+FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
+  struct Near {
+    const Part* part;
+    Vector3 offset;   // of x from its middle
+    double distance;  // of x from the middle section's edge
+  };
+  boost::container::small_vector<Near, 32> parts;
+  const double shortest = 1e-9 * magnet_.radius;
+  const auto grade = [&](const auto& self, const Part& part, const Vector3& offset) -> void {
+    const double distance = part.distance(offset);
+    if (part.length() <= distance) {
+      parts.push_back({&part, offset, distance});
+      return;
+    }
+    if (!(part.length() > shortest))
+      throw SolverError("the field of the stacked slices was asked at " + to_string(x) +
+                        ", on the magnet's mantle, where it jumps: move the point off the mantle");
+    for (const auto& half : part.halves()) self(self, *half, offset - half->from_whole());
+  };
+  for (const auto& root : roots_) grade(grade, *root, x - root->from_whole());
+
+  const auto contribution = [&](const Near& near, std::size_t order) {
+    return field_of(near.part->loops(order), near.offset / magnet_.radius);
+  };
+  // Gauss–Legendre on a length l converges like (q + √(1+q²))^(−2n) where the integrand's
+  // singularity, the section's edge, is the distance q l/2 away.
+  const auto first_level = [&](const Near& near) {
+    const double q = 2 * near.distance / near.part->length();
+    const double order = -std::log(tolerance) / (2 * std::asinh(q));
+    std::size_t level = 1;
+    while (level + 1 < std::size(quadrature_orders) && quadrature_orders[level] < 54 &&
+           static_cast<double>(quadrature_orders[level - 1]) < order)
+      ++level;
+    return level;
+  };
+  const OrderRaising asked{tolerance, 54, "field of the stacked slices", x};
+  FieldValue value = raise_orders(parts, contribution, asked, first_level);
+  // A rounding error δ that differs from loop to loop moves the field of a loop at the distance d
+  // by up to I δ/(2πd²), and the integral by μ₀Mδ/(2 min d), on top of the rounding of its sum; far
+  // away B by 4|B|δ/d.
+  double rounding = 0;
+  for (const Near& near : parts) {
+    const double M = vacuum_permeability * std::abs(near.part->stretch().magnetization);
+    const double delta = near.part->rounding(near.offset);
+    const double bound = near.distance > 3 * magnet_.radius
+                             ? 4 * contribution(near, 4).norm() * delta / near.distance
+                             : M * (delta / (2 * near.distance) + 16 * epsilon);
+    rounding = std::max(rounding, bound);
+  }
+  rounding += 40 * epsilon * value.B.norm();
+  rounding += 4 * epsilon * (x.norm() + magnet_.centreline.length()) * gradient_bound(x);
+  value.uncertainty += Vector3::Constant(rounding);
+  require_tolerance(value, asked);
+  return value;
+}
+
+}  // namespace ciliaval::analytic

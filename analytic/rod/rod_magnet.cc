@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/rod/rod_magnet.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "problem/error.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+/// The stretches of one segment. Interfaces and breaks are sums of the same lengths, perhaps in
+/// another order: what is shorter than their rounding error is no stretch.
+void append_stretches(RodMagnet& magnet, std::size_t segment, double begin, double end, double M) {
+  const std::vector<double>& breaks = magnet.centreline.breaks();
+  const double rounding = 1e-12 * magnet.centreline.length();
+  for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
+    const double low = std::max(begin, breaks[piece]);
+    const double high = std::min(end, breaks[piece + 1]);
+    if (high - low > rounding) magnet.stretches.push_back({low, high, piece, segment, M});
+  }
+}
+
+Circle section_at(const RodMagnet& magnet, const RodStretch& stretch, double S) {
+  return section(magnet, at(magnet, stretch, S));
+}
+
+/// Ends with a jump. An interface's section is taken from the segment below.
+void append_ends(RodMagnet& magnet) {
+  const RodStretch* below = nullptr;
+  for (std::size_t i = 0; i < magnet.stretches.size(); ++i) {
+    const RodStretch& stretch = magnet.stretches[i];
+    if (below == nullptr || below->segment != stretch.segment) {
+      const bool touches = below != nullptr && below->segment + 1 == stretch.segment;
+      const double M_below = touches ? below->magnetization : 0;
+      if (below != nullptr && !touches)
+        magnet.ends.push_back({section_at(magnet, *below, below->end), below->magnetization});
+      if (M_below != stretch.magnetization)
+        magnet.ends.push_back({touches ? section_at(magnet, *below, below->end)
+                                       : section_at(magnet, stretch, stretch.begin),
+                               M_below - stretch.magnetization});
+    }
+    below = &stretch;
+  }
+  if (below != nullptr)
+    magnet.ends.push_back({section_at(magnet, *below, below->end), below->magnetization});
+}
+
+/// Calls `visit(point)` at the nodes of the stretch and at its ends.
+template <class Visit>
+void for_each_node(const RodMagnet& magnet, const RodStretch& stretch, Visit visit) {
+  const std::vector<double>& S = magnet.centreline.pieces()[stretch.piece].S;
+  visit(at(magnet, stretch, stretch.begin));
+  for (std::size_t i = 0; i < S.size(); ++i)
+    if (S[i] > stretch.begin && S[i] < stretch.end) visit(magnet.centreline.node(stretch.piece, i));
+  visit(at(magnet, stretch, stretch.end));
+}
+
+/// Appends the parts of a stretch that are no longer than their distance; false if one would be
+/// too short.
+bool append_graded(const RodMagnet& magnet, const RodStretch& stretch,
+                   const std::function<double(const CentrelinePoint&)>& distance, double shortest,
+                   std::vector<RodStretch>& parts) {
+  const double S = (stretch.begin + stretch.end) / 2;
+  const CentrelinePoint middle = at(magnet, stretch, S);
+  const double length = (stretch.end - stretch.begin) * middle.derivative.norm();
+  if (length <= distance(middle)) {
+    parts.push_back(stretch);
+    return true;
+  }
+  if (!(length > shortest)) return false;
+  RodStretch lower = stretch;
+  lower.end = S;
+  RodStretch upper = stretch;
+  upper.begin = S;
+  return append_graded(magnet, lower, distance, shortest, parts) &&
+         append_graded(magnet, upper, distance, shortest, parts);
+}
+
+}  // namespace
+
+RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
+  if (cilium.segments.empty()) throw InputError("the field of a cilium without segments was asked");
+  RodMagnet magnet{cilium.radius(), deformation.centreline};
+  const std::vector<double> interfaces = cilium.interfaces();
+  if (!(std::abs(magnet.centreline.length() - interfaces.back()) <= 1e-9 * interfaces.back()))
+    throw InputError(
+        "the centreline of the deformation is not as long as the cilium: take both "
+        "from the same model");
+  for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
+    const double M = cilium.segments[i].magnetization;
+    if (M == 0) continue;
+    append_stretches(magnet, i, interfaces[i], interfaces[i + 1], M);
+  }
+  append_ends(magnet);
+  return magnet;
+}
+
+CentrelinePoint at(const RodMagnet& magnet, const RodStretch& stretch, double S) {
+  return magnet.centreline.at(S, stretch.piece);
+}
+
+Circle section(const RodMagnet& magnet, const CentrelinePoint& point) {
+  return {point.position, point.normal(), magnet.radius};
+}
+
+Vector3 stretch_vector(const CentrelinePoint& point, const Vector3& x) {
+  return point.derivative + point.curvature.cross(x - point.position);
+}
+
+std::optional<std::vector<RodStretch>> graded_stretches(
+    const RodMagnet& magnet, const std::function<double(const CentrelinePoint&)>& distance,
+    double shortest) {
+  std::vector<RodStretch> parts;
+  for (const RodStretch& stretch : magnet.stretches)
+    if (!append_graded(magnet, stretch, distance, shortest, parts)) return std::nullopt;
+  return parts;
+}
+
+void require_body(const RodMagnet& magnet) {
+  for (const RodStretch& stretch : magnet.stretches)
+    for_each_node(magnet, stretch, [&](const CentrelinePoint& point) {
+      const Vector3 d3 = point.normal();
+      const double smallest_jacobian =
+          d3.dot(point.derivative) - magnet.radius * point.curvature.cross(d3).norm();
+      if (!(smallest_jacobian > 0))
+        throw SolverError(
+            "the magnet is bent more sharply than its radius, so that its sections "
+            "cross and it has no volume: take the model `line`");
+    });
+}
+
+RodInterior::RodInterior(const RodMagnet& magnet) : magnet_(magnet) {
+  double spacing = 0;
+  for (const RodStretch& stretch : magnet.stretches) {
+    std::optional<Vector3> previous;
+    for_each_node(magnet, stretch, [&](const CentrelinePoint& point) {
+      box_.extend(point.position);
+      if (previous) spacing = std::max(spacing, (point.position - *previous).norm());
+      previous = point.position;
+    });
+  }
+  // A point of the rod is within R of its section's centre, and that is half the spacing of the
+  // nodes, or little more, from one of them.
+  const Vector3 margin = Vector3::Constant(magnet.radius + spacing);
+  if (!box_.isEmpty()) box_ = {box_.min() - margin, box_.max() + margin};
+}
+
+/// Close enough that between two of them (x − r)·d₃ changes its sign at most once.
+void RodInterior::append_samples(std::size_t i, Line& line) const {
+  const RodStretch& stretch = magnet_.stretches[i];
+  const std::size_t intervals = 2 * magnet_.centreline.pieces()[stretch.piece].S.size();
+  for (std::size_t k = line.empty() ? 0 : 1; k <= intervals; ++k) {
+    const double t = static_cast<double>(k) / static_cast<double>(intervals);
+    const double S = k == intervals ? stretch.end : std::lerp(stretch.begin, stretch.end, t);
+    const CentrelinePoint point = at(magnet_, stretch, S);
+    line.push_back({S, i, point.position, point.normal()});
+  }
+}
+
+std::vector<RodInterior::Line> RodInterior::sample() const {
+  std::vector<Line> lines;
+  for (std::size_t i = 0; i < magnet_.stretches.size(); ++i) {
+    const std::size_t segment = magnet_.stretches[i].segment;
+    const bool continues = i > 0 && magnet_.stretches[i - 1].segment == segment;
+    if (!continues) lines.emplace_back();
+    append_samples(i, lines.back());
+    if (i > 0 && magnet_.stretches[i - 1].segment + 1 == segment) {
+      // An interface's section is that of the segment below, so that a point on it is on the same
+      // side for the disc and for both segments.
+      const Sample& below = lines[lines.size() - 2].back();
+      lines.back().front().position = below.position;
+      lines.back().front().normal = below.normal;
+    }
+  }
+  return lines;
+}
+
+std::optional<Vector3> RodInterior::magnetization_between(const Sample& low, const Sample& high,
+                                                          double above_low, double above_high,
+                                                          const Vector3& x) const {
+  // A point of the rod is within R of its section, whose centre is between the two samples.
+  const double reach = magnet_.radius + 2 * (high.position - low.position).norm();
+  if ((x - low.position).norm() > reach) return std::nullopt;
+
+  const RodStretch& stretch = magnet_.stretches[high.stretch];
+  double S = low.S;
+  if (above_low > 0) {
+    const auto height = [&](double s) {
+      const CentrelinePoint point = at(magnet_, stretch, s);
+      return (x - point.position).dot(point.normal());
+    };
+    std::uintmax_t iterations = 100;
+    const auto bracket = boost::math::tools::toms748_solve(
+        height, low.S, high.S, above_low, above_high, boost::math::tools::eps_tolerance<double>(52),
+        iterations);
+    S = (bracket.first + bracket.second) / 2;
+  }
+  const CentrelinePoint point = at(magnet_, stretch, S);
+  if (!((x - point.position).norm() < magnet_.radius)) return std::nullopt;
+  const Vector3 carried = stretch_vector(point, x);
+  return stretch.magnetization / point.normal().dot(carried) * carried;
+}
+
+std::optional<Vector3> RodInterior::magnetization_at(const Vector3& x) const {
+  if (!box_.contains(x)) return std::nullopt;
+  std::call_once(sampled_, [&] { lines_ = sample(); });
+  const auto height_above = [&](const Sample& sample) {
+    return (x - sample.position).dot(sample.normal);
+  };
+  for (const Line& line : lines_) {
+    double above_low = height_above(line.front());
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      const double above_high = height_above(line[i + 1]);
+      if (above_low >= 0 && above_high < 0)
+        if (auto m = magnetization_between(line[i], line[i + 1], above_low, above_high, x))
+          return m;
+      above_low = above_high;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "analytic/sources/circle.h"
+#include "problem/cilium.h"
+#include "problem/deformation.h"
+
+namespace ciliaval::analytic {
+
+/// A smooth stretch of a magnetic segment: its part on one piece of the centreline.
+struct RodStretch {
+  double begin = 0;          ///< S, m
+  double end = 0;            ///< S, m
+  std::size_t piece = 0;     ///< of the centreline
+  std::size_t segment = 0;   ///< of the cilium
+  double magnetization = 0;  ///< M, A/m
+};
+
+/// A section where the magnetisation changes: an end of the magnet or an interface between two of
+/// its segments.
+struct RodEnd {
+  Circle section;             ///< centred on the centreline, normal d₃
+  double magnetization_jump;  ///< M below − M above, A/m; the reference charge on the section
+};
+
+/// The magnetic segments of a bent rod, as the field models of rods read them. It refers to the
+/// deformation's centreline.
+struct RodMagnet {
+  double radius = 0;  ///< m
+  const Centreline& centreline;
+  std::vector<RodStretch> stretches{};  ///< from base to tip
+  std::vector<RodEnd> ends{};           ///< those with a jump
+};
+
+/// Throws InputError if the cilium has no segments, or its length is not that of the centreline.
+RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation);
+
+/// The state at S on a stretch, by the interpolation of the stretch's own piece.
+CentrelinePoint at(const RodMagnet& magnet, const RodStretch& stretch, double S);
+
+/// The section at S as a circle.
+Circle section(const RodMagnet& magnet, const CentrelinePoint& point);
+
+/// ∂x/∂S = r' + κ × (x − r): how the rod map x = r + X d₁ + Y d₂ carries a unit of reference
+/// length at the point x of the section.
+Vector3 stretch_vector(const CentrelinePoint& point, const Vector3& x);
+
+/// The magnet's stretches, bisected until none is longer than the distance of its middle section
+/// from the field point, as `distance` measures it: then Gauss–Legendre converges at least like
+/// 3.7^(−2n) on each. Nothing if a part shorter than `shortest` (m) would be needed.
+std::optional<std::vector<RodStretch>> graded_stretches(
+    const RodMagnet& magnet, const std::function<double(const CentrelinePoint&)>& distance,
+    double shortest);
+
+/// Throws SolverError if sections cross at a node of a magnetic segment (J ≤ 0: bent more sharply
+/// than its radius), so that the rod is no body.
+void require_body(const RodMagnet& magnet);
+
+/// The inside of the magnetic segments. What the search needs is made at the first point that is
+/// near enough to be inside; several threads may ask at once.
+class RodInterior {
+ public:
+  explicit RodInterior(const RodMagnet& magnet);
+
+  /// m = F·M/J (A/m) at x if x is inside a magnetic segment: on the section S with
+  /// (x − r)·d₃ = 0, nearer to r than the radius, where F·M = M ∂x/∂S and J = d₃·∂x/∂S. The mantle
+  /// and a segment's upper end section count as outside, its lower end section as inside.
+  std::optional<Vector3> magnetization_at(const Vector3& x) const;
+
+ private:
+  /// A section of a magnetic segment.
+  struct Sample {
+    double S;  ///< m
+    std::size_t stretch;
+    Vector3 position;  ///< r, m
+    Vector3 normal;    ///< d₃
+  };
+  using Line = std::vector<Sample>;  ///< of one segment, base to tip
+
+  std::vector<Line> sample() const;
+  void append_samples(std::size_t stretch, Line& line) const;
+  std::optional<Vector3> magnetization_between(const Sample& low, const Sample& high,
+                                               double above_low, double above_high,
+                                               const Vector3& x) const;
+
+  const RodMagnet& magnet_;
+  Eigen::AlignedBox3d box_;  ///< around all that may be inside
+  mutable std::once_flag sampled_;
+  mutable std::vector<Line> lines_;
+};
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limits>
+#include <span>
+
+#include "analytic/rod/end_discs.h"
+#include "analytic/rod/field_models.h"
+#include "analytic/sources/field_points.h"
+#include "analytic/rod/loop_stack.h"
+#include "analytic/sources/adaptive_order.h"
+#include "analytic/rod/rod_magnet.h"
+#include "analytic/rod/rod_quadrature.h"
+#include "analytic/rod/uniform_sums.h"
+
+namespace ciliaval::analytic {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// B = μ₀ Σ σ H(disc) + μ₀ m of the wedge's reference charge on the end sections.
+Field field_of_discs(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
+  const EndDiscs discs(magnet.ends);
+  const RodInterior interior(magnet);
+  return field_at(points, 256, [&](const Vector3& x) {
+    FieldValue sum = discs.field(x);
+    if (const auto m = interior.magnetization_at(x)) {
+      const Vector3 inside = vacuum_permeability * *m;
+      sum += {inside, Vector3::Constant(40 * epsilon * inside.norm())};
+    }
+    require_tolerance(sum, {tolerance, 0, "field of the charged discs", x});
+    return sum;
+  });
+}
+
+Field field_of_loops(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
+  const LoopStack stack(magnet);
+  return field_at(points, 16, [&](const Vector3& x) {
+    require_off_the_rims(magnet.ends, x);
+    return stack.field(x, tolerance);
+  });
+}
+
+}  // namespace
+
+Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
+                         std::span<const Vector3> points) const {
+  const RodMagnet magnet = rod_magnet(cilium, deformation);
+  const bool is_wedge = options_.slices == VolumeOptions::Slices::wedge;
+  if (is_wedge) require_body(magnet);
+  if (options_.method == Method::closed_form)
+    return is_wedge ? field_of_discs(magnet, options_.tolerance, points)
+                    : field_of_loops(magnet, options_.tolerance, points);
+  if (options_.method == Method::uniform) return field_of_uniform_volume(magnet, options_, points);
+  const RodInterior interior(magnet);
+  return field_at(points, 1, [&](const Vector3& x) {
+    require_off_the_rims(magnet.ends, x);
+    return rod_field_by_quadrature(magnet, interior, options_.slices, options_.tolerance, x);
+  });
+}
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/sources/adaptive_order.h"
+
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace ciliaval::analytic {
+
+const QuadratureRule& unit_gauss_legendre(std::size_t n) {
+  constexpr std::size_t kept_without_lock = 64;
+  static const std::vector<QuadratureRule> small = [] {
+    std::vector<QuadratureRule> rules(1);
+    for (std::size_t order = 1; order < kept_without_lock; ++order)
+      rules.push_back(gauss_legendre(order, 0, 1));
+    return rules;
+  }();
+  if (n < kept_without_lock) return small.at(n);
+  static std::mutex mutex;
+  static std::map<std::size_t, QuadratureRule> rules;  // nodes of a map never move
+  const std::lock_guard lock(mutex);
+  auto rule = rules.find(n);
+  if (rule == rules.end()) rule = rules.emplace(n, gauss_legendre(n, 0, 1)).first;
+  return rule->second;
+}
+
+void throw_tolerance_missed(const OrderRaising& asked, double reached) {
+  char text[128];
+  std::snprintf(text, sizeof text, " to %.2g of |B|, but is uncertain by %.2g", asked.tolerance,
+                reached);
+  throw SolverError("the " + std::string(asked.integral) + " was asked at " + to_string(asked.x) +
+                    text + ": move the point away from the magnet or ask for a larger tolerance");
+}
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <boost/container/small_vector.hpp>
+#include <cstddef>
+#include <string_view>
+
+#include "analytic/sources/field_points.h"
+#include "problem/error.h"
+#include "problem/lagrange.h"
+
+namespace ciliaval::analytic {
+
+/// The n-point Gauss–Legendre rule on [0, 1], computed once for each n.
+const QuadratureRule& unit_gauss_legendre(std::size_t n);
+
+/// The orders tried one after the other by `raise_orders`.
+inline constexpr std::size_t quadrature_orders[] = {4, 6, 8, 12, 16, 24, 36, 54};
+
+/// What `raise_orders` is asked.
+struct OrderRaising {
+  double tolerance;                      ///< relative to |B|
+  std::size_t highest_order;             ///< one of `quadrature_orders`
+  std::string_view integral;             ///< its name, for the message
+  const Vector3& x;                      ///< the field point, for the message
+  Vector3 other_part = Vector3::Zero();  ///< B that is already known, T
+};
+
+/// Throws the SolverError of an integral that cannot be brought to its tolerance.
+[[noreturn]] void throw_tolerance_missed(const OrderRaising& asked, double reached);
+
+/// Throws it if the estimate of the value's error, rounding included, is above the tolerance.
+inline void require_tolerance(const FieldValue& value, const OrderRaising& asked) {
+  const double reached = value.uncertainty.norm();
+  if (!(reached <= asked.tolerance * value.B.norm()))
+    throw_tolerance_missed(asked, reached / value.B.norm());
+}
+
+/// `other_part` plus the sum of the integrals over `parts`, where `contribution(part, n)` is that
+/// of one part by a rule of order n. Each part's order is raised by itself until the sum of the
+/// differences between each part's last two orders is below tolerance·|B|; that sum is the estimate
+/// returned. It is the error of the last order but one: for a smooth integrand it bounds the error
+/// with room to spare. A part starts with the orders of the levels `first_level(part)` − 1 and
+/// `first_level(part)`: a good guess saves the lower ones, a bad one costs time alone. Throws
+/// SolverError if the tolerance is missed at the highest order.
+template <class Parts, class Contribution, class FirstLevel>
+FieldValue raise_orders(const Parts& parts, Contribution contribution, const OrderRaising& asked,
+                        FirstLevel first_level) {
+  struct State {
+    std::size_t level;
+    Vector3 value;
+    Vector3 difference;
+  };
+  boost::container::small_vector<State, 16> states(parts.size());
+  const auto raise = [&](std::size_t i, const Vector3& previous) {
+    states[i].value = contribution(parts[i], quadrature_orders[states[i].level]);
+    states[i].difference = (states[i].value - previous).cwiseAbs();
+  };
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    states[i].level = first_level(parts[i]);
+    raise(i, contribution(parts[i], quadrature_orders[states[i].level - 1]));
+  }
+  while (true) {
+    FieldValue sum{asked.other_part, Vector3::Zero()};
+    for (const State& state : states) sum += {state.value, state.difference};
+    const double allowed = asked.tolerance * sum.B.norm();
+    if (sum.uncertainty.norm() <= allowed) return sum;
+    const double share = allowed / (2 * static_cast<double>(parts.size()));
+    bool raised = false;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      State& state = states[i];
+      if (quadrature_orders[state.level] >= asked.highest_order) continue;
+      if (!(state.difference.norm() > share)) continue;
+      ++state.level;
+      raise(i, Vector3(state.value));
+      raised = true;
+    }
+    if (!raised) throw_tolerance_missed(asked, sum.uncertainty.norm() / sum.B.norm());
+  }
+}
+
+/// The same from the two lowest orders on.
+template <class Parts, class Contribution>
+FieldValue raise_orders(const Parts& parts, Contribution contribution, const OrderRaising& asked) {
+  return raise_orders(parts, contribution, asked, [](const auto&) { return std::size_t{1}; });
+}
+
+}  // namespace ciliaval::analytic

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/sources/dipole.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "problem/field_model.h"
+
+namespace ciliaval::analytic {
+
+Vector3 dipole_field(const Vector3& moment, const Vector3& offset) {
+  const double a2 = offset.squaredNorm();
+  const double scale = vacuum_permeability / (4 * std::numbers::pi) / (a2 * std::sqrt(a2));
+  return scale * (3 * moment.dot(offset) / a2 * offset - moment);
+}
+
+Vector3 pole_field(double strength, const Vector3& offset) {
+  const double a2 = offset.squaredNorm();
+  return vacuum_permeability / (4 * std::numbers::pi) * strength / (a2 * std::sqrt(a2)) * offset;
+}
+
+}  // namespace ciliaval::analytic

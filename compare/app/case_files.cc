@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/app/case_files.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <system_error>
+
+#include "compare/app/commands/mesh_command.h"
+#include "compare/app/terminal.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+
+namespace fs = std::filesystem;
+
+std::vector<Case> read_cases(const std::vector<fs::path>& files) {
+  std::vector<Case> cases;
+  std::string faults;
+  for (const fs::path& file : files) {
+    try {
+      if (is_study_file(file))
+        throw InputError(file.string() + ": is a study, not a case: `ciliaval study` runs it");
+      if (is_bench_file(file))
+        throw InputError(file.string() + ": is a test bench, not a case: `ciliaval sense` runs it");
+      cases.push_back(read_case(file));
+      for (const std::string& remark : check_case_mesh(cases.back()))
+        print(fmt::format("Remark: {}: {}\n", cases.back().options.solid.mesh.string(), remark));
+    } catch (const InputError& error) {
+      faults += (faults.empty() ? "" : "\n") + std::string(error.what());
+    }
+  }
+  if (!faults.empty()) throw InputError(faults);
+  std::map<std::string, fs::path> file_of;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const auto [first, added] = file_of.emplace(cases[i].name, files[i]);
+    if (!added)
+      throw InputError(
+          fmt::format("`{}` and `{}` both have the name \"{}\": the results of one "
+                      "would replace those of the other; rename one",
+                      first->second.string(), files[i].string(), cases[i].name));
+  }
+  return cases;
+}
+
+bool is_study_file(const fs::path& file) {
+  return file.string().ends_with(".study.toml");
+}
+
+bool is_bench_file(const fs::path& file) {
+  return file.string().ends_with(".sense.toml");
+}
+
+ShippedCases shipped_cases() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  for (const char* data : {CILIAVAL_INSTALLED_DATA, CILIAVAL_SOURCE_DATA}) {
+    ShippedCases cases{(program.parent_path() / data / "cases").lexically_normal(), {}, {}, {}};
+    if (!fs::is_directory(cases.folder, error)) continue;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(cases.folder))
+      if (is_study_file(entry.path()))
+        cases.studies.push_back(entry.path());
+      else if (is_bench_file(entry.path()))
+        cases.benches.push_back(entry.path());
+      else if (entry.path().extension() == ".toml")
+        cases.files.push_back(entry.path());
+    std::sort(cases.files.begin(), cases.files.end());
+    std::sort(cases.studies.begin(), cases.studies.end());
+    std::sort(cases.benches.begin(), cases.benches.end());
+    return cases;
+  }
+  return {};
+}
+
+}  // namespace ciliaval::compare

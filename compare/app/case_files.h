@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "compare/input/case.h"
+
+namespace ciliaval::compare {
+
+/// All cases, or one InputError with the faults of all files; two cases of the same name are one.
+/// Prints what is odd about the users' meshes.
+std::vector<Case> read_cases(const std::vector<std::filesystem::path>& files);
+
+/// Whether a file is called like a study (docs/study.md), NAME.study.toml.
+bool is_study_file(const std::filesystem::path& file);
+
+/// Whether a file is called like a test bench to be simulated (docs/sense.md), NAME.sense.toml.
+bool is_bench_file(const std::filesystem::path& file);
+
+/// The cases, studies and benches that come with the program.
+struct ShippedCases {
+  std::filesystem::path folder;
+  std::vector<std::filesystem::path> files;  ///< in alphabetical order; none if they are not found
+  std::vector<std::filesystem::path> studies;  ///< NAME.study.toml, which are no cases
+  std::vector<std::filesystem::path> benches;  ///< NAME.sense.toml, which are no cases
+};
+
+/// Those installed beside the program, or the build tree's sources.
+ShippedCases shipped_cases();
+
+}  // namespace ciliaval::compare

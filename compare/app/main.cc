@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <regex>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "compare/app/command_line.h"
+#include "compare/app/commands/commands.h"
+#include "fem/parallel.h"
+#include "problem/error.h"
+
+namespace {
+
+using ciliaval::compare::ExitCode;
+
+constexpr const char* examples = R"(
+Examples:
+  ciliaval list                          what there is: models, loads, cases
+  ciliaval validate my.toml              is the case file right?
+  ciliaval run my.toml                   results in results/<case name>
+  ciliaval check                         are the results of all shipped cases as accepted?
+  ciliaval converge my.toml              how far are the results from the converged ones?
+  ciliaval budget my.toml                what does each assumption of the paper's model cost?
+  ciliaval sense my.toml readings.csv    which load did the sensor read?
+  ciliaval claims                        what of the paper holds, by which model?
+  ciliaval study my.study.toml           how does the signal change with stiffness, size, load?
+  ciliaval report                        one page of everything in results/
+  ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
+  ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
+  paraview --script=results/<case name>/vtk/open.py
+
+A run or study that was killed goes on where it was when the same command is given again; --fresh
+starts anew (docs/restart.md).
+
+A case file states the cilium, its load, the sensors and the models, each quantity with its unit
+(docs/cases.md). The results are explained in docs/results.md, meshes of one's own in
+docs/meshes.md.
+
+Exit codes: 0 done, 1 `check`: a result is not as accepted, 2 wrong usage or case file, 3 a model
+did not converge (the results of the others are written; `study`: every point failed), 4 a file
+could not be read or written, 5 `check`, `converge`, `budget`, `sense`: nothing could be compared,
+refined, judged or found.)";
+
+/// A word as a POSIX shell reads it back: in single quotes if it holds anything special.
+std::string shell_word(std::string_view word) {
+  constexpr const char* plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos)
+    return std::string(word);
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// The command line, to be pasted into a shell; without the folder of the program.
+std::string command_line(int argc, char** argv) {
+  std::string text = "ciliaval";
+  for (int i = 1; i < argc; ++i) text += fmt::format(" {}", shell_word(argv[i]));
+  return text;
+}
+
+/// Throws InputError if the first word is not a command; CLI11 would only say that one is missing.
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
+  throw ciliaval::InputError(
+      fmt::format("there is no command `{}`; the commands are {}; "
+                  "`ciliaval --help` explains them",
+                  argv[1], fmt::join(names, ", ")));
+}
+
+/// Help, version or a fault of the command line, as CLI11 words it.
+ExitCode print_parse_result(const CLI::App& app, const CLI::ParseError& error) {
+  const int code = app.exit(error);
+  std::cout.flush();
+  if (!std::cout)
+    throw ciliaval::FileError("cannot write to the standard output; is the disk full?");
+  return code == 0 ? ExitCode::pass : ExitCode::usage;
+}
+
+/// Whether a message starts with `file:line:column: `, which editors jump to.
+bool is_located(const std::string& message) {
+  static const std::regex located("^[^\n]+:[0-9]+:[0-9]+: ");
+  return std::regex_search(message, located, std::regex_constants::match_continuous);
+}
+
+ExitCode execute(int argc, char** argv) {
+  CLI::App app{
+      "Cross-validation of models of magnetic-cilium tactile sensors: runs several models of\n"
+      "the bending and of the magnetic field on one case and says what separates them.",
+      "ciliaval"};
+  app.set_version_flag("--version", ciliaval::compare::version_line());
+  app.footer(examples);
+  app.require_subcommand(1);
+  ciliaval::compare::Command chosen;
+  ciliaval::compare::add_commands(app, command_line(argc, argv), chosen);
+  check_command(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return print_parse_result(app, error);
+  }
+  return chosen();
+}
+
+/// The stderr of a rank that keeps silent.
+int silenced_stderr = STDERR_FILENO;
+
+/// Under mpirun: rank 0 alone reads, writes and prints.
+void start_ranks() {
+  ciliaval::fem::start_mpi();
+  if (ciliaval::fem::rank() == 0) return;
+  silenced_stderr = dup(STDERR_FILENO);
+  for (std::FILE* stream : {stdout, stderr})
+    if (std::freopen("/dev/null", "w", stream) == nullptr)
+      throw ciliaval::FileError("cannot open /dev/null");
+}
+
+/// Says what has gone wrong. Where all ranks meet the same error, rank 0 says it and ends them;
+/// another rank speaks if it has failed alone, which it knows or learns by waiting.
+void print_error(const std::string& message, bool of_this_rank_alone) {
+  using namespace std::chrono_literals;
+  if (ciliaval::fem::rank() > 0 && !of_this_rank_alone) std::this_thread::sleep_for(10s);
+  const std::string line = fmt::format("{}{}\n", is_located(message) ? "" : "ciliaval: ", message);
+  const int file = ciliaval::fem::rank() > 0 ? silenced_stderr : STDERR_FILENO;
+  if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
+}
+
+}  // namespace
+
+/// The one place where errors become exit codes.
+int main(int argc, char** argv) {
+  ExitCode code = ExitCode::pass;
+  std::string message;
+  bool alone = false;
+  try {
+    if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
+    code = execute(argc, argv);
+  } catch (const ciliaval::InputError& error) {
+    code = ExitCode::usage;
+    message = error.what();
+  } catch (const ciliaval::FileError& error) {
+    code = ExitCode::input_output;
+    message = error.what();
+  } catch (const std::filesystem::filesystem_error& error) {
+    code = ExitCode::input_output;
+    message = error.what();
+  } catch (const ciliaval::RankFailure& error) {
+    code = ExitCode::solver;
+    message = error.what();
+    alone = true;
+  } catch (const std::exception& error) {  // SolverError, and what no model should throw
+    code = ExitCode::solver;
+    message = error.what();
+  }
+  if (!message.empty()) {
+    print_error(message, alone);
+    ciliaval::fem::abort_all_ranks(static_cast<int>(code));
+  }
+  return ciliaval::fem::from_first_rank(static_cast<int>(code));
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "compare/input/case.h"
+#include "compare/convergence/extrapolation.h"
+#include "compare/convergence/refinement.h"
+#include "compare/output/provenance.h"
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::compare {
+
+/// One quantity of a case on all levels, finest first: those of compare/check/quantities.h, and
+/// made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and
+/// `…/dB/SENSOR/norm`, |ΔB|.
+struct ConvergedQuantity {
+  std::string id;
+  std::string unit;
+  std::vector<Level> levels;
+  Extrapolation extrapolation;
+};
+
+struct RefinementStudy {
+  std::string model;
+  std::string knob;
+  std::string size_name;
+  std::vector<double> settings;  ///< of the knob, finest first
+  std::vector<double> seconds;   ///< wall time of each
+  std::vector<ConvergedQuantity> quantities;
+  std::string failure;  ///< why there is no study; else empty
+};
+
+/// Runs a case with one of its mechanics models, and the fields on it, or with one field model on
+/// the first mechanics model that serves it, on `count` ≥ 3 levels from the coarsest on, or on all
+/// that there are, and extrapolates each quantity. Tolerances of a mechanics model are those of its
+/// shape: fields are left out. A model that fails on a level leaves none with a study, a quantity
+/// that a level lacks has none. Throws InputError if `count` is below 3.
+RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,
+                                 unsigned int count, const Progress& progress = {});
+
+/// Tables for people: of each model the tip, its angle and the field components, with what the
+/// levels say.
+std::string study_text(const std::vector<RefinementStudy>& studies);
+/// {"schema": 1, "case", "provenance", "studies": [{"model", "knob", "size_name", "settings",
+/// "seconds", "failure", "quantities": [{"id", "unit", "levels": [{"size", "value"}], "conclusive",
+/// "reason", "order", "limit", "uncertainty", "safety"}]}]}
+std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
+                       const Provenance& provenance);
+/// The studies of a text that study_json() made. Throws what nlohmann::json does if it is not.
+std::vector<RefinementStudy> read_studies(const nlohmann::ordered_json& json);
+
+/// A line for each quantity: model, knob, id, unit, conclusive, order, limit, uncertainty, safety,
+/// reason, then size and value of each level.
+std::string study_csv(const std::vector<RefinementStudy>& studies);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The tables [[models.external]] of a case file.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compare/input/case_sections.h"
+
+namespace ciliaval::compare {
+namespace {
+
+constexpr std::size_t most_external = 20;
+constexpr std::string_view path_name = "models.external";
+constexpr std::string_view table_name = "[[models.external]]";
+
+std::optional<std::filesystem::path> read_file_name(const toml::node& node, std::string_view name,
+                                                    Faults& faults) {
+  const std::optional<std::string> text = read_text(node, name, faults);
+  if (!text) return std::nullopt;
+  if (!text->empty() && std::all_of(text->begin(), text->end(), [](char c) {
+        return static_cast<unsigned char>(c) >= 0x20 && c != 0x7F;
+      }))
+    return *text;
+  faults.add(place(node), fmt::format("'{}' must name a file", name));
+  return std::nullopt;
+}
+
+std::vector<std::filesystem::path> read_file_names(const toml::node& node, std::string_view name,
+                                                   Faults& faults) {
+  std::vector<std::filesystem::path> result;
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->empty()) {
+    faults.add(place(node),
+               fmt::format("'{}' must be a list of files, one for each load step", name));
+    return result;
+  }
+  for (const toml::node& element : *list)
+    if (auto file = read_file_name(element, name, faults)) result.push_back(std::move(*file));
+  return result;
+}
+
+void read_name(const toml::node& node, const std::vector<ExternalModel>& others,
+               ExternalModel& model, Faults& faults) {
+  model.name = read_text(node, "name", faults).value_or("");
+  const auto is_name = [&](std::string_view id) { return id == model.name; };
+  if (!is_plain_file_name(model.name))
+    faults.add(place(node), fmt::format("the name {} must be a plain file name: letters, digits, "
+                                        "'.', '_' and '-', not starting with '.' or '-'",
+                                        in_quotes(model.name)));
+  else if (std::any_of(mechanics_ids().begin(), mechanics_ids().end(), is_name) ||
+           std::any_of(field_ids().begin(), field_ids().end(), is_name) ||
+           std::any_of(others.begin(), others.end(),
+                       [&](const ExternalModel& other) { return other.name == model.name; }))
+    faults.add(place(node),
+               fmt::format("the name {} is already that of a model", in_quotes(model.name)));
+}
+
+ExternalModel read_model(Section& table, const std::vector<ExternalModel>& others) {
+  Faults& faults = table.faults();
+  ExternalModel model;
+  if (const toml::node* node = table.require("name")) read_name(*node, others, model, faults);
+  if (const toml::node* node = table.find("centrelines"))
+    model.centreline_files = read_file_names(*node, "centrelines", faults);
+  for (const auto& [key, file] : {std::pair{"readings", &ExternalModel::readings_file},
+                                  std::pair{"background", &ExternalModel::background_file}})
+    if (const toml::node* node = table.find(key))
+      model.*file = read_file_name(*node, key, faults).value_or("");
+  const auto uncertainty = [&](const QuantityKey& k) -> std::optional<double> {
+    const toml::node* node = table.find(k.name);
+    if (node == nullptr) return std::nullopt;
+    return read_value(*node, k.name, k.quantity, k.range, faults);
+  };
+  model.tip_uncertainty = uncertainty(key::tip_uncertainty);
+  model.field_uncertainty = uncertainty(key::field_uncertainty);
+  if (table.find("centrelines") == nullptr && table.find("readings") == nullptr)
+    faults.add(table.where(), fmt::format("{} needs 'centrelines' or 'readings'", table_name));
+  if (table.find("background") != nullptr && table.find("readings") == nullptr)
+    faults.add(place(*table.find("background")), "'background' goes with 'readings'");
+  table.finish();
+  return model;
+}
+
+}  // namespace
+
+void read_external(Section& models, std::vector<ExternalModel>& external) {
+  Faults& faults = models.faults();
+  const toml::node* node = models.find("external");
+  if (node == nullptr) return;
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->size() > most_external) {
+    faults.add(place(*node), fmt::format("the external models are a list of at most {} tables, "
+                                         "found {}: write {} above each",
+                                         most_external, describe(*node), table_name));
+    return;
+  }
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) {
+      faults.add(place(element),
+                 fmt::format("expected a table {}, found {}", table_name, describe(element)));
+      continue;
+    }
+    Section table(element.as_table(), std::string(table_name), std::string(path_name),
+                  place(element), faults);
+    external.push_back(read_model(table, external));
+  }
+}
+
+void check_external(const toml::table& root, const Case& c, Faults& faults) {
+  for (std::size_t i = 0; i < c.external.size(); ++i) {
+    const ExternalModel& model = c.external[i];
+    const auto at = [&](std::string_view key) {
+      const auto node = root.at_path(fmt::format("{}[{}].{}", path_name, i, key));
+      return node.node() == nullptr ? Place{} : place(*node.node());
+    };
+    if (!model.centreline_files.empty() && model.centreline_files.size() != c.load_path.size())
+      faults.add(at("centrelines"), fmt::format("there are {} files of centrelines and {} load "
+                                                "steps: one file for each",
+                                                model.centreline_files.size(), c.load_path.size()));
+    if (!model.readings_file.empty() && c.sensors.empty())
+      faults.add(at("readings"), "readings need a place: add [sensor] with 'position'");
+  }
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/case_sections.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace ciliaval::compare {
+namespace {
+
+constexpr std::size_t most_segments = 1000;
+constexpr std::size_t most_sensors = 10000;
+constexpr std::size_t longest_title = 200;  ///< bytes
+constexpr std::size_t longest_name = 100;
+
+bool is_alphanumeric(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+bool has_control_character(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
+}
+
+void read_segment(Section& table, Segment& segment) {
+  Faults& faults = table.faults();
+  const auto value = [&](const QuantityKey& k, bool required) {
+    const toml::node* node = required ? table.require(k.name) : table.find(k.name);
+    if (node == nullptr) return 0.0;
+    return read_value(*node, k.name, k.quantity, k.range, faults).value_or(0.0);
+  };
+  if (const toml::node* node = table.require("name"))
+    segment.name = read_line(*node, "name", longest_name, faults).value_or("");
+  segment.length = value(key::segment_length, true);
+  segment.young_modulus = value(key::young_modulus, true);
+  segment.poisson_ratio = value(key::poisson_ratio, true);
+  segment.magnetization = value(key::magnetization, false);
+  table.finish();
+}
+
+void read_segments(Section& cilium, std::vector<Segment>& segments) {
+  Faults& faults = cilium.faults();
+  const toml::node* node = cilium.require("segment");
+  if (node == nullptr) return;
+  const toml::array* list = node->as_array();
+  if (list == nullptr) {
+    faults.add(place(*node), fmt::format("the segments are a list of tables, found {}: write "
+                                         "[[cilium.segment]] above each",
+                                         describe(*node)));
+    return;
+  }
+  if (list->empty() || list->size() > most_segments)
+    faults.add(place(*node),
+               fmt::format("a cilium has 1 to {} segments, found {}", most_segments, list->size()));
+  if (list->size() > most_segments) return;
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) {
+      faults.add(place(element),
+                 fmt::format("expected a table [[cilium.segment]], found {}", describe(element)));
+      continue;
+    }
+    Section table(element.as_table(), "[[cilium.segment]]", "cilium.segment", place(element),
+                  faults);
+    Segment segment;
+    read_segment(table, segment);
+    const bool known = std::any_of(segments.begin(), segments.end(),
+                                   [&](const Segment& s) { return s.name == segment.name; });
+    if (known && !segment.name.empty())
+      faults.add(place(*table.find("name")),
+                 fmt::format("the segment name {} is already taken", in_quotes(segment.name)));
+    segments.push_back(std::move(segment));
+  }
+}
+
+using Coordinates = std::optional<Vector3>;
+
+Coordinates read_point(const toml::array& list, const QuantityKey& k, Faults& faults) {
+  if (list.size() != 3) {
+    faults.add(place(list), fmt::format("a point has three coordinates, such as [\"0 mm\", \"0 "
+                                        "mm\", \"-1.55 mm\"]; found {}",
+                                        list.size()));
+    return std::nullopt;
+  }
+  Vector3 point = Vector3::Zero();
+  bool right = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto value = read_value(list[i], k.name, k.quantity, k.range, faults);
+    if (value)
+      point[static_cast<Eigen::Index>(i)] = *value;
+    else
+      right = false;
+  }
+  return right ? Coordinates(point) : std::nullopt;
+}
+
+/// The ids listed under models.mechanics or models.fields.
+std::vector<std::string> read_ids(const toml::node& node, std::string_view name,
+                                  std::span<const std::string_view> ids,
+                                  std::span<const std::string_view> not_yet, Faults& faults) {
+  std::vector<std::string> result;
+  const toml::array* list = node.as_array();
+  if (list == nullptr) {
+    faults.add(place(node), fmt::format("'{}' must be a list, such as [\"{}\"], found {}", name,
+                                        ids.front(), describe(node)));
+    return result;
+  }
+  for (const toml::node& element : *list) {
+    const std::optional<std::string> id = read_choice(element, name, ids, not_yet, faults);
+    if (!id) continue;
+    if (std::find(result.begin(), result.end(), *id) != result.end())
+      faults.add(place(element), fmt::format("'{}' lists {} twice", name, in_quotes(*id)));
+    else
+      result.push_back(*id);
+  }
+  return result;
+}
+
+std::optional<std::array<double, 2>> read_pair(const toml::node& node, const Knob& knob,
+                                               Faults& faults) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 2) {
+    faults.add(
+        place(node),
+        fmt::format("'{}' must be a list of two numbers, such as {}, found {}", knob.name,
+                    to_toml(knob, knob.get(ModelOptions{})),
+                    list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
+    return std::nullopt;
+  }
+  const auto first = read_value((*list)[0], knob.name, knob.quantity, knob.range, faults);
+  const auto second = read_value((*list)[1], knob.name, knob.quantity, knob.range, faults);
+  if (!first || !second) return std::nullopt;
+  return std::array{*first, *second};
+}
+
+void read_knob(const Knob& knob, const toml::node& node, ModelOptions& options, Faults& faults) {
+  const KnobValue fallback = knob.get(options);
+  if (!knob.choices.empty()) {
+    if (auto text = read_choice(node, knob.name, knob.choices, {}, faults))
+      knob.set(options, *text);
+  } else if (std::holds_alternative<std::string>(fallback)) {
+    if (const auto text = read_text(node, knob.name, faults); text && has_control_character(*text))
+      faults.add(place(node), fmt::format("'{}' must not have control characters", knob.name));
+    else if (text)
+      knob.set(options, *text);
+  } else if (std::holds_alternative<bool>(fallback)) {
+    if (const auto* flag = node.as_boolean())
+      knob.set(options, flag->get());
+    else
+      faults.add(place(node),
+                 fmt::format("'{}' must be true or false, found {}", knob.name, describe(node)));
+  } else if (std::holds_alternative<unsigned int>(fallback)) {
+    if (const auto number = read_whole_number(node, knob.name, knob.range, faults))
+      knob.set(options, *number);
+  } else if (std::holds_alternative<std::array<double, 2>>(fallback)) {
+    if (const auto pair = read_pair(node, knob, faults)) knob.set(options, *pair);
+  } else if (const auto value = read_value(node, knob.name, knob.quantity, knob.range, faults)) {
+    knob.set(options, *value);
+  }
+}
+
+/// [[models.potential.plate]]: the boxes that are right by themselves and beside each other.
+void read_plates(Section& potential, std::vector<fem::PermeableBox>& plates) {
+  constexpr std::size_t most_plates = 100;
+  Faults& faults = potential.faults();
+  const toml::node* node = potential.find("plate");
+  if (node == nullptr) return;
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->size() > most_plates) {
+    faults.add(place(*node), fmt::format("the plates are a list of at most {} tables, found {}: "
+                                         "write [[models.potential.plate]] above each",
+                                         most_plates, describe(*node)));
+    return;
+  }
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) {
+      faults.add(
+          place(element),
+          fmt::format("expected a table [[models.potential.plate]], found {}", describe(element)));
+      continue;
+    }
+    const std::size_t before = faults.size();
+    Section table(element.as_table(), "[[models.potential.plate]]", "models.potential.plate",
+                  place(element), faults);
+    fem::PermeableBox plate;
+    const auto corner = [&](const QuantityKey& k, auto set) {
+      const toml::node* value = table.require(k.name);
+      if (value == nullptr) return;
+      if (!value->is_array())
+        faults.add(place(*value), fmt::format("'{}' must be a point, such as [\"-5 mm\", \"-5 "
+                                              "mm\", \"-3 mm\"], found {}",
+                                              k.name, describe(*value)));
+      else if (const Coordinates p = read_point(*value->as_array(), k, faults))
+        set(*p);
+    };
+    corner(key::plate_lower, [&](const Vector3& p) { plate.box.min() = p; });
+    corner(key::plate_upper, [&](const Vector3& p) { plate.box.max() = p; });
+    const QuantityKey& k = key::plate_permeability;
+    if (const toml::node* value = table.require(k.name))
+      plate.relative_permeability =
+          read_value(*value, k.name, k.quantity, k.range, faults).value_or(1.0);
+    table.finish();
+    if (faults.size() == before && !(plate.box.sizes().minCoeff() > 0))
+      faults.add(place(element),
+                 "a plate's 'upper' corner must lie above its 'lower' one in x, y "
+                 "and z");
+    for (const fem::PermeableBox& other : plates)
+      if (faults.size() == before && other.box.intersection(plate.box).sizes().minCoeff() > 0)
+        faults.add(place(element), "the plate overlaps one above: cut them apart");
+    if (faults.size() == before) plates.push_back(plate);
+  }
+}
+
+void read_knobs(Section& models, ModelOptions& options) {
+  const auto read_model = [&](std::string_view id) {
+    Section table = models.section(id);
+    for (const Knob& knob : knobs()) {
+      if (knob.model != id) continue;
+      if (const toml::node* node = table.find(knob.name))
+        read_knob(knob, *node, options, table.faults());
+    }
+    for (const Knob& knob : knobs()) {
+      if (knob.model != id || belongs(knob, options)) continue;
+      if (const toml::node* node = table.find(knob.name))
+        table.faults().add(place(*node),
+                           fmt::format("'{}' goes with {} only", knob.name, knob.goes_with));
+    }
+    if (id == "potential") read_plates(table, options.potential.plates);
+    table.finish();
+  };
+  for (const std::string_view id : mechanics_ids()) read_model(id);
+  for (const std::string_view id : field_ids()) read_model(id);
+}
+
+}  // namespace
+
+bool is_plain_file_name(std::string_view name) {
+  return !name.empty() && name.size() <= longest_name && name.front() != '.' &&
+         name.front() != '-' && std::all_of(name.begin(), name.end(), [](char c) {
+           return is_alphanumeric(c) || c == '.' || c == '_' || c == '-';
+         });
+}
+
+std::optional<std::string> read_line(const toml::node& node, std::string_view name,
+                                     std::size_t longest, Faults& faults) {
+  std::optional<std::string> text = read_text(node, name, faults);
+  if (!text) return std::nullopt;
+  std::string_view fault;
+  if (text->find_first_not_of(' ') == std::string::npos) fault = "must not be empty";
+  if (has_control_character(*text)) fault = "must not have line breaks or control characters";
+  if (text->size() > longest) fault = "is too long";
+  if (fault.empty()) return text;
+  faults.add(place(node), fmt::format("'{}' {} (at most {} bytes)", name, fault, longest));
+  return std::nullopt;
+}
+
+Section require_section(Section& root, std::string_view key) {
+  Section section = root.section(key);
+  if (!section.exists() && root.find(key) == nullptr)
+    root.faults().add({}, fmt::format("the table [{}] is missing", key));
+  return section;
+}
+
+void read_name_and_title(Section& table, std::string& name, std::string& title) {
+  Faults& faults = table.faults();
+  if (const toml::node* node = table.require("name")) {
+    name = read_text(*node, "name", faults).value_or("unknown");
+    if (!is_plain_file_name(name))
+      faults.add(place(*node),
+                 fmt::format("the {} name {} must be a plain file name, because the results go "
+                             "to a folder of that name: letters, digits, '.', '_' and '-', not "
+                             "starting with '.' or '-', 1 to {} characters",
+                             table.path(), in_quotes(name), longest_name));
+  }
+  title = name;
+  if (const toml::node* node = table.find("title"))
+    title = read_line(*node, "title", longest_title, faults).value_or("");
+}
+
+bool read_header(Section& root, Case& c) {
+  const std::size_t before = root.faults().size();
+  Section table = require_section(root, "case");
+  read_name_and_title(table, c.name, c.title);
+  table.finish();
+  return root.faults().size() == before;
+}
+
+bool read_cilium(Section& root, Case& c) {
+  Faults& faults = root.faults();
+  const std::size_t before = faults.size();
+  Section table = require_section(root, "cilium");
+  const QuantityKey& k = key::diameter;
+  if (const toml::node* node = table.require(k.name))
+    c.cilium.diameter = read_value(*node, k.name, k.quantity, k.range, faults).value_or(0.0);
+  read_segments(table, c.cilium.segments);
+  table.finish();
+  return faults.size() == before;
+}
+
+bool read_sensor(Section& root, Case& c) {
+  Faults& faults = root.faults();
+  const std::size_t before = faults.size();
+  Section table = root.section("sensor");
+  if (const toml::node* node = table.require("position")) {
+    const toml::array* list = node->as_array();
+    if (list == nullptr || list->empty() || list->size() > most_sensors) {
+      faults.add(place(*node),
+                 fmt::format("'position' must be a point, such as [\"0 mm\", \"0 mm\", \"-1.55 "
+                             "mm\"], or a list of 1 to {} points, found {}",
+                             most_sensors,
+                             list == nullptr ? describe(*node)
+                                             : fmt::format("a list of {}", list->size())));
+    } else if (std::any_of(list->begin(), list->end(),
+                           [](const toml::node& n) { return n.is_array(); })) {
+      for (const toml::node& element : *list) {
+        if (const toml::array* point = element.as_array()) {
+          if (const Coordinates p = read_point(*point, key::position, faults))
+            c.sensors.push_back(*p);
+        } else {
+          faults.add(place(element),
+                     fmt::format("expected a point among the others, found {}", describe(element)));
+        }
+      }
+    } else if (const Coordinates p = read_point(*list, key::position, faults)) {
+      c.sensors.push_back(*p);
+    }
+  }
+  table.finish();
+  return faults.size() == before;
+}
+
+bool read_models(Section& root, Case& c) {
+  Faults& faults = root.faults();
+  const std::size_t before = faults.size();
+  Section table = require_section(root, "models");
+  if (const toml::node* node = table.require("mechanics")) {
+    const std::size_t faults_before = faults.size();
+    c.mechanics = read_ids(*node, "mechanics", mechanics_ids(), {}, faults);
+    if (c.mechanics.empty() && faults.size() == faults_before)
+      faults.add(place(*node), fmt::format("'mechanics' is empty: name at least one of {}",
+                                           fmt::join(mechanics_ids(), ", ")));
+  }
+  if (const toml::node* node = table.find("fields"))
+    c.fields = read_ids(*node, "fields", field_ids(), {}, faults);
+  read_knobs(table, c.options);
+  read_external(table, c.external);
+  table.finish();
+  return faults.size() == before;
+}
+
+}  // namespace ciliaval::compare

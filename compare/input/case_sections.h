@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/input/case.h"
+#include "compare/input/case_toml.h"
+
+namespace ciliaval::compare {
+
+/// Each function reads one table of a case file into the case and adds a fault for everything in it
+/// that is wrong by itself; what contradicts another table is check_together()'s. They return
+/// whether the table had no fault.
+
+bool read_header(Section& root, Case& c);  ///< [case]
+bool read_cilium(Section& root, Case& c);  ///< [cilium], [[cilium.segment]]
+bool read_load(Section& root, Case& c);    ///< [load]; needs the diameter for `velocity`
+bool read_sensor(Section& root, Case& c);  ///< [sensor]
+bool read_models(Section& root, Case& c);  ///< [models], [models.<id>]
+
+/// [[models.external]], a part of [models]: the tables, not the files that they name.
+void read_external(Section& models, std::vector<ExternalModel>& external);
+/// Faults between these tables and the load and the sensors.
+void check_external(const toml::table& root, const Case& c, Faults& faults);
+
+/// The tables that had no fault by themselves.
+struct RightTables {
+  bool cilium = false;
+  bool load = false;
+  bool models = false;
+};
+
+/// Faults between tables of which each is right by itself: a contact height or section beyond the
+/// tip, a contact kernel that does not fit, fields without a sensor or a magnet, more results than
+/// a machine can hold, …
+void check_together(const toml::table& root, const Case& c, const RightTables& right,
+                    Faults& faults);
+
+/// Puts a section that lies within rounding of a segment's end exactly there, so that "20 mm" is
+/// the tip of 3 mm + 17 mm.
+void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
+
+/// A text for people: a line, not empty, of at most `longest` bytes. Adds a fault otherwise.
+std::optional<std::string> read_line(const toml::node& node, std::string_view name,
+                                     std::size_t longest, Faults& faults);
+
+/// A table that must be there: one that is missing is a fault.
+Section require_section(Section& root, std::string_view key);
+
+/// `name`, which names a folder of results, and `title`, by default the name.
+void read_name_and_title(Section& table, std::string& name, std::string& title);
+
+/// Whether the name is a plain file name: [A-Za-z0-9._-], 1 to 100 long, not starting with '.' or
+/// '-'.
+bool is_plain_file_name(std::string_view name);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/case_toml.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "problem/error.h"
+#include "problem/support/words.h"
+
+namespace ciliaval::compare {
+namespace {
+
+constexpr std::size_t most_faults = 50;  ///< that a report lists
+
+Place place(const toml::source_region& region) {
+  if (region.begin.line == 0) return {};
+  return {region.begin.line, region.begin.column};
+}
+
+template <typename Texts>
+std::string valid(const Texts& texts) {
+  return fmt::format(" (valid: {})", fmt::join(texts, ", "));
+}
+
+/// What a later version reads under this dotted name, or null.
+const LaterKey* later(std::string_view name) {
+  const auto all = later_keys();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const LaterKey& k) { return k.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+/// The number as the file states it.
+std::optional<double> number(const toml::node& node) {
+  if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
+  if (const auto* real = node.as_floating_point()) return real->get();
+  return std::nullopt;
+}
+
+/// The value in SI units. Throws InputError.
+double to_si(const toml::node& node, const Quantity& quantity) {
+  const auto* text = node.as_string();
+  if (quantity.unit.empty()) {
+    if (text != nullptr)
+      throw InputError(fmt::format("write a plain number without quotes and unit, such as {}",
+                                   quantity.example));
+    const std::optional<double> value = number(node);
+    if (!value) throw InputError(fmt::format("expected a number, found {}", describe(node)));
+    if (!std::isfinite(*value)) throw InputError("the number must be finite");
+    return *value;
+  }
+  if (text != nullptr) return parse_quantity(text->get(), quantity);
+  if (number(node))
+    throw InputError(fmt::format("{} has no unit: write {} {}, such as \"{}\"", describe(node),
+                                 quantity.article, quantity.name, quantity.example));
+  throw InputError(fmt::format("expected {} {}, such as \"{}\", found {}", quantity.article,
+                               quantity.name, quantity.example, describe(node)));
+}
+
+/// "'length' is 200 m, but must be from 1e-09 m to 100 m: why".
+std::string out_of_range(const toml::node& node, std::string_view name, double value,
+                         const Quantity& quantity, const Range& range) {
+  const std::string unit = quantity.unit.empty() ? "" : fmt::format(" {}", quantity.unit);
+  const auto* text = node.as_string();
+  const std::string given = text != nullptr ? fmt::format(" ({})", in_quotes(text->get())) : "";
+  return fmt::format("'{}' is {:g}{}{}, but must be {}: {}", name, value, unit, given,
+                     describe(range, quantity), range.reason);
+}
+
+}  // namespace
+
+Place place(const toml::node& node) {
+  return place(node.source());
+}
+
+Place place(const toml::key& key) {
+  return place(key.source());
+}
+
+std::string Faults::report(std::string_view file) const {
+  std::vector<Fault> sorted = faults_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Fault& a, const Fault& b) {
+    return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
+  });
+  std::string text;
+  for (std::size_t i = 0; i < sorted.size() && i < most_faults; ++i)
+    text += fmt::format("{}{}:{}:{}: {}", i == 0 ? "" : "\n", file, sorted[i].where.line,
+                        sorted[i].where.column, sorted[i].what);
+  if (sorted.size() > most_faults)
+    text += fmt::format("\n{}: {} more faults", file, sorted.size() - most_faults);
+  return text;
+}
+
+Section::Section(const toml::table* table, std::string name, std::string path, Place where,
+                 Faults& faults)
+    : table_(table),
+      name_(std::move(name)),
+      path_(std::move(path)),
+      where_(where),
+      faults_(&faults) {}
+
+const toml::node* Section::find(std::string_view key) {
+  if (std::find(valid_.begin(), valid_.end(), key) == valid_.end()) valid_.emplace_back(key);
+  return table_ == nullptr ? nullptr : table_->get(key);
+}
+
+const toml::node* Section::require(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr && exists()) missing_.emplace_back(key);
+  return node;
+}
+
+Section Section::section(std::string_view key) {
+  const toml::node* node = find(key);
+  const std::string path = path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+  const std::string name = fmt::format("[{}]", path);
+  if (node == nullptr) return {nullptr, name, path, where_, *faults_};
+  if (!node->is_table())
+    faults_->add(place(*node),
+                 fmt::format("expected the table {}, found {}", name, describe(*node)));
+  return {node->as_table(), name, path, place(*node), *faults_};
+}
+
+void Section::finish() const {
+  if (table_ == nullptr) return;
+  const std::vector<std::string_view> candidates(valid_.begin(), valid_.end());
+  std::vector<std::string> missing = missing_;
+  for (const auto& [key, node] : *table_) {
+    if (std::find(valid_.begin(), valid_.end(), key.str()) != valid_.end()) continue;
+    const std::string full =
+        path_.empty() ? std::string(key.str()) : fmt::format("{}.{}", path_, key.str());
+    if (const LaterKey* k = later(full)) {
+      faults_->add(place(key),
+                   fmt::format("{} is not available in this version: {}", in_quotes(full), k->doc));
+      continue;
+    }
+    std::erase(missing, nearest(key.str(), candidates));
+    faults_->add(place(key), fmt::format("unknown key {} in {}{}{}", in_quotes(key.str()), name_,
+                                         valid(valid_), did_you_mean(key.str(), candidates)));
+  }
+  for (const std::string& key : missing)
+    faults_->add(where_, fmt::format("{} needs '{}'", name_, key));
+}
+
+std::string describe(const toml::node& node) {
+  if (const auto* v = node.as_integer()) return fmt::format("the number {}", v->get());
+  if (const auto* v = node.as_floating_point()) return fmt::format("the number {:g}", v->get());
+  if (const auto* v = node.as_boolean()) return v->get() ? "true" : "false";
+  if (const auto* v = node.as_string()) return fmt::format("the text {}", in_quotes(v->get()));
+  if (node.is_array()) return "a list";
+  if (node.is_table()) return "a table";
+  return "a date or time";
+}
+
+std::optional<std::string> read_text(const toml::node& node, std::string_view name,
+                                     Faults& faults) {
+  if (const auto* text = node.as_string()) return text->get();
+  faults.add(place(node),
+             fmt::format("'{}' must be a text in quotes, found {}", name, describe(node)));
+  return std::nullopt;
+}
+
+std::optional<std::string> read_choice(const toml::node& node, std::string_view name,
+                                       std::span<const std::string_view> choices,
+                                       std::span<const std::string_view> not_yet, Faults& faults) {
+  std::optional<std::string> text = read_text(node, name, faults);
+  if (!text) return std::nullopt;
+  if (std::find(choices.begin(), choices.end(), *text) != choices.end()) return text;
+  const bool planned = std::find(not_yet.begin(), not_yet.end(), *text) != not_yet.end();
+  faults.add(place(node), planned ? fmt::format("'{}' = {} is not available in this version{}",
+                                                name, in_quotes(*text), valid(choices))
+                                  : fmt::format("'{}' cannot be {}{}{}", name, in_quotes(*text),
+                                                valid(choices), did_you_mean(*text, choices)));
+  return std::nullopt;
+}
+
+std::optional<double> read_value(const toml::node& node, std::string_view name,
+                                 const Quantity& quantity, const Range& range, Faults& faults) {
+  try {
+    const double value = to_si(node, quantity);
+    if (range.contains(value)) return value;
+    faults.add(place(node), out_of_range(node, name, value, quantity, range));
+  } catch (const InputError& fault) {
+    faults.add(place(node), fmt::format("'{}': {}", name, fault.what()));
+  }
+  return std::nullopt;
+}
+
+std::optional<unsigned int> read_whole_number(const toml::node& node, std::string_view name,
+                                              const Range& range, Faults& faults) {
+  const auto* integer = node.as_integer();
+  if (integer == nullptr) {
+    faults.add(place(node),
+               fmt::format("'{}' must be a whole number, found {}", name, describe(node)));
+    return std::nullopt;
+  }
+  const auto value = static_cast<double>(integer->get());
+  if (range.contains(value)) return static_cast<unsigned int>(integer->get());
+  faults.add(place(node), out_of_range(node, name, value, quantity::number, range));
+  return std::nullopt;
+}
+
+}  // namespace ciliaval::compare

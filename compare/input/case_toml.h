@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/input/case_keys.h"
+
+namespace ciliaval::compare {
+
+/// A place in a file, from 1.
+struct Place {
+  std::size_t line = 1;
+  std::size_t column = 1;
+};
+Place place(const toml::node& node);
+Place place(const toml::key& key);
+
+/// The faults found in a file, each with its place.
+class Faults {
+ public:
+  void add(Place where, std::string what) { faults_.push_back({where, std::move(what)}); }
+  std::size_t size() const { return faults_.size(); }
+  bool empty() const { return faults_.empty(); }
+  /// What the first fault that was added says.
+  const std::string& first() const { return faults_.front().what; }
+  /// `file:line:column: what`, a line each, in the order of the file; of very many the first.
+  std::string report(std::string_view file) const;
+
+ private:
+  struct Fault {
+    Place where;
+    std::string what;
+  };
+  std::vector<Fault> faults_;
+};
+
+/// A table of a file that remembers which keys it was asked for, so that the others can be refused.
+class Section {
+ public:
+  /// `name` as a person writes it, "[load]"; `path` dotted, "load". A null table has no keys.
+  Section(const toml::table* table, std::string name, std::string path, Place where,
+          Faults& faults);
+
+  bool exists() const { return table_ != nullptr; }
+  const toml::table* table() const { return table_; }
+  const std::string& name() const { return name_; }
+  const std::string& path() const { return path_; }
+  Place where() const { return where_; }
+  Faults& faults() const { return *faults_; }
+
+  /// The key's value, or null. The key is a valid one from now on.
+  const toml::node* find(std::string_view key);
+  /// The same; a missing key is a fault at the table's place, which finish() adds.
+  const toml::node* require(std::string_view key);
+  /// The sub-table of this name; a value that is no table is a fault.
+  Section section(std::string_view key);
+  /// Adds a fault for each key that was not asked for (unknown, or of a later version) and for each
+  /// that is missing, unless an unknown one looks like it.
+  void finish() const;
+
+ private:
+  const toml::table* table_;
+  std::string name_;
+  std::string path_;
+  Place where_;
+  Faults* faults_;
+  std::vector<std::string> valid_;
+  std::vector<std::string> missing_;
+};
+
+/// The text of a node, or a fault.
+std::optional<std::string> read_text(const toml::node& node, std::string_view name, Faults& faults);
+
+/// A text that is one of the choices; `not_yet` are refused as not available in this version.
+std::optional<std::string> read_choice(const toml::node& node, std::string_view name,
+                                       std::span<const std::string_view> choices,
+                                       std::span<const std::string_view> not_yet, Faults& faults);
+
+/// A quantity (text with a unit) or a plain number, as `quantity` says, in its range; or a fault.
+std::optional<double> read_value(const toml::node& node, std::string_view name,
+                                 const Quantity& quantity, const Range& range, Faults& faults);
+
+/// A whole number in its range, or a fault.
+std::optional<unsigned int> read_whole_number(const toml::node& node, std::string_view name,
+                                              const Range& range, Faults& faults);
+
+/// What stands in the file, for messages: "a table", "the number 3".
+std::string describe(const toml::node& node);
+
+}  // namespace ciliaval::compare

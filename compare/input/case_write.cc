@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A case written back as TOML.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "compare/input/case.h"
+#include "compare/input/case_keys.h"
+
+namespace ciliaval::compare {
+namespace {
+
+/// The text in quotes, escaped where TOML wants it.
+std::string toml_text(const std::string& text) {
+  std::ostringstream out;
+  const toml::table holder{{"t", text}};
+  // toml_formatter writes `t = '…'`; the value is what follows.
+  out << toml::toml_formatter(holder);
+  return out.str().substr(4);
+}
+
+std::string list(const std::vector<std::string>& texts) {
+  return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string value(const QuantityKey& k, double v) {
+  const std::string text = format_quantity(v, k.quantity);
+  return k.quantity.unit.empty() ? text : fmt::format("\"{}\"", text);
+}
+
+std::string line(const QuantityKey& k, double v) {
+  return fmt::format("{} = {}\n", k.name, value(k, v));
+}
+
+/// The values of a key along a load path: one value, if all are the same and another key's list
+/// tells the number of steps.
+enum class Listed { if_they_differ, always };
+std::string line(const QuantityKey& k, const std::vector<double>& values,
+                 Listed listed = Listed::if_they_differ) {
+  const bool same = std::all_of(values.begin(), values.end(), [&](double v) {
+    return v == values.front() && std::signbit(v) == std::signbit(values.front());
+  });
+  if (values.size() == 1 || (same && listed == Listed::if_they_differ))
+    return line(k, values.front());
+  std::vector<std::string> texts;
+  texts.reserve(values.size());
+  for (const double v : values) texts.push_back(value(k, v));
+  return fmt::format("{} = {}\n", k.name, list(texts));
+}
+
+/// One parameter of every step of a path of loads of type T.
+template <typename T>
+std::vector<double> along(const LoadPath& path, double T::*parameter) {
+  std::vector<double> values;
+  values.reserve(path.size());
+  for (const Load& load : path) values.push_back(std::get<T>(load).*parameter);
+  return values;
+}
+
+std::string parameters(const Case& c, const ContactLoad&) {
+  return line(key::load_force, along(c.load_path, &ContactLoad::force), Listed::always) +
+         line(key::height, along(c.load_path, &ContactLoad::height)) +
+         line(key::azimuth, along(c.load_path, &ContactLoad::azimuth));
+}
+
+std::string parameters(const Case& c, const FlowLoad&) {
+  const std::string azimuth = line(key::azimuth, along(c.load_path, &FlowLoad::azimuth));
+  if (c.flow_velocity.empty())
+    return line(key::force_per_height, along(c.load_path, &FlowLoad::force_per_height),
+                Listed::always) +
+           azimuth;
+  return line(key::velocity, c.flow_velocity, Listed::always) + line(key::density, c.flow_density) +
+         line(key::drag_coefficient, c.flow_drag_coefficient) + azimuth;
+}
+
+std::string parameters(const Case& c, const SectionLoad&) {
+  return line(key::load_force, along(c.load_path, &SectionLoad::force), Listed::always) +
+         line(key::arclength, along(c.load_path, &SectionLoad::arclength)) +
+         line(key::azimuth, along(c.load_path, &SectionLoad::azimuth));
+}
+
+std::string parameters(const Case& c, const DeadLoad&) {
+  return line(key::force_per_length, along(c.load_path, &DeadLoad::force_per_length),
+              Listed::always) +
+         line(key::azimuth, along(c.load_path, &DeadLoad::azimuth));
+}
+
+std::string parameters(const Case& c, const ProbeLoad&) {
+  return line(key::displacement, along(c.load_path, &ProbeLoad::displacement), Listed::always) +
+         line(key::height, along(c.load_path, &ProbeLoad::height)) +
+         line(key::azimuth, along(c.load_path, &ProbeLoad::azimuth));
+}
+
+std::string cilium(const Case& c) {
+  std::string text = "\n[cilium]\n" + line(key::diameter, c.cilium.diameter);
+  for (const Segment& s : c.cilium.segments) {
+    text += fmt::format("\n[[cilium.segment]]\nname = {}\n", toml_text(s.name));
+    text += line(key::segment_length, s.length) + line(key::young_modulus, s.young_modulus) +
+            line(key::poisson_ratio, s.poisson_ratio) + line(key::magnetization, s.magnetization);
+  }
+  return text;
+}
+
+std::string sensor(const Case& c) {
+  if (c.sensors.empty()) return {};
+  std::vector<std::string> points;
+  for (const Vector3& p : c.sensors) {
+    std::vector<std::string> coordinates;
+    for (const double x : p) coordinates.push_back(value(key::position, x));
+    points.push_back(list(coordinates));
+  }
+  return fmt::format("\n[sensor]\nposition = {}\n",
+                     points.size() == 1 ? points.front() : list(points));
+}
+
+std::string external(const ExternalModel& model) {
+  std::string text =
+      fmt::format("\n[[{}]]\nname = {}\n", key::external_table, toml_text(model.name));
+  std::vector<std::string> files;
+  for (const std::filesystem::path& file : model.centreline_files)
+    files.push_back(toml_text(file.string()));
+  if (!files.empty()) text += fmt::format("centrelines = {}\n", list(files));
+  if (!model.readings_file.empty())
+    text += fmt::format("readings = {}\n", toml_text(model.readings_file.string()));
+  if (!model.background_file.empty())
+    text += fmt::format("background = {}\n", toml_text(model.background_file.string()));
+  if (model.tip_uncertainty) text += line(key::tip_uncertainty, *model.tip_uncertainty);
+  if (model.field_uncertainty) text += line(key::field_uncertainty, *model.field_uncertainty);
+  return text;
+}
+
+std::string models(const Case& c) {
+  const auto ids = [](const std::vector<std::string>& names) {
+    std::vector<std::string> texts;
+    texts.reserve(names.size());
+    for (const std::string& name : names) texts.push_back(fmt::format("\"{}\"", name));
+    return list(texts);
+  };
+  std::string text =
+      fmt::format("\n[models]\nmechanics = {}\nfields = {}\n", ids(c.mechanics), ids(c.fields));
+  std::string_view model;
+  for (const Knob& knob : knobs()) {
+    if (knob.model != model) text += fmt::format("\n[models.{}]\n", knob.model);
+    model = knob.model;
+    if (!belongs(knob, c.options)) continue;
+    text += fmt::format("{} = {}\n", knob.name, to_toml(knob, knob.get(c.options)));
+  }
+  const auto corner = [](const QuantityKey& k, const Vector3& x) {
+    return fmt::format("{} = {}\n", k.name, list({value(k, x[0]), value(k, x[1]), value(k, x[2])}));
+  };
+  for (const fem::PermeableBox& plate : c.options.potential.plates)
+    text += fmt::format("\n[[{}]]\n", key::plate_table) +
+            corner(key::plate_lower, plate.box.min()) + corner(key::plate_upper, plate.box.max()) +
+            line(key::plate_permeability, plate.relative_permeability);
+  for (const ExternalModel& given : c.external) text += external(given);
+  return text;
+}
+
+}  // namespace
+
+std::string to_toml(const Case& c) {
+  std::string text =
+      fmt::format("[case]\nname = {}\ntitle = {}\n", toml_text(c.name), toml_text(c.title));
+  text += cilium(c);
+  if (!c.load_path.empty()) {
+    text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));
+    text += std::visit([&c](const auto& load) { return parameters(c, load); }, c.load_path.front());
+  }
+  return text + sensor(c) + models(c);
+}
+
+}  // namespace ciliaval::compare

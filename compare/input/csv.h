@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/input/case_toml.h"
+#include "compare/input/units.h"
+
+namespace ciliaval::compare {
+
+/// A column that a CSV file may have.
+struct CsvColumn {
+  enum class Kind {
+    quantity,  ///< numbers; the header gives the unit, "x [mm]"
+    word       ///< texts, without a unit
+  };
+  std::string_view name;
+  Kind kind = Kind::quantity;
+  Quantity quantity = quantity::number;
+  bool required = true;
+};
+
+/// The columns of a CSV file in the order in which they were asked for; one that the file does not
+/// have is empty.
+struct CsvTable {
+  std::vector<std::vector<double>> numbers;  ///< SI units
+  std::vector<std::vector<std::string>> words;
+  std::vector<Place> rows;    ///< where each row begins
+  std::vector<Place> header;  ///< where each column's name stands
+
+  bool has(std::size_t column) const { return !numbers[column].empty() || !words[column].empty(); }
+};
+
+/// Reads a CSV file: a header line of column names, each with its unit in brackets ("x [mm]", "x
+/// (mm)"), then rows of as many cells; commas between the cells, points in the numbers, cells in
+/// double quotes where they must be (RFC 4180), LF or CRLF, UTF-8 with or without a byte order
+/// mark. Empty lines and lines that begin with # or % are skipped; "# units: x m, y m" gives the
+/// units of columns without brackets, as the centrelines that `ciliaval run` writes have them.
+/// Columns named in `ignored` are. Every fault is added with its place: an unknown, repeated or
+/// missing column, a wrong unit, a wrong number of cells, no finite number, semicolons, tabs,
+/// UTF-16, no rows.
+CsvTable read_csv(std::string_view text, std::span<const CsvColumn> columns,
+                  std::span<const std::string_view> ignored, Faults& faults);
+
+/// The text of a file. Throws InputError if there is none, or of more than 100 MB.
+std::string read_csv_file(const std::filesystem::path& file);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/external/background.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace ciliaval::compare {
+namespace {
+
+using Kind = CsvColumn::Kind;
+
+constexpr double turn = 2 * std::numbers::pi;
+
+}  // namespace
+
+Vector3 row_vector(const CsvTable& table, std::size_t first, std::size_t row) {
+  return {table.numbers[first][row], table.numbers[first + 1][row], table.numbers[first + 2][row]};
+}
+
+std::optional<std::size_t> index_in(const std::string& text, std::size_t bound) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value >= bound)
+    return std::nullopt;
+  return value;
+}
+
+std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, std::size_t row,
+                                     std::size_t sensors, Faults& faults) {
+  if (!table.has(column)) return 0;
+  const auto sensor = index_in(table.words[column][row], sensors);
+  if (!sensor)
+    faults.add(table.rows[row], fmt::format("the sensor {} is none of the case's, 0 to {}",
+                                            in_quotes(table.words[column][row]), sensors - 1));
+  return sensor;
+}
+
+std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns) {
+  for (const std::string_view name : {"Bx", "By", "Bz", "dBx", "dBy", "dBz"})
+    columns.push_back({name, Kind::quantity, quantity::flux_density, false});
+  return columns;
+}
+
+void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
+                             Faults& faults) {
+  const auto count = [&](std::size_t first) {
+    int n = 0;
+    for (std::size_t c = first; c < first + 3; ++c) n += table.has(c) ? 1 : 0;
+    return n;
+  };
+  const int fields = count(field);
+  const int changes = count(change);
+  if (fields + changes != 3 || (fields != 0 && changes != 0))
+    faults.add({},
+               "the columns must be either Bx, By, Bz, or dBx, dBy, dBz for the change against "
+               "the undeformed cilium");
+}
+
+double apart(double a, double b) {
+  return std::abs(std::remainder(a - b, turn));
+}
+
+Background::Background(std::string_view text, std::size_t sensors, Faults& faults)
+    : rows_(sensors) {
+  const std::array<CsvColumn, 5> columns{{{"azimuth", Kind::quantity, quantity::angle, true},
+                                          {"Bx", Kind::quantity, quantity::flux_density, true},
+                                          {"By", Kind::quantity, quantity::flux_density, true},
+                                          {"Bz", Kind::quantity, quantity::flux_density, true},
+                                          {"sensor", Kind::word, quantity::number, false}}};
+  const CsvTable table = read_csv(text, columns, {}, faults);
+  if (!faults.empty()) return;
+  const bool for_all = !table.has(4);
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const auto sensor = sensor_of(table, 4, i, sensors, faults);
+    if (!sensor) continue;
+    const double azimuth = table.numbers[0][i] - turn * std::floor(table.numbers[0][i] / turn);
+    for (std::size_t s = for_all ? 0 : *sensor; s < (for_all ? sensors : *sensor + 1); ++s) {
+      if (std::any_of(rows_[s].begin(), rows_[s].end(), [&](const Row& row) {
+            return apart(row.azimuth, azimuth) <= same_azimuth;
+          })) {
+        faults.add(table.rows[i],
+                   fmt::format("there is a second row of the azimuth {:g} deg and sensor {}",
+                               azimuth * 180 / std::numbers::pi, s));
+        break;
+      }
+      rows_[s].push_back({azimuth, row_vector(table, 1, i)});
+    }
+  }
+  for (std::size_t s = 0; s < sensors; ++s) {
+    if (rows_[s].empty() && faults.empty())
+      faults.add({}, fmt::format("there is no row of sensor {}", s));
+    std::sort(rows_[s].begin(), rows_[s].end(),
+              [](const Row& a, const Row& b) { return a.azimuth < b.azimuth; });
+  }
+}
+
+std::optional<Vector3> Background::at(double azimuth, std::size_t sensor) const {
+  const std::vector<Row>& rows = rows_.at(sensor);
+  for (const Row& row : rows)
+    if (apart(row.azimuth, azimuth) <= same_azimuth) return row.B;
+  if (rows.size() < 2) return std::nullopt;
+  const double phi = azimuth - turn * std::floor(azimuth / turn);
+  const auto above =
+      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.azimuth > phi; });
+  const Row& next = above == rows.end() ? rows.front() : *above;
+  const Row& last = above == rows.begin() ? rows.back() : *(above - 1);
+  const auto from_last = [&](double a) { return a - last.azimuth + (a < last.azimuth ? turn : 0); };
+  const double t = from_last(phi) / from_last(next.azimuth);
+  return (1 - t) * last.B + t * next.B;
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/units.h"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "problem/error.h"
+#include "problem/field_model.h"
+#include "problem/support/words.h"
+
+namespace ciliaval::compare {
+namespace {
+
+constexpr std::string_view blanks = " \t";
+constexpr std::size_t longest_unit = 64;     ///< bytes; UDUNITS' parser is not asked to read more
+constexpr std::size_t longest_exponent = 2;  ///< digits
+
+struct FreeUnit {
+  void operator()(ut_unit* unit) const { ut_free(unit); }
+};
+using Unit = std::unique_ptr<ut_unit, FreeUnit>;
+
+ut_system* unit_system() {
+  static ut_system* const system = [] {
+    ut_set_error_message_handler(ut_ignore);  // UDUNITS would write to stderr
+    return ut_read_xml(nullptr);              // lives as long as the program
+  }();
+  if (system == nullptr)
+    throw FileError(
+        "the units' database of UDUNITS-2 cannot be read; is it installed, and does the "
+        "environment variable UDUNITS2_XML_PATH, if set, name it?");
+  return system;
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// A letter of a unit's name; '_', '%' and bytes of UTF-8 sequences (µ, Ω, °, ²) count as such.
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%' ||
+         static_cast<unsigned char>(c) >= 0x80;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// A character beyond ASCII and what is read in its place.
+struct Spelling {
+  std::string_view written;
+  std::string_view read;
+};
+constexpr Spelling spellings[]{{"\u00A0", " "}, {"\u2009", " "}, {"\u202F", " "}, {"\u2212", "-"}};
+constexpr Spelling superscripts[]{{"⁺", "+"}, {"⁻", "-"}, {"⁰", "0"}, {"¹", "1"},
+                                  {"²", "2"}, {"³", "3"}, {"⁴", "4"}, {"⁵", "5"},
+                                  {"⁶", "6"}, {"⁷", "7"}, {"⁸", "8"}, {"⁹", "9"}};
+
+/// The spelling that the text starts with, or null.
+const Spelling* at_start(std::string_view text, std::span<const Spelling> all) {
+  for (const Spelling& spelling : all)
+    if (text.starts_with(spelling.written)) return &spelling;
+  return nullptr;
+}
+
+/// The text with the blanks of typesetters and the minus sign as those of ASCII, and exponents in
+/// superscript as ^-2.
+std::string in_ascii(std::string_view text) {
+  std::string result;
+  for (bool raised = false; !text.empty();) {
+    const Spelling* const superscript = at_start(text, superscripts);
+    const Spelling* const other = at_start(text, spellings);
+    if (superscript != nullptr && !raised) result += '^';
+    raised = superscript != nullptr;
+    const Spelling* const spelling = superscript != nullptr ? superscript : other;
+    result += spelling != nullptr ? spelling->read : text.substr(0, 1);
+    text.remove_prefix(spelling != nullptr ? spelling->written.size() : 1);
+  }
+  return result;
+}
+
+std::string wanted(const Quantity& expected) {
+  return fmt::format("write {} {}, such as \"{}\"", expected.article, expected.name,
+                     expected.example);
+}
+
+/// Reads a unit from left to right.
+struct UnitReader {
+  std::string_view rest;
+
+  char next() const { return rest.empty() ? '\0' : rest.front(); }
+  bool take(char c) {
+    if (next() != c) return false;
+    rest.remove_prefix(1);
+    return true;
+  }
+  std::size_t take_all(bool (*kind)(char)) {
+    std::size_t count = 0;
+    for (; !rest.empty() && kind(rest.front()); rest.remove_prefix(1)) ++count;
+    return count;
+  }
+  std::string_view take_name() {
+    const std::string_view before = rest;
+    if (next() == '_') return {};  // the rest of a number such as 1_000
+    return before.substr(0, take_all(is_letter));
+  }
+  /// Nothing, "2", "-2", "^2", "^-2" or "**-2". Returns whether that is so.
+  bool take_exponent() {
+    const bool raised = take('^') || (rest.starts_with("**") && take('*') && take('*'));
+    const bool is_signed = take('-') || take('+');
+    const std::size_t digits = take_all(is_digit);
+    return digits <= longest_exponent && (digits > 0 || (!raised && !is_signed));
+  }
+  /// Blanks, '.', '*' or '/', blanks. Returns whether there was any.
+  bool take_separator() {
+    const std::size_t before = rest.size();
+    const auto blank = [](char c) { return blanks.find(c) != std::string_view::npos; };
+    take_all(blank);
+    if (next() == '.' || next() == '*' || next() == '/') rest.remove_prefix(1);
+    take_all(blank);
+    return rest.size() != before;
+  }
+};
+
+/// Words that make an offset of what follows.
+bool is_offset_word(std::string_view name) {
+  return name == "since" || name == "after" || name == "from" || name == "ref";
+}
+
+/// Whether the unit is a product or quotient of names with small exponents, as "kg m s^-2" or
+/// "N/(mm s)". What else UDUNITS reads (factors as in "3 mm 2", offsets as in "m @ 3", logarithms)
+/// is not what a person meant, and on some of the rest its parser loses memory.
+bool is_product_of_names(std::string_view unit) {
+  UnitReader reader{unit};
+  int open = 0;
+  while (true) {
+    while (reader.take('(')) ++open;
+    const std::string_view name = reader.take_name();
+    if (name.empty() || is_offset_word(name) || !reader.take_exponent()) return false;
+    while (open > 0 && reader.take(')')) {
+      --open;
+      if (!reader.take_exponent()) return false;
+    }
+    if (reader.rest.empty()) return open == 0;
+    if (!reader.take_separator()) return false;
+  }
+}
+
+/// "deg", which UDUNITS does not know, as "degree".
+std::string with_degrees(std::string_view unit) {
+  constexpr std::string_view word = "deg";
+  std::string result;
+  for (std::size_t i = 0; i < unit.size();) {
+    const bool starts = i == 0 || !is_letter(unit[i - 1]);
+    const bool ends = i + word.size() >= unit.size() || !is_letter(unit[i + word.size()]);
+    if (unit.substr(i, word.size()) == word && starts && ends) {
+      result += "degree";
+      i += word.size();
+    } else {
+      result += unit[i++];
+    }
+  }
+  return result;
+}
+
+/// What a unit is as a multiple of 1.
+struct Scale {
+  double factor = 1;
+  bool pure = true;  ///< no dimension, no radian, no offset, not logarithmic
+};
+
+ut_status visit_basic(const ut_unit* /*unit*/, void* scale) {
+  static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_product(const ut_unit* /*unit*/, int count, const ut_unit* const* /*units*/,
+                        const int* /*powers*/, void* scale) {
+  if (count != 0) static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_timestamp(const ut_unit* /*unit*/, const ut_unit* /*time*/, double /*origin*/,
+                          void* scale) {
+  static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_logarithmic(const ut_unit* /*unit*/, double /*base*/, const ut_unit* /*reference*/,
+                            void* scale) {
+  static_cast<Scale*>(scale)->pure = false;
+  return UT_SUCCESS;
+}
+ut_status visit_galilean(const ut_unit* unit, double factor, const ut_unit* underlying,
+                         double offset, void* scale);
+
+const ut_visitor scale_visitor{visit_basic, visit_product, visit_galilean, visit_timestamp,
+                               visit_logarithmic};
+
+ut_status visit_galilean(const ut_unit* /*unit*/, double factor, const ut_unit* underlying,
+                         double offset, void* scale) {
+  auto* s = static_cast<Scale*>(scale);
+  s->factor *= factor;
+  if (offset != 0) s->pure = false;
+  return ut_accept_visitor(underlying, &scale_visitor, scale);
+}
+
+/// Units that a person may mean to write, for advice.
+std::span<const std::string_view> usual_units(const Quantity& expected) {
+  using Names = std::vector<std::string_view>;
+  static const std::vector<std::pair<std::string_view, Names>> all{
+      {"m",
+       {"m", "mm", "cm", "um", "nm", "km", "meter", "millimeter", "centimeter", "micrometer",
+        "nanometer", "metre", "millimetre", "centimetre", "micrometre", "nanometre", "inch"}},
+      {"Pa",
+       {"Pa", "MPa", "kPa", "GPa", "pascal", "kilopascal", "megapascal", "gigapascal", "N/m^2",
+        "N/mm^2", "bar", "psi"}},
+      {"A/m", {"A/m", "kA/m", "MA/m", "A/mm", "oersted"}},
+      {"N", {"N", "mN", "uN", "kN", "newton", "millinewton", "micronewton", "lbf", "kgf"}},
+      {"N/m", {"N/m", "mN/m", "uN/m", "kN/m", "N/mm", "mN/mm"}},
+      {"m/s", {"m/s", "mm/s", "cm/s", "km/h"}},
+      {"kg/m^3", {"kg/m^3", "kg/m3", "g/cm^3", "g/cm3"}},
+      {"rad", {"deg", "degree", "degrees", "rad", "radian", "turn"}}};
+  for (const auto& [unit, names] : all)
+    if (unit == expected.unit) return names;
+  return {};
+}
+
+/// "; did you mean 'mN'?" for a unit that differs from a usual one by its case or, if it is a
+/// longer word, by a few letters; otherwise empty.
+std::string did_you_mean_unit(std::string_view unit, const Quantity& expected) {
+  constexpr std::size_t longest_symbol = 3;
+  for (const std::string_view usual : usual_units(expected))
+    if (equal_but_case(unit, usual)) return fmt::format("; did you mean '{}'?", usual);
+  return unit.size() > longest_symbol ? did_you_mean(unit, usual_units(expected)) : "";
+}
+
+/// The factor from one unit to another; none if they do not have the same dimension.
+/// ut_get_converter() would also turn 1/m into m, and takes radians for plain numbers: so the
+/// quotient of the two units is looked at.
+std::optional<double> factor_between(const ut_unit* from, std::string_view to) {
+  const Unit target(ut_parse(unit_system(), std::string(to).c_str(), UT_UTF8));
+  const Unit quotient(ut_divide(from, target.get()));
+  Scale scale;
+  if (!quotient || ut_accept_visitor(quotient.get(), &scale_visitor, &scale) != UT_SUCCESS ||
+      !scale.pure)
+    return std::nullopt;
+  return scale.factor;
+}
+
+/// The factor from the unit of a value to the SI unit of `expected`.
+double factor_to_si(double value, std::string_view unit, const Quantity& expected) {
+  const Unit given(ut_parse(unit_system(), with_degrees(unit).c_str(), UT_UTF8));
+  if (!given)
+    throw InputError(fmt::format("unknown unit {}: {}{}", in_quotes(unit), wanted(expected),
+                                 did_you_mean_unit(unit, expected)));
+  if (const auto factor = factor_between(given.get(), expected.unit)) return *factor;
+  std::string what =
+      fmt::format("{} is not a unit of {} {}: ", in_quotes(unit), expected.article, expected.name);
+  const std::optional<double> tesla = factor_between(given.get(), "T");
+  if (tesla && expected.unit == quantity::magnetization.unit)
+    what += fmt::format("divide B_r by mu_0 (magnetization = B_r/mu_0), here \"{:.4g} kA/m\"",
+                        value * *tesla / vacuum_permeability / 1000);
+  else
+    what += wanted(expected) + did_you_mean_unit(unit, expected);
+  throw InputError(what);
+}
+
+/// The number at the start of the text, which is cut off from it.
+double take_number(std::string_view& text, const Quantity& expected) {
+  const std::string_view whole = text;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const std::size_t sign = text.starts_with('-') && text.size() == whole.size() ? 1 : 0;
+  const char first = text.size() > sign ? text[sign] : ' ';
+  double value = 0;
+  // from_chars() reads "nan" and "inf" too.
+  if (!is_digit(first) && first != '.')
+    throw InputError(fmt::format("{} does not start with a finite number: {}", in_quotes(whole),
+                                 wanted(expected)));
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range)
+    throw InputError(
+        fmt::format("the number of {} is outside the range of double precision", in_quotes(whole)));
+  if (error != std::errc())
+    throw InputError(fmt::format("{} does not start with a finite number: {}", in_quotes(whole),
+                                 wanted(expected)));
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+}  // namespace
+
+double parse_quantity(std::string_view text, const Quantity& expected) {
+  const std::string plain = in_ascii(text);
+  std::string_view rest = trimmed(plain);
+  if (rest.empty()) throw InputError(fmt::format("the text is empty: {}", wanted(expected)));
+  const double value = take_number(rest, expected);
+  if (rest.starts_with(','))
+    throw InputError(fmt::format("{} has a comma: write the decimal point, such as \"0.5 mm\"",
+                                 in_quotes(text)));
+  const std::string_view unit = trimmed(rest);
+  if (unit.empty())
+    throw InputError(fmt::format("{} has no unit: {}", in_quotes(text), wanted(expected)));
+  for (const char c : unit)
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0)
+      throw InputError(fmt::format("{} has a control character in its unit", in_quotes(text)));
+  if (unit.size() > longest_unit)
+    throw InputError(fmt::format("the unit of {} is too long to be one", in_quotes(text)));
+  if (!is_product_of_names(unit))
+    throw InputError(
+        fmt::format("the unit {} is not a product of units with small exponents, such as \"kg m "
+                    "s^-2\": write the number first, then the unit alone, such as \"{}\"",
+                    in_quotes(unit), expected.example));
+
+  const double factor = factor_to_si(value, unit, expected);
+  // Factors such as 1000 and 1/1000 come from UDUNITS with a rounding error.
+  constexpr double rounding = 1e-14;
+  const double divisor = std::round(1 / factor);
+  const double multiple = std::round(factor);
+  double result = value * factor;
+  if (factor < 1 && std::abs(factor * divisor - 1) < rounding) result = value / divisor;
+  if (factor > 1 && std::abs(multiple / factor - 1) < rounding) result = value * multiple;
+  if (!std::isfinite(result))
+    throw InputError(fmt::format("{} is not finite in {}", in_quotes(text), expected.unit));
+  return result;
+}
+
+std::string format_number(double value) {
+  return fmt::format("{}", value);
+}
+
+std::string format_quantity(double value, const Quantity& quantity) {
+  if (quantity.unit.empty()) return format_number(value);
+  return fmt::format("{} {}", format_number(value), quantity.unit);
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 60;
+  std::string result = "'";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // Cut between characters only: bytes 10xxxxxx continue one.
+    if (i >= longest && (byte & 0xC0) != 0x80) {
+      result += "...";
+      break;
+    }
+    if (byte < 0x20 || byte == 0x7F)
+      result += fmt::format("\\x{:02X}", byte);
+    else
+      result += text[i];
+  }
+  return result + "'";
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/models/run.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+#include <variant>
+
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The models that the case asks for, each with its id, in the order of the registry.
+template <class Entry>
+auto make_chosen(std::span<const Entry> entries, const std::vector<std::string>& ids,
+                 const ModelOptions& options) {
+  for (const std::string& id : ids)
+    if (std::none_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; }))
+      throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
+  std::vector<std::pair<std::string, decltype(entries.front().make(options))>> result;
+  for (const Entry& entry : entries)
+    if (std::find(ids.begin(), ids.end(), entry.id) != ids.end())
+      result.emplace_back(entry.id, entry.make(options));
+  return result;
+}
+
+void fail(MechanicsStep& step, std::string message) {
+  step.status = Status::failed;
+  step.message = std::move(message);
+  step.deformation.reset();
+}
+
+/// A converged step must have a deformation that is finite all along the centreline.
+void check(MechanicsStep& step) {
+  if (step.status != Status::converged) return;
+  if (!step.deformation || step.deformation->centreline.pieces().empty())
+    return fail(step, "the model says converged but gave no deformation");
+  for (const double S : step.deformation->centreline.breaks()) {
+    const CentrelinePoint point = step.deformation->centreline.at(S);
+    if (!point.position.allFinite() || !point.rotation.coeffs().allFinite())
+      return fail(step, "the deformation is not finite at S = " + std::to_string(S) + " m");
+  }
+}
+
+/// The checkpoint of one model.
+Checkpoint checkpoint_of(const std::string& id, const Checkpoint& checkpoints) {
+  Checkpoint result = checkpoints;
+  if (!result.path.empty()) result.path /= id;
+  return result;
+}
+
+/// B and its uncertainty at some of the sensors; throws if they are not as many or not finite.
+Field checked_field(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
+                    std::span<const Vector3> points) {
+  Field field = model.field(cilium, deformation, points);
+  if (field.B.size() != points.size() ||
+      (!field.uncertainty.empty() && field.uncertainty.size() != points.size()))
+    throw SolverError("the model gave fields at another number of points than asked");
+  for (const Vector3& B : field.B)
+    if (!B.allFinite()) throw SolverError("the field is not finite");
+  return field;
+}
+
+/// Fails all the points of a set.
+void append_failures(std::size_t points, const std::string& message, FieldStep& step,
+                     std::vector<std::pair<std::size_t, std::string>>& failures) {
+  for (std::size_t i = 0; i < points; ++i) {
+    failures.emplace_back(step.B.size(), message);
+    step.B.emplace_back();
+    step.uncertainty.emplace_back();
+  }
+}
+
+/// Evaluates B at all the points and appends it to `step`. If the model refuses them, halves the
+/// set until the points at which it gives no B stand alone; each message is kept with the sensors.
+/// A model that solves one system for all points is not asked again if the solver failed.
+void append_field(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
+                  std::span<const Vector3> points, FieldStep& step,
+                  std::vector<std::pair<std::size_t, std::string>>& failures) {
+  try {
+    const Field field = checked_field(model, cilium, deformation, points);
+    step.mesh = field.mesh;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      step.B.emplace_back(field.B[i]);
+      step.uncertainty.push_back(field.uncertainty.empty() ? std::nullopt
+                                                           : std::optional(field.uncertainty[i]));
+    }
+    return;
+  } catch (const std::exception& error) {
+    const bool refused = dynamic_cast<const InputError*>(&error) != nullptr;
+    if (points.size() <= 1 || !(model.pointwise() || refused))
+      return append_failures(points.size(), error.what(), step, failures);
+  }
+  const std::size_t half = points.size() / 2;
+  append_field(model, cilium, deformation, points.first(half), step, failures);
+  append_field(model, cilium, deformation, points.subspan(half), step, failures);
+}
+
+/// "sensor 1: …; sensors 2, 4: …", or the message alone if it is that of every sensor.
+std::string describe(const std::vector<std::pair<std::size_t, std::string>>& failures,
+                     std::size_t sensors) {
+  std::map<std::string, std::vector<std::size_t>> sensors_of;
+  std::vector<std::string> messages;  // in the order in which they came
+  for (const auto& [sensor, message] : failures) {
+    if (sensors_of[message].empty()) messages.push_back(message);
+    sensors_of[message].push_back(sensor);
+  }
+  if (messages.size() == 1 && failures.size() >= sensors) return messages.front();
+  std::vector<std::string> parts;
+  for (const std::string& message : messages) {
+    const std::vector<std::size_t>& where = sensors_of[message];
+    parts.push_back(fmt::format("sensor{} {}: {}", where.size() > 1 ? "s" : "",
+                                fmt::join(where, ", "), message));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+/// The field at the sensors. What the model throws becomes `failure`.
+FieldStep field_at_sensors(const FieldModel& model, const Case& problem,
+                           const Deformation& deformation) {
+  FieldStep step;
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::pair<std::size_t, std::string>> failures;
+  append_field(model, problem.cilium, deformation, problem.sensors, step, failures);
+  step.failure = describe(failures, problem.sensors.size());
+  step.seconds = seconds_since(start);
+  return step;
+}
+
+/// Sets ΔB = B − B(undeformed) and the sum of the uncertainties.
+void subtract(FieldStep& step, const FieldStep& undeformed) {
+  bool offset_missing = false;
+  for (std::size_t i = 0; i < step.B.size(); ++i) {
+    step.dB.emplace_back();
+    step.dB_uncertainty.emplace_back();
+    offset_missing = offset_missing || (step.B[i] && !undeformed.B[i]);
+    if (!step.B[i] || !undeformed.B[i]) continue;
+    step.dB[i] = *step.B[i] - *undeformed.B[i];
+    if (step.uncertainty[i] && undeformed.uncertainty[i])
+      step.dB_uncertainty[i] =
+          step.uncertainty[i]->cwiseAbs() + undeformed.uncertainty[i]->cwiseAbs();
+  }
+  if (offset_missing)
+    step.failure += fmt::format("{}undeformed cilium: {}", step.failure.empty() ? "" : "; ",
+                                undeformed.failure);
+}
+
+/// The horizontal force of a load whose shape is known from outside, N; NaN for a probe.
+double stated_force(const Load& load, const Cilium& cilium, const Vector3& tip) {
+  if (std::holds_alternative<ProbeLoad>(load)) return std::numeric_limits<double>::quiet_NaN();
+  if (std::holds_alternative<FlowLoad>(load)) return magnitude(load) * tip.z();
+  return magnitude(load) * (std::holds_alternative<DeadLoad>(load) ? cilium.length() : 1);
+}
+
+/// The centrelines of an external model as those of a mechanics model.
+MechanicsRun external_mechanics(const ExternalModel& model, const Case& problem) {
+  MechanicsRun run{model.name, {}};
+  run.result.undeformed.centreline = straight_centreline(problem.cilium.interfaces());
+  for (std::size_t i = 0; i < problem.load_path.size(); ++i) {
+    MechanicsStep step;
+    step.load = problem.load_path[i];
+    step.status = Status::converged;
+    step.message = model.remarks[i];
+    step.deformation = Deformation{model.centrelines[i], nullptr};
+    step.applied_force = stated_force(
+        step.load, problem.cilium, model.centrelines[i].at(model.centrelines[i].length()).position);
+    step.tip_uncertainty = model.tip_uncertainty;
+    check(step);
+    run.result.steps.push_back(std::move(step));
+  }
+  return run;
+}
+
+FieldStep external_step(const ExternalReading& reading, std::optional<double> uncertainty,
+                        bool undeformed_was_read) {
+  FieldStep step;
+  step.B = reading.B;
+  step.dB = reading.dB;
+  for (std::size_t s = 0; s < reading.B.size(); ++s) {
+    const auto spread = [&](const std::optional<Vector3>& value, double readings) {
+      return value && uncertainty
+                 ? std::optional<Vector3>(Vector3::Constant(readings * *uncertainty))
+                 : std::nullopt;
+    };
+    step.uncertainty.push_back(spread(step.B[s], 1));
+    step.dB_uncertainty.push_back(spread(step.dB[s], undeformed_was_read ? 2 : 1));
+  }
+  return step;
+}
+
+/// The readings of an external model as those of a field model.
+FieldRun external_fields(const ExternalModel& model, std::size_t sensors) {
+  FieldRun run;
+  run.mechanics = model.name;
+  run.field = "readings";
+  run.measured = true;
+  ExternalReading none{AtSensors(sensors), AtSensors(sensors)};
+  run.undeformed = external_step(model.undeformed.value_or(none), model.field_uncertainty, true);
+  for (const ExternalReading& reading : model.readings)
+    run.steps.emplace_back(
+        external_step(reading, model.field_uncertainty, model.undeformed.has_value()));
+  return run;
+}
+
+}  // namespace
+
+bool FieldStep::any() const {
+  const auto there = [](const std::optional<Vector3>& value) { return value.has_value(); };
+  return std::any_of(B.begin(), B.end(), there) || std::any_of(dB.begin(), dB.end(), there);
+}
+
+MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
+                           const Progress& progress, const Checkpoint& checkpoint) {
+  MechanicsRun run{id, {}};
+  std::string failure;
+  try {
+    Progress named;
+    if (progress) named = [&](const std::string& text) { progress(id + ": " + text); };
+    run.result = model.solve_from(problem.cilium, problem.load_path, checkpoint, named);
+    if (run.result.steps.size() != problem.load_path.size())
+      failure = "the model gave " + std::to_string(run.result.steps.size()) +
+                " steps for a path of " + std::to_string(problem.load_path.size());
+  } catch (const CheckpointError&) {
+    throw;
+  } catch (const RankFailure&) {
+    throw;
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  if (!failure.empty()) {
+    run.result = {};
+    for (const Load& load : problem.load_path) {
+      MechanicsStep step;
+      step.load = load;
+      fail(step, failure);
+      run.result.steps.push_back(std::move(step));
+    }
+  }
+  for (MechanicsStep& step : run.result.steps) check(step);
+  return run;
+}
+
+FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
+                   const Case& problem, const Progress& progress) {
+  FieldRun run;
+  run.mechanics = mechanics.model;
+  run.field = id;
+  if (progress) progress(run.name() + ": undeformed cilium");
+  run.undeformed = field_at_sensors(model, problem, mechanics.result.undeformed);
+  for (const std::optional<Vector3>& B : run.undeformed.B)
+    run.undeformed.dB.push_back(B ? std::optional<Vector3>(Vector3::Zero()) : std::nullopt);
+  for (std::size_t i = 0; i < mechanics.result.steps.size(); ++i) {
+    const MechanicsStep& step = mechanics.result.steps[i];
+    run.steps.emplace_back();
+    if (step.status != Status::converged) continue;
+    if (progress)
+      progress(run.name() + ": step " + std::to_string(i + 1) + "/" +
+               std::to_string(mechanics.result.steps.size()));
+    run.steps.back() = field_at_sensors(model, problem, *step.deformation);
+    subtract(*run.steps.back(), run.undeformed);
+  }
+  return run;
+}
+
+CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
+               std::span<const FieldEntry> fields, const Progress& progress,
+               const Checkpoint& checkpoints) {
+  const auto mechanics_models = make_chosen(mechanics, problem.mechanics, problem.options);
+  const auto field_models = make_chosen(fields, problem.fields, problem.options);
+  CaseResult result{problem, {}, {}};
+  for (const auto& [id, model] : mechanics_models) {
+    if (progress) progress(id + ": starting");
+    result.mechanics.push_back(
+        run_mechanics(id, *model, problem, progress, checkpoint_of(id, checkpoints)));
+  }
+  for (const ExternalModel& model : problem.external)
+    if (!model.centrelines.empty()) result.mechanics.push_back(external_mechanics(model, problem));
+  for (const MechanicsRun& mechanics_run : result.mechanics) {
+    const Deformation& undeformed = mechanics_run.result.undeformed;
+    if (undeformed.centreline.pieces().empty()) continue;
+    for (const auto& [id, model] : field_models)
+      if (!model->needs_body() || undeformed.body)
+        result.fields.push_back(run_field(id, *model, mechanics_run, problem, progress));
+  }
+  for (const ExternalModel& model : problem.external)
+    if (!model.readings.empty())
+      result.fields.push_back(external_fields(model, problem.sensors.size()));
+  return result;
+}
+
+std::vector<Kept> kept_checkpoints(const Case& problem, std::span<const MechanicsEntry> mechanics,
+                                   const Checkpoint& checkpoints) {
+  std::vector<Kept> result;
+  for (const auto& [id, model] : make_chosen(mechanics, problem.mechanics, problem.options))
+    if (const auto steps = model->finished_steps(problem.cilium, problem.load_path,
+                                                 checkpoint_of(id, checkpoints)))
+      result.push_back({id, *steps});
+  return result;
+}
+
+bool all_solved(const MechanicsRun& run) {
+  return std::none_of(run.result.steps.begin(), run.result.steps.end(),
+                      [](const MechanicsStep& step) { return step.status == Status::failed; });
+}
+
+bool all_solved(const CaseResult& result) {
+  const auto computed = [](const std::optional<FieldStep>& step) {
+    return !step || step->failure.empty();
+  };
+  return std::all_of(result.mechanics.begin(), result.mechanics.end(),
+                     [](const MechanicsRun& run) { return all_solved(run); }) &&
+         std::all_of(result.fields.begin(), result.fields.end(), [&](const FieldRun& run) {
+           return run.undeformed.failure.empty() &&
+                  std::all_of(run.steps.begin(), run.steps.end(), computed);
+         });
+}
+
+}  // namespace ciliaval::compare

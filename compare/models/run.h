@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compare/input/case.h"
+#include "compare/models/registry.h"
+#include "problem/field_model.h"
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::compare {
+
+/// What one mechanics model made of the load path.
+struct MechanicsRun {
+  std::string model;       ///< id
+  MechanicsResult result;  ///< one step for each load; if the model threw, all of them failed with
+                           ///< its message
+};
+
+/// A vector at each sensor, T; none where it is undefined or unknown.
+using AtSensors = std::vector<std::optional<Vector3>>;
+
+/// B of one pair of models at one step.
+struct FieldStep {
+  AtSensors B;               ///< flux density
+  AtSensors uncertainty;     ///< the field model's estimate of the numerical error of B
+  AtSensors dB;              ///< ΔB = B − B(undeformed): none where one of the two is missing
+  AtSensors dB_uncertainty;  ///< sum of the two uncertainties
+  std::shared_ptr<const FieldMesh> mesh;  ///< what B was computed from, if it can be drawn
+  double seconds = 0;                     ///< wall time
+  std::string failure;  ///< why a value of B or ΔB is missing, at which sensors; else empty
+
+  /// Whether there is B or ΔB at any sensor.
+  bool any() const;
+};
+
+/// What one field model made of the deformations of one mechanics model.
+struct FieldRun {
+  std::string mechanics;  ///< ids
+  std::string field;
+  FieldStep undeformed;                         ///< its ΔB is zero
+  std::vector<std::optional<FieldStep>> steps;  ///< none where the mechanics did not converge
+
+  bool measured = false;  ///< readings of an external model: of no deformation
+
+  std::string name() const { return mechanics + "/" + field; }
+};
+
+/// Results of a case. Both lists are in the order of the registry, the less detailed model first,
+/// then the case's external models; field runs go by mechanics first. In a comparison the later one
+/// is the reference.
+struct CaseResult {
+  Case problem;
+  std::vector<MechanicsRun> mechanics;
+  std::vector<FieldRun> fields;
+};
+
+/// Runs the models that the case asks for, and puts its external ones beside them: each mechanics
+/// model along the load path, then each field model on the undeformed cilium and on every converged
+/// step (a model that needs a body only where there is one). What one model throws, or a result
+/// that is not finite, is recorded as its failure and does not stop the others; where B diverges at
+/// one sensor, the rest are computed. A mechanics model that keeps a checkpoint goes on from it and
+/// keeps it in the folder `checkpoints.path`, under its id; without a path there is none. Throws
+/// InputError if the case names a model that is not among the entries, CheckpointError,
+/// RankFailure.
+CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
+               std::span<const FieldEntry> fields, const Progress& progress = {},
+               const Checkpoint& checkpoints = {});
+
+/// A part of run(): one mechanics model, which goes by the name `id` in messages and in the result,
+/// along the load path of a case. Throws CheckpointError, RankFailure.
+MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
+                           const Progress& progress = {}, const Checkpoint& checkpoint = {});
+
+/// A part of run(): one field model at the sensors of a case, on the undeformed cilium and on every
+/// converged step of a mechanics run, whatever the load path of the case.
+FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
+                   const Case& problem, const Progress& progress = {});
+
+/// A mechanics model of a case that keeps a checkpoint, and the steps that it holds.
+struct Kept {
+  std::string model;  ///< id
+  std::size_t finished_steps = 0;
+};
+
+/// Those of the case, in the order of the registry. Throws CheckpointError if one of the
+/// checkpoints cannot be used.
+std::vector<Kept> kept_checkpoints(const Case& problem, std::span<const MechanicsEntry> mechanics,
+                                   const Checkpoint& checkpoints);
+
+/// Whether no step of the model failed.
+bool all_solved(const MechanicsRun& run);
+
+/// Whether nothing failed. A cilium that slipped off is a result, not a failure.
+bool all_solved(const CaseResult& result);
+
+}  // namespace ciliaval::compare

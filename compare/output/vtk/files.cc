@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/output/vtk/files.h"
+
+#include <fmt/core.h>
+#include <vtkDataSet.h>
+#include <vtkDoubleArray.h>
+#include <vtkErrorCode.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkObject.h>
+#include <vtkStringArray.h>
+#include <vtkXMLImageDataWriter.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkXMLWriter.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "compare/output/results.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare::vtk {
+namespace {
+
+vtkSmartPointer<vtkXMLWriter> writer_for(const vtkDataSet& data) {
+  switch (const_cast<vtkDataSet&>(data).GetDataObjectType()) {  // not const in VTK
+    case VTK_UNSTRUCTURED_GRID:
+      return vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New();
+    case VTK_POLY_DATA:
+      return vtkSmartPointer<vtkXMLPolyDataWriter>::New();
+    case VTK_IMAGE_DATA:
+      return vtkSmartPointer<vtkXMLImageDataWriter>::New();
+    default:
+      throw InputError("this kind of VTK data set has no writer here");
+  }
+}
+
+void add_string(vtkDataSet& data, const char* name, const std::vector<std::string>& values) {
+  const vtkNew<vtkStringArray> array;
+  array->SetName(name);
+  for (const std::string& value : values) array->InsertNextValue(value);
+  data.GetFieldData()->AddArray(array);
+}
+
+}  // namespace
+
+std::string extension(const vtkDataSet& data) {
+  return writer_for(data)->GetDefaultFileExtension();
+}
+
+void add_provenance(vtkDataSet& data, const Provenance& provenance) {
+  std::vector<std::string> lines{"CiliaVal " + provenance.version, "git: " + provenance.git,
+                                 "command: " + provenance.command, "date: " + provenance.date};
+  for (const auto& [library, version] : provenance.libraries)
+    lines.push_back(fmt::format("{} {}", library, version));
+  add_string(data, "provenance", lines);
+}
+
+void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load) {
+  add_provenance(data, provenance);
+  add_string(data, "load_unit", {std::string(magnitude_unit(load))});
+  const vtkNew<vtkDoubleArray> value;
+  value->SetName("load");
+  value->InsertNextValue(magnitude(load));
+  data.GetFieldData()->AddArray(value);
+}
+
+void write(vtkDataSet& data, const std::filesystem::path& file) {
+  vtkObject::GlobalWarningDisplayOff();  // the exception reports
+  const auto writer = writer_for(data);
+  writer->SetInputData(&data);
+  writer->SetFileName(file.c_str());
+  writer->SetDataModeToAppended();
+  writer->SetCompressorTypeToZLib();
+  // A solid of 50,955 unknowns: 1 % larger than at the default of 5, 0.45 s in place of 0.58.
+  writer->SetCompressionLevel(1);
+  const int written = writer->Write();
+  const unsigned long error = writer->GetErrorCode();
+  if (written == 1 && error == vtkErrorCode::NoError) return;
+  throw FileError("cannot write `" + file.string() +
+                  "`: " + vtkErrorCode::GetStringFromErrorCode(error));
+}
+
+std::vector<double> series_times(const LoadPath& path) {
+  std::vector<double> times;
+  for (const Load& load : path) times.push_back(magnitude(load));
+  if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i);
+  return times;
+}
+
+void write_series(const std::filesystem::path& folder, const std::string& series,
+                  const std::string& extension, const std::vector<double>& times) {
+  std::string entries;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const std::string file = step_file(series, i, extension);
+    if (std::filesystem::exists(folder / file))
+      entries += fmt::format("    <DataSet timestep=\"{}\" file=\"{}\"/>\n", times[i], file);
+  }
+  if (entries.empty()) return;
+  write_text(folder / (series + ".pvd"),
+             "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
+             "  <Collection>\n" +
+                 entries + "  </Collection>\n</VTKFile>\n");
+}
+
+}  // namespace ciliaval::compare::vtk

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/regression/baseline.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A tolerance beyond this part of a value's size tells nothing.
+constexpr double widest = 0.1;
+
+/// Reads the members of a JSON object, each once; what was not read is a fault.
+class Reader {
+ public:
+  Reader(const Json& json, std::string file, std::string where)
+      : json_(json), file_(std::move(file)), where_(std::move(where)) {
+    if (!json_.is_object()) fail("must be an object");
+  }
+
+  const Json& get(const char* key) {
+    read_.insert(key);
+    if (!json_.contains(key)) fail(fmt::format("`{}` is missing", key));
+    return json_.at(key);
+  }
+  bool has(const char* key) {
+    read_.insert(key);
+    return json_.contains(key);
+  }
+  std::string text(const char* key) {
+    const Json& value = get(key);
+    if (!value.is_string()) fail(fmt::format("`{}` must be a text", key));
+    if (value.get<std::string>().empty()) fail(fmt::format("`{}` is empty", key));
+    return value.get<std::string>();
+  }
+  double number(const char* key) {
+    const Json& value = get(key);
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      fail(fmt::format("`{}` must be a finite number", key));
+    return value.get<double>();
+  }
+  std::optional<double> number_or_null(const char* key) {
+    if (get(key).is_null()) return std::nullopt;
+    return number(key);
+  }
+  const Json& list(const char* key) {
+    const Json& value = get(key);
+    if (!value.is_array()) fail(fmt::format("`{}` must be a list", key));
+    return value;
+  }
+  /// To be called when all has been read.
+  void finish() const {
+    for (const auto& [key, value] : json_.items())
+      if (!read_.contains(key))
+        fail(fmt::format("`{}` is no key here: nothing would read it", key));
+  }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{}: {}: {}", file_, where_, what));
+  }
+  const std::string& file() const { return file_; }
+
+ private:
+  const Json& json_;
+  std::string file_;
+  std::string where_;
+  std::set<std::string> read_;
+};
+
+Tolerance read_tolerance(Reader& reader, double value) {
+  const Tolerance tolerance{reader.number("relative"), reader.number("absolute")};
+  if (tolerance.relative < 0 || tolerance.absolute < 0 || tolerance.limit(value, value) <= 0)
+    reader.fail("`relative` and `absolute` must not be negative, nor both without effect");
+  if (tolerance.relative > widest)
+    reader.fail(fmt::format("a `relative` tolerance above {} checks nothing", widest));
+  return tolerance;
+}
+
+Expected read_expected(const Json& json, const std::string& file) {
+  const std::string id =
+      json.is_object() && json.contains("id") && json["id"].is_string() ? json["id"] : "";
+  Reader reader(json, file, id.empty() ? "quantities" : id);
+  Expected expected;
+  expected.id = reader.text("id");
+  expected.unit = reader.text("unit");
+  expected.value = reader.number("value");
+  expected.tolerance = read_tolerance(reader, expected.value);
+  if (reader.has("reference")) {
+    Reader from(reader.get("reference"), file, id + "/reference");
+    Reference reference{from.text("label"), from.number("value"), {}};
+    reference.tolerance = read_tolerance(from, reference.value);
+    from.finish();
+    expected.reference = reference;
+  }
+  reader.finish();
+  return expected;
+}
+
+Provenance read_origin(const Json& json, const std::string& file) {
+  Reader reader(json, file, "origin");
+  Provenance origin;
+  origin.version = reader.text("version");
+  origin.git = reader.text("git");
+  origin.command = reader.text("command");
+  origin.date = reader.text("date");
+  for (const auto& [name, version] : reader.get("libraries").items())
+    origin.libraries[name] = version.get<std::string>();
+  reader.finish();
+  return origin;
+}
+
+template <class List>
+void require_unique_ids(const List& entries, const Reader& reader) {
+  std::set<std::string> ids;
+  for (const auto& entry : entries)
+    if (!ids.insert(entry.id).second) reader.fail(fmt::format("`{}` is there twice", entry.id));
+}
+
+Baseline read_all(const Json& json, const std::string& file) {
+  Reader reader(json, file, "baseline");
+  if (reader.number("schema") != 1) reader.fail("`schema` must be 1");
+  Baseline baseline;
+  baseline.case_name = reader.text("case");
+  for (const Json& line : reader.list("case_text"))
+    baseline.case_text.push_back(line.get<std::string>());
+  baseline.origin = read_origin(reader.get("origin"), file);
+  for (const Json& entry : reader.list("changes")) {
+    Reader change(entry, file, "changes");
+    baseline.changes.push_back(
+        {change.text("id"), change.number_or_null("old"), change.number_or_null("new")});
+    change.finish();
+  }
+  for (const Json& entry : reader.list("outcomes")) {
+    Reader outcome(entry, file, "outcomes");
+    baseline.outcomes.push_back({outcome.text("id"), outcome.text("value")});
+    outcome.finish();
+  }
+  for (const Json& entry : reader.list("quantities"))
+    baseline.quantities.push_back(read_expected(entry, file));
+  reader.finish();
+  require_unique_ids(baseline.quantities, reader);
+  require_unique_ids(baseline.outcomes, reader);
+  return baseline;
+}
+
+Json tolerance_json(Json json, const Tolerance& tolerance) {
+  json["relative"] = tolerance.relative;
+  json["absolute"] = tolerance.absolute;
+  return json;
+}
+
+Json optional(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+/// A list with a line for each element.
+std::string lines(const std::vector<Json>& elements) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < elements.size(); ++i)
+    text += (i == 0 ? "\n  " : ",\n  ") + elements[i].dump();
+  return text + "\n ]";
+}
+
+std::vector<Change> changes(const Baseline& old, const std::vector<Expected>& quantities) {
+  std::vector<Change> result;
+  std::map<std::string, double> before;
+  for (const Expected& expected : old.quantities) before[expected.id] = expected.value;
+  for (const Expected& now : quantities) {
+    const auto then = before.find(now.id);
+    if (then == before.end()) {
+      result.push_back({now.id, std::nullopt, now.value});
+      continue;
+    }
+    if (then->second != now.value) result.push_back({now.id, then->second, now.value});
+    before.erase(then);
+  }
+  for (const auto& [id, value] : before) result.push_back({id, value, std::nullopt});
+  return result;
+}
+
+}  // namespace
+
+double Tolerance::limit(double a, double b) const {
+  return std::max(relative * std::max(std::abs(a), std::abs(b)), absolute);
+}
+
+std::filesystem::path baseline_path(const std::filesystem::path& case_file) {
+  return case_file.parent_path() / (case_file.stem().string() + ".baseline.json");
+}
+
+std::vector<std::string> case_text(const Case& problem) {
+  Case portable = problem;
+  portable.options.solid.mesh = problem.options.solid.mesh.filename();
+  portable.options.calculix.program = problem.options.calculix.program.filename();
+  portable.options.calculix.keep.clear();
+  for (ExternalModel& model : portable.external) {
+    for (std::filesystem::path& file : model.centreline_files) file = file.filename();
+    model.readings_file = model.readings_file.filename();
+    model.background_file = model.background_file.filename();
+  }
+  std::istringstream text(to_toml(portable));
+  const auto used = [&](const std::string& model) {
+    const auto among = [&](const std::vector<std::string>& ids) {
+      return std::find(ids.begin(), ids.end(), model) != ids.end();
+    };
+    return model == "external" || among(problem.mechanics) || among(problem.fields);
+  };
+  std::vector<std::string> result;
+  bool kept = true;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with('[')) {
+      const auto begin = line.find_first_not_of('[');
+      kept = line.find("models.") != begin ||
+             used(line.substr(begin + 7, line.find_first_of(".]", begin + 7) - begin - 7));
+    }
+    if (kept && !line.empty()) result.push_back(line);
+  }
+  return result;
+}
+
+Baseline read_baseline(std::string_view text, std::string_view file) {
+  try {
+    return read_all(Json::parse(text), std::string(file));
+  } catch (const Json::exception& error) {
+    throw InputError(fmt::format("{}: not a baseline: {}", file, error.what()));
+  }
+}
+
+Baseline read_baseline(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::stringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw FileError("cannot read `" + file.string() + "`");
+  return read_baseline(text.view(), file.string());
+}
+
+std::string to_json(const Baseline& baseline) {
+  std::vector<Json> changed;
+  for (const Change& c : baseline.changes)
+    changed.push_back(
+        {{"id", c.id}, {"old", optional(c.old_value)}, {"new", optional(c.new_value)}});
+  std::vector<Json> outcomes;
+  for (const ExpectedOutcome& o : baseline.outcomes)
+    outcomes.push_back({{"id", o.id}, {"value", o.value}});
+  std::vector<Json> quantities;
+  for (const Expected& q : baseline.quantities) {
+    Json json = tolerance_json({{"id", q.id}, {"unit", q.unit}, {"value", q.value}}, q.tolerance);
+    if (q.reference)
+      json["reference"] = tolerance_json(
+          {{"label", q.reference->label}, {"value", q.reference->value}}, q.reference->tolerance);
+    quantities.push_back(std::move(json));
+  }
+  const std::vector<Json> text(baseline.case_text.begin(), baseline.case_text.end());
+  const Provenance& o = baseline.origin;
+  const Json origin{{"version", o.version},
+                    {"git", o.git},
+                    {"libraries", o.libraries},
+                    {"command", o.command},
+                    {"date", o.date}};
+  return fmt::format(
+      "{{\n \"schema\": 1,\n \"case\": {},\n \"case_text\": {},\n \"origin\": {},\n \"changes\": "
+      "{},\n \"outcomes\": {},\n \"quantities\": {}\n}}\n",
+      Json(baseline.case_name).dump(), lines(text), origin.dump(), lines(changed), lines(outcomes),
+      lines(quantities));
+}
+
+Tolerance regression_tolerance(const Quantity& quantity) {
+  if (quantity.id.ends_with("/tip_uncertainty")) return {1e-3, 1e-10 * quantity.scale};
+  // CalculiX prints seven digits, and its tolerances for equilibrium are its own.
+  const double relative = quantity.mechanics == "calculix" ? 1e-5
+                          : quantity.mechanics == "solid"  ? 1e-8
+                                                           : 1e-10;
+  // Rounding may decide which leaves the potential cuts: two meshes are as far apart as its own
+  // estimate says.
+  if (quantity.id.find("/potential/") != std::string::npos && quantity.uncertainty)
+    return {relative, std::max(relative * quantity.scale, *quantity.uncertainty)};
+  return {relative, relative * quantity.scale};
+}
+
+Baseline make_baseline(const Case& problem, const Measurements& measured, const Provenance& origin,
+                       const Baseline* old) {
+  Baseline baseline{problem.name, case_text(problem), origin, {}, {}, {}};
+  for (const Outcome& outcome : measured.outcomes) {
+    if (outcome.value == "failed")
+      throw SolverError(fmt::format("case \"{}\": `{}` is \"failed\": that is no baseline",
+                                    problem.name, outcome.id));
+    baseline.outcomes.push_back({outcome.id, outcome.value});
+  }
+  std::map<std::string, Expected> before;
+  if (old != nullptr)
+    for (const Expected& expected : old->quantities) before[expected.id] = expected;
+  for (const Quantity& q : measured.quantities) {
+    if (!std::isfinite(q.value))
+      throw SolverError(
+          fmt::format("case \"{}\": `{}` is not finite: that is no baseline", problem.name, q.id));
+    Expected expected{q.id, q.unit, q.value, regression_tolerance(q), {}};
+    if (const auto then = before.find(q.id); then != before.end()) {
+      expected.reference = then->second.reference;
+      // Rounding is no change, and does not add up from baseline to baseline.
+      if (std::abs(q.value - then->second.value) <=
+          then->second.tolerance.limit(q.value, then->second.value))
+        expected.value = then->second.value;
+    }
+    baseline.quantities.push_back(std::move(expected));
+  }
+  if (baseline.quantities.empty())
+    throw SolverError(
+        fmt::format("case \"{}\" gives no quantity: that is no baseline", problem.name));
+  if (old != nullptr) baseline.changes = changes(*old, baseline.quantities);
+  return baseline;
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/regression/check.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string_view>
+
+#include "compare/models/errors.h"
+
+namespace ciliaval::compare {
+namespace {
+
+/// A tolerance beyond this part of the quantity's scale checks nothing.
+constexpr double widest = 0.1;
+
+using ById = std::map<std::string, const Quantity*>;
+
+Finding failure(std::string id, std::string message) {
+  Finding finding;
+  finding.id = std::move(id);
+  finding.against = "baseline";
+  finding.message = std::move(message);
+  return finding;
+}
+
+/// Which entries belong to models that are left out: `steps/0/mechanics/solid/…`,
+/// `…/fields/solid/mesh/…`.
+class LeftOut {
+ public:
+  explicit LeftOut(const std::vector<std::string>& models) : models_(models) {}
+  bool contains(const std::string& id) const {
+    const auto slash =
+        id.find("mechanics/") != std::string::npos ? id.find("mechanics/") : id.find("fields/");
+    return std::any_of(models_.begin(), models_.end(), [&](const std::string& model) {
+      return id.find("/" + model + "/", slash) != std::string::npos;
+    });
+  }
+  bool none() const { return models_.empty(); }
+
+ private:
+  const std::vector<std::string>& models_;
+};
+
+/// " It looks like …", if the wrong value looks like a known mistake.
+std::string likely_cause(const Quantity& measured, const Expected& expected, double limit,
+                         const ById& all, const std::map<std::string, double>& accepted) {
+  const double a = measured.value;
+  const double b = expected.value;
+  if (std::abs(a + b) <= limit) return "; the sign is flipped";
+  const auto slash = measured.id.rfind('/');
+  const std::string group = measured.id.substr(0, slash + 1);
+  const std::string axis = measured.id.substr(slash + 1);
+  for (const std::string other : {"x", "y", "z"}) {
+    const auto sibling = all.find(group + other);
+    const auto partner = accepted.find(group + other);
+    if (other == axis || sibling == all.end() || partner == accepted.end()) continue;
+    if (std::abs(sibling->second->value - b) <= limit && std::abs(a - partner->second) <= limit)
+      return fmt::format("; {} and {} are swapped", axis, other);
+  }
+  if (b == 0) return {};
+  const double ratio = std::abs(a / b);
+  for (int power = -9; power <= 9; ++power)
+    if (power != 0 && std::abs(ratio / std::pow(10.0, power) - 1) < 1e-6)
+      return fmt::format("; a factor of 1e{}: a unit?", power);
+  for (const double factor : {std::numbers::pi / 180, 180 / std::numbers::pi})
+    if (std::abs(ratio / factor - 1) < 1e-6) return "; degrees and radians are mixed up";
+  return {};
+}
+
+/// Holds one number against another.
+Finding compare(const Quantity& measured, double expected, const Tolerance& tolerance,
+                std::string against) {
+  Finding finding;
+  finding.id = measured.id;
+  finding.against = std::move(against);
+  finding.unit = measured.unit;
+  finding.measured = measured.value;
+  finding.expected = expected;
+  finding.limit = tolerance.limit(measured.value, expected);
+  finding.uncertainty = measured.uncertainty;
+  if (!std::isfinite(measured.value)) {
+    finding.limit.reset();
+    finding.message = "is not finite";
+  } else if (tolerance.absolute > widest * std::max(measured.scale, std::abs(expected))) {
+    finding.message = fmt::format(
+        "the absolute tolerance {} {} is wider than a tenth of {}: it "
+        "checks nothing",
+        tolerance.absolute, measured.unit, measured.scale);
+  } else if (!(std::abs(measured.value - expected) <= *finding.limit)) {
+    finding.message =
+        fmt::format("is {} {}, not {}: off by {:.3g}, {:.3g} allowed", measured.value,
+                    measured.unit, expected, measured.value - expected, *finding.limit);
+  } else {
+    finding.passed = true;
+  }
+  return finding;
+}
+
+void check_case(const Case& asked, const Baseline& baseline, CheckReport& report) {
+  if (baseline.case_name != asked.name)
+    report.findings.push_back(
+        failure("case", fmt::format("the baseline is that of case \"{}\"", baseline.case_name)));
+  const std::vector<std::string> now = case_text(asked);
+  const auto [is, was] =
+      std::mismatch(now.begin(), now.end(), baseline.case_text.begin(), baseline.case_text.end());
+  if (is != now.end() || was != baseline.case_text.end())
+    report.findings.push_back(failure(
+        "case",
+        fmt::format("the baseline is that of another version of the case: it has `{}` where "
+                    "the case now has `{}`; --accept makes a new one",
+                    was != baseline.case_text.end() ? *was : "nothing",
+                    is != now.end() ? *is : "nothing")));
+}
+
+void check_outcomes(const std::vector<Outcome>& measured, const Baseline& baseline,
+                    const LeftOut& left_out, CheckReport& report) {
+  std::map<std::string, std::string> now;
+  for (const Outcome& outcome : measured) now[outcome.id] = outcome.value;
+  for (const ExpectedOutcome& expected : baseline.outcomes) {
+    if (left_out.contains(expected.id)) {
+      ++report.left_out;
+      continue;
+    }
+    const auto found = now.find(expected.id);
+    if (found == now.end()) {
+      report.findings.push_back(
+          failure(expected.id, "is in the baseline but was not computed: is a model missing?"));
+      continue;
+    }
+    Finding finding = failure(expected.id, "");
+    finding.passed = found->second == expected.value;
+    if (!finding.passed) {
+      finding.message = fmt::format("is \"{}\", not \"{}\"", found->second, expected.value);
+      report.model_failed = report.model_failed || found->second == "failed";
+    }
+    report.findings.push_back(std::move(finding));
+    now.erase(found);
+  }
+  for (const auto& [id, value] : now)
+    report.findings.push_back(failure(
+        id, fmt::format("is \"{}\", and the baseline does not have it; --accept adds it", value)));
+}
+
+void check_quantities(const std::vector<Quantity>& measured, const Baseline& baseline,
+                      const LeftOut& left_out, CheckReport& report) {
+  ById now;
+  for (const Quantity& quantity : measured) now[quantity.id] = &quantity;
+  std::map<std::string, double> accepted;
+  for (const Expected& expected : baseline.quantities) accepted[expected.id] = expected.value;
+  for (const Expected& expected : baseline.quantities) {
+    if (left_out.contains(expected.id)) {
+      ++report.left_out;
+      continue;
+    }
+    const auto found = now.find(expected.id);
+    if (found == now.end()) {
+      report.findings.push_back(failure(
+          expected.id, "is in the baseline but was not computed: nothing reads its tolerance"));
+      continue;
+    }
+    const Quantity& quantity = *found->second;
+    if (quantity.unit != expected.unit) {
+      report.findings.push_back(failure(expected.id, fmt::format("is in {}, the baseline is in {}",
+                                                                 quantity.unit, expected.unit)));
+      continue;
+    }
+    Finding finding = compare(quantity, expected.value, expected.tolerance, "baseline");
+    if (!finding.passed && finding.limit)
+      finding.message += likely_cause(quantity, expected, *finding.limit, now, accepted);
+    report.findings.push_back(std::move(finding));
+    if (const auto& reference = expected.reference)
+      report.findings.push_back(
+          compare(quantity, reference->value, reference->tolerance, reference->label));
+  }
+  for (const Quantity& quantity : measured)
+    if (!accepted.contains(quantity.id))
+      report.findings.push_back(failure(
+          quantity.id, fmt::format("is {} {}, and the baseline does not have it; --accept adds it",
+                                   quantity.value, quantity.unit)));
+}
+
+/// ΔB must be B − B(undeformed), to rounding.
+void check_differences(const CaseResult& result, CheckReport& report) {
+  for (const FieldRun& run : result.fields)
+    for (std::size_t i = 0; i < run.steps.size(); ++i) {
+      if (!run.steps[i]) continue;
+      const FieldStep& step = *run.steps[i];
+      for (std::size_t s = 0; s < step.dB.size(); ++s) {
+        if (!step.dB[s] || (run.measured && !step.B[s])) continue;  // readings of ΔB alone
+        const std::string id = fmt::format("steps/{}/fields/{}/dB/{}", i, run.name(), s);
+        const bool complete =
+            s < step.B.size() && step.B[s] && s < run.undeformed.B.size() && run.undeformed.B[s];
+        if (!complete || !((*step.B[s] - *run.undeformed.B[s] - *step.dB[s]).norm() <=
+                           1e-12 * run.undeformed.B[s]->norm()))
+          report.findings.push_back(failure(id, "is not B − B(undeformed)"));
+      }
+    }
+}
+
+/// Whether two deformations are the same to the last bit at eight material points.
+bool same_bits(const Deformation& a, const Deformation& b) {
+  const double L = a.centreline.length();
+  if (L != b.centreline.length()) return false;
+  for (int i = 1; i <= 8; ++i)
+    if (a.centreline.at(L * i / 8).position != b.centreline.at(L * i / 8).position) return false;
+  return true;
+}
+
+bool same_mechanics(const MechanicsRun& a, const MechanicsRun& b) {
+  bool any = false;
+  for (std::size_t i = 0; i < a.result.steps.size() && i < b.result.steps.size(); ++i) {
+    const auto& one = a.result.steps[i].deformation;
+    const auto& other = b.result.steps[i].deformation;
+    if (!one || !other) continue;
+    if (!same_bits(*one, *other)) return false;
+    any = true;
+  }
+  return any;
+}
+
+bool same_field(const FieldRun& a, const FieldRun& b) {
+  bool any = false;
+  for (std::size_t i = 0; i < a.steps.size() && i < b.steps.size(); ++i) {
+    if (!a.steps[i] || !b.steps[i]) continue;
+    if (a.steps[i]->B != b.steps[i]->B) return false;
+    any = any || a.steps[i]->any();
+  }
+  return any;
+}
+
+/// Models that are compared must be two, and something must be compared.
+void check_independence(const CaseResult& result, const Baseline& baseline, bool complete,
+                        CheckReport& report) {
+  const auto same = [&](const std::string& a, const std::string& b) {
+    report.findings.push_back(
+        failure(fmt::format("{} and {}", a, b),
+                a == b ? "a model is compared with itself"
+                       : "give the same bits everywhere: a model is compared with itself"));
+  };
+  for (std::size_t b = 0; b < result.mechanics.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a)
+      if (result.mechanics[a].model == result.mechanics[b].model ||
+          same_mechanics(result.mechanics[a], result.mechanics[b]))
+        same(result.mechanics[a].model, result.mechanics[b].model);
+  for (std::size_t b = 0; b < result.fields.size(); ++b)
+    for (std::size_t a = 0; a < b; ++a)
+      if (result.fields[a].name() == result.fields[b].name() ||
+          (result.fields[a].mechanics == result.fields[b].mechanics &&
+           same_field(result.fields[a], result.fields[b])))
+        same(result.fields[a].name(), result.fields[b].name());
+  const bool references =
+      std::any_of(baseline.quantities.begin(), baseline.quantities.end(),
+                  [](const Expected& expected) { return expected.reference.has_value(); });
+  if (complete && !references && compare_models(result).empty())
+    report.findings.push_back(
+        failure("comparison",
+                "is empty: no two models have a result at the same step, and the baseline has no "
+                "reference; the case is compared with nothing but its own past"));
+}
+
+}  // namespace
+
+std::size_t CheckReport::failures() const {
+  return static_cast<std::size_t>(
+      std::count_if(findings.begin(), findings.end(), [](const Finding& f) { return !f.passed; }));
+}
+
+std::size_t CheckReport::compared() const {
+  return static_cast<std::size_t>(std::count_if(
+      findings.begin(), findings.end(), [](const Finding& f) { return f.limit.has_value(); }));
+}
+
+CheckReport check(const Case& asked, const CaseResult& result, const Baseline& baseline,
+                  const std::vector<std::string>& left_out) {
+  CheckReport report;
+  report.case_name = asked.name;
+  for (const MechanicsRun& run : result.mechanics)
+    for (const MechanicsStep& step : run.result.steps) report.seconds += step.seconds;
+  const LeftOut absent(left_out);
+  const Measurements measured = measurements(result);
+  check_case(asked, baseline, report);
+  check_outcomes(measured.outcomes, baseline, absent, report);
+  check_quantities(measured.quantities, baseline, absent, report);
+  check_differences(result, report);
+  check_independence(result, baseline, absent.none(), report);
+  if (report.compared() == 0)
+    report.findings.push_back(failure("comparison", "no number was compared with any other"));
+  return report;
+}
+
+}  // namespace ciliaval::compare

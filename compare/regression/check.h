@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/input/case.h"
+#include "compare/regression/baseline.h"
+#include "compare/models/run.h"
+
+namespace ciliaval::compare {
+
+/// One thing that was checked.
+struct Finding {
+  bool passed = false;
+  std::string id;       ///< of the quantity or outcome, or "case", "comparison", …
+  std::string against;  ///< "baseline", or the label of the reference
+  std::string message;  ///< of what failed: what is wrong, and what it looks like
+  std::string unit;
+  std::optional<double> measured;     ///< in `unit`
+  std::optional<double> expected;     ///< in `unit`
+  std::optional<double> limit;        ///< of |measured − expected|, in `unit`
+  std::optional<double> uncertainty;  ///< the model's own estimate, in `unit`
+};
+
+struct CheckReport {
+  std::string case_name;
+  std::vector<Finding> findings;
+  std::size_t left_out = 0;   ///< entries of the baseline whose models were not run
+  bool model_failed = false;  ///< a model did not converge that did so in the baseline
+  double seconds = 0;         ///< wall time of the models
+  std::size_t failures() const;
+  /// Numbers that were held against numbers.
+  std::size_t compared() const;
+  bool passed() const { return failures() == 0 && compared() > 0; }
+};
+
+/// Holds a run of a case against its baseline. Each of these is a failure that names what is wrong:
+/// another case's baseline or one of another version of the case; an entry of the baseline that was
+/// not computed, or a result that has no entry; another unit or status; a number that is not
+/// finite, or differs by more than its tolerance from the accepted value or from the reference; a
+/// tolerance wider than a tenth of what it guards; ΔB that is not B − B(undeformed); two models
+/// that give the same bits, hence are one; nothing that is compared with anything but its own past;
+/// no number at all. `asked` is the case as the file states it. Models of it that `result` leaves
+/// out on purpose are in `left_out`; all others must be there.
+CheckReport check(const Case& asked, const CaseResult& result, const Baseline& baseline,
+                  const std::vector<std::string>& left_out = {});
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/models/run.h"
+
+namespace ciliaval::compare {
+
+/// One number that a case's models have computed. Its id is its place in summary.json:
+/// `steps/1/mechanics/elastica/tip/x`, `steps/1/fields/elastica/line/dB/0/y` (sensor 0).
+struct Quantity {
+  std::string id;
+  std::string mechanics;  ///< the mechanics model that it rests on
+  std::string unit;       ///< "m", "rad", "N", "T"
+  double value = 0;       ///< in `unit`, may be NaN
+  double scale = 0;       ///< size of what it is a part of, in `unit`: the length of the cilium, 1
+                          ///< rad, the largest |B| of the pair at this sensor, the largest force
+  std::optional<double> uncertainty;  ///< the model's own estimate, in `unit`
+};
+
+/// How a model ended a step: `steps/1/mechanics/solid/status`: "converged", "slipped_off",
+/// "failed"; of a field "computed" or "failed".
+struct Outcome {
+  std::string id;
+  std::string mechanics;
+  std::string value;
+};
+
+struct Measurements {
+  std::vector<Quantity> quantities;
+  std::vector<Outcome> outcomes;
+};
+
+/// Everything that a run of a case has computed, but for times and iterations: of each mechanics
+/// model at each step the status and, where it converged, the positions at S = L/4, L/2, 3L/4 and
+/// L, the tip's angle, applied force, contact arc length and tip uncertainty, or the slip-off; of
+/// each pair B and ΔB at each sensor, B of the straight cilium too. No means, in which errors could
+/// cancel.
+Measurements measurements(const CaseResult& result);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/regression/report.h"
+
+#include <fmt/core.h>
+
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <sstream>
+
+namespace ciliaval::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Tree = boost::property_tree::ptree;
+
+Json optional(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+bool all_passed(const std::vector<CheckReport>& reports) {
+  return std::all_of(reports.begin(), reports.end(),
+                     [](const CheckReport& report) { return report.passed(); });
+}
+
+Json finding_json(const Finding& f) {
+  return {{"id", f.id},
+          {"against", f.against},
+          {"passed", f.passed},
+          {"message", f.message.empty() ? Json(nullptr) : Json(f.message)},
+          {"unit", f.unit.empty() ? Json(nullptr) : Json(f.unit)},
+          {"measured", optional(f.measured)},
+          {"expected", optional(f.expected)},
+          {"limit", optional(f.limit)},
+          {"uncertainty", optional(f.uncertainty)}};
+}
+
+Tree test_case(const CheckReport& report, const Finding& finding) {
+  Tree node;
+  node.put("<xmlattr>.classname", report.case_name);
+  node.put("<xmlattr>.name", fmt::format("{} against {}", finding.id, finding.against));
+  Tree properties;
+  const auto add = [&](const char* name, const std::optional<double>& value) {
+    if (!value) return;
+    Tree property;
+    property.put("<xmlattr>.name",
+                 fmt::format("{}{}{}", name, finding.unit.empty() ? "" : ", ", finding.unit));
+    property.put("<xmlattr>.value", fmt::format("{}", *value));
+    properties.add_child("property", property);
+  };
+  add("measured", finding.measured);
+  add("expected", finding.expected);
+  add("limit", finding.limit);
+  add("uncertainty", finding.uncertainty);
+  if (!properties.empty()) node.add_child("properties", properties);
+  if (!finding.passed) node.put("failure.<xmlattr>.message", finding.message);
+  return node;
+}
+
+}  // namespace
+
+std::string report_text(const std::vector<CheckReport>& reports) {
+  std::string text;
+  std::size_t compared = 0;
+  std::size_t failures = 0;
+  for (const CheckReport& report : reports) {
+    compared += report.compared();
+    failures += report.failures();
+    text +=
+        fmt::format("{:<16} {}, {} numbers compared, {} failures{}\n", report.case_name,
+                    report.passed() ? "passed" : "FAILED", report.compared(), report.failures(),
+                    report.left_out > 0
+                        ? fmt::format(", {} entries of models that were left out", report.left_out)
+                        : "");
+    for (const Finding& finding : report.findings)
+      if (!finding.passed)
+        text += fmt::format("  {} ({}): {}\n", finding.id, finding.against, finding.message);
+  }
+  return text + fmt::format("{}: {} cases, {} numbers compared, {} failures\n",
+                            all_passed(reports) ? "Passed" : "FAILED", reports.size(), compared,
+                            failures);
+}
+
+std::string report_json(const std::vector<CheckReport>& reports) {
+  Json json{{"schema", 1}, {"passed", all_passed(reports)}, {"cases", Json::array()}};
+  for (const CheckReport& report : reports) {
+    Json entry{{"case", report.case_name},      {"passed", report.passed()},
+               {"compared", report.compared()}, {"failures", report.failures()},
+               {"left_out", report.left_out},   {"findings", Json::array()}};
+    for (const Finding& finding : report.findings)
+      entry["findings"].push_back(finding_json(finding));
+    json["cases"].push_back(std::move(entry));
+  }
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string report_junit(const std::vector<CheckReport>& reports) {
+  Tree root;
+  Tree& suites = root.add_child("testsuites", Tree());
+  for (const CheckReport& report : reports) {
+    Tree suite;
+    suite.put("<xmlattr>.name", report.case_name);
+    suite.put("<xmlattr>.tests", report.findings.size());
+    suite.put("<xmlattr>.failures", report.failures());
+    suite.put("<xmlattr>.time", fmt::format("{:.3f}", report.seconds));
+    for (const Finding& finding : report.findings)
+      suite.add_child("testcase", test_case(report, finding));
+    suites.add_child("testsuite", suite);
+  }
+  std::ostringstream text;
+  boost::property_tree::write_xml(text, root);
+  return text.str() + '\n';
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/sensing/bench.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <random>
+
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+constexpr double beyond_the_largest = 1.25;  ///< the range of loads looked for, over the largest
+constexpr double least_noise = 1e-9;         ///< T: weights of a sensor without noise
+
+/// Which errors a simulation has.
+struct Active {
+  bool noise, quantum, sensor_position, stage_azimuth, ambient, models;
+};
+
+Active active(ErrorSource source) {
+  const auto is = [&](ErrorSource s) { return source == s || source == ErrorSource::all; };
+  return {is(ErrorSource::noise),           is(ErrorSource::quantum),
+          is(ErrorSource::sensor_position), is(ErrorSource::stage_azimuth),
+          is(ErrorSource::ambient),         is(ErrorSource::models)};
+}
+
+/// Whether the source has a size on this bench.
+bool is_there(const Bench& bench, ErrorSource source) {
+  switch (source) {
+    case ErrorSource::noise:
+      return bench.noise > 0;
+    case ErrorSource::quantum:
+      return bench.quantum > 0;
+    case ErrorSource::sensor_position:
+      return bench.sensor_position > 0;
+    case ErrorSource::stage_azimuth:
+      return bench.stage_azimuth > 0;
+    case ErrorSource::ambient:
+      return bench.ambient.norm() > 0 && bench.noise > 0;
+    case ErrorSource::models:
+      return bench.truth.name() != bench.models.name();
+    default:
+      return true;
+  }
+}
+
+/// Sums of squares that become BenchErrors.
+class Errors {
+ public:
+  explicit Errors(const std::optional<FlowLaw>& flow) : flow_(flow) {}
+  void add(std::size_t draw, const Vector2& truth, const Vector2& found) {
+    const double relative = found.norm() / truth.norm() - 1;
+    const double angle = std::abs(std::remainder(
+        std::atan2(found.y(), found.x()) - std::atan2(truth.y(), truth.x()), 2 * std::numbers::pi));
+    errors_.magnitude_rms += relative * relative;
+    if (flow_) {
+      const double speed = flow_->velocity(found.norm()) - flow_->velocity(truth.norm());
+      errors_.speed_rms += speed * speed;
+    }
+    errors_.azimuth_rms += angle * angle;
+    errors_.azimuth_largest = std::max(errors_.azimuth_largest, angle);
+    errors_.below_ten_degrees += angle < std::numbers::pi / 18 ? 1 : 0;
+    ++errors_.readings;
+    azimuths_of_draw_[draw].add(angle * angle);
+  }
+  BenchErrors mean() const {
+    BenchErrors result = errors_;
+    const auto n = static_cast<double>(std::max<std::size_t>(1, errors_.readings));
+    result.magnitude_rms = std::sqrt(errors_.magnitude_rms / n);
+    result.speed_rms = std::sqrt(errors_.speed_rms / n);
+    result.azimuth_rms = std::sqrt(errors_.azimuth_rms / n);
+    result.below_ten_degrees = errors_.below_ten_degrees / n;
+    result.azimuth_rms_interval = interval(result.azimuth_rms);
+    return result;
+  }
+
+ private:
+  struct Mean {
+    double sum = 0;
+    double n = 0;
+    void add(double value) {
+      sum += value;
+      ++n;
+    }
+    double value() const { return sum / n; }
+  };
+
+  /// d√x = dx/(2√x) with dx of the mean square x.
+  double interval(double rms) const {
+    const auto draws = static_cast<double>(azimuths_of_draw_.size());
+    if (draws < 2 || rms == 0) return 0;
+    double squares = 0;
+    for (const auto& [draw, mean] : azimuths_of_draw_)
+      squares += std::pow(mean.value() - rms * rms, 2);
+    const double standard_error = std::sqrt(squares / (draws - 1) / draws);
+    return boost::math::quantile(boost::math::students_t(draws - 1), 0.975) * standard_error /
+           (2 * rms);
+  }
+
+  std::optional<FlowLaw> flow_;
+  BenchErrors errors_;
+  std::map<std::size_t, Mean> azimuths_of_draw_;  ///< squares
+};
+
+/// The bench with all that its readings are made and inverted with.
+class Simulation {
+ public:
+  Simulation(const Bench& bench, const Progress& progress);
+
+  BenchResult run(const Progress& progress) const;
+
+ private:
+  struct Reading {
+    std::size_t magnitude;  ///< index in the load path
+    std::size_t draw;
+    Vector2 truth;
+    Eigen::VectorXd change;  ///< what is made of the readings, all offsets taken off
+  };
+  void simulate(const Active& errors, std::size_t draw, std::vector<Reading>& readings) const;
+  Eigen::VectorXd digits(Eigen::VectorXd B, bool rounded) const;
+  std::vector<Vector3> displaced(std::mt19937& random, bool is_active) const;
+
+  const Bench& bench_;
+  std::optional<FlowLaw> flow_;
+  double largest_ = 0;
+  Shapes model_shapes_;
+  Shapes truth_shapes_;  ///< empty if the truth is the model
+  std::unique_ptr<Response> response_;
+  std::unique_ptr<Response> truth_;  ///< of sensors where they should be; null if it is the model
+  std::unique_ptr<Inversion> invert_;
+  std::unique_ptr<LinearFit> fit_;
+};
+
+Simulation::Simulation(const Bench& bench, const Progress& progress)
+    : bench_(bench), flow_(flow_law(bench.problem)) {
+  for (const Load& load : bench.problem.load_path) largest_ = std::max(largest_, magnitude(load));
+  const auto named = [&](const std::string& name) {
+    return progress ? Progress([&progress, name](const std::string& text) {
+      progress(name + ": " + text);
+    })
+                    : Progress();
+  };
+  model_shapes_ = shapes_up_to(bench.problem, bench.models.mechanics, beyond_the_largest * largest_,
+                               named(bench.models.mechanics));
+  response_ = std::make_unique<Response>(bench.problem, bench.models.field, model_shapes_,
+                                         bench.problem.sensors);
+  if (bench.truth.name() != bench.models.name()) {
+    truth_shapes_ = bench.truth.mechanics == bench.models.mechanics
+                        ? model_shapes_
+                        : shapes_up_to(bench.problem, bench.truth.mechanics, largest_,
+                                       named(bench.truth.mechanics));
+    truth_ = std::make_unique<Response>(bench.problem, bench.truth.field, truth_shapes_,
+                                        bench.problem.sensors);
+  }
+  const Vector3 noise = Vector3::Constant(std::max({bench.noise, bench.quantum, least_noise}));
+  invert_ = std::make_unique<Inversion>(*response_, noise);
+  fit_ = std::make_unique<LinearFit>(*response_, noise);
+}
+
+/// What the sensor's digits show.
+Eigen::VectorXd Simulation::digits(Eigen::VectorXd B, bool rounded) const {
+  if (rounded) B = (B / bench_.quantum).array().round() * bench_.quantum;
+  return B;
+}
+
+std::vector<Vector3> Simulation::displaced(std::mt19937& random, bool is_active) const {
+  std::normal_distribution<double> normal;
+  std::vector<Vector3> sensors = bench_.problem.sensors;
+  for (Vector3& sensor : sensors)
+    for (double& coordinate : sensor) {
+      const double error = bench_.sensor_position * normal(random);
+      if (is_active) coordinate += error;
+    }
+  return sensors;
+}
+
+void Simulation::simulate(const Active& errors, std::size_t draw,
+                          std::vector<Reading>& readings) const {
+  // The same errors in every simulation, whether alone or together.
+  std::mt19937 random(bench_.seed + static_cast<unsigned int>(draw));
+  std::normal_distribution<double> normal;
+  const bool other = errors.models && truth_;
+  const std::vector<Vector3> sensors = displaced(random, errors.sensor_position);
+  std::optional<Response> built;
+  if (errors.sensor_position && bench_.sensor_position > 0)
+    built.emplace(bench_.problem, other ? bench_.truth.field : bench_.models.field,
+                  other ? truth_shapes_ : model_shapes_, sensors);
+  const Response& truth = built ? *built : other ? *truth_ : *response_;
+  const double stage = bench_.stage_azimuth * normal(random) * (errors.stage_azimuth ? 1 : 0);
+  const auto components = static_cast<Eigen::Index>(3 * sensors.size());
+  const auto read = [&](const Eigen::VectorXd& field, bool with_noise) {
+    Eigen::VectorXd B = field;
+    for (double& component : B) {
+      const double error = bench_.noise * normal(random);
+      if (with_noise) component += error;
+    }
+    return digits(std::move(B), errors.quantum && bench_.quantum > 0);
+  };
+  const auto ambient = [&](double azimuth) -> Eigen::VectorXd {
+    const Vector3 seen = Eigen::AngleAxisd(azimuth, Vector3::UnitZ()) *
+                         Vector3(bench_.ambient * (errors.ambient ? 1 : 0));
+    return seen.replicate(components / 3, 1);
+  };
+  Eigen::VectorXd offset;
+  for (unsigned int a = 0; a < bench_.azimuths; ++a) {
+    const double azimuth = 2 * std::numbers::pi * a / bench_.azimuths;
+    const Eigen::VectorXd background = read(ambient(azimuth), errors.ambient);
+    if (a == 0) offset = read(ambient(0) + truth.undeformed(), errors.noise) - background;
+    for (std::size_t m = 0; m < bench_.problem.load_path.size(); ++m) {
+      const double magnitude = ciliaval::magnitude(bench_.problem.load_path[m]);
+      const auto load = [&](double angle) {
+        return Vector2(magnitude * std::cos(angle), magnitude * std::sin(angle));
+      };
+      const Eigen::VectorXd B =
+          read(ambient(azimuth) + truth.undeformed() + truth.change(load(azimuth + stage)),
+               errors.noise);
+      readings.push_back({m, draw, load(azimuth), B - background - offset});
+    }
+  }
+}
+
+BenchResult Simulation::run(const Progress& progress) const {
+  BenchResult result;
+  result.linear_misfit = fit_->misfit();
+  std::vector<Errors> by_magnitude(bench_.problem.load_path.size(), Errors(flow_));
+  for (const ErrorSource source :
+       {ErrorSource::none, ErrorSource::noise, ErrorSource::quantum, ErrorSource::sensor_position,
+        ErrorSource::stage_azimuth, ErrorSource::ambient, ErrorSource::models, ErrorSource::all}) {
+    if (!is_there(bench_, source)) continue;
+    const bool once = source == ErrorSource::none || source == ErrorSource::models;
+    std::vector<Reading> readings;
+    for (std::size_t draw = 0; draw < (once ? 1 : bench_.draws); ++draw) {
+      if (progress)
+        progress(fmt::format("{}: sensor {} of {}", to_string(source), draw + 1, bench_.draws));
+      simulate(active(source), draw, readings);
+    }
+    Errors inversion(flow_);
+    Errors linear(flow_);
+    for (const Reading& reading : readings) {
+      const SensedLoad sensed = (*invert_)(reading.change);
+      if (!sensed.converged) throw SolverError("the least squares of the bench did not converge");
+      inversion.add(reading.draw, reading.truth, sensed.load);
+      linear.add(reading.draw, reading.truth, (*fit_)(reading.change));
+      if (source != ErrorSource::all) continue;
+      by_magnitude[reading.magnitude].add(reading.draw, reading.truth, sensed.load);
+      if (reading.draw == 0) result.first_draw.push_back({reading.truth, sensed.load});
+    }
+    result.rows.push_back({source, inversion.mean(), linear.mean()});
+  }
+  for (const Errors& errors : by_magnitude) result.by_magnitude.push_back(errors.mean());
+  return result;
+}
+
+}  // namespace
+
+std::string_view to_string(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::none:
+      return "none";
+    case ErrorSource::noise:
+      return "noise";
+    case ErrorSource::quantum:
+      return "digits";
+    case ErrorSource::sensor_position:
+      return "sensor position";
+    case ErrorSource::stage_azimuth:
+      return "stage azimuth";
+    case ErrorSource::ambient:
+      return "ambient field";
+    case ErrorSource::models:
+      return "models";
+    case ErrorSource::all:
+      break;
+  }
+  return "all";
+}
+
+BenchResult run_bench(const Bench& bench, const Progress& progress) {
+  return Simulation(bench, progress).run(progress);
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a simulated bench found, for people and programs.
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "compare/sensing/bench.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double degree = std::numbers::pi / 180;
+
+std::string errors_text(const BenchErrors& errors, bool flow) {
+  return fmt::format("{:>8.2f}{} {:>8.2f} {:>8.2f} {:>8.1f}", 100 * errors.magnitude_rms,
+                     flow ? fmt::format(" {:>8.4f}", errors.speed_rms) : "",
+                     errors.azimuth_rms / degree, errors.azimuth_largest / degree,
+                     100 * errors.below_ten_degrees);
+}
+
+Json errors_json(const BenchErrors& errors) {
+  return {{"magnitude_rms", errors.magnitude_rms},
+          {"speed_rms", errors.speed_rms},
+          {"azimuth_rms", errors.azimuth_rms},
+          {"azimuth_rms_interval", errors.azimuth_rms_interval},
+          {"azimuth_largest", errors.azimuth_largest},
+          {"below_ten_degrees", errors.below_ten_degrees},
+          {"readings", errors.readings}};
+}
+
+/// "0.3 m/s", "2 mN"
+std::string magnitude_text(const Bench& bench, std::size_t step) {
+  const Case& problem = bench.problem;
+  if (step < problem.flow_velocity.size())
+    return fmt::format("{:g} m/s", problem.flow_velocity[step]);
+  const Load& load = problem.load_path[step];
+  const std::string_view unit = magnitude_unit(load);
+  if (unit == "N/m") return fmt::format("{:g} N/m", magnitude(load));
+  return fmt::format("{:g} m{}", 1e3 * magnitude(load), unit);
+}
+
+}  // namespace
+
+std::string bench_text(const Bench& bench, const BenchResult& result) {
+  const bool flow = !bench.problem.flow_velocity.empty();
+  std::string text = fmt::format(
+      "{}\n{}: {} loads at {} azimuths, {} sensors; read by {}, inverted by {}\n"
+      "Stated errors (standard deviations): noise {:.3g} uT, digits of {:.3g} uT, sensor position "
+      "{:.3g} mm, stage {:.3g} deg; ambient field {:.3g} uT, measured at each azimuth\n\n",
+      bench.title, bench.problem.name, bench.problem.load_path.size(), bench.azimuths, bench.draws,
+      bench.truth.name(), bench.models.name(), bench.noise * 1e6, bench.quantum * 1e6,
+      bench.sensor_position * 1e3, bench.stage_azimuth / degree, bench.ambient.norm() * 1e6);
+  const std::string columns =
+      fmt::format("{:>8}{} {:>8} {:>8} {:>8}", "load %", flow ? fmt::format(" {:>8}", "v m/s") : "",
+                  "dir deg", "largest", "<10 deg%");
+  text += fmt::format("  {:<16}  {}   {}\n", "", "full inversion",
+                      std::string(flow ? 33 : 24, ' ') + "linear fit of dB (paper)");
+  text += fmt::format("  {:<16} {}  {}\n", "error alone", columns, columns);
+  for (const BenchRow& row : result.rows)
+    text += fmt::format("  {:<16} {}  {}\n", to_string(row.source),
+                        errors_text(row.inversion, flow), errors_text(row.linear_fit, flow));
+  text += fmt::format("\n  {:<16} {}\n", "all, by load", columns);
+  for (std::size_t m = 0; m < result.by_magnitude.size(); ++m)
+    text += fmt::format("  {:<16} {}\n", magnitude_text(bench, m),
+                        errors_text(result.by_magnitude[m], flow));
+  return text + fmt::format(
+                    "\nRoot mean squares of (found - true)/true load, speed and direction; largest "
+                    "error of direction; part of the readings within 10 deg.\ndB is linear in the "
+                    "load but for {:.2g} % over the range.\n",
+                    100 * result.linear_misfit);
+}
+
+std::string bench_json(const Bench& bench, const BenchResult& result,
+                       const Provenance& provenance) {
+  Json json{{"schema", 1},
+            {"title", bench.title},
+            {"case", bench.problem.name},
+            {"provenance", to_json(provenance)},
+            {"unit", magnitude_unit(bench.problem.load_path.front())},
+            {"models", bench.models.name()},
+            {"truth", bench.truth.name()},
+            {"azimuths", bench.azimuths},
+            {"draws", bench.draws},
+            {"seed", bench.seed},
+            {"errors",
+             {{"noise", bench.noise},
+              {"quantum", bench.quantum},
+              {"sensor_position", bench.sensor_position},
+              {"stage_azimuth", bench.stage_azimuth},
+              {"ambient", {bench.ambient.x(), bench.ambient.y(), bench.ambient.z()}}}},
+            {"linear_misfit", result.linear_misfit},
+            {"sources", Json::array()},
+            {"by_magnitude", Json::array()},
+            {"first_draw", Json::array()}};
+  for (const BenchRow& row : result.rows)
+    json["sources"].push_back({{"source", to_string(row.source)},
+                               {"inversion", errors_json(row.inversion)},
+                               {"linear_fit", errors_json(row.linear_fit)}});
+  for (std::size_t m = 0; m < result.by_magnitude.size(); ++m) {
+    Json entry = errors_json(result.by_magnitude[m]);
+    entry["magnitude"] = magnitude(bench.problem.load_path[m]);
+    json["by_magnitude"].push_back(std::move(entry));
+  }
+  for (const BenchPoint& p : result.first_draw)
+    json["first_draw"].push_back(
+        {{"truth", {p.truth.x(), p.truth.y()}}, {"found", {p.found.x(), p.found.y()}}});
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string bench_script(const Bench& bench, const BenchResult& result) {
+  const std::string_view unit = magnitude_unit(bench.problem.load_path.front());
+  const double factor = unit == "N/m" ? 1 : 1e3;
+  const std::string shown = unit == "N/m" ? "N/m" : fmt::format("m{}", unit);
+  std::string text = "$truth << EOD\n";
+  for (const BenchPoint& p : result.first_draw)
+    text += fmt::format("{} {}\n", factor * p.truth.x(), factor * p.truth.y());
+  text += "EOD\n$found << EOD\n";
+  for (const BenchPoint& p : result.first_draw)
+    text += fmt::format("{} {}\n", factor * p.found.x(), factor * p.found.y());
+  return text +
+         fmt::format(
+             "EOD\nset title {}\nset size ratio -1\nset grid\n"
+             "set xlabel {}\nset ylabel {}\nset key outside bottom center horizontal\n"
+             "plot $truth with points pt 6 ps 1.4 lc 'gray40' title 'true load', \\\n"
+             "  $found with points pt 7 ps 0.6 lc 1 title {}\n",
+             plot::quoted(bench.title), plot::quoted(fmt::format("load along x, {}", shown)),
+             plot::quoted(fmt::format("load along y, {}", shown)),
+             plot::quoted("found by " + bench.models.name() + " with all errors, one sensor"));
+}
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/sensing/inversion.h"
+
+#include <ceres/ceres.h>
+#include <fmt/core.h>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/complement.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+/// (ΔB(p) − reading)/σ. The loads are scaled by the largest, or the solver's tolerances would mean
+/// different things for newtons and metres.
+class Misfit : public ceres::CostFunction {
+ public:
+  Misfit(const Response& response, const Eigen::VectorXd& weights, const Eigen::VectorXd& reading)
+      : response_(response), weights_(weights), reading_(reading) {
+    set_num_residuals(static_cast<int>(reading.size()));
+    mutable_parameter_block_sizes()->push_back(2);
+  }
+
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const double scale = response_.largest();
+    const Vector2 p = scale * Vector2(parameters[0][0], parameters[0][1]);
+    Eigen::Map<Eigen::VectorXd>(residuals, reading_.size()) =
+        weights_.cwiseProduct(response_.change(p) - reading_);
+    if (jacobians != nullptr && jacobians[0] != nullptr)
+      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>(jacobians[0],
+                                                                            reading_.size(), 2) =
+          scale * (weights_.asDiagonal() * response_.derivative(p));
+    return true;
+  }
+
+ private:
+  const Response& response_;
+  const Eigen::VectorXd& weights_;
+  const Eigen::VectorXd& reading_;
+};
+
+Vector2 polar(double magnitude, double azimuth) {
+  return {magnitude * std::cos(azimuth), magnitude * std::sin(azimuth)};
+}
+
+/// Loads over the whole range, the zero load first.
+std::vector<Vector2> loads_over(double largest, int magnitudes, int azimuths) {
+  std::vector<Vector2> loads{Vector2::Zero()};
+  for (int k = 1; k <= magnitudes; ++k)
+    for (int j = 0; j < azimuths; ++j)
+      loads.push_back(polar(largest * k / magnitudes, 2 * std::numbers::pi * j / azimuths));
+  return loads;
+}
+
+Eigen::VectorXd weights_of(const Vector3& noise, std::size_t sensors) {
+  if (!(noise.minCoeff() > 0) || !noise.allFinite())
+    throw InputError("the noise of a reading must be finite and positive");
+  return noise.cwiseInverse().replicate(static_cast<Eigen::Index>(sensors), 1);
+}
+
+}  // namespace
+
+double SensedLoad::azimuth() const {
+  return std::atan2(load.y(), load.x());
+}
+
+double SensedLoad::magnitude_interval() const {
+  const Vector2 along = magnitude() > 0 ? Vector2(load / magnitude()) : Vector2::UnitX();
+  return two_sided_95 * std::sqrt(along.dot(covariance * along));
+}
+
+double SensedLoad::azimuth_interval() const {
+  if (magnitude() == 0) return std::numbers::pi;
+  const Vector2 across = Vector2(-load.y(), load.x()) / magnitude();
+  const double angle = two_sided_95 * std::sqrt(across.dot(covariance * across)) / magnitude();
+  // Where the interval of the magnitude holds zero, the direction is not known.
+  return magnitude_interval() >= magnitude() ? std::numbers::pi : std::min(angle, std::numbers::pi);
+}
+
+Inversion::Inversion(const Response& response, const Vector3& noise)
+    : response_(response),
+      weights_(weights_of(noise, response.sensors())),
+      starts_(loads_over(response.largest(), 8, 16)),
+      start_changes_(weights_.size(), static_cast<Eigen::Index>(starts_.size())) {
+  for (std::size_t i = 0; i < starts_.size(); ++i)
+    start_changes_.col(static_cast<Eigen::Index>(i)) =
+        weights_.cwiseProduct(response.change(starts_[i]));
+}
+
+SensedLoad Inversion::operator()(const Eigen::VectorXd& change) const {
+  if (change.size() != weights_.size() || !change.allFinite())
+    throw InputError(fmt::format("a reading has {} finite numbers", weights_.size()));
+  Eigen::Index nearest = 0;
+  (start_changes_.colwise() - weights_.cwiseProduct(change))
+      .colwise()
+      .squaredNorm()
+      .minCoeff(&nearest);
+  Vector2 x = starts_[static_cast<std::size_t>(nearest)] / response_.largest();
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  Misfit misfit(response_, weights_, change);
+  ceres::Problem problem(ownership);
+  problem.AddResidualBlock(&misfit, nullptr, x.data());
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = 100;
+  options.function_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-12;
+  options.gradient_tolerance = 1e-12;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  SensedLoad result;
+  result.load = x * response_.largest();
+  result.converged = summary.IsSolutionUsable() && x.allFinite();
+  result.beyond_range = result.magnitude() > response_.largest() * (1 + 1e-9);
+  const Eigen::VectorXd residuals = weights_.cwiseProduct(response_.change(result.load) - change);
+  result.chi_squared = residuals.squaredNorm();
+  const Eigen::MatrixX2d J = weights_.asDiagonal() * response_.derivative(result.load);
+  result.covariance = (J.transpose() * J).inverse();
+  const boost::math::chi_squared distribution(static_cast<double>(weights_.size() - 2));
+  result.misfit_probability =
+      boost::math::cdf(boost::math::complement(distribution, result.chi_squared));
+  return result;
+}
+
+LinearFit::LinearFit(const Response& response, const Vector3& noise) {
+  const std::vector<Vector2> loads = loads_over(response.largest(), 8, 16);
+  const auto n = static_cast<Eigen::Index>(loads.size());
+  Eigen::MatrixX2d p(n, 2);
+  Eigen::MatrixXd changes(n, static_cast<Eigen::Index>(3 * response.sensors()));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    p.row(i) = loads[static_cast<std::size_t>(i)].transpose();
+    changes.row(i) = response.change(loads[static_cast<std::size_t>(i)]).transpose();
+  }
+  const Eigen::MatrixX2d A = p.colPivHouseholderQr().solve(changes).transpose();
+  misfit_ = (changes - p * A.transpose()).norm() / changes.norm();
+  const Eigen::VectorXd weights = weights_of(noise, response.sensors());
+  const Eigen::MatrixX2d weighted = weights.asDiagonal() * A;
+  inverse_ =
+      (weighted.transpose() * weighted).inverse() * weighted.transpose() * weights.asDiagonal();
+}
+
+}  // namespace ciliaval::compare

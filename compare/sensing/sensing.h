@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compare/output/provenance.h"
+#include "compare/sensing/inversion.h"
+#include "compare/sensing/readings.h"
+
+namespace ciliaval::compare {
+
+/// What a reading tells.
+enum class SenseStatus {
+  found,         ///< a load, with its interval
+  nothing,       ///< the interval holds zero: no load is seen, and no direction known
+  beyond_range,  ///< the load is larger than the largest computed
+  misfit,        ///< no load explains the reading: noise alone does so once in a thousand times
+  failed         ///< the least squares did not converge
+};
+std::string_view to_string(SenseStatus status);
+SenseStatus status_of(const SensedLoad& sensed);
+
+/// How a flow's force becomes a velocity, v = √(2q/(ρ d C_d)) (paper, Eq. 10–11).
+struct FlowLaw {
+  double density = 0;                              ///< ρ, kg/m³
+  double drag_coefficient = 0;                     ///< C_d
+  double diameter = 0;                             ///< d, m
+  double velocity(double force_per_height) const;  ///< 0 for a q below 0
+  double force_per_height(double velocity) const;
+};
+/// That of a case whose flow is given by its velocity.
+std::optional<FlowLaw> flow_law(const Case& problem);
+
+/// A case's readings and what was made of them.
+struct Sensing {
+  std::string case_name;
+  ModelPair models;
+  Vector3 noise = Vector3::Zero();  ///< T
+  std::string unit;                 ///< of the load's magnitude
+  double largest = 0;               ///< load computed
+  double interpolation_error = 0;   ///< T
+  double largest_change = 0;        ///< T
+  bool measured_offset = false;
+  std::optional<FlowLaw> flow;
+  std::vector<std::pair<std::string, SensedLoad>> samples;  ///< by name
+};
+
+/// A table for people.
+std::string sensing_text(const Sensing& sensing);
+/// {"schema": 1, "case", "models", "noise", "unit", "largest", "interpolation_error", "offset",
+/// "samples": [{"sample", "status", "load": [x, y], "magnitude", "magnitude_interval", "azimuth",
+/// "azimuth_interval", "covariance", "chi_squared", "misfit_probability", "velocity",
+/// "velocity_interval": [low, high]}]}; angles in rad, half-widths of 95 %.
+std::string sensing_json(const Sensing& sensing, const Provenance& provenance);
+/// A line for each sample, units in the header.
+std::string sensing_csv(const Sensing& sensing);
+
+}  // namespace ciliaval::compare

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/discretisation/assembly.h"
+
+#include <deal.II/base/work_stream.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+namespace {
+
+using ElementVector = Eigen::Matrix<double, element_dofs, 1>;
+using NodalVectors = Eigen::Matrix<double, element_nodes, 3>;
+/// ∂N_a/∂X_J at all Gauss points, of a size that is known when compiling.
+using Gradients = Eigen::Map<const Eigen::Matrix<double, element_nodes, 3 * element_points>>;
+using GlobalDofs = std::vector<dealii::types::global_dof_index>;
+
+/// One element's share, as it goes from the parallel worker to the serial copier, which takes the
+/// shares in the order of the cells.
+struct ForceShare {
+  std::size_t index = 0;
+  bool admissible = true;
+  ElementVector forces = ElementVector::Zero();
+  ElementVector condensed = ElementVector::Zero();
+};
+
+struct StiffnessShare {
+  dealii::FullMatrix<double> matrix = dealii::FullMatrix<double>(element_dofs, element_dofs);
+  GlobalDofs dofs = GlobalDofs(element_dofs);
+};
+
+struct NoScratch {};
+
+Gradients gradients(const SolidElement& element) {
+  return Gradients(element.gradients.data());
+}
+
+/// F = 1 + Σ u_a ⊗ ∂N_a/∂X at all Gauss points: columns 3q + J.
+Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(
+    const SolidElement& element, const dealii::Vector<double>& displacement) {
+  const NodalVectors u = nodal_displacements(element, displacement);
+  Eigen::Matrix<double, 3, 3 * element_points> F;
+  // Eigen's blocked product, meant for large matrices, takes a fifth more of internal_forces().
+  F = u.transpose().lazyProduct(gradients(element));
+  for (Eigen::Index q = 0; q < element_points; ++q) F.middleCols<3>(3 * q) += Matrix3::Identity();
+  return F;
+}
+
+/// J F⁻ᵀ.
+Matrix3 cofactor(const Matrix3& F) {
+  Matrix3 result;
+  result.row(0) = F.row(1).cross(F.row(2));
+  result.row(1) = F.row(2).cross(F.row(0));
+  result.row(2) = F.row(0).cross(F.row(1));
+  return result;
+}
+
+/// Internal forces and pressure equation of an element. One product with the shape functions'
+/// gradients serves both: column c of `fluxes` holds w P_cJ at row 3q + J, and column 3 + 4c + m
+/// holds w ψ_m J F⁻ᵀ_cJ.
+void force_share(const SolidElement& element, const SolidState& state, std::size_t index,
+                 ForceShare& share, PressureEquation& equation) {
+  const auto F_all = deformation_gradients(element, state.displacement);
+  const PressureVector& pressure = state.pressure[index];
+  PressureVector residual = PressureVector::Zero();
+  Eigen::Matrix<double, 3 * element_points, 3 + 3 * element_pressures> fluxes;
+  share.index = index;
+  share.admissible = false;
+  for (Eigen::Index q = 0; q < element_points; ++q) {
+    const Matrix3 F = F_all.middleCols<3>(3 * q);
+    const Matrix3 cof = cofactor(F);
+    const double J = F.row(0).dot(cof.row(0));
+    if (!(J > 0)) return;
+    const double weight = element.weights[q];
+    const PressureVector psi = element.pressure_values.col(q);
+    const double p = psi.dot(pressure);
+    residual += weight * (J - 1 - p / element.material.bulk_modulus) * psi;
+    fluxes.block<3, 3>(3 * q, 0) = weight * first_piola_stress(element.material, F, p).transpose();
+    for (Eigen::Index c = 0; c < 3; ++c)
+      fluxes.block<3, element_pressures>(3 * q, 3 + element_pressures * c) =
+          (weight * cof.row(c)).transpose() * psi.transpose();
+  }
+  share.admissible = true;
+  Eigen::Matrix<double, element_nodes, 3 + 3 * element_pressures> sums;
+  sums.noalias() = gradients(element) * fluxes;
+  share.forces = sums.leftCols<3>().reshaped();
+  for (Eigen::Index c = 0; c < 3; ++c)
+    equation.gradient.middleCols<element_nodes>(c * element_nodes) =
+        sums.middleCols<element_pressures>(3 + element_pressures * c).transpose();
+  equation.correction = element.inverse_compliance * residual;
+  share.condensed = share.forces;
+  share.condensed.noalias() += equation.gradient.transpose() * equation.correction;
+}
+
+}  // namespace
+
+void element_stiffness(const SolidElement& element, const SolidState& state, std::size_t index,
+                       const PressureEquation& equation, dealii::FullMatrix<double>& matrix) {
+  using Block = Eigen::Matrix<double, element_nodes, element_nodes>;
+  const auto F = deformation_gradients(element, state.displacement);
+  std::array<StressTangent, element_points> tangents;
+  for (Eigen::Index q = 0; q < element_points; ++q) {
+    const double p = element.pressure_values.col(q).dot(state.pressure[index]);
+    tangents[static_cast<std::size_t>(q)] =
+        element.weights[q] * stress_tangent(element.material, F.middleCols<3>(3 * q), p);
+  }
+  const Eigen::Matrix<double, element_pressures, element_dofs> pressure =
+      element.inverse_compliance * equation.gradient;
+  Eigen::Map<Eigen::Matrix<double, element_dofs, element_dofs, Eigen::RowMajor>> stiffness(
+      &matrix(0, 0));
+  // flux, row b and column 3q + J: ∂P_iJ/∂u_kb at Gauss point q, times the weight. Only the blocks
+  // of rows i and columns k ≥ i are computed, and of i = k only the lower half.
+  Eigen::Matrix<double, element_nodes, 3 * element_points> flux;
+  Block block;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const auto first_row = element_nodes * i;
+    for (Eigen::Index k = i; k < 3; ++k) {
+      const auto first_column = element_nodes * k;
+      for (Eigen::Index q = 0; q < element_points; ++q)
+        flux.middleCols<3>(3 * q).noalias() =
+            gradients(element).middleCols<3>(3 * q) *
+            tangents[static_cast<std::size_t>(q)].block<3, 3>(3 * i, 3 * k).transpose();
+      block.noalias() = equation.gradient.middleCols<element_nodes>(first_row).transpose() *
+                        pressure.middleCols<element_nodes>(first_column);
+      if (i == k) {
+        block.triangularView<Eigen::Lower>() += gradients(element) * flux.transpose();
+        block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
+      } else {
+        block.noalias() += gradients(element) * flux.transpose();
+        stiffness.block<element_nodes, element_nodes>(first_column, first_row) = block.transpose();
+      }
+      stiffness.block<element_nodes, element_nodes>(first_row, first_column) = block;
+    }
+  }
+}
+
+Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& element,
+                                                       const SolidState& state, std::size_t index) {
+  const auto F_all = deformation_gradients(element, state.displacement);
+  Eigen::Matrix<double, 3 * element_points, 3> fluxes;
+  for (Eigen::Index q = 0; q < element_points; ++q) {
+    const Matrix3 F = F_all.middleCols<3>(3 * q);
+    if (!(F.determinant() > 0)) throw SolverError("det F of the solid is not positive");
+    const double p = element.pressure_values.col(q).dot(state.pressure[index]);
+    fluxes.middleRows<3>(3 * q) =
+        element.weights[q] * first_piola_stress(element.material, F, p).transpose();
+  }
+  return gradients(element).lazyProduct(fluxes);
+}
+
+std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state) {
+  const auto& elements = space.elements();
+  InternalForces result{dealii::Vector<double>(space.unknowns()),
+                        dealii::Vector<double>(space.unknowns()),
+                        std::vector<PressureEquation>(elements.size())};
+  bool admissible = true;
+  using Iterator = std::vector<SolidElement>::const_iterator;
+  const auto worker = [&](const Iterator& element, NoScratch&, ForceShare& share) {
+    const auto index = static_cast<std::size_t>(element - elements.begin());
+    force_share(*element, state, index, share, result.pressure[index]);
+  };
+  const auto copier = [&](const ForceShare& share) {
+    admissible = admissible && share.admissible;
+    const auto& dofs = elements[share.index].dofs;
+    for (std::size_t i = 0; i < element_dofs; ++i) {
+      result.forces[dofs[i]] += share.forces[static_cast<Eigen::Index>(i)];
+      result.condensed[dofs[i]] += share.condensed[static_cast<Eigen::Index>(i)];
+    }
+  };
+  dealii::WorkStream::run(elements.begin(), elements.end(), worker, copier, NoScratch(),
+                          ForceShare());
+  if (!admissible || !std::isfinite(result.condensed.l2_norm())) return std::nullopt;
+  return result;
+}
+
+void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
+                   const dealii::AffineConstraints<double>& constraints,
+                   dealii::SparseMatrix<double>& matrix, std::span<const std::size_t> cells) {
+  const auto& elements = space.elements();
+  std::vector<std::size_t> indices(cells.begin(), cells.end());
+  if (indices.empty()) {
+    indices.resize(elements.size());
+    std::iota(indices.begin(), indices.end(), std::size_t{0});
+  }
+  using Iterator = std::vector<std::size_t>::const_iterator;
+  const auto worker = [&](const Iterator& cell, NoScratch&, StiffnessShare& share) {
+    const SolidElement& element = elements[*cell];
+    element_stiffness(element, state, *cell, internal.pressure[*cell], share.matrix);
+    std::copy(element.dofs.begin(), element.dofs.end(), share.dofs.begin());
+  };
+  const auto copier = [&](const StiffnessShare& share) {
+    constraints.distribute_local_to_global(share.matrix, share.dofs, matrix);
+  };
+  dealii::WorkStream::run(indices.cbegin(), indices.cend(), worker, copier, NoScratch(),
+                          StiffnessShare());
+}
+
+void advance(const SolidSpace& space, const InternalForces& internal,
+             const dealii::Vector<double>& increment, SolidState& state) {
+  const auto& elements = space.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const ElementVector du =
+        nodal_displacements(elements[e], increment).reshaped<Eigen::ColMajor>();
+    const PressureEquation& equation = internal.pressure[e];
+    state.pressure[e] +=
+        equation.correction + elements[e].inverse_compliance * (equation.gradient * du);
+  }
+  state.displacement += increment;
+}
+
+void project_pressure(const SolidSpace& space, SolidState& state) {
+  const auto& elements = space.elements();
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const auto F = deformation_gradients(elements[e], state.displacement);
+    PressureVector moment = PressureVector::Zero();
+    for (int q = 0; q < element_points; ++q)
+      moment += elements[e].weights[q] * elements[e].pressure_values.col(q) *
+                (F.middleCols<3>(Eigen::Index{3} * q).determinant() - 1);
+    state.pressure[e] = elements[e].inverse_compliance * moment;
+  }
+}
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/discretisation/space.h"
+
+#include <deal.II/base/function.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_renumbering.h>
+#include <deal.II/fe/component_mask.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/numerics/vector_tools_boundary.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+namespace {
+
+using dealii::types::global_dof_index;
+
+/// A displacement field as deal.II wants it.
+class DisplacementFunction : public dealii::Function<3> {
+ public:
+  explicit DisplacementFunction(const std::function<Vector3(const Vector3&)>& field)
+      : Function<3>(3), field_(field) {}
+  void vector_value(const dealii::Point<3>& X, dealii::Vector<double>& value) const override {
+    const Vector3 u = field_ ? field_(Vector3(X[0], X[1], X[2])) : Vector3::Zero();
+    for (int c = 0; c < 3; ++c) value[static_cast<global_dof_index>(c)] = u[c];
+  }
+  double value(const dealii::Point<3>& X, unsigned int component) const override {
+    dealii::Vector<double> u(3);
+    vector_value(X, u);
+    return u[component];
+  }
+
+ private:
+  const std::function<Vector3(const Vector3&)>& field_;
+};
+
+/// Where the nodes of an element lie in the unit cell, lexicographic.
+dealii::Quadrature<3> unit_nodes() {
+  std::vector<dealii::Point<3>> points;
+  for (const double zeta : {0.0, 0.5, 1.0})
+    for (const double eta : {0.0, 0.5, 1.0})
+      for (const double xi : {0.0, 0.5, 1.0}) points.emplace_back(xi, eta, zeta);
+  return dealii::Quadrature<3>(points);
+}
+
+std::map<global_dof_index, double> boundary_values(const SolidSpace& space,
+                                                   const DirichletCondition& condition) {
+  dealii::ComponentMask mask(3, false);
+  for (unsigned int c = 0; c < 3; ++c) mask.set(c, condition.components[c]);
+  std::map<global_dof_index, double> values;
+  dealii::VectorTools::interpolate_boundary_values(
+      space.mapping(), space.dof_handler(), condition.boundary,
+      DisplacementFunction(condition.displacement), values, mask);
+  return values;
+}
+
+}  // namespace
+
+PressureVector SolidElement::pressure_basis(const Vector3& X) const {
+  PressureVector psi;
+  psi << 1, (X - centre) / size;
+  return psi;
+}
+
+SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
+                       const dealii::Mapping<3>& mapping, std::span<const Hyperelastic> materials)
+    : mapping_(mapping),
+      scalar_element_(element_degree),
+      element_(scalar_element_, 3),
+      dof_handler_(triangulation) {
+  dof_handler_.distribute_dofs(element_);
+  // From the base to the tip: the rows of a rank then belong to one part of the cilium.
+  dealii::DoFRenumbering::downstream(dof_handler_, dealii::Tensor<1, 3>({0, 0, 1}));
+  const std::vector<unsigned int> inverse = scalar_element_.get_poly_space_numbering_inverse();
+  lexicographic_.resize(inverse.size());
+  for (unsigned int lex = 0; lex < inverse.size(); ++lex) lexicographic_[inverse[lex]] = lex;
+
+  const dealii::QGauss<3> gauss(element_degree + 1);
+  shape_values_.resize(element_nodes, element_points);
+  Eigen::MatrixXd unit_gradients(element_nodes, 3 * element_points);  // ∂N_a/∂ξ_j: column 3q + j
+  for (unsigned int q = 0; q < gauss.size(); ++q)
+    for (unsigned int a = 0; a < element_nodes; ++a) {
+      shape_values_(lexicographic_[a], q) = scalar_element_.shape_value(a, gauss.point(q));
+      for (unsigned int j = 0; j < 3; ++j)
+        unit_gradients(lexicographic_[a], 3 * q + j) =
+            scalar_element_.shape_grad(a, gauss.point(q))[j];
+    }
+
+  dealii::FEValues<3> nodes(mapping_, scalar_element_, unit_nodes(),
+                            dealii::update_quadrature_points);
+  std::vector<global_dof_index> dofs(element_dofs);
+  elements_.reserve(triangulation.n_active_cells());
+  for (const auto& cell : dof_handler_.active_cell_iterators()) {
+    SolidElement element;
+    element.cell = cell;
+    nodes.reinit(element.cell);
+    cell->get_dof_indices(dofs);
+    for (unsigned int i = 0; i < element_dofs; ++i) {
+      const auto [component, node] = element_.system_to_component_index(i);
+      element.dofs[component * element_nodes + lexicographic_[node]] = dofs[i];
+    }
+    element.gradients.resize(element_nodes, 3 * element_points);
+    element.weights.resize(element_points);
+    element.pressure_values.resize(element_pressures, element_points);
+    for (unsigned int a = 0; a < element_nodes; ++a)
+      for (unsigned int J = 0; J < 3; ++J) element.nodes(a, J) = nodes.quadrature_point(a)[J];
+    const Eigen::Matrix<double, element_points, 3> points =
+        shape_values_.transpose() * element.nodes;
+    const dealii::Point<3> centre = cell->center();
+    element.centre = Vector3(centre[0], centre[1], centre[2]);
+    element.size = cell->diameter();
+    for (Eigen::Index q = 0; q < element_points; ++q) {
+      const auto gradients = unit_gradients.middleCols<3>(3 * q);
+      const Matrix3 jacobian = element.nodes.transpose() * gradients;  // ∂X/∂ξ
+      element.weights[q] = jacobian.determinant() * gauss.weight(static_cast<unsigned int>(q));
+      element.pressure_values.col(q) = element.pressure_basis(points.row(q).transpose());
+      element.gradients.middleCols<3>(3 * q).noalias() = gradients * jacobian.inverse();
+    }
+    initialize(element, materials);
+    elements_.push_back(std::move(element));
+  }
+}
+
+void SolidSpace::initialize(SolidElement& element, std::span<const Hyperelastic> materials) const {
+  const auto id = element.cell->material_id();
+  if (id >= materials.size())
+    throw InputError("the mesh has cells of material " + std::to_string(id) + ", but only " +
+                     std::to_string(materials.size()) + " materials are given");
+  element.material = materials[id];
+  if (!(element.weights.minCoeff() > 0))
+    throw InputError("the mesh has a cell whose Jacobian is not positive");
+  const PressureMatrix compliance = element.pressure_values * element.weights.asDiagonal() *
+                                    element.pressure_values.transpose() /
+                                    element.material.bulk_modulus;
+  element.inverse_compliance = compliance.inverse();
+}
+
+SolidState SolidSpace::undeformed() const {
+  return {dealii::Vector<double>(dof_handler_.n_dofs()),
+          std::vector<PressureVector>(elements_.size(), PressureVector::Zero())};
+}
+
+Eigen::Matrix<double, element_nodes, 3> nodal_displacements(
+    const SolidElement& element, const dealii::Vector<double>& displacement) {
+  Eigen::Matrix<double, element_nodes, 3> u;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t a = 0; a < element_nodes; ++a)
+      u(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(c)) =
+          displacement[element.dofs[c * element_nodes + a]];
+  return u;
+}
+
+dealii::AffineConstraints<double> increment_constraints(
+    const SolidSpace& space, std::span<const DirichletCondition> conditions) {
+  dealii::AffineConstraints<double> constraints;
+  for (const DirichletCondition& condition : conditions)
+    for (const auto& [dof, value] : boundary_values(space, condition)) constraints.add_line(dof);
+  constraints.close();
+  return constraints;
+}
+
+void prescribe(const SolidSpace& space, std::span<const DirichletCondition> conditions,
+               SolidState& state, double factor) {
+  for (const DirichletCondition& condition : conditions)
+    for (const auto& [dof, value] : boundary_values(space, condition))
+      state.displacement[dof] = factor * value;
+}
+
+}  // namespace ciliaval::fem

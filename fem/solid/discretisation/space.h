@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping.h>
+#include <deal.II/grid/tria.h>
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/vector.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "fem/solid/material/hyperelastic.h"
+#include "problem/types.h"
+
+namespace ciliaval::fem {
+
+/// The element: displacement in Q2, pressure discontinuous and linear in X on each cell (Q2–P1,
+/// which satisfies the inf–sup condition). The pressure lives in the element alone and is
+/// condensed.
+inline constexpr int element_degree = 2;
+inline constexpr int element_nodes = 27;  ///< nodes, lexicographic: first local coordinate fastest
+inline constexpr int element_dofs = 81;   ///< displacement degrees of freedom, 27·component + node
+inline constexpr int element_points = 27;  ///< Gauss points
+inline constexpr int element_pressures = 4;
+
+using PressureVector = Eigen::Matrix<double, element_pressures, 1>;
+using PressureMatrix = Eigen::Matrix<double, element_pressures, element_pressures>;
+
+/// What assembly needs of one cell, computed once in the reference configuration.
+struct SolidElement {
+  dealii::Triangulation<3>::active_cell_iterator cell;
+  std::array<dealii::types::global_dof_index, element_dofs> dofs;
+  Hyperelastic material;
+  Eigen::Matrix<double, element_nodes, 3> nodes;  ///< X of the nodes, m: row a
+  Vector3 centre;                                 ///< origin of the pressure's linear basis, m
+  double size = 1;                                ///< its unit of length, m
+  Eigen::MatrixXd gradients;  ///< ∂N_a/∂X_J at Gauss point q: row a, column 3q + J, 1/m
+  Eigen::VectorXd weights;    ///< det(∂X/∂ξ) w_q, m³
+  Eigen::Matrix<double, element_pressures, Eigen::Dynamic> pressure_values;  ///< ψ_m at the points
+  PressureMatrix inverse_compliance;  ///< (∫ ψψᵀ/K dV)⁻¹, Pa/m³
+
+  /// ψ(X) = (1, (X − centre)/size).
+  PressureVector pressure_basis(const Vector3& X) const;
+};
+
+/// Displacement and pressure of the whole body.
+struct SolidState {
+  dealii::Vector<double> displacement;   ///< nodal values, m
+  std::vector<PressureVector> pressure;  ///< coefficients of ψ, one vector for each element, Pa
+};
+
+/// Finite-element space of a hexahedral mesh. The triangulation and the mapping must outlive it.
+/// The mapping's degree must not exceed element_degree: X(ξ) is then the polynomial through the
+/// nodes, and linear fields are in the space.
+class SolidSpace {
+ public:
+  /// `materials[i]` is that of the cells with material id i. Throws InputError if one is missing.
+  SolidSpace(const dealii::Triangulation<3>& triangulation, const dealii::Mapping<3>& mapping,
+             std::span<const Hyperelastic> materials);
+
+  const dealii::DoFHandler<3>& dof_handler() const { return dof_handler_; }
+  const dealii::Mapping<3>& mapping() const { return mapping_; }
+  const dealii::FE_Q<3>& scalar_element() const { return scalar_element_; }
+  const std::vector<SolidElement>& elements() const { return elements_; }
+  /// Lexicographic number of node a of deal.II's FE_Q<3>(2).
+  const std::vector<unsigned int>& lexicographic() const { return lexicographic_; }
+  /// N_a at the Gauss points: row a (lexicographic), column q.
+  const Eigen::MatrixXd& shape_values() const { return shape_values_; }
+  dealii::types::global_dof_index unknowns() const { return dof_handler_.n_dofs(); }
+
+  /// u = 0, p = 0.
+  SolidState undeformed() const;
+
+ private:
+  void initialize(SolidElement& element, std::span<const Hyperelastic> materials) const;
+
+  const dealii::Mapping<3>& mapping_;
+  dealii::FE_Q<3> scalar_element_;
+  dealii::FESystem<3> element_;
+  dealii::DoFHandler<3> dof_handler_;
+  std::vector<unsigned int> lexicographic_;
+  Eigen::MatrixXd shape_values_;
+  std::vector<SolidElement> elements_;
+};
+
+/// Nodal displacements of an element: row a, column component, m.
+Eigen::Matrix<double, element_nodes, 3> nodal_displacements(
+    const SolidElement& element, const dealii::Vector<double>& displacement);
+
+/// Displacement prescribed on a part of the boundary.
+struct DirichletCondition {
+  dealii::types::boundary_id boundary = 0;
+  std::array<bool, 3> components{true, true, true};         ///< which of them are prescribed
+  std::function<Vector3(const Vector3& X)> displacement{};  ///< empty: zero
+};
+
+/// Homogeneous constraints of the increments.
+dealii::AffineConstraints<double> increment_constraints(
+    const SolidSpace& space, std::span<const DirichletCondition> conditions);
+
+/// Writes the prescribed values, times `factor`, into the state's displacement.
+void prescribe(const SolidSpace& space, std::span<const DirichletCondition> conditions,
+               SolidState& state, double factor = 1);
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/equilibrium/bordered_system.h"
+
+#include <cmath>
+
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+
+void Border::prepare(const dealii::Vector<double>& u, const Solve& solve) {
+  gradient_.reinit(u.size());
+  force_.condition(u, &gradient_);
+  constraints_.set_zero(gradient_);
+  dealii::Vector<double> unit(u.size());
+  force_.forces(1)(u, unit, constraints_, nullptr);
+  constraints_.set_zero(unit);
+  response_.reinit(u.size());
+  solve(unit, response_);
+  constraints_.distribute(response_);
+  pivot_ = gradient_ * response_;
+  if (!std::isfinite(pivot_) || pivot_ == 0)
+    throw SolverError("the displacement does not depend on the force that is sought");
+}
+
+double Border::complete(const dealii::Vector<double>& u, dealii::Vector<double>& increment) const {
+  const double amplitude = -(gap(u) + gradient_ * increment) / pivot_;
+  increment.add(amplitude, response_);
+  return amplitude;
+}
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/vector.h>
+
+#include <functional>
+
+#include "fem/solid/equilibrium/newton.h"
+
+namespace ciliaval::fem {
+
+/// The border of a tangent K by a force F f(u) of unknown amplitude F and its condition g(u) = 0:
+///
+///   [ K      −f ] [Δu]   [ r]
+///   [ ∂g/∂u   0 ] [ΔF] = [−g],   r = F f − internal,
+///
+/// solved by block elimination with the factorisation of K: b = K⁻¹ f once for each tangent, and
+/// for each right-hand side a = K⁻¹ r, ΔF = −(g + ∂g/∂u·a)/(∂g/∂u·b), Δu = a + ΔF b.
+class Border {
+ public:
+  /// x = K⁻¹ rhs, the constrained components of both zero.
+  using Solve =
+      std::function<void(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution)>;
+
+  /// The force must outlive the border.
+  Border(UnknownForce& force, const dealii::AffineConstraints<double>& constraints)
+      : force_(force), constraints_(constraints) {}
+
+  /// Takes the tangent at the displacement u, whose inverse is `solve`. Throws SolverError if the
+  /// condition does not determine the force.
+  void prepare(const dealii::Vector<double>& u, const Solve& solve);
+
+  /// Makes Δu at the displacement u out of a, with the tangent last prepared. Returns ΔF.
+  double complete(const dealii::Vector<double>& u, dealii::Vector<double>& increment) const;
+
+  /// g at the displacement u.
+  double gap(const dealii::Vector<double>& u) const { return force_.condition(u, nullptr); }
+  void advance(double amplitude_increment) { force_.amplitude += amplitude_increment; }
+
+ private:
+  UnknownForce& force_;
+  const dealii::AffineConstraints<double>& constraints_;
+  dealii::Vector<double> gradient_;  ///< ∂g/∂u
+  dealii::Vector<double> response_;  ///< b
+  double pivot_ = 0;                 ///< ∂g/∂u·b
+};
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "fem/solid/fibres.h"
+#include "fem/solid/discretisation/space.h"
+#include "problem/centreline.h"
+#include "problem/cilium.h"
+
+namespace ciliaval::fem {
+
+/// First guesses of a state of the extruded solid: what Newton's method starts from.
+
+/// The state of one mesh as a state of another of the same cilium: displacements interpolated at
+/// the nodes, pressures projected in each element. Where the sections differ at the mantle, the
+/// coarse cells' polynomials are continued. Throws InputError if a node lies outside `from`'s
+/// layers or far outside its section.
+SolidState transferred(const SolidSpace& from, const Fibres& fibres, const SolidState& state,
+                       const SolidSpace& to);
+
+/// A rod's state as a state of the solid. Sections stay plane but contract as in the bending of a
+/// bar (Love, Mathematical Theory of Elasticity, art. 88): with κ_a, a = 1, 2, the material
+/// curvatures about d_a and ε = κ₁Y − κ₂X + |r′| − 1 the axial strain,
+///
+///   x = r + (X + a₁) d₁ + (Y + a₂) d₂,
+///   a₁ = ν [κ₂ (X² − Y²)/2 − κ₁ XY],   a₂ = ν [κ₂ XY + κ₁ (X² − Y²)/2]   (less ν (|r′| − 1) (X,
+///   Y)), p = E ε/3,
+///
+/// which is what uniaxial stress along the fibres makes of a section. The contraction fades out
+/// within half a radius of the clamped base. The base itself stays where it is.
+SolidState lifted(const Centreline& rod, const Cilium& cilium, const SolidSpace& to);
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/equilibrium/load_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+#include <variant>
+
+#include "fem/solid/loads/dead_forces.h"
+#include "fem/solid/probe.h"
+
+namespace ciliaval::fem {
+namespace {
+
+/// What is left of a step that failed.
+constexpr double cut_factor = 0.25;
+
+/// Cuts of steps that turn the material inside out in one iteration: the load is too large by far
+/// (4¹⁰ times, at most), each takes a single factorisation, and they do not count as max_cutbacks.
+constexpr unsigned int max_overshoots = 10;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string history(const std::vector<double>& residuals) {
+  std::string text;
+  for (const double residual : residuals) text += (text.empty() ? "" : ", ") + number(residual);
+  return text;
+}
+
+/// "0.004 N"
+std::string with_unit(const Load& load) {
+  return number(magnitude(load)) + " " + std::string(magnitude_unit(load));
+}
+
+}  // namespace
+
+bool same_place(const Load& a, const Load& b) {
+  if (type(a) != type(b) || azimuth(a) != azimuth(b)) return false;
+  if (contact_height(a)) return contact_height(a) == contact_height(b);
+  if (const auto* section = std::get_if<SectionLoad>(&a))
+    return section->arclength == std::get<SectionLoad>(b).arclength;
+  return true;
+}
+
+Load acting(const Load& load, double applied_force) {
+  if (const auto* probe = std::get_if<ProbeLoad>(&load))
+    return ContactLoad{applied_force, probe->height, probe->azimuth};
+  return load;
+}
+
+SpreadLoad spread_load(const Load& load, double area, double kernel_width) {
+  SpreadLoad result;
+  result.direction = direction(load);
+  if (const auto* contact = std::get_if<ContactLoad>(&load))
+    result.per_height = contact_density(contact->force, area, contact->height, kernel_width);
+  if (const auto* flow = std::get_if<FlowLoad>(&load))
+    result.per_height = flow_density(flow->force_per_height, area);
+  if (const auto* dead = std::get_if<DeadLoad>(&load))
+    result.per_volume = dead->force_per_length / area;
+  return result;
+}
+
+ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, const Load& load,
+                               double kernel_width) {
+  const SpreadLoad spread = spread_load(load, fibres.area(), kernel_width);
+  if (const auto* section = std::get_if<SectionLoad>(&load))
+    return dead_forces(
+        section_force(space, fibres, section->force, section->arclength, spread.direction));
+  if (!spread.per_height) {
+    const auto b = [&spread](const Vector3&) -> Vector3 {
+      return spread.per_volume * spread.direction;
+    };
+    return dead_forces(body_force(space, b));
+  }
+  return [&space, &fibres, spread](const dealii::Vector<double>& displacement,
+                                   dealii::Vector<double>& forces,
+                                   const dealii::AffineConstraints<double>& constraints,
+                                   dealii::SparseMatrix<double>* matrix) {
+    add_fibre_forces(space, fibres, *spread.per_height, spread.direction, displacement, forces,
+                     constraints, matrix);
+  };
+}
+
+struct LoadPathSolver::Attempt {
+  bool converged = false;
+  bool applied = false;  ///< the whole force was applied
+  bool overshot = false;
+  std::string trouble;
+  Equilibrium equilibrium;
+};
+
+LoadPathSolver::LoadPathSolver(const SolidSpace& space, const Fibres& fibres, NewtonSource newton,
+                               const Load& first, LoadPathOptions options, FirstGuess first_guess)
+    : space_(space),
+      fibres_(fibres),
+      newton_(std::move(newton)),
+      options_(options),
+      first_guess_(std::move(first_guess)),
+      now_{{with_magnitude(first, 0), space.undeformed(), 0}, {}, {}, {}} {}
+
+void LoadPathSolver::restart(const Load& load) {
+  now_ = {{with_magnitude(load, 0), space_.undeformed(), 0}, {}, {}, {}};
+}
+
+Equilibrium LoadPathSolver::predicted(const Load& load) const {
+  Equilibrium result = now_.current;
+  result.load = load;
+  if (!now_.previous) return result;
+  const Equilibrium& current = now_.current;
+  const Equilibrium& previous = *now_.previous;
+  const double last = magnitude(current.load) - magnitude(previous.load);
+  if (last == 0) return result;
+  SolidState& state = result.state;
+  const double factor = std::clamp((magnitude(load) - magnitude(current.load)) / last, -1.0, 1.5);
+  state.displacement.add(factor, current.state.displacement, -factor, previous.state.displacement);
+  for (std::size_t e = 0; e < state.pressure.size(); ++e)
+    state.pressure[e] += factor * (current.state.pressure[e] - previous.state.pressure[e]);
+  result.applied_force += factor * (current.applied_force - previous.applied_force);
+  return result;
+}
+
+LoadPathSolver::Attempt LoadPathSolver::attempt(const Load& load, Guess guess, int& iterations,
+                                                const Progress& progress) {
+  if (guess.state) {
+    Attempt attempt =
+        attempt_from({load, std::move(*guess.state), guess.applied_force}, iterations, progress);
+    if (attempt.converged) return attempt;
+  }
+  return attempt_from(predicted(load), iterations, progress);
+}
+
+LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& iterations,
+                                                     const Progress& progress) {
+  Attempt attempt;
+  attempt.equilibrium = std::move(start);
+  const Load& load = attempt.equilibrium.load;
+  SolidState& state = attempt.equilibrium.state;
+  const auto report = [&](int iteration, double residual) {
+    if (progress)
+      progress("load " + number(magnitude(load)) + ", iteration " + std::to_string(iteration) +
+               ", residual " + number(residual));
+  };
+  NewtonResult result;
+  double contact_force = 0;
+  if (const auto* probe = std::get_if<ProbeLoad>(&load)) {
+    UnknownForce force = probe_force(space_, fibres_, *probe, options_.kernel_width,
+                                     attempt.equilibrium.applied_force);
+    result = newton_().solve(force, state, options_.newton, report);
+    contact_force = force.amplitude;
+  } else {
+    result = newton_().solve(external_forces(space_, fibres_, load, options_.kernel_width), state,
+                             options_.newton, report);
+    if (const auto* contact = std::get_if<ContactLoad>(&load)) contact_force = contact->force;
+  }
+  iterations += result.iterations();
+  attempt.overshot = result.overshot;
+  attempt.converged = result.converged;
+  if (!result.converged) {
+    attempt.trouble = result.reason + " (relative residuals " + history(result.residuals) + ")";
+    return attempt;
+  }
+  attempt.equilibrium.applied_force =
+      whole_force(fibres_, resultant(space_, result.external)).dot(direction(load));
+  attempt.applied = !contact_height(load) || attempt.equilibrium.applied_force >=
+                                                 contact_force * (1 - options_.force_shortfall);
+  return attempt;
+}
+
+std::optional<Equilibrium> LoadPathSolver::solve(const Load& load, Guess guess, int& iterations,
+                                                 const Progress& progress) {
+  if (!guess.state) return std::nullopt;
+  Attempt result =
+      attempt_from({load, std::move(*guess.state), guess.applied_force}, iterations, progress);
+  if (!result.converged || !result.applied) return std::nullopt;
+  return std::move(result.equilibrium);
+}
+
+void LoadPathSolver::go_to(Equilibrium equilibrium) {
+  if (!same_place(now_.current.load, equilibrium.load)) restart(equilibrium.load);
+  now_.ramp.reset();
+  if (magnitude(now_.current.load) != magnitude(equilibrium.load))
+    now_.previous = std::move(now_.current);
+  now_.current = std::move(equilibrium);
+}
+
+Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) const {
+  return first_guess_ ? first_guess_(load, progress) : Guess{};
+}
+
+std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const Load& load) const {
+  if (!guess.slip_off) return std::nullopt;
+  const double now = magnitude(now_.current.load);
+  const double borne = *guess.slip_off;
+  const double next = now < borne ? borne : borne * (1 + options_.slip_off_bracket);
+  if (now < next && next < magnitude(load)) return next;
+  return std::nullopt;
+}
+
+void LoadPathSolver::accept(Attempt&& attempt) {
+  now_.previous = std::move(now_.current);
+  now_.current = std::move(attempt.equilibrium);
+}
+
+bool LoadPathSolver::cut(Ramp& ramp, bool overshot) const {
+  const bool far_off = overshot && ramp.overshoots < max_overshoots;
+  if (far_off)
+    ++ramp.overshoots;
+  else if (++ramp.cuts > options_.max_cutbacks)
+    return false;
+  ramp.step *= cut_factor;
+  // Where steps fail now and then, the cuts are never many in a row.
+  return ramp.step >= std::pow(cut_factor, options_.max_cutbacks + ramp.overshoots);
+}
+
+void LoadPathSolver::set_out(const Load& target) {
+  if (!same_place(now_.current.load, target)) restart(target);
+  if (!now_.ramp || magnitude(now_.ramp->target) != magnitude(target))
+    now_.ramp = Ramp{now_.current.load, target};
+}
+
+LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
+                                        const std::function<void()>& on_equilibrium) {
+  set_out(target);
+  const auto finish = [this](LoadPathOutcome outcome) {
+    outcome.iterations = now_.ramp->iterations;
+    now_.ramp.reset();
+    return outcome;
+  };
+  if (magnitude(now_.current.load) == magnitude(target))
+    return finish({Status::converged, {}, {}, {}});
+  if (now_.slipped && magnitude(target) >= magnitude(*now_.slipped))
+    return finish(slip_off(progress, on_equilibrium));
+  return finish(follow_ramp(progress, on_equilibrium));
+}
+
+LoadPathOutcome LoadPathSolver::follow_ramp(const Progress& progress,
+                                            const std::function<void()>& on_equilibrium) {
+  Ramp& ramp = *now_.ramp;
+  while (ramp.reached < 1) {
+    double aim = std::min(1.0, ramp.reached + ramp.step);
+    Load load = aim == 1 ? ramp.target : interpolate(ramp.start, ramp.target, aim);
+    Guess guess = ramp.unguided ? Guess{} : guess_for(load, progress);
+    ramp.unguided = ramp.unguided || guess.lost;
+    if (const auto nearer = toward_slip_off(guess, load)) {
+      aim = (*nearer - magnitude(ramp.start)) / (magnitude(ramp.target) - magnitude(ramp.start));
+      load = with_magnitude(load, *nearer);
+      guess = guess_for(load, progress);
+    }
+    Attempt result = attempt(load, std::move(guess), ramp.iterations, progress);
+    if (result.converged && !result.applied && magnitude(load) <= magnitude(now_.current.load)) {
+      result.converged = false;
+      result.trouble = "Newton's method went to a cilium that has slipped off under a smaller load";
+    }
+    if (result.converged && !result.applied) {
+      now_.slipped = load;
+      return slip_off(progress, on_equilibrium);
+    }
+    if (result.converged) {
+      accept(std::move(result));
+      ramp.reached = aim;
+      ramp.step *= 2;
+      ramp.cuts = 0;
+      if (on_equilibrium) on_equilibrium();
+      continue;
+    }
+    ramp.step = aim - ramp.reached;
+    if (!cut(ramp, result.overshot)) {
+      const double part = (aim - ramp.reached) * 100;
+      return {Status::failed,
+              "no equilibrium found at load " + with_unit(load) + " in a step of " + number(part) +
+                  " % of the way: " + result.trouble + "; the last load that converged is " +
+                  with_unit(now_.current.load),
+              {},
+              {}};
+    }
+  }
+  return {Status::converged, {}, {}, {}};
+}
+
+LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
+                                         const std::function<void()>& on_equilibrium) {
+  std::string trouble;
+  double fraction = 0.5;
+  unsigned int cuts = 0;
+  while (magnitude(*now_.slipped) - magnitude(now_.current.load) >
+         options_.slip_off_bracket * magnitude(*now_.slipped)) {
+    const Load load = interpolate(now_.current.load, *now_.slipped, fraction);
+    Attempt result = attempt(load, guess_for(load, progress), now_.ramp->iterations, progress);
+    if (result.converged) {
+      if (result.applied) {
+        accept(std::move(result));
+      } else {
+        now_.slipped = load;
+      }
+      fraction = 0.5;
+      cuts = 0;
+      if (on_equilibrium) on_equilibrium();
+      continue;
+    }
+    // A load without a solution tells nothing about the slip-off: try nearer to the last one borne.
+    if (++cuts > options_.max_cutbacks) {
+      trouble = "; the bracket stays this wide because no equilibrium was found at " +
+                with_unit(load) + ": " + result.trouble;
+      break;
+    }
+    fraction *= cut_factor;
+  }
+  const Load& borne = now_.current.load;
+  const bool probe = std::holds_alternative<ProbeLoad>(borne);
+  LoadPathOutcome outcome;
+  outcome.status = Status::slipped_off;
+  outcome.slip_off_force = probe ? now_.current.applied_force : magnitude(borne);
+  if (probe) outcome.slip_off_displacement = magnitude(borne);
+  outcome.message =
+      (probe ? "the cilium slips off: with a displacement of "
+             : "the cilium slips off: a contact force of ") +
+      with_unit(borne) +
+      (probe ? " the contact force was applied in full, with " : " was borne in full, ") +
+      with_unit(*now_.slipped) + (probe ? " it was not" : " was not") +
+      " (a solid begins to slip off where the lowest point of its tip face comes "
+      "down to the upper end of the contact kernel)" +
+      trouble;
+  return outcome;
+}
+
+}  // namespace ciliaval::fem

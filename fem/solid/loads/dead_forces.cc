@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/loads/dead_forces.h"
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <utility>
+#include <vector>
+
+namespace ciliaval::fem {
+namespace {
+
+Vector3 vector(const dealii::Tensor<1, 3>& t) {
+  return {t[0], t[1], t[2]};
+}
+
+/// forces_a += N_a f at point q.
+template <typename Values>
+void add_at_point(const SolidSpace& space, const SolidElement& element, const Values& values,
+                  unsigned int q, const Vector3& f, dealii::Vector<double>& forces) {
+  for (unsigned int a = 0; a < element_nodes; ++a)
+    for (unsigned int c = 0; c < 3; ++c)
+      forces[element.dofs[c * element_nodes + space.lexicographic()[a]]] +=
+          values.shape_value(a, q) * f[c];
+}
+
+}  // namespace
+
+dealii::Vector<double> body_force(const SolidSpace& space,
+                                  const std::function<Vector3(const Vector3& X)>& b) {
+  const dealii::QGauss<3> gauss(element_degree + 2);
+  dealii::FEValues<3> values(
+      space.mapping(), space.scalar_element(), gauss,
+      dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
+  dealii::Vector<double> forces(space.unknowns());
+  for (const SolidElement& element : space.elements()) {
+    values.reinit(element.cell);
+    for (unsigned int q = 0; q < gauss.size(); ++q)
+      add_at_point(space, element, values, q, values.JxW(q) * b(vector(values.quadrature_point(q))),
+                   forces);
+  }
+  return forces;
+}
+
+dealii::Vector<double> traction(
+    const SolidSpace& space, dealii::types::boundary_id boundary,
+    const std::function<Vector3(const Vector3& X, const Vector3& N)>& t) {
+  const dealii::QGauss<2> gauss(element_degree + 2);
+  dealii::FEFaceValues<3> values(space.mapping(), space.scalar_element(), gauss,
+                                 dealii::update_values | dealii::update_JxW_values |
+                                     dealii::update_quadrature_points |
+                                     dealii::update_normal_vectors);
+  dealii::Vector<double> forces(space.unknowns());
+  for (const SolidElement& element : space.elements()) {
+    for (const unsigned int face : element.cell->face_indices()) {
+      if (!element.cell->face(face)->at_boundary() ||
+          element.cell->face(face)->boundary_id() != boundary)
+        continue;
+      values.reinit(element.cell, face);
+      for (unsigned int q = 0; q < gauss.size(); ++q)
+        add_at_point(
+            space, element, values, q,
+            values.JxW(q) * t(vector(values.quadrature_point(q)), vector(values.normal_vector(q))),
+            forces);
+    }
+  }
+  return forces;
+}
+
+ExternalForces dead_forces(dealii::Vector<double> forces) {
+  return [dead = std::move(forces)](const dealii::Vector<double>&, dealii::Vector<double>& total,
+                                    const dealii::AffineConstraints<double>&,
+                                    dealii::SparseMatrix<double>*) { total += dead; };
+}
+
+Vector3 resultant(const SolidSpace& space, const dealii::Vector<double>& forces) {
+  std::vector<bool> seen(space.unknowns(), false);
+  Vector3 sum = Vector3::Zero();
+  for (const SolidElement& element : space.elements())
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t a = 0; a < element_nodes; ++a) {
+        const auto dof = element.dofs[c * element_nodes + a];
+        if (!seen[dof]) sum[static_cast<Eigen::Index>(c)] += forces[dof];
+        seen[dof] = true;
+      }
+  return sum;
+}
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/postprocessing/body.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace ciliaval::fem {
+namespace {
+
+/// Nodes along an edge of an element.
+constexpr std::size_t edge_nodes = element_degree + 1;
+
+using NodalVectors = Eigen::Matrix<double, element_nodes, 3>;
+
+/// ∂v/∂ξ at a node of what has the values v at the nodes: column j is the derivative by ξ_j, to
+/// which only the three nodes of a line contribute.
+Matrix3 local_gradient(const NodalVectors& v, Eigen::Index node) {
+  Matrix3 result;
+  Eigen::Index stride = 1;
+  for (int j = 0; j < 3; ++j, stride *= 3) {
+    const Eigen::Index position = node / stride % 3;
+    const Eigen::Vector3d slope = quadratic_derivative(0.5 * static_cast<double>(position));
+    const Eigen::Index first = node - position * stride;
+    result.col(j) = (slope[0] * v.row(first) + slope[1] * v.row(first + stride) +
+                     slope[2] * v.row(first + 2 * stride))
+                        .transpose();
+  }
+  return result;
+}
+
+SolidCell patch(const Cilium& cilium, const SolidElement& element, const PressureVector& pressure,
+                const dealii::Vector<double>& displacement) {
+  const NodalVectors u = nodal_displacements(element, displacement);
+  SolidCell cell;
+  cell.segment = element.cell->material_id();
+  cell.magnetization = cilium.segments[cell.segment].magnetization * Vector3::UnitZ();
+  cell.reference.reserve(element_nodes);
+  cell.current.reserve(element_nodes);
+  cell.jacobian.reserve(element_nodes);
+  cell.cauchy_stress.reserve(element_nodes);
+  for (Eigen::Index a = 0; a < element_nodes; ++a) {
+    const Vector3 X = element.nodes.row(a).transpose();
+    const Matrix3 F =
+        Matrix3::Identity() + local_gradient(u, a) * local_gradient(element.nodes, a).inverse();
+    cell.reference.push_back(X);
+    cell.current.emplace_back(X + u.row(a).transpose());
+    cell.jacobian.push_back(F.determinant());
+    cell.cauchy_stress.push_back(
+        cauchy_stress(element.material, F, pressure.dot(element.pressure_basis(X))));
+  }
+  return cell;
+}
+
+/// The face ζ = 0 (normal −Z) or ζ = 1 (normal +Z) of a patch.
+ChargedFace face(const SolidCell& cell, bool top, double jump) {
+  constexpr std::size_t n = edge_nodes;
+  ChargedFace result;
+  result.magnetization_jump = jump * Vector3::UnitZ();
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t node = top ? (n - 1) * n * n + j * n + i : i * n + j;
+      result.reference.push_back(cell.reference[node]);
+      result.current.push_back(cell.current[node]);
+    }
+  }
+  return result;
+}
+
+Vector3 mirrored(const Vector3& x) {
+  return {x.x(), -x.y(), x.z()};
+}
+
+Matrix3 mirrored(const Matrix3& stress) {
+  const Vector3 mirror(1, -1, 1);
+  return mirror.asDiagonal() * stress * mirror.asDiagonal();
+}
+
+/// The nodal values of the image in y = 0, each row of nodes reversed: its first local coordinate
+/// runs the other way, so that the cell stays right-handed and the face's normal outward.
+template <typename Value, typename Mirror>
+std::vector<Value> image(const std::vector<Value>& values, const Mirror& mirror) {
+  std::vector<Value> result;
+  result.reserve(values.size());
+  for (std::size_t row = 0; row < values.size(); row += edge_nodes)
+    for (std::size_t i = edge_nodes; i-- > 0;) result.push_back(mirror(values[row + i]));
+  return result;
+}
+
+/// Appends the image of a half body in y = 0.
+void add_mirror_image(SolidBody& body) {
+  const auto vector = [](const Vector3& x) { return mirrored(x); };
+  const auto stress = [](const Matrix3& sigma) { return mirrored(sigma); };
+  const auto scalar = [](double value) { return value; };
+  const std::size_t cells = body.cells.size();
+  body.cells.reserve(2 * cells);
+  for (std::size_t i = 0; i < cells; ++i) {
+    const SolidCell& cell = body.cells[i];
+    body.cells.push_back({cell.segment, cell.magnetization, image(cell.reference, vector),
+                          image(cell.current, vector), image(cell.jacobian, scalar),
+                          image(cell.cauchy_stress, stress)});
+  }
+  const std::size_t faces = body.charged_faces.size();
+  body.charged_faces.reserve(2 * faces);
+  for (std::size_t i = 0; i < faces; ++i) {
+    const ChargedFace& face = body.charged_faces[i];
+    body.charged_faces.push_back(
+        {face.magnetization_jump, image(face.reference, vector), image(face.current, vector)});
+  }
+}
+
+}  // namespace
+
+SolidBody solid_body(const SolidSpace& space, const Fibres& fibres, const Cilium& cilium,
+                     const SolidState& state) {
+  SolidBody body{LagrangeBasis({0, 0.5, 1}), {}, {}};
+  const std::vector<double> interfaces = cilium.interfaces();
+  const double tolerance = 1e-9 * fibres.height();
+  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+    const SolidElement& element = space.elements()[e];
+    body.cells.push_back(patch(cilium, element, state.pressure[e], state.displacement));
+    const SolidCell& cell = body.cells.back();
+    const double inside = cell.magnetization.z();
+    if (fibres.cells()[e].bottom < tolerance && inside != 0)
+      body.charged_faces.push_back(face(cell, false, inside));
+    if (std::abs(fibres.cells()[e].top - interfaces[cell.segment + 1]) > tolerance) continue;
+    const bool last = cell.segment + 1 == cilium.segments.size();
+    const double outside = last ? 0.0 : cilium.segments[cell.segment + 1].magnetization;
+    if (inside != outside) body.charged_faces.push_back(face(cell, true, inside - outside));
+  }
+  if (fibres.extent() == Extent::half) add_mirror_image(body);
+  return body;
+}
+
+}  // namespace ciliaval::fem

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/postprocessing/centreline.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "fem/solid/discretisation/assembly.h"
+#include "problem/curvature.h"
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+namespace {
+
+constexpr std::size_t stations = 4;
+/// Stations of a piece from 0 to 1: Gauss–Lobatto points.
+const std::array<double, stations> station_points{0, (1 - 1 / std::sqrt(5.0)) / 2,
+                                                  (1 + 1 / std::sqrt(5.0)) / 2, 1};
+
+/// A force and its moment about the origin.
+struct Wrench {
+  Vector3 force = Vector3::Zero();
+  Vector3 moment = Vector3::Zero();
+  void add(const Vector3& at, const Vector3& f) {
+    force += f;
+    moment += at.cross(f);
+  }
+  /// Adds the image in the plane y = 0; the moment is an axial vector.
+  void add_mirror_image() {
+    force = Vector3(2 * force.x(), 0, 2 * force.z());
+    moment = Vector3(0, 2 * moment.y(), 0);
+  }
+};
+
+/// A fibre of a cell, deformed.
+struct DeformedFibre {
+  Matrix3 x;  ///< at ζ = 0, ½, 1: columns
+  double area = 0;
+  Eigen::Vector2d XY = Eigen::Vector2d::Zero();
+};
+
+/// The cells between two planes of the mesh.
+struct Layer {
+  double bottom = 0;
+  double top = 0;
+  std::vector<std::size_t> cells;     ///< indices of the elements
+  std::vector<DeformedFibre> fibres;  ///< of all of them
+};
+
+/// Section integrals in one plane, and the load between it and the top of its layer.
+struct Station {
+  double area = 0;                                                       ///< ∫ dA
+  Eigen::Vector2d XY = Eigen::Vector2d::Zero();                          ///< ∫ (X, Y) dA
+  Vector3 x = Vector3::Zero();                                           ///< ∫ x dA
+  Eigen::Matrix<double, 3, 2> xX = Eigen::Matrix<double, 3, 2>::Zero();  ///< ∫ x (X, Y) dA
+  Wrench load;
+  /// Adds the image in the plane y = 0.
+  void add_mirror_image() {
+    area *= 2;
+    XY = Eigen::Vector2d(2 * XY.x(), 0);
+    x = Vector3(2 * x.x(), 0, 2 * x.z());
+    xX = 2 * Eigen::Matrix<double, 3, 2>{{xX(0, 0), 0}, {0, xX(1, 1)}, {xX(2, 0), 0}};
+    load.add_mirror_image();
+  }
+};
+
+/// What the centreline is made from.
+struct Extraction {
+  const SolidSpace& space;
+  const Fibres& fibres;
+  const SolidState& state;
+  const SpreadLoad& load;
+
+  /// The layers of the mesh from base to tip.
+  std::vector<Layer> layers() const;
+  Layer uppermost_layer() const;
+  Station station(const Layer& layer, double zeta) const;
+  Wrench top_wrench(const Layer& layer) const;
+  std::vector<double> breaks(const Layer& layer) const;
+
+ private:
+  void add_cell(Layer& layer, std::size_t index) const;
+};
+
+void Extraction::add_cell(Layer& layer, std::size_t index) const {
+  const FibreCell& cell = fibres.cells()[index];
+  layer.bottom = cell.bottom;
+  layer.top = cell.top;
+  layer.cells.push_back(index);
+  const auto u = nodal_displacements(space.elements()[index], state.displacement);
+  for (std::size_t i = 0; i < section_points; ++i) {
+    DeformedFibre fibre;
+    fibre.area = cell.area[i];
+    fibre.XY = Eigen::Vector2d(cell.X[i], cell.Y[i]);
+    for (int k = 0; k < 3; ++k)
+      fibre.x.col(k) =
+          Vector3(cell.X[i], cell.Y[i], cell.bottom + 0.5 * k * (cell.top - cell.bottom)) +
+          u.middleRows<9>(Eigen::Index{9} * k).transpose() *
+              fibres.section_values().col(static_cast<Eigen::Index>(i));
+    layer.fibres.push_back(fibre);
+  }
+}
+
+std::vector<Layer> Extraction::layers() const {
+  std::map<double, Layer> by_bottom;
+  for (std::size_t e = 0; e < space.elements().size(); ++e)
+    add_cell(by_bottom[fibres.cells()[e].bottom], e);
+  std::vector<Layer> result;
+  result.reserve(by_bottom.size());
+  for (auto& [bottom, layer] : by_bottom) result.push_back(std::move(layer));
+  return result;
+}
+
+Layer Extraction::uppermost_layer() const {
+  const auto& cells = fibres.cells();
+  const auto highest = std::max_element(
+      cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.bottom < b.bottom; });
+  Layer layer;
+  for (std::size_t e = 0; e < cells.size(); ++e)
+    if (cells[e].bottom == highest->bottom) add_cell(layer, e);
+  return layer;
+}
+
+Station Extraction::station(const Layer& layer, double zeta) const {
+  Station result;
+  const Eigen::Vector3d basis = quadratic_basis(zeta);
+  for (const auto& [x, dA, XY] : layer.fibres) {
+    const Vector3 here = x * basis;
+    result.area += dA;
+    result.XY += dA * XY;
+    result.x += dA * here;
+    result.xX += dA * here * XY.transpose();
+    integrate_load(load, x.row(2).transpose(), layer.top - layer.bottom, zeta, 1,
+                   [&, &x = x, &dA = dA](double at, double force) {
+                     result.load.add(x * quadratic_basis(at), dA * force * load.direction);
+                   });
+  }
+  if (fibres.extent() == Extent::half) result.add_mirror_image();
+  return result;
+}
+
+/// What the part above the layer exerts on it: at the nodes a of its upper plane, Σ (f_a − ∫ N_a b
+/// dV) over the layer's own cells. In equilibrium forces and moments balance to the solver's
+/// tolerance, since rigid motions are in the element's space.
+Wrench Extraction::top_wrench(const Layer& layer) const {
+  Wrench result;
+  for (const std::size_t e : layer.cells) {
+    const SolidElement& element = space.elements()[e];
+    const auto f = element_forces(element, state, e);
+    const auto u = nodal_displacements(element, state.displacement);
+    for (Eigen::Index a = 18; a < element_nodes; ++a)
+      result.add((element.nodes.row(a) + u.row(a)).transpose(), f.row(a).transpose());
+  }
+  for (const auto& [x, dA, XY] : layer.fibres)
+    integrate_load(load, x.row(2).transpose(), layer.top - layer.bottom, 0, 1,
+                   [&, &x = x, &dA = dA](double at, double force) {
+                     result.add(x.col(2), -dA * force * quadratic_basis(at)[2] * load.direction);
+                   });
+  if (fibres.extent() == Extent::half) result.add_mirror_image();
+  return result;
+}
+
+/// ζ of the ends of the layer's pieces. The part where a contact kernel meets a fibre is divided
+/// into pieces of at most half its height; below and above it n is constant.
+std::vector<double> Extraction::breaks(const Layer& layer) const {
+  std::vector<double> result{0, 1};
+  if (!load.per_height || !load.per_height->support) return result;
+  double low = 1;
+  double high = 0;
+  for (const DeformedFibre& fibre : layer.fibres) {
+    const auto part = loaded_part(fibre.x.row(2).transpose(), *load.per_height);
+    if (!part) continue;
+    low = std::min(low, (*part)[0]);
+    high = std::max(high, (*part)[1]);
+  }
+  constexpr double shortest = 1e-3;  // a piece shorter than that is not worth its own
+  if (!(high - low > shortest)) return result;
+  if (low < shortest) low = 0;
+  if (high > 1 - shortest) high = 1;
+  const auto [lower, upper] = *load.per_height->support;
+  const double length = (high - low) * (layer.top - layer.bottom);
+  const auto count = static_cast<int>(std::ceil(length / ((upper - lower) / 2)));
+  for (int i = 0; i < count; ++i) result.push_back(low + (high - low) * i / count);
+  result.push_back(high);
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const Wrench& top,
+                        double from, double to) {
+  const double bottom = layer.bottom;
+  Centreline::Piece piece;
+  for (const double t : station_points) {
+    const double zeta = t == 1 ? to : from + t * (to - from);
+    const Station station = extraction.station(layer, zeta);
+    SectionState state;
+    state.position = station.x / station.area;
+    state.rotation = section_rotation(station.xX - state.position * station.XY.transpose());
+    state.forces.force = top.force + station.load.force;
+    state.forces.moment =
+        top.moment + station.load.moment - state.position.cross(state.forces.force);
+    piece.S.push_back(zeta == 1 ? layer.top : bottom + zeta * (layer.top - bottom));
+    piece.states.push_back(state);
+  }
+  differentiate_rotation(piece);
+  return piece;
+}
+
+/// The centreline, given what acts on the upper plane of each layer.
+Centreline centreline(const Extraction& extraction, const std::vector<Layer>& layers,
+                      const std::vector<Wrench>& tops) {
+  std::vector<Centreline::Piece> pieces;
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    const std::vector<double> breaks = extraction.breaks(layers[l]);
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+      pieces.push_back(piece(extraction, layers[l], tops[l], breaks[i], breaks[i + 1]));
+  }
+  // Both sides of a break integrate the same plane in another order: make them equal to the bit.
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    pieces[i].S.front() = pieces[i - 1].S.back();
+    pieces[i].states.front().position = pieces[i - 1].states.back().position;
+    pieces[i].states.front().rotation = pieces[i - 1].states.back().rotation;
+  }
+  return Centreline(std::move(pieces));
+}
+
+}  // namespace
+
+Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(B.transpose() * B);
+  if (!(eigen.eigenvalues()[0] > 0))
+    throw SolverError("a section of the solid has degenerated: its rotation is not defined");
+  const Eigen::Matrix<double, 3, 2> D = B * eigen.operatorInverseSqrt();
+  Matrix3 rotation;
+  rotation << D, D.col(0).cross(D.col(1));
+  return Quaternion(rotation).normalized();
+}
+
+Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
+                      const SpreadLoad& load) {
+  const Extraction extraction{space, fibres, state, load};
+  const std::vector<Layer> layers = extraction.layers();
+  std::vector<Wrench> tops;
+  tops.reserve(layers.size());
+  for (const Layer& layer : layers) tops.push_back(extraction.top_wrench(layer));
+  return centreline(extraction, layers, tops);
+}
+
+Vector3 tip_position(const SolidSpace& space, const Fibres& fibres, const SolidState& state) {
+  const SpreadLoad none;
+  const Extraction extraction{space, fibres, state, none};
+  const Station tip = extraction.station(extraction.uppermost_layer(), 1);
+  return tip.x / tip.area;
+}
+
+Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
+                                 const SolidState& state, const SpreadLoad& load,
+                                 const std::optional<PlaneForce>& plane) {
+  const Extraction extraction{space, fibres, state, load};
+  const std::vector<Layer> layers = extraction.layers();
+  std::vector<Wrench> tops(layers.size());
+  Wrench above;
+  for (std::size_t i = layers.size(); i-- > 0;) {
+    if (plane && std::abs(layers[i].top - plane->arclength) <= 1e-9 * fibres.height()) {
+      const Station station = extraction.station(layers[i], 1);
+      above.add(station.x / station.area, plane->force);
+    }
+    tops[i] = above;
+    const Wrench load_of_layer = extraction.station(layers[i], 0).load;
+    above.force += load_of_layer.force;
+    above.moment += load_of_layer.moment;
+  }
+  return centreline(extraction, layers, tops);
+}
+
+}  // namespace ciliaval::fem

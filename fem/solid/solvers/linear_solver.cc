@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/solvers/linear_solver.h"
+
+#include <deal.II/lac/solver_control.h>
+#include <deal.II/lac/solver_gmres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "problem/error.h"
+
+namespace ciliaval::fem {
+namespace {
+
+constexpr unsigned int max_iterations = 300;
+constexpr unsigned int restart = 60;  ///< vectors of GMRES
+/// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
+constexpr unsigned int max_with_old_factors = 20;
+
+/// The matrix on one rank, its own rows on several.
+struct Product {
+  const dealii::SparseMatrix<double>& matrix;
+  const OwnRows<double>& own;
+  void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const {
+    if (rank_count() == 1)
+      matrix.vmult(y, x);
+    else
+      own.vmult(y, x);
+  }
+};
+
+struct Factors {
+  const DirectSolver& solver;
+  void vmult(dealii::Vector<double>& x, const dealii::Vector<double>& b) const {
+    solver.solve(b, x);
+  }
+};
+
+}  // namespace
+
+SolverKind chosen(SolverKind kind, dealii::types::global_dof_index unknowns) {
+  if (kind != SolverKind::automatic) return kind;
+  return unknowns > direct_unknowns ? SolverKind::iterative : SolverKind::direct;
+}
+
+LinearSolver::LinearSolver(const SolidSpace& space,
+                           const dealii::AffineConstraints<double>& constraints,
+                           const dealii::SparsityPattern& pattern, SolverKind kind)
+    : rows_((start_mpi(), own_range(space.unknowns()))), own_(rows_) {
+  if (chosen(kind, space.unknowns()) == SolverKind::iterative)
+    multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_);
+  else
+    direct_ = std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general, rows_);
+}
+
+void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix, bool near_last) {
+  const bool first = matrix_ == nullptr;
+  matrix_ = &matrix;
+  current_ = false;
+  if (rank_count() > 1) own_.update(matrix);
+  if (first || !near_last) update();
+}
+
+void LinearSolver::update() {
+  if (multigrid_)
+    multigrid_->update(*matrix_);
+  else
+    direct_->factorize(*matrix_);
+  current_ = true;
+  usual_ = 0;
+}
+
+std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
+                                       dealii::Vector<double>& solution, double reduction,
+                                       unsigned int max_iterations) const {
+  using Vector = dealii::Vector<double>;
+  // The flexible variant: the multigrid rounds to single precision, so that it is not quite linear,
+  // which the stiffness of the volume would amplify when the solution is put together.
+  using Solver = dealii::SolverFGMRES<Vector>;
+  dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
+  Solver solver(control, Solver::AdditionalData(restart));
+  const Product matrix{*matrix_, own_};
+  solution.reinit(rhs.size());
+  try {
+    if (multigrid_)
+      solver.solve(matrix, solution, rhs, *multigrid_);
+    else
+      solver.solve(matrix, solution, rhs, Factors{*direct_});
+  } catch (const dealii::SolverControl::NoConvergence&) {
+    return std::nullopt;
+  }
+  return static_cast<int>(control.last_step());
+}
+
+int LinearSolver::solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution,
+                        double reduction) {
+  std::optional<int> iterations;
+  if (!current_) {
+    const unsigned int limit = direct_ ? max_with_old_factors : 2 * usual_;
+    iterations = gmres(rhs, solution, reduction, limit);
+    if (!iterations) update();
+  }
+  if (!iterations && direct_) {
+    direct_->solve(rhs, solution);
+    return 1;
+  }
+  if (!iterations) {
+    iterations = gmres(rhs, solution, reduction, max_iterations);
+    if (!iterations)
+      throw SolverError("GMRES did not converge in " + std::to_string(max_iterations) +
+                        " iterations");
+    usual_ = std::max(usual_, static_cast<unsigned int>(*iterations));
+  }
+  if (!std::isfinite(solution.l2_norm())) throw SolverError("the stiffness matrix is singular");
+  return *iterations;
+}
+
+}  // namespace ciliaval::fem

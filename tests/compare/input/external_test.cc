@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Centrelines and readings from CSV files: what is read, and what is said of files that are wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+
+#include "compare/input/case.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A cilium 10 mm long; two load steps at 30°, two sensors.
+constexpr const char* head = R"toml([case]
+name = "bench"
+[cilium]
+diameter = "1 mm"
+[[cilium.segment]]
+name = "base"
+length = "4 mm"
+young_modulus = "1 MPa"
+poisson_ratio = 0.49
+[[cilium.segment]]
+name = "magnet"
+length = "6 mm"
+young_modulus = "1 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+[load]
+type = "contact"
+force = ["1 mN", "2 mN"]
+height = "8 mm"
+azimuth = AZIMUTH
+[sensor]
+position = [["0 mm", "0 mm", "-2 mm"], ["1 mm", "0 mm", "-2 mm"]]
+[models]
+mechanics = ["elastica"]
+fields = ["line"]
+[[models.external]]
+name = "bench"
+)toml";
+
+/// An upright cilium.
+constexpr const char* straight =
+    "S [mm],x [mm],y [mm],z [mm]\n0,0,0,0\n3,0,0,3\n6,0,0,6\n10,0,0,10\n";
+constexpr const char* readings =
+    "step,sensor,Bx [uT],By [uT],Bz [uT]\nundeformed,0,1,2,3\nundeformed,1,4,5,6\n"
+    "0,0,11,12,13\n0,1,14,15,16\n1,0,21,22,23\n1,1,24,25,26\n";
+
+class External : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  Case read(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
+    std::string text = head + keys;
+    text.replace(text.find("AZIMUTH"), 7, azimuth);
+    return read_case(text, (folder_ / "case.toml").string());
+  }
+  /// The faults, without the folder's name.
+  std::string faults(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
+    try {
+      read(keys, azimuth);
+    } catch (const InputError& error) {
+      std::string text = error.what();
+      const std::string prefix = folder_.string() + "/";
+      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
+        text.erase(at, prefix.size());
+      return text;
+    }
+    return "no fault";
+  }
+  /// The faults of a first centreline.
+  std::string centreline_faults(const std::string& csv) const {
+    write("a.csv", csv);
+    write("b.csv", straight);
+    return faults("centrelines = [\"a.csv\", \"b.csv\"]\n");
+  }
+  std::string readings_faults(const std::string& csv, const std::string& more = "") const {
+    write("r.csv", csv);
+    return faults("readings = \"r.csv\"\n" + more);
+  }
+  std::string background_faults(const std::string& csv) const {
+    write("earth.csv", csv);
+    return readings_faults(readings, "background = \"earth.csv\"\n");
+  }
+
+  const fs::path folder_ = fs::path(testing::TempDir()) / ("external_" + std::to_string(getpid()));
+};
+
+std::string replaced(std::string text, const std::string& old, const std::string& with) {
+  const auto at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return text.replace(at, old.size(), with);
+}
+
+TEST_F(External, ReadsUnitsAsTheHeaderStatesThem) {
+  write("a.csv",
+        "x (cm),y [m],z [um],S [inch]\n0,0,0,0\n0.01,-0.0002,3000,0.118\n"
+        "0.02,-0.0003,6000,0.236\n0.03,-0.0004,9900,0.393700787401575\n");
+  write("b.csv", straight);
+  write("r.csv", readings);
+  const Case c = read(
+      "centrelines = [\"a.csv\", \"b.csv\"]\nreadings = \"r.csv\"\n"
+      "tip_uncertainty = \"5 um\"\nfield_uncertainty = \"1 milligauss\"\n");
+  ASSERT_EQ(c.external.size(), 1U);
+  const ExternalModel& model = c.external[0];
+  ASSERT_EQ(model.centrelines.size(), 2U);
+  const Centreline& line = model.centrelines[0];
+  EXPECT_EQ(line.length(), c.cilium.length());
+  EXPECT_NEAR((line.at(line.length()).position - Vector3(3e-4, -4e-4, 9.9e-3)).norm(), 0, 1e-17);
+  EXPECT_NEAR((line.at(0.236 * 0.0254).position - Vector3(2e-4, -3e-4, 6e-3)).norm(), 0, 1e-17);
+  EXPECT_EQ(model.tip_uncertainty, 5e-6);
+  EXPECT_NEAR(*model.field_uncertainty, 1e-7, 1e-20);
+  ASSERT_EQ(model.readings.size(), 2U);
+  EXPECT_NEAR((*model.readings[1].B[0] - Vector3(21e-6, 22e-6, 23e-6)).norm(), 0, 1e-19);
+  EXPECT_NEAR((*model.readings[1].dB[1] - Vector3::Constant(20e-6)).norm(), 0, 1e-19);
+  EXPECT_EQ(model.remarks[0], "");
+}
+
+TEST_F(External, WrittenCaseReadsBack) {
+  write("a.csv", straight);
+  write("r.csv", readings);
+  write("earth.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n30,1,1,1\n");
+  const Case c = read(
+      "centrelines = [\"a.csv\", \"a.csv\"]\nreadings = \"r.csv\"\n"
+      "background = \"earth.csv\"\ntip_uncertainty = \"5 um\"\n");
+  const Case again = read_case(to_toml(c), "elsewhere/case.toml");
+  EXPECT_EQ(to_toml(again), to_toml(c));
+  ASSERT_EQ(again.external.size(), 1U);
+  EXPECT_EQ(again.external[0].centreline_files, c.external[0].centreline_files);
+  EXPECT_EQ(*again.external[0].readings[0].B[1], *c.external[0].readings[0].B[1]);
+  const std::string without = replaced(head, "AZIMUTH", "\"0 deg\"");
+  EXPECT_THAT(to_toml(read_case(without.substr(0, without.find("[[models.ext")), "x.toml")),
+              Not(HasSubstr("external")));
+}
+
+TEST_F(External, TakesMarksOfOtherProgramsInItsStride) {
+  const std::string plain = straight;
+  std::string crlf;
+  for (const char c : plain) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(centreline_faults(crlf), "no fault");
+  EXPECT_EQ(centreline_faults("\xEF\xBB\xBF" + plain), "no fault");
+  EXPECT_EQ(centreline_faults("% COMSOL\n\n# note, with a comma\n" + plain + "\n\n"), "no fault");
+  EXPECT_EQ(centreline_faults(replaced(plain, "S [mm],x [mm]", "\"S [mm]\",\"x [mm]\"")),
+            "no fault");
+  EXPECT_EQ(centreline_faults("# units: S m, x m, y m, z m, theta rad, kappa 1/m\n"
+                              "S,x,y,z,theta,kappa\n0,0,0,0,0,0\n0.003,0,0,0.003,0,0\n"
+                              "0.006,0,0,0.006,0,0\n0.01,0,0,0.01,0,0\n"),
+            "no fault");
+}
+
+// Oracle: a quarter of a circle. Without S it is the chords' length, scaled: exact for equal steps.
+TEST_F(External, TakesTheLengthAlongThePointsWhereThereIsNoS) {
+  std::string csv = "x [m],y [m],z [m]\n";
+  const double R = 0.01 / (std::numbers::pi / 2);
+  for (int i = 0; i <= 60; ++i) {
+    const double a = std::numbers::pi / 2 * i / 60;
+    csv += std::to_string(R * (1 - std::cos(a)) * 1e6) + "e-6,0," +
+           std::to_string(R * std::sin(a) * 1e6) + "e-6\n";
+  }
+  write("a.csv", csv);
+  write("b.csv", straight);
+  const ExternalModel model = read("centrelines = [\"a.csv\", \"b.csv\"]\n").external[0];
+  EXPECT_THAT(model.remarks[0], StartsWith("S is the length along the points times 1.000029"));
+  for (const double S : {0.0, 1.234e-3, 5e-3, 9.87e-3, 10e-3}) {
+    const CentrelinePoint p = model.centrelines[0].at(S);
+    const Vector3 exact(R * (1 - std::cos(S / R)), 0, R * std::sin(S / R));
+    EXPECT_NEAR((p.position - exact).norm(), 0, 1e-10) << S;  // six digits after the µm
+    EXPECT_NEAR(p.theta(), S / R, 1e-5) << S;
+    EXPECT_NEAR(p.bending_curvature(), 1 / R, 0.01 / R) << S;
+  }
+}
+
+TEST_F(External, SaysWhereACentrelineIsWrong) {
+  const std::string plain = straight;
+  const auto fault = [&](const std::string& old, const std::string& with) {
+    return centreline_faults(replaced(plain, old, with));
+  };
+  EXPECT_EQ(centreline_faults(""),
+            "a.csv:1:1: the file is empty: it needs a header line with the "
+            "names and units of the columns");
+  EXPECT_EQ(centreline_faults("\xFF\xFEx"), "a.csv:1:1: the file is in UTF-16: save it as UTF-8");
+  EXPECT_EQ(centreline_faults("S [mm],x [mm],y [mm],z [mm]\n"),
+            "a.csv:1:1: there are no rows below the header");
+  EXPECT_EQ(centreline_faults("S [mm];x [mm];y [mm];z [mm]\n0;0;0;0,5\n"),
+            "a.csv:1:7: the columns are separated by semicolons: write commas between them, and "
+            "points, not commas, in the numbers");
+  EXPECT_THAT(centreline_faults("S [mm]\tx [mm]\n"), HasSubstr("are separated by tabs"));
+  EXPECT_EQ(fault(",z [mm]", ",w [mm]"),
+            "a.csv:1:1: there is no column 'z'\n"
+            "a.csv:1:22: unknown column 'w' (valid: S, x, y, z, theta)");
+  EXPECT_EQ(fault(",z [mm]", ",x [mm]"),
+            "a.csv:1:1: there is no column 'z'\n"
+            "a.csv:1:22: there is a second column 'x'");
+  EXPECT_EQ(fault("z [mm]", "z"),
+            "a.csv:1:22: the column 'z' needs the unit of a length: write "
+            "\"z [mm]\"");
+  EXPECT_THAT(fault("z [mm]", "z [mN]"), StartsWith("a.csv:1:22: the column 'z': 'mN' is not a "
+                                                    "unit of a length"));
+  EXPECT_THAT(fault("z [mm]", "z [mmm]"), StartsWith("a.csv:1:22: the column 'z': "));
+  EXPECT_EQ(fault("3,0,0,3", "3,0,nan,3"), "a.csv:3:5: 'nan' is not a finite number");
+  EXPECT_EQ(fault("3,0,0,3", "3,0,inf,3"), "a.csv:3:5: 'inf' is not a finite number");
+  EXPECT_EQ(fault("3,0,0,3", "3,0,one,3"), "a.csv:3:5: 'one' is not a number");
+  EXPECT_EQ(fault("3,0,0,3", "3,0,,3"), "a.csv:3:5: the cell of 'y' is empty");
+  EXPECT_EQ(fault("3,0,0,3", "3,0,0"), "a.csv:3:5: the row has 3 cells and the header 4");
+  EXPECT_EQ(fault("3,0,0,3", "3,0,0,3,1"),
+            "a.csv:3:9: the row has 5 cells and the header 4: are there commas in the numbers?");
+  EXPECT_EQ(fault("6,0,0,6", "3,0,0,3"), "a.csv:4:1: the row has the same point as the one above");
+  EXPECT_EQ(fault("6,0,0,6", "2,0,0,6"),
+            "a.csv:4:1: S must increase from row to row: 0.002 m is not more than 0.003 m");
+  EXPECT_EQ(fault("10,0,0,10", "9,0,0,10"),
+            "a.csv:1:1: S must run from 0 to the cilium's length 0.01 m, not from 0 m to 0.009 m");
+  EXPECT_EQ(centreline_faults("x [m],y [m],z [m]\n0,0,0\n0,0,3\n0,0,6\n0,0,10\n"),
+            "a.csv:5:1: the points' line is 10 m long and the cilium 0.01 m: is the unit right, "
+            "and is it all of it?");
+  EXPECT_EQ(fault("6,0,0,6\n", ""), "a.csv:4:1: a centreline has 4 points or more, not 3");
+  EXPECT_EQ(fault("\n0,0,0,0", "\n0,0,1,0"),
+            "a.csv:2:1: the first point must be the cilium's base, the origin; it is 0.001 m from "
+            "there");
+  const std::string angles =
+      "S [mm],x [mm],y [mm],z [mm],theta [deg]\n0,0,0,0,A\n3,0,0,3,A\n"
+      "6,0,0,6,A\n10,0,0,10,A\n";
+  std::string upright = angles;
+  for (auto at = upright.find(",A"); at != std::string::npos; at = upright.find(",A"))
+    upright.replace(at, 2, ",90");
+  EXPECT_EQ(centreline_faults(upright),
+            "a.csv:2:1: 'theta' must be the angle of the section's normal from +z; here it is "
+            "1.5708 rad and that of the curve 0 rad");
+  EXPECT_THAT(centreline_faults("S [mm],x [mm],y [mm],z [mm],theta [deg]\n0,0,0,0,0\n3,0,1,2.8,0\n"
+                                "6,0,1,5.8,0\n10,1,0,9.6,0\n"),
+              StartsWith("a.csv:1:29: 'theta' goes with a plane centreline"));
+}
+
+TEST_F(External, SaysWhereReadingsAreWrong) {
+  const std::string plain = readings;
+  const auto fault = [&](const std::string& old, const std::string& with) {
+    return readings_faults(replaced(plain, old, with));
+  };
+  EXPECT_EQ(readings_faults(plain), "no fault");
+  EXPECT_EQ(fault("1,1,24,25,26\n", ""), "r.csv:6:1: there is no row of step 1, sensor 1");
+  EXPECT_EQ(fault("undeformed,1,4,5,6\n", ""),
+            "r.csv:6:1: there is no row of step undeformed, sensor 1");
+  EXPECT_EQ(fault("1,1,24", "1,0,24"), "r.csv:7:1: there is a second row of step 1, sensor 0");
+  EXPECT_EQ(fault("1,1,24", "2,1,24"),
+            "r.csv:7:1: the step '2' is neither 'undeformed' nor a load "
+            "step of the case, 0 to 1");
+  EXPECT_EQ(fault("1,1,24", "1,2,24"), "r.csv:7:1: the sensor '2' is none of the case's, 0 to 1");
+  EXPECT_EQ(fault("step,", "force,"),
+            "r.csv:1:1: unknown column 'force' (valid: step, sensor, Bx, By, Bz, dBx, dBy, dBz)\n"
+            "r.csv:1:1: there is no column 'step'");
+  EXPECT_EQ(readings_faults("step,Bx [T],By [T],Bz [T]\n0,1,1,1\n1,1,1,1\n"),
+            "r.csv:1:1: there is no column 'sensor', and the case has 2 sensors");
+  EXPECT_THAT(fault("Bz [uT]", "dBz [uT]"), HasSubstr("must be either Bx, By, Bz, or dBx"));
+  EXPECT_THAT(fault("Bz [uT]", "Bz [uA]"), HasSubstr("r.csv:1:29: the column 'Bz': 'uA' is not a "
+                                                     "unit of a flux density"));
+  EXPECT_THAT(readings_faults("step,sensor,dBx [T],dBy [T],dBz [T]\nundeformed,0,0,0,0\n"
+                              "undeformed,1,0,0,0\n0,0,1,1,1\n0,1,1,1,1\n1,0,1,1,1\n1,1,1,1,1\n"),
+              HasSubstr("the change dB of the undeformed cilium is zero"));
+}
+
+TEST_F(External, SaysWhatIsWrongWithItsTables) {
+  write("a.csv", straight);
+  EXPECT_EQ(
+      faults("centrelines = [\"a.csv\"]\n"),
+      "case.toml:28:15: there are 1 files of centrelines and 2 load steps: one file for each");
+  EXPECT_EQ(faults("centrelines = \"a.csv\"\n"),
+            "case.toml:28:15: 'centrelines' must be a list of files, one for each load step");
+  EXPECT_THAT(faults("centrelines = [\"a.csv\", \"none.csv\"]\n"),
+              StartsWith("none.csv:1:1: there is no such file"));
+  EXPECT_THAT(faults(""), HasSubstr("[[models.external]] needs 'centrelines' or 'readings'"));
+  EXPECT_THAT(faults("background = \"a.csv\"\n"), HasSubstr("'background' goes with 'readings'"));
+  EXPECT_THAT(faults("reading = \"a.csv\"\n"), HasSubstr("did you mean 'readings'?"));
+  EXPECT_THAT(faults("tip_uncertainty = 3\nreadings = \"a.csv\"\n"), HasSubstr("has no unit"));
+  EXPECT_THAT(faults("readings = \"a.csv\"\n[[models.external]]\nname = \"bench\"\n"),
+              HasSubstr("the name 'bench' is already that of a model"));
+  EXPECT_THAT(faults("readings = \"a.csv\"\n[[models.external]]\nname = \"a/b\"\n"),
+              HasSubstr("the name 'a/b' must be a plain file name"));
+  EXPECT_THAT(faults("readings = \"a.csv\"\n[[models.external]]\nname = \"solid\"\n"),
+              HasSubstr("the name 'solid' is already that of a model"));
+}
+
+/// B of step 0 at both sensors and the undeformed one at sensor 0, µT, with a background.
+struct Cleaned {
+  Vector3 undeformed, first, second;
+};
+
+TEST_F(External, TakesTheBackgroundOfTheLoadsAzimuthOff) {
+  write("r.csv", readings);
+  const auto cleaned = [&](const std::string& csv, const std::string& azimuth) {
+    write("earth.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n" + csv);
+    const ExternalModel model =
+        read("readings = \"r.csv\"\nbackground = \"earth.csv\"\n", azimuth).external[0];
+    return Cleaned{1e6 * *model.undeformed->B[0], 1e6 * *model.readings[0].B[0],
+                   1e6 * *model.readings[0].B[1]};
+  };
+  const double digits = 1e-13;
+  // The row of the azimuth, also a turn away.
+  for (const char* phi : {"\"30 deg\"", "\"390 deg\"", "\"-330 deg\""}) {
+    const Cleaned c = cleaned("0,9,9,9\n30,1,2,3\n60,9,9,9\n", phi);
+    EXPECT_NEAR((c.undeformed - Vector3(0, 0, 0)).norm(), 0, digits);
+    EXPECT_NEAR((c.first - Vector3(10, 10, 10)).norm(), 0, digits);
+    EXPECT_NEAR((c.second - Vector3(13, 13, 13)).norm(), 0, digits);
+  }
+  // Between rows, and over the turn from 330° to 0°; rows in any order.
+  EXPECT_NEAR((cleaned("60,4,0,0\n0,0,0,0\n", "\"15 deg\"").first - Vector3(10, 12, 13)).norm(), 0,
+              digits);
+  for (const char* phi : {"\"345 deg\"", "\"-15 deg\""})
+    EXPECT_NEAR((cleaned("0,0,0,0\n90,50,0,0\n330,0,8,0\n", phi).first - Vector3(11, 8, 13)).norm(),
+                0, digits)
+        << phi;
+}
+
+TEST_F(External, SaysWhatIsWrongWithABackground) {
+  const std::string header = "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n";
+  EXPECT_EQ(background_faults(header + "30,1,1,1\n"), "no fault");
+  EXPECT_EQ(background_faults(header + "0,1,1,1\n"),
+            "r.csv:1:1: the background has a single azimuth, and the load's is 30 deg: measure it "
+            "at more of them");
+  EXPECT_EQ(background_faults(header + "0,1,1,1\n90,1,1,1\n360,1,1,1\n"),
+            "earth.csv:4:1: there is a second row of the azimuth 0 deg and sensor 0");
+  EXPECT_EQ(background_faults("azimuth [deg],sensor,Bx [uT],By [uT],Bz [uT]\n30,0,1,1,1\n"),
+            "earth.csv:1:1: there is no row of sensor 1");
+  EXPECT_EQ(background_faults("Bx [uT],By [uT],Bz [uT]\n1,1,1\n"),
+            "earth.csv:1:1: there is no column 'azimuth'");
+  write("earth.csv", header + "30,1,1,1\n60,1,1,1\n");
+  write("r.csv", readings);
+  EXPECT_THAT(
+      faults("readings = \"r.csv\"\nbackground = \"earth.csv\"\n", "[\"30 deg\", \"60 deg\"]"),
+      HasSubstr("the background of the undeformed cilium's reading is not known"));
+  write("r.csv",
+        "step,sensor,dBx [T],dBy [T],dBz [T]\n0,0,1,1,1\n0,1,1,1,1\n1,0,1,1,1\n1,1,1,1,1\n");
+  EXPECT_THAT(faults("readings = \"r.csv\"\nbackground = \"earth.csv\"\n"),
+              HasSubstr("the change dB has no background any more"));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare

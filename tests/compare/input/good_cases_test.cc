@@ -1,0 +1,523 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "case_texts.h"
+#include "compare/input/case.h"
+#include "compare/input/case_keys.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using testing::ElementsAre;
+
+Case read(std::string_view text) {
+  return read_case(text, "test.toml");
+}
+
+std::filesystem::path source(std::string_view file) {
+  return std::filesystem::path(CILIAVAL_SOURCE_DIR) / file;
+}
+
+/// The good case with another load.
+std::string with_load(std::string_view load) {
+  std::string text(good_case);
+  const std::size_t from = text.find("type = ");
+  const std::size_t to = text.find("[sensor]");
+  return text.replace(from, to - from, std::string(load) + "\n");
+}
+
+void expect_same_cilium(const Cilium& a, const Cilium& b) {
+  EXPECT_EQ(a.diameter, b.diameter);
+  ASSERT_EQ(a.segments.size(), b.segments.size());
+  for (std::size_t i = 0; i < a.segments.size(); ++i) {
+    EXPECT_EQ(a.segments[i].name, b.segments[i].name);
+    EXPECT_EQ(a.segments[i].length, b.segments[i].length);
+    EXPECT_EQ(a.segments[i].young_modulus, b.segments[i].young_modulus);
+    EXPECT_EQ(a.segments[i].poisson_ratio, b.segments[i].poisson_ratio);
+    EXPECT_EQ(a.segments[i].magnetization, b.segments[i].magnetization);
+  }
+}
+
+/// Where the load acts: height, arc length, or nothing.
+double station(const Load& load) {
+  if (const auto height = contact_height(load)) return *height;
+  if (const auto* section = std::get_if<SectionLoad>(&load)) return section->arclength;
+  return 0;
+}
+
+/// Every value, bit for bit.
+void expect_same(const Case& a, const Case& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.title, b.title);
+  expect_same_cilium(a.cilium, b.cilium);
+  ASSERT_EQ(a.load_path.size(), b.load_path.size());
+  for (std::size_t i = 0; i < a.load_path.size(); ++i) {
+    EXPECT_EQ(type(a.load_path[i]), type(b.load_path[i]));
+    EXPECT_EQ(magnitude(a.load_path[i]), magnitude(b.load_path[i]));
+    EXPECT_EQ(azimuth(a.load_path[i]), azimuth(b.load_path[i]));
+    EXPECT_EQ(station(a.load_path[i]), station(b.load_path[i]));
+  }
+  EXPECT_EQ(a.flow_velocity, b.flow_velocity);
+  EXPECT_EQ(a.flow_density, b.flow_density);
+  EXPECT_EQ(a.flow_drag_coefficient, b.flow_drag_coefficient);
+  EXPECT_EQ(a.sensors, b.sensors);
+  EXPECT_EQ(a.mechanics, b.mechanics);
+  EXPECT_EQ(a.fields, b.fields);
+  for (const Knob& knob : knobs())
+    EXPECT_EQ(knob.get(a.options), knob.get(b.options)) << knob.model << '.' << knob.name;
+  ASSERT_EQ(a.options.potential.plates.size(), b.options.potential.plates.size());
+  for (std::size_t i = 0; i < a.options.potential.plates.size(); ++i) {
+    const fem::PermeableBox& plate = a.options.potential.plates[i];
+    EXPECT_EQ(plate.box.min(), b.options.potential.plates[i].box.min());
+    EXPECT_EQ(plate.box.max(), b.options.potential.plates[i].box.max());
+    EXPECT_EQ(plate.relative_permeability, b.options.potential.plates[i].relative_permeability);
+  }
+}
+
+TEST(GoodCase, IsReadAsTheFileStatesIt) {
+  const Case c = read(good_case);
+  EXPECT_EQ(c.name, "good");
+  EXPECT_EQ(c.title, "A case without a fault");
+  EXPECT_EQ(c.cilium.diameter, 0.003);
+  ASSERT_EQ(c.cilium.segments.size(), 2U);
+  EXPECT_EQ(c.cilium.segments[0].name, "base");
+  EXPECT_EQ(c.cilium.segments[0].length, 0.003);
+  EXPECT_EQ(c.cilium.segments[0].young_modulus, 1e5);
+  EXPECT_EQ(c.cilium.segments[0].poisson_ratio, 0.49);
+  EXPECT_EQ(c.cilium.segments[0].magnetization, 0.0);
+  EXPECT_EQ(c.cilium.segments[1].name, "magnet");
+  EXPECT_EQ(c.cilium.segments[1].length, 0.017);
+  EXPECT_EQ(c.cilium.segments[1].young_modulus, 3e6);
+  EXPECT_EQ(c.cilium.segments[1].magnetization, 75000.0);
+  ASSERT_EQ(c.load_path.size(), 3U);
+  const std::array forces{0.001, 0.002, 0.004};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& contact = std::get<ContactLoad>(c.load_path[i]);
+    EXPECT_EQ(contact.force, forces[i]);
+    EXPECT_EQ(contact.height, 0.016);
+    EXPECT_NEAR(contact.azimuth, std::numbers::pi / 6, 2.3e-16);  // two roundings
+  }
+  EXPECT_THAT(c.flow_velocity, testing::IsEmpty());
+  EXPECT_THAT(c.sensors, ElementsAre(Vector3(-0.0001, 0.0002, -0.00155)));
+  EXPECT_THAT(c.mechanics, ElementsAre("elastica", "beam", "solid"));
+  EXPECT_THAT(c.fields, ElementsAre("dipole", "line", "volume", "mesh"));
+}
+
+TEST(GoodCase, DotsInCommentsAndTextsAreNoDottedKeys) {
+  const std::string dots = [] {
+    std::string text;
+    for (int i = 0; i < 40; ++i) text += " .";
+    return text;
+  }();
+  const Case reference = read(good_case);
+  expect_same(read("# don't" + dots + "\n" + std::string(good_case)), reference);
+  expect_same(read(replaced(good_case, "\"3 mm\"\n", "\"3 mm\" # see \"" + dots + "\n")),
+              reference);
+  const auto titled = [](const std::string& title) {
+    return read(replaced(good_case, "\"A case without a fault\"", title)).title;
+  };
+  EXPECT_EQ(titled("\"" + dots + "\""), dots);
+  EXPECT_EQ(titled("\"\\\"" + dots + "\""), "\"" + dots);
+  EXPECT_EQ(titled("'\\' #" + dots), "\\");
+  EXPECT_EQ(titled("\"\"\"\\\n  it's\"\"" + dots + "\"\"\"\"\"" + " #" + dots),
+            "it's\"\"" + dots + "\"\"");
+}
+
+TEST(GoodCase, AzimuthMayBeTwoTurns) {
+  for (const char* turns : {"720 deg", "-720 deg", "2 turn"})
+    EXPECT_NEAR(std::abs(azimuth(read(replaced(good_case, "30 deg", turns)).load_path[0])),
+                4 * std::numbers::pi, 1e-14);
+}
+
+TEST(GoodCase, LeavesTheModelsTheirDefaults) {
+  const Case c = read(replaced(good_case, "[models.solid]\nrefinement = 1\n", ""));
+  for (const Knob& knob : knobs())
+    EXPECT_EQ(knob.get(c.options), knob.get(ModelOptions{})) << knob.model << '.' << knob.name;
+}
+
+TEST(GoodCase, LoadsBroadcastSingleValuesAlongThePath) {
+  const Case c =
+      read(with_load("type = \"contact\"\nforce = \"1 mN\"\nheight = [\"4 mm\", \"8 mm\"]"
+                     "\nazimuth = [\"0 deg\", \"-1 rad\"]"));
+  ASSERT_EQ(c.load_path.size(), 2U);
+  EXPECT_EQ(std::get<ContactLoad>(c.load_path[0]).force, 0.001);
+  EXPECT_EQ(std::get<ContactLoad>(c.load_path[1]).force, 0.001);
+  EXPECT_EQ(std::get<ContactLoad>(c.load_path[0]).height, 0.004);
+  EXPECT_EQ(std::get<ContactLoad>(c.load_path[1]).height, 0.008);
+  EXPECT_EQ(std::get<ContactLoad>(c.load_path[1]).azimuth, -1.0);
+}
+
+TEST(GoodCase, AzimuthIsZeroByDefault) {
+  const Case c = read(replaced(good_case, "azimuth = \"30 deg\"\n", ""));
+  EXPECT_EQ(azimuth(c.load_path.front()), 0.0);
+}
+
+TEST(GoodCase, VelocityBecomesTheDragOfThePaper) {
+  // Oracle: the paper's section 3.5: q_max = 0.375 N/m for v = 0.5 m/s, d = 3 mm, water, C_d = 1.
+  const Case c = read(with_load("type = \"flow\"\nvelocity = [\"0 m/s\", \"0.5 m/s\"]"));
+  EXPECT_EQ(std::get<FlowLoad>(c.load_path[0]).force_per_height, 0.0);
+  EXPECT_NEAR(std::get<FlowLoad>(c.load_path[1]).force_per_height, 0.375, 1e-16);
+  EXPECT_THAT(c.flow_velocity, ElementsAre(0.0, 0.5));
+  // Linear in density and drag coefficient: 0.8 · 1.2 · 0.375.
+  const Case oil =
+      read(with_load("type = \"flow\"\nvelocity = \"0.5 m/s\"\ndensity = \"0.8 "
+                     "g/cm^3\"\ndrag_coefficient = 1.2"));
+  EXPECT_NEAR(std::get<FlowLoad>(oil.load_path[0]).force_per_height, 0.36, 2e-16);
+}
+
+TEST(GoodCase, OtherLoadsAreRead) {
+  const Case flow = read(with_load("type = \"flow\"\nforce_per_height = \"0.3 N/m\""));
+  EXPECT_EQ(std::get<FlowLoad>(flow.load_path[0]).force_per_height, 0.3);
+  EXPECT_THAT(flow.flow_velocity, testing::IsEmpty());
+  const Case dead = read(with_load("type = \"dead\"\nforce_per_length = \"0.3 mN/mm\""));
+  EXPECT_NEAR(std::get<DeadLoad>(dead.load_path[0]).force_per_length, 0.3, 6e-17);
+  const Case section =
+      read(with_load("type = \"section\"\nforce = \"1 mN\"\narclength = \"5 mm\""));
+  EXPECT_EQ(std::get<SectionLoad>(section.load_path[0]).force, 0.001);
+  EXPECT_EQ(std::get<SectionLoad>(section.load_path[0]).arclength, 0.005);
+  // A displacement of more than the cilium's length is no fault: it slips off.
+  const Case probe = read(with_load(
+      "type = \"probe\"\ndisplacement = [\"0 mm\", \"2 mm\", \"1 m\"]\nheight = \"16 mm\""));
+  ASSERT_EQ(probe.load_path.size(), 3U);
+  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[1]).displacement, 0.002);
+  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[2]).displacement, 1.0);
+  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[1]).height, 0.016);
+}
+
+TEST(GoodCase, ASectionAtTheTipIsAtTheTipInSpiteOfRounding) {
+  // 0.1 + 0.2 > 0.3 and 0.7 + 0.1 < 0.8 in double precision.
+  const std::array<std::array<std::string_view, 3>, 2> lengths{
+      {{"0.1 m", "0.2 m", "0.3 m"}, {"0.7 m", "0.1 m", "0.8 m"}}};
+  for (const auto& [first, second, tip] : lengths) {
+    std::string text =
+        with_load("type = \"section\"\nforce = \"1 mN\"\narclength = \"" + std::string(tip) + "\"");
+    text = replaced(text, "length = \"3 mm\"", "length = \"" + std::string(first) + "\"");
+    text = replaced(text, "length = \"17 mm\"", "length = \"" + std::string(second) + "\"");
+    const Case c = read(text);
+    EXPECT_EQ(std::get<SectionLoad>(c.load_path[0]).arclength, c.cilium.length());
+  }
+}
+
+TEST(GoodCase, SensorsMayBeAList) {
+  const Case c = read(replaced(good_case, "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
+                               "[[\"1 mm\", \"2 mm\", \"3 mm\"], [\"0 m\", \"0 m\", \"-1 m\"]]"));
+  EXPECT_THAT(c.sensors, ElementsAre(Vector3(0.001, 0.002, 0.003), Vector3(0, 0, -1)));
+}
+
+TEST(GoodCase, NeedsNoSensorWithoutFields) {
+  std::string text =
+      replaced(good_case, "fields = [\"dipole\", \"line\", \"volume\", \"mesh\"]\n", "");
+  text = replaced(text, "[sensor]\nposition = [\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]\n", "");
+  text = replaced(text, "magnetization = \"75 kA/m\"\n", "");
+  const Case c = read(text);
+  EXPECT_THAT(c.fields, testing::IsEmpty());
+  EXPECT_THAT(c.sensors, testing::IsEmpty());
+}
+
+TEST(GoodCase, MagnetizationMayPointToTheBase) {
+  EXPECT_EQ(
+      read(replaced(good_case, "\"75 kA/m\"", "\"-75 kA/m\"")).cilium.segments[1].magnetization,
+      -75000.0);
+}
+
+TEST(GoodCase, NumbersOfSegmentsVary) {
+  std::string text(good_case);
+  std::string more;
+  for (int i = 0; i < 5; ++i)
+    more += "[[cilium.segment]]\nname = \"s" + std::to_string(i) +
+            "\"\nlength = \"1 mm\"\nyoung_modulus = \"1 GPa\"\npoisson_ratio = 0\n";
+  const Case c = read(replaced(text, "[load]", more + "[load]"));
+  ASSERT_EQ(c.cilium.segments.size(), 7U);
+  EXPECT_EQ(c.cilium.segments[6].name, "s4");
+  EXPECT_EQ(c.cilium.segments[6].poisson_ratio, 0.0);
+}
+
+constexpr std::string_view all_knobs = R"toml(
+[models.elastica]
+form = "height"
+tolerance = 1e-9
+[models.beam]
+degree = 2
+refinement = 4
+shear_rigid = true
+tolerance = 1e-8
+max_iterations = 11
+max_cutbacks = 3
+[models.calculix]
+refinement = 3
+error_estimate = false
+first_increment = 0.1
+threads = 3
+time_limit = "10 min"
+program = "/opt/ccx"
+keep = "/somewhere"
+[models.solid]
+material = "yeoh"
+yeoh_ratios = [-0.2, 0.03]
+refinement = 2
+initial_guess = "none"
+solver = "iterative"
+symmetry = false
+kernel_width = "0.25 mm"
+tolerance = 1e-7
+max_iterations = 12
+max_cutbacks = 4
+[models.dipole]
+push_forward = "R"
+[models.line]
+push_forward = "R"
+method = "quadrature"
+tolerance = 1e-6
+[models.volume]
+slices = "stacked"
+method = "quadrature"
+tolerance = 1e-5
+[models.mesh]
+push_forward = "R"
+tolerance = 1e-4
+[models.potential]
+relative_permeability = 1.2
+push_forward = "R"
+tolerance = 1e-2
+max_unknowns = 5000
+[[models.potential.plate]]
+lower = ["-5 mm", "-6 mm", "-4 mm"]
+upper = ["5 mm", "6 mm", "-3 mm"]
+relative_permeability = 1000
+[[models.potential.plate]]
+lower = ["-5 mm", "-6 mm", "-8 mm"]
+upper = ["5 mm", "6 mm", "-7 mm"]
+relative_permeability = 0.5
+)toml";
+
+std::string with_all_knobs() {
+  const std::string mesh = "mesh = \"" + source("cases/verification/ogrid.msh").string() +
+                           "\"\nmesh_unit = \"1 mm\"\nsymmetry";
+  return replaced(replaced(good_case, "[models.solid]\nrefinement = 1\n", all_knobs), "symmetry",
+                  mesh);
+}
+
+/// The other material and the paper's sums, and their knobs.
+std::string with_mooney_rivlin() {
+  return replaced(good_case, "refinement = 1", "mooney_ratio = 0.1\nmaterial = \"mooney-rivlin\"") +
+         "\n[models.line]\nmethod = \"uniform\"\nelements = 7\n"
+         "[models.volume]\nmethod = \"uniform\"\nelements = 9\n";
+}
+
+TEST(Knobs, ReachTheOptionsOfTheirModel) {
+  const ModelOptions o = read(with_all_knobs()).options;
+  EXPECT_EQ(o.elastica.form, analytic::ElasticaOptions::Form::height);
+  EXPECT_EQ(o.elastica.tolerance, 1e-9);
+  EXPECT_EQ(o.beam.degree, 2U);
+  EXPECT_EQ(o.beam.refinement, 4U);
+  EXPECT_TRUE(o.beam.shear_rigid);
+  EXPECT_EQ(o.beam.tolerance, 1e-8);
+  EXPECT_EQ(o.beam.max_iterations, 11U);
+  EXPECT_EQ(o.beam.max_cutbacks, 3U);
+  EXPECT_EQ(o.solid.material, fem::SolidOptions::Material::yeoh);
+  EXPECT_EQ(o.solid.yeoh_ratios, (std::array{-0.2, 0.03}));
+  const ModelOptions mooney = read(with_mooney_rivlin()).options;
+  EXPECT_EQ(mooney.solid.material, fem::SolidOptions::Material::mooney_rivlin);
+  EXPECT_EQ(mooney.solid.mooney_ratio, 0.1);
+  EXPECT_EQ(mooney.line.method, analytic::Method::uniform);
+  EXPECT_EQ(mooney.line.elements, 7U);
+  EXPECT_EQ(mooney.volume.method, analytic::Method::uniform);
+  EXPECT_EQ(mooney.volume.elements, 9U);
+  EXPECT_EQ(o.calculix.refinement, 3U);
+  EXPECT_FALSE(o.calculix.error_estimate);
+  EXPECT_EQ(o.calculix.first_increment, 0.1);
+  EXPECT_EQ(o.calculix.threads, 3U);
+  EXPECT_EQ(o.calculix.time_limit, 600);
+  EXPECT_EQ(o.calculix.program, "/opt/ccx");
+  EXPECT_EQ(o.calculix.keep, "/somewhere");
+  EXPECT_EQ(o.solid.refinement, 2U);
+  EXPECT_EQ(o.solid.solver, fem::SolverKind::iterative);
+  EXPECT_EQ(o.solid.initial_guess, fem::InitialGuess::none);
+  EXPECT_FALSE(o.solid.symmetry);
+  EXPECT_EQ(o.solid.mesh, source("cases/verification/ogrid.msh"));
+  EXPECT_EQ(o.solid.mesh_unit, 1e-3);
+  EXPECT_EQ(o.solid.kernel_width, 0.00025);
+  EXPECT_EQ(o.solid.tolerance, 1e-7);
+  EXPECT_EQ(o.solid.max_iterations, 12U);
+  EXPECT_EQ(o.solid.max_cutbacks, 4U);
+  EXPECT_EQ(o.dipole.push_forward, analytic::PushForward::R);
+  EXPECT_EQ(o.line.push_forward, analytic::PushForward::R);
+  EXPECT_EQ(o.line.method, analytic::Method::quadrature);
+  EXPECT_EQ(o.line.tolerance, 1e-6);
+  EXPECT_EQ(o.volume.slices, analytic::VolumeOptions::Slices::stacked);
+  EXPECT_EQ(o.volume.method, analytic::Method::quadrature);
+  EXPECT_EQ(o.volume.tolerance, 1e-5);
+  EXPECT_EQ(o.mesh.push_forward, analytic::PushForward::R);
+  EXPECT_EQ(o.mesh.tolerance, 1e-4);
+  EXPECT_EQ(o.potential.relative_permeability, 1.2);
+  EXPECT_EQ(o.potential.push_forward, fem::MagnetPushForward::R);
+  EXPECT_EQ(o.potential.tolerance, 1e-2);
+  EXPECT_EQ(o.potential.max_unknowns, 5000U);
+  ASSERT_EQ(o.potential.plates.size(), 2U);
+  EXPECT_EQ(o.potential.plates[0].box.min(), Vector3(-0.005, -0.006, -0.004));
+  EXPECT_EQ(o.potential.plates[0].box.max(), Vector3(0.005, 0.006, -0.003));
+  EXPECT_EQ(o.potential.plates[0].relative_permeability, 1000);
+  EXPECT_EQ(o.potential.plates[1].relative_permeability, 0.5);
+}
+
+// A mesh is looked for beside the case file, and is written back with its full name: the results go
+// elsewhere.
+TEST(Knobs, TheMeshIsBesideTheCaseFile) {
+  const std::string text =
+      replaced(good_case, "refinement = 1", "mesh = \"../verification/ogrid.msh\"");
+  const Case c = read_case(text, source("cases/paper/some.toml").string());
+  EXPECT_EQ(c.options.solid.mesh, source("cases/verification/ogrid.msh"));
+  expect_same(read(to_toml(c)), c);
+  try {
+    read_case(text, "/some.toml");
+    FAIL() << "the mesh is not there";
+  } catch (const InputError& error) {
+    EXPECT_THAT(
+        error.what(),
+        testing::HasSubstr("some.toml:35:8: there is no mesh file '/verification/ogrid.msh'"));
+  }
+}
+
+TEST(Knobs, AreAllInTheListAbove) {
+  // So that the test of the options and of the round trip covers a knob added later.
+  const ModelOptions set = read(with_all_knobs()).options;
+  const ModelOptions mooney = read(with_mooney_rivlin()).options;
+  for (const Knob& knob : knobs()) {
+    EXPECT_NE(knob.get(belongs(knob, set) ? set : mooney), knob.get(ModelOptions{}))
+        << knob.model << '.' << knob.name;
+  }
+}
+
+TEST(Knobs, HaveDefaultsInTheirRange) {
+  for (const Knob& knob : knobs()) {
+    const KnobValue value = knob.get(ModelOptions{});
+    if (const auto* number = std::get_if<double>(&value)) {
+      EXPECT_TRUE(knob.range.contains(*number)) << knob.model << '.' << knob.name;
+    }
+    if (const auto* number = std::get_if<unsigned int>(&value)) {
+      EXPECT_TRUE(knob.range.contains(*number)) << knob.model << '.' << knob.name;
+    }
+    if (const auto* text = std::get_if<std::string>(&value); text && !knob.choices.empty()) {
+      EXPECT_THAT(knob.choices, testing::Contains(*text)) << knob.model << '.' << knob.name;
+    }
+  }
+}
+
+TEST(WrittenCase, ReadsBackAsTheSameCaseBitForBit) {
+  const std::vector<std::string> texts{
+      std::string(good_case),
+      with_all_knobs(),
+      with_mooney_rivlin(),
+      replaced(good_case, "\"A case without a fault\"", R"("µ \"quoted\" \\ 'back'")"),
+      with_load("type = \"contact\"\nforce = [\"1 mN\", \"1 mN\"]\nheight = \"3.1 mm\""),
+      with_load("type = \"contact\"\nforce = [\"1 mN\"]\nheight = \"0.3 inch\""),
+      with_load("type = \"flow\"\nvelocity = [\"0.1 m/s\", \"0.7 kt\"]\ndensity = [\"1.025 "
+                "g/cm^3\", \"2 lb/ft^3\"]\ndrag_coefficient = 1.1"),
+      with_load("type = \"flow\"\nforce_per_height = [\"0.1 lbf/ft\", \"0 N/m\"]\nazimuth = "
+                "[\"77 deg\", \"-1 deg\"]"),
+      with_load("type = \"section\"\nforce = [\"1 mN\", \"3 gf\"]\narclength = \"20 mm\""),
+      with_load("type = \"probe\"\ndisplacement = [\"1 mm\", \"0.3 inch\"]\nheight = [\"16 mm\", "
+                "\"0.5 inch\"]\nazimuth = \"77 deg\""),
+      with_load("type = \"dead\"\nforce_per_length = \"0.7 N/m\"\nazimuth = \"33 deg\""),
+      replaced(good_case, "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
+               "[[\"1 um\", \"0.1 inch\", \"3 mm\"], [\"0 m\", \"-0 m\", \"-1 ft\"]]")};
+  for (const std::string& text : texts) {
+    SCOPED_TRACE(text);
+    const Case c = read(text);
+    const std::string written = to_toml(c);
+    SCOPED_TRACE(written);
+    expect_same(read(written), c);
+  }
+}
+
+TEST(WrittenCase, StatesEveryKnobWithItsValue) {
+  const Case c = read(good_case);
+  const std::string written = to_toml(c);
+  for (const Knob& knob : knobs()) {
+    if (!belongs(knob, c.options)) {
+      EXPECT_THAT(written, Not(testing::HasSubstr(std::string(knob.name)))) << knob.model;
+      continue;
+    }
+    std::string line = "\n";
+    line += knob.name;
+    line += " = " + to_toml(knob, knob.get(ModelOptions{})) + "\n";
+    EXPECT_THAT(written, testing::HasSubstr(line)) << knob.model;
+  }
+  EXPECT_THAT(written, testing::HasSubstr("kernel_width = \"0.0005 m\""));
+  EXPECT_THAT(written, testing::HasSubstr("diameter = \"0.003 m\""));
+}
+
+TEST(WrittenCase, StatesTheDefaultsOfTheChosenMaterial) {
+  const auto written = [](const std::string& material) {
+    return to_toml(read(replaced(good_case, "refinement = 1", "material = \"" + material + "\"")));
+  };
+  EXPECT_THAT(written("mooney-rivlin"), testing::HasSubstr("\nmooney_ratio = 0.25\n"));
+  EXPECT_THAT(written("yeoh"), testing::HasSubstr("\nyeoh_ratios = [-0.1, 0.01]\n"));
+}
+
+TEST(ShippedCases, AreReadAndWrittenBack) {
+  int count = 0;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(source("cases"))) {
+    if (file.path().extension() != ".toml" || file.path().string().ends_with(".study.toml") ||
+        file.path().string().ends_with(".sense.toml"))
+      continue;
+    SCOPED_TRACE(file.path());
+    const Case c = read_case(file.path());
+    EXPECT_EQ(c.name, file.path().stem());
+    expect_same(read(to_toml(c)), c);
+    ++count;
+  }
+  EXPECT_GE(count, 4);
+}
+
+TEST(ShippedCases, HaveTheFiguresOfThePaper) {
+  // Oracle: the paper, sections 3.2, 3.4 and 3.5.
+  for (const std::string_view name : {"fig3b", "fig3d", "fig5"}) {
+    SCOPED_TRACE(name);
+    const Case c = read_case(source("cases/paper") / (std::string(name) + ".toml"));
+    EXPECT_EQ(c.cilium.diameter, 0.003);
+    EXPECT_THAT(c.cilium.interfaces(), ElementsAre(0.0, 0.003, 0.02));
+    EXPECT_EQ(c.cilium.segments[0].young_modulus, 0.1e6);
+    EXPECT_EQ(c.cilium.segments[1].young_modulus, 3e6);
+    EXPECT_EQ(c.cilium.segments[1].magnetization, 7.5e4);
+    EXPECT_THAT(c.sensors, ElementsAre(Vector3(-0.1e-3, 0.2e-3, -1.55e-3)));
+  }
+  const Case flow = read_case(source("cases/paper/fig5.toml"));
+  EXPECT_EQ(flow.load_path.size(), 5U);
+  EXPECT_NEAR(magnitude(flow.load_path.back()), 0.375, 1e-16);  // the paper's q_max
+  const Case contact = read_case(source("cases/paper/fig3b.toml"));
+  EXPECT_EQ(std::get<ContactLoad>(contact.load_path.front()).force, 0.001);
+  EXPECT_EQ(std::get<ContactLoad>(contact.load_path.front()).height, 0.016);
+}
+
+TEST(Documentation, HasTheTableOfKeys) {
+  std::ifstream in(source("docs/cases.md"));
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (std::getenv("CILIAVAL_PRINT_KEYS") != nullptr) std::fputs(key_table().c_str(), stdout);
+  EXPECT_THAT(text, testing::HasSubstr(key_table()))
+      << "run this test with CILIAVAL_PRINT_KEYS=1 and put the table into docs/cases.md";
+}
+
+TEST(Documentation, ExampleIsACase) {
+  std::ifstream in(source("docs/cases.md"));
+  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  constexpr std::string_view fence = "```toml\n";
+  const std::size_t from = text.find(fence);
+  ASSERT_NE(from, std::string::npos);
+  const std::size_t start = from + fence.size();
+  EXPECT_EQ(read(text.substr(start, text.find("```", start) - start)).name, "fig3b");
+}
+
+}  // namespace
+}  // namespace ciliaval::compare

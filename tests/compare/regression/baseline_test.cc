@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/regression/baseline.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "../run/synthetic.h"
+#include "compare/regression/report.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+const Provenance origin{"0.1.0", "abc", {{"deal.II", "9.4.1"}}, "ciliaval check", "2026-11-21"};
+
+Case any_case() {
+  return read_case(test::case_text({.name = "any"}, "mechanics = [\"elastica\"]\n"), "any.toml");
+}
+
+Measurements some() {
+  Measurements m;
+  m.quantities = {{"steps/0/mechanics/elastica/tip/x", "elastica", "m", 1.0 / 3, 20e-3, {}},
+                  {"steps/0/mechanics/elastica/tip_angle", "elastica", "rad", -0.0, 1, {}}};
+  m.outcomes = {{"steps/0/mechanics/elastica/status", "elastica", "converged"}};
+  return m;
+}
+
+Baseline some_baseline() {
+  Baseline baseline = make_baseline(any_case(), some(), origin, nullptr);
+  baseline.quantities[0].reference = Reference{"Mattiasson (1981)", 0.3333, {1e-3, 0}};
+  return baseline;
+}
+
+TEST(Baseline, ReadsBackWhatItWrote) {
+  const Baseline written = some_baseline();
+  const Baseline read = read_baseline(to_json(written), "any.baseline.json");
+  EXPECT_EQ(read.case_name, "any");
+  EXPECT_EQ(read.case_text, written.case_text);
+  EXPECT_EQ(read.origin.date, "2026-11-21");
+  ASSERT_EQ(read.quantities.size(), 2u);
+  EXPECT_EQ(read.quantities[0].value, 1.0 / 3);
+  EXPECT_EQ(read.quantities[0].tolerance.relative, written.quantities[0].tolerance.relative);
+  ASSERT_TRUE(read.quantities[0].reference);
+  EXPECT_EQ(read.quantities[0].reference->label, "Mattiasson (1981)");
+  ASSERT_EQ(read.outcomes.size(), 1u);
+  EXPECT_EQ(read.outcomes[0].value, "converged");
+}
+
+TEST(Baseline, ListsWhatChangedAndKeepsTheReferences) {
+  const Baseline old = some_baseline();
+  Measurements now = some();
+  now.quantities[0].value = 0.25;
+  now.quantities[1].id = "steps/0/mechanics/elastica/applied_force";
+  const Baseline candidate = make_baseline(any_case(), now, origin, &old);
+  ASSERT_EQ(candidate.changes.size(), 3u);
+  EXPECT_EQ(candidate.changes[0].old_value, 1.0 / 3);
+  EXPECT_EQ(candidate.changes[0].new_value, 0.25);
+  EXPECT_EQ(candidate.changes[1].old_value, std::nullopt);
+  EXPECT_EQ(candidate.changes[2].new_value, std::nullopt);
+  EXPECT_TRUE(candidate.quantities[0].reference);
+  const Baseline read = read_baseline(to_json(candidate), "f");
+  EXPECT_EQ(read.changes[0].old_value, 1.0 / 3);
+  EXPECT_EQ(read.changes[1].old_value, std::nullopt);
+}
+
+// A new model, or a new option of another model, is no change of a case that does not use it.
+TEST(Baseline, KeepsTheOptionsOfTheModelsInUse) {
+  using testing::Contains;
+  using testing::Not;
+  const Case problem = read_case(
+      test::case_text({.name = "any"},
+                      "mechanics = [\"beam\"]\nfields = [\"potential\"]\n"
+                      "[[models.potential.plate]]\nlower = [\"-1 mm\", \"-1 mm\", \"-5 mm\"]\n"
+                      "upper = [\"1 mm\", \"1 mm\", \"-4 mm\"]\nrelative_permeability = 9\n"),
+      "any.toml");
+  const std::vector<std::string> text = case_text(problem);
+  EXPECT_THAT(text, Contains("[models.beam]"));
+  EXPECT_THAT(text, Contains("[models.potential]"));
+  EXPECT_THAT(text, Contains("[[models.potential.plate]]"));
+  EXPECT_THAT(text, Contains("[[cilium.segment]]"));
+  EXPECT_THAT(text, Contains("[load]"));
+  for (const char* unused : {"[models.solid]", "[models.elastica]", "[models.line]"})
+    EXPECT_THAT(text, Not(Contains(unused)));
+}
+
+TEST(Baseline, RoundingIsNoChange) {
+  const Baseline old = some_baseline();
+  Measurements now = some();
+  now.quantities[0].value *= 1 + 1e-14;
+  const Baseline candidate = make_baseline(any_case(), now, origin, &old);
+  EXPECT_TRUE(candidate.changes.empty());
+  EXPECT_EQ(candidate.quantities[0].value, old.quantities[0].value);
+}
+
+// Two meshes of the potential are as far apart as its estimate says; its place in the id, not a
+// mechanics model's or a sensor's, decides.
+TEST(Baseline, ThePotentialIsHeldToItsOwnEstimate) {
+  const auto tolerance = [](const char* id, std::optional<double> uncertainty) {
+    return regression_tolerance({id, "elastica", "T", 1e-3, 2e-3, uncertainty});
+  };
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 3e-6).absolute, 3e-6);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 3e-6).relative, 1e-10);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 1e-16).absolute, 2e-13);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", {}).absolute, 2e-13);
+  EXPECT_EQ(tolerance("steps/0/fields/elastica/line/B/0/x", 3e-6).absolute, 2e-13);
+}
+
+TEST(Baseline, IsNotMadeOfWhatFailed) {
+  Measurements bad = some();
+  bad.quantities[0].value = std::nan("");
+  EXPECT_THROW(make_baseline(any_case(), bad, origin, nullptr), SolverError);
+  bad = some();
+  bad.outcomes[0].value = "failed";
+  EXPECT_THROW(make_baseline(any_case(), bad, origin, nullptr), SolverError);
+  bad = some();
+  bad.quantities.clear();
+  EXPECT_THROW(make_baseline(any_case(), bad, origin, nullptr), SolverError);
+}
+
+struct Damage {
+  std::string message;
+  std::function<void(Json&)> plant;
+};
+
+// Oracle: the damage that was done.
+TEST(Baseline, ADamagedOneIsRefusedWithItsPlace) {
+  const std::string first = "steps/0/mechanics/elastica/tip/x";
+  const std::vector<Damage> all{
+      {"`schema` must be 1", [](Json& j) { j["schema"] = 2; }},
+      {"`quantities` is missing", [](Json& j) { j.erase("quantities"); }},
+      {"`outcomes` is missing", [](Json& j) { j.erase("outcomes"); }},
+      {"`origin` is missing", [](Json& j) { j.erase("origin"); }},
+      {"`case` is empty", [](Json& j) { j["case"] = ""; }},
+      {"`note` is no key here", [](Json& j) { j["note"] = "x"; }},
+      {first + ": `tolerance` is no key here",
+       [](Json& j) { j["quantities"][0]["tolerance"] = 1e-3; }},
+      {first + ": `relative` is missing", [](Json& j) { j["quantities"][0].erase("relative"); }},
+      {first + ": `value` must be a finite number",
+       [](Json& j) { j["quantities"][0]["value"] = nullptr; }},
+      {first + ": `value` must be a finite number",
+       [](Json& j) { j["quantities"][0]["value"] = "0.3"; }},
+      {first + ": `relative` and `absolute` must not be negative",
+       [](Json& j) { j["quantities"][0]["relative"] = -1e-3; }},
+      {"nor both without effect",
+       [](Json& j) {
+         j["quantities"][0]["relative"] = 0;
+         j["quantities"][0]["absolute"] = 0;
+       }},
+      {"checks nothing", [](Json& j) { j["quantities"][0]["relative"] = 0.5; }},
+      {first + "/reference: `label` is empty",
+       [](Json& j) { j["quantities"][0]["reference"]["label"] = ""; }},
+      {first + "/reference: `source` is no key here",
+       [](Json& j) { j["quantities"][0]["reference"]["source"] = "x"; }},
+      {"is there twice", [](Json& j) { j["quantities"].push_back(j["quantities"][0]); }},
+      {"is there twice", [](Json& j) { j["outcomes"].push_back(j["outcomes"][0]); }},
+      {"must be an object", [](Json& j) { j["quantities"][0] = 3; }},
+      {"must be a list", [](Json& j) { j["quantities"] = 3; }},
+      {"not a baseline", [](Json& j) { j["case_text"][0] = 3; }},
+  };
+  const std::string good = to_json(some_baseline());
+  for (const Damage& damage : all) {
+    Json json = Json::parse(good);
+    damage.plant(json);
+    try {
+      read_baseline(json.dump(), "any.baseline.json");
+      ADD_FAILURE() << "accepted: " << damage.message;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(damage.message));
+      EXPECT_THAT(error.what(), testing::StartsWith("any.baseline.json: "));
+    }
+  }
+  for (std::size_t length = 0; length < good.size() - 2; length += 97)
+    EXPECT_THROW(read_baseline(good.substr(0, length), "f"), InputError) << length;
+}
+
+CheckReport some_report() {
+  CheckReport report;
+  report.case_name = "a <case>";
+  Finding good;
+  good.passed = true;
+  good.id = "steps/0/mechanics/elastica/tip/x";
+  good.against = "baseline";
+  good.unit = "m";
+  good.measured = 1.5;
+  good.expected = 1.5;
+  good.limit = 1e-9;
+  Finding bad = good;
+  bad.passed = false;
+  bad.against = "Mattiasson & others";
+  bad.message = "is \"wrong\" <by far>";
+  bad.uncertainty = std::nan("");
+  report.findings = {good, bad};
+  return report;
+}
+
+// Oracle: an XML parser.
+TEST(Report, JUnitHasAFailureForEachFindingThatFailed) {
+  std::istringstream text(report_junit({some_report()}));
+  boost::property_tree::ptree tree;
+  boost::property_tree::read_xml(text, tree);
+  const auto& suite = tree.get_child("testsuites.testsuite");
+  EXPECT_EQ(suite.get<std::string>("<xmlattr>.name"), "a <case>");
+  EXPECT_EQ(suite.get<int>("<xmlattr>.tests"), 2);
+  EXPECT_EQ(suite.get<int>("<xmlattr>.failures"), 1);
+  EXPECT_EQ(suite.count("testcase"), 2u);
+  const auto& last = suite.back().second;
+  EXPECT_EQ(last.get<std::string>("failure.<xmlattr>.message"), "is \"wrong\" <by far>");
+  const auto& measured = last.get_child("properties").front().second;
+  EXPECT_EQ(measured.get<std::string>("<xmlattr>.name"), "measured, m");
+  EXPECT_EQ(measured.get<double>("<xmlattr>.value"), 1.5);
+}
+
+TEST(Report, JsonHasMeasuredValueLimitAndUncertainty) {
+  const Json json = Json::parse(report_json({some_report()}));
+  EXPECT_EQ(json["passed"], false);
+  const Json& bad = json["cases"][0]["findings"][1];
+  EXPECT_EQ(bad["measured"], 1.5);
+  EXPECT_EQ(bad["limit"], 1e-9);
+  EXPECT_TRUE(bad["uncertainty"].is_null());
+  EXPECT_EQ(json["cases"][0]["failures"], 1);
+}
+
+}  // namespace
+}  // namespace ciliaval::compare
