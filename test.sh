@@ -21,6 +21,8 @@ while [ $# -gt 0 ]; do
 done
 
 install_packages
+scripts/check_includes.sh
+[ "$preset" != release ] || configure_options=(-D CILIAVAL_ODR=ON)
 build "$preset"
 scripts/paraview.sh >/dev/null || say "no ParaView: its tests are skipped"
 say "testing"

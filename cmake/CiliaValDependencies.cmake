@@ -1,21 +1,14 @@
 # Every package that CiliaVal uses, for its own build and, through CiliaValConfig.cmake, for its users.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(Boost 1.74 REQUIRED)
+find_package(Boost 1.74 REQUIRED COMPONENTS filesystem)
 find_package(deal.II 9.4 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
-# Debian's Ceres is a static library that asks for ATLAS. Linked to the program itself ATLAS would come before the BLAS that MUMPS uses
-# (libblas.so.3, which with scripts/packages.txt is OpenBLAS) and take its place: LU of the solid's tangent then takes twice as long.
-set(BLA_VENDOR Generic)
-find_package(Ceres 2.1 REQUIRED)
-unset(BLA_VENDOR)
-get_target_property(ceres_libraries Ceres::ceres INTERFACE_LINK_LIBRARIES)
-list(FILTER ceres_libraries EXCLUDE REGEX "lib(f77blas|atlas)")
-set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES "${ceres_libraries}")
 find_package(NLopt 2.7 REQUIRED)
+find_package(SQLite3 3.37 REQUIRED)
 # Only these: every further component drags in VTK's own HDF5, beside the one of deal.II.
 find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
 # The library that deal.II itself is linked to: it costs no start-up time.

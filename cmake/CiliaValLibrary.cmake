@@ -16,6 +16,7 @@ function(ciliaval_library name)
   set(target ciliaval_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(CiliaVal::${name} ALIAS ${target})
+  set_property(GLOBAL APPEND PROPERTY ciliaval_libraries ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>

@@ -11,7 +11,7 @@ namespace ciliaval::fem {
 
 /// Files that are there as a whole or not at all, whenever the program or the machine stops. One
 /// line says what they are, "ciliaval-checkpoint FORMAT CRC-32 BYTES"; the rest, of that many bytes
-/// and with that checksum, is the program's name and the content (docs/restart.md).
+/// and with that checksum, is the program's name and the content (docs/guide/restart.md).
 
 /// CRC-32 (ISO 3309, as zlib's) of some bytes.
 std::uint32_t checksum(std::string_view bytes);

@@ -6,7 +6,7 @@
 namespace ciliaval {
 
 /// An error says what was asked, what happened and what to do. The program turns its kind into an
-/// exit code at one place (compare/main.cc).
+/// exit code at one place (compare/app/main.cc).
 class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -2,72 +2,195 @@
 #include "problem/load.h"
 
 #include <cmath>
-#include <type_traits>
+#include <numbers>
 
 #include "problem/error.h"
 
 namespace ciliaval {
 namespace {
 
-double& magnitude_of(ContactLoad& load) {
-  return load.force;
-}
-double& magnitude_of(FlowLoad& load) {
-  return load.force_per_height;
-}
-double& magnitude_of(SectionLoad& load) {
-  return load.force;
-}
-double& magnitude_of(DeadLoad& load) {
-  return load.force_per_length;
-}
-double& magnitude_of(ProbeLoad& load) {
-  return load.displacement;
+using Site = LoadParameter::Site;
+
+constexpr double milli = 1e3;                                     ///< from SI to mN or mm
+constexpr double two_turns = 4 * std::numbers::pi * (1 + 1e-12);  ///< rad, 720 deg included
+
+constexpr LoadParameter force_parameter{{"load",
+                                         "force",
+                                         quantity::force,
+                                         {0, 1e9, false, turn_round},
+                                         "",
+                                         "`contact`, `section`: the horizontal force."},
+                                        ", force {:g} mN",
+                                        milli};
+
+constexpr LoadParameter contact_height_parameter{
+    {"load", "height", quantity::length, length_range, "",
+     "`contact`, `probe`: the height z at which the force stays; between the base and the tip."},
+    " at height {:g} mm",
+    milli,
+    0,
+    Site::height};
+
+constexpr LoadParameter azimuth_parameter{
+    {"load",
+     "azimuth",
+     quantity::angle,
+     {-two_turns, two_turns, false, "more than two turns is taken for a slip in the unit"},
+     "0 deg",
+     "Direction of the load in the plane, from +x towards +y."},
+    ", azimuth {:g} deg",
+    180 / std::numbers::pi};
+
+/// q = ½ρv²C_d d (paper, Eq. 11), N/m, of v, ρ and C_d.
+double drag_per_height(std::span<const double> values, const Cilium& cilium) {
+  const double velocity = values[0];
+  return values[1] * velocity * velocity * values[2] * cilium.diameter / 2;
 }
 
-std::string_view unit_of(const ContactLoad& /*load*/) {
-  return "N";
-}
-std::string_view unit_of(const FlowLoad& /*load*/) {
-  return "N/m";
-}
-std::string_view unit_of(const SectionLoad& /*load*/) {
-  return "N";
-}
-std::string_view unit_of(const DeadLoad& /*load*/) {
-  return "N/m";
-}
-std::string_view unit_of(const ProbeLoad& /*load*/) {
-  return "m";
+std::vector<const LoadType*>& all_types() {
+  static std::vector<const LoadType*> types{&ContactLoad::type(), &FlowLoad::type(),
+                                            &SectionLoad::type(), &DeadLoad::type(),
+                                            &ProbeLoad::type()};
+  return types;
 }
 
-ContactLoad mix(const ContactLoad& a, const ContactLoad& b, double t) {
-  return {std::lerp(a.force, b.force, t), std::lerp(a.height, b.height, t),
-          std::lerp(a.azimuth, b.azimuth, t)};
-}
-FlowLoad mix(const FlowLoad& a, const FlowLoad& b, double t) {
-  return {std::lerp(a.force_per_height, b.force_per_height, t), std::lerp(a.azimuth, b.azimuth, t)};
-}
-SectionLoad mix(const SectionLoad& a, const SectionLoad& b, double t) {
-  return {std::lerp(a.force, b.force, t), std::lerp(a.arclength, b.arclength, t),
-          std::lerp(a.azimuth, b.azimuth, t)};
-}
-DeadLoad mix(const DeadLoad& a, const DeadLoad& b, double t) {
-  return {std::lerp(a.force_per_length, b.force_per_length, t), std::lerp(a.azimuth, b.azimuth, t)};
-}
-ProbeLoad mix(const ProbeLoad& a, const ProbeLoad& b, double t) {
-  return {std::lerp(a.displacement, b.displacement, t), std::lerp(a.height, b.height, t),
-          std::lerp(a.azimuth, b.azimuth, t)};
+std::optional<double> value_at(const Load& load, Site site) {
+  for (std::size_t i = 0; i < load.values().size(); ++i)
+    if (load.type().parameters[i].site == site) return load.values()[i];
+  return std::nullopt;
 }
 
 }  // namespace
 
+const LoadType& ContactLoad::type() {
+  static const LoadType type{"contact",
+                             {force_parameter, contact_height_parameter, azimuth_parameter}};
+  return type;
+}
+
+const LoadType& FlowLoad::type() {
+  static const LoadType type{
+      "flow",
+      {{{"load",
+         "force_per_height",
+         quantity::force_per_length,
+         {0, 1e9, false, turn_round},
+         "from `velocity`",
+         "`flow`: the force q per unit of current height; this or `velocity`."},
+        ", {:g} N per metre of height"},
+       azimuth_parameter},
+      LoadStatement{{{{"load",
+                       "velocity",
+                       quantity::velocity,
+                       {0, 1e4, false, turn_round},
+                       "none",
+                       "`flow`: the fluid's velocity v, q = density v^2 drag_coefficient d/2 "
+                       "(paper, Eq. 11)."},
+                      ""},
+                     {{"load",
+                       "density",
+                       quantity::density,
+                       {1e-9, 1e6, false, unit_slip},
+                       "1000 kg/m^3",
+                       "`flow` by `velocity`: the fluid's density."},
+                      "",
+                      1,
+                      1000},
+                     {{"load",
+                       "drag_coefficient",
+                       quantity::number,
+                       {1e-6, 1e6, false, "a drag coefficient is near 1"},
+                       "1",
+                       "`flow` by `velocity`: the drag coefficient C_d."},
+                      "",
+                      1,
+                      1}},
+                    &drag_per_height}};
+  return type;
+}
+
+const LoadType& SectionLoad::type() {
+  static const LoadType type{
+      "section",
+      {force_parameter,
+       {{"load", "arclength", quantity::length, length_range, "",
+         "`section`: the arc length of the loaded section; not beyond the tip."},
+        " at arc length {:g} mm",
+        milli,
+        0,
+        Site::arclength},
+       azimuth_parameter}};
+  return type;
+}
+
+const LoadType& DeadLoad::type() {
+  static const LoadType type{"dead",
+                             {{{"load",
+                                "force_per_length",
+                                quantity::force_per_length,
+                                {0, 1e9, false, turn_round},
+                                "",
+                                "`dead`: the force per reference length."},
+                               ", {:g} N per metre of length"},
+                              azimuth_parameter}};
+  return type;
+}
+
+const LoadType& ProbeLoad::type() {
+  static const LoadType type{
+      "probe",
+      {{{"load",
+         "displacement",
+         quantity::length,
+         {0, 100, false,
+          "a displacement is not negative (to turn it round, add 180 deg to the azimuth) and a "
+          "larger one is taken for a slip in the unit"},
+         "",
+         "`probe`: the deflection of the contact point; the force is a result."},
+        ", displacement {:g} mm",
+        milli},
+       contact_height_parameter,
+       azimuth_parameter},
+      std::nullopt,
+      {{"force",
+        "'force' is a result of the load type 'probe', whose 'displacement' is given: leave it out "
+        "or use the type 'contact'"}}};
+  return type;
+}
+
+std::span<const LoadType* const> load_types() {
+  return all_types();
+}
+
+void add_load_type(const LoadType& type) {
+  all_types().push_back(&type);
+}
+
+const LoadType* find_load_type(std::string_view name) {
+  for (const LoadType* type : load_types())
+    if (type->name == name) return type;
+  return nullptr;
+}
+
+Load::Load(const LoadType& type, std::span<const double> values) : type_(&type) {
+  if (values.size() != count() || count() > most_parameters)
+    throw InputError("the load type '" + std::string(type.name) + "' has " +
+                     std::to_string(count()) + " parameters, not " + std::to_string(values.size()));
+  std::copy(values.begin(), values.end(), values_.begin());
+}
+
+std::optional<double> Load::value(std::string_view parameter) const {
+  for (std::size_t i = 0; i < count(); ++i)
+    if (type_->parameters[i].key.name == parameter) return values_[i];
+  return std::nullopt;
+}
+
 std::string_view type(const Load& load) {
-  return std::visit([](const auto& l) { return std::decay_t<decltype(l)>::type; }, load);
+  return load.type().name;
 }
 
 double azimuth(const Load& load) {
-  return std::visit([](const auto& l) { return l.azimuth; }, load);
+  return load.values().back();
 }
 
 Vector3 direction(const Load& load) {
@@ -76,37 +199,49 @@ Vector3 direction(const Load& load) {
 }
 
 double magnitude(const Load& load) {
-  return std::visit([](auto l) { return magnitude_of(l); }, load);
+  return load.values().front();
 }
 
 std::string_view magnitude_unit(const Load& load) {
-  return std::visit([](const auto& l) { return unit_of(l); }, load);
+  return load.type().parameters.front().key.quantity.unit;
 }
 
 std::optional<double> contact_height(const Load& load) {
-  if (const auto* contact = std::get_if<ContactLoad>(&load)) return contact->height;
-  if (const auto* probe = std::get_if<ProbeLoad>(&load)) return probe->height;
-  return std::nullopt;
+  return value_at(load, Site::height);
+}
+
+std::optional<double> loaded_arclength(const Load& load) {
+  return value_at(load, Site::arclength);
 }
 
 Load with_magnitude(const Load& load, double magnitude) {
-  return std::visit(
-      [magnitude](auto l) -> Load {
-        magnitude_of(l) = magnitude;
-        return l;
-      },
-      load);
+  Load result = load;
+  result.set_value(0, magnitude);
+  return result;
+}
+
+Load with_azimuth(const Load& load, double azimuth) {
+  Load result = load;
+  result.set_value(load.values().size() - 1, azimuth);
+  return result;
 }
 
 Load interpolate(const Load& from, const Load& to, double t) {
-  return std::visit(
-      [&](const auto& a) -> Load {
-        const auto* b = std::get_if<std::decay_t<decltype(a)>>(&to);
-        if (b == nullptr)
-          throw InputError("a load path cannot change from one load type to another");
-        return mix(a, *b, t);
-      },
-      from);
+  if (&from.type() != &to.type())
+    throw InputError("a load path cannot change from one load type to another");
+  Load result = from;
+  for (std::size_t i = 0; i < from.values().size(); ++i)
+    result.set_value(i, std::lerp(from.values()[i], to.values()[i], t));
+  return result;
+}
+
+bool operator==(const Load& a, const Load& b) {
+  return &a.type() == &b.type() && std::ranges::equal(a.values(), b.values());
+}
+
+void refuse_type(const Load& load, std::string_view model) {
+  throw InputError("the " + std::string(model) + " does not take the load type '" +
+                   std::string(type(load)) + "'");
 }
 
 void require_valid(const Load& load, const Cilium& cilium) {
@@ -114,15 +249,13 @@ void require_valid(const Load& load, const Cilium& cilium) {
     throw InputError(
         "the load must be finite and not negative; to turn it round, add 180 deg to the azimuth");
   if (!std::isfinite(azimuth(load))) throw InputError("the azimuth must be finite");
-  if (const auto height = contact_height(load)) {
-    if (!(*height > 0 && *height < cilium.length()))
-      throw InputError("the contact height must lie between the base and the tip of the cilium");
-  }
-  if (const auto* section = std::get_if<SectionLoad>(&load)) {
-    if (!(section->arclength > 0 && section->arclength <= cilium.length()))
-      throw InputError(
-          "the loaded section must lie above the base and not beyond the tip of the cilium");
-  }
+  const std::optional<double> height = contact_height(load);
+  if (height && !(*height > 0 && *height < cilium.length()))
+    throw InputError("the contact height must lie between the base and the tip of the cilium");
+  const std::optional<double> arclength = loaded_arclength(load);
+  if (arclength && !(*arclength > 0 && *arclength <= cilium.length()))
+    throw InputError(
+        "the loaded section must lie above the base and not beyond the tip of the cilium");
 }
 
 }  // namespace ciliaval

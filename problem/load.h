@@ -1,20 +1,64 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <concepts>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
-#include <variant>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "problem/cilium.h"
+#include "problem/parameter.h"
 #include "problem/types.h"
 
 namespace ciliaval {
 
+/// One parameter of a load type.
+struct LoadParameter {
+  QuantityKey key;            ///< name, quantity, range and meaning in [load]
+  std::string_view words;     ///< how a table says it, as a format of the value: "force {:g} mN"
+  double display_factor = 1;  ///< from SI to the unit of `words`
+  double fallback = 0;        ///< SI value that stands for a missing key, if key.fallback says so
+  enum class Site { none, height, arclength };
+  Site site = Site::none;  ///< height: 0 < z < L; arclength: 0 < S ≤ L
+};
+
+/// Other parameters from which a file may state the magnitude of a load.
+struct LoadStatement {
+  std::vector<LoadParameter> parameters;  ///< the first is required
+  /// The magnitude, SI, from their values.
+  double (*magnitude)(std::span<const double> values, const Cilium& cilium) = nullptr;
+};
+
+/// What a load type is called and which parameters it has: the one declaration from which case
+/// files, results, studies, tables and checkpoints take them.
+struct LoadType {
+  std::string_view name;
+  std::vector<LoadParameter> parameters;  ///< the magnitude first, the azimuth last
+  std::optional<LoadStatement> statement{};
+  /// A key that [load] must not have, and why.
+  std::optional<std::pair<std::string_view, std::string_view>> result{};
+};
+
+/// A plain struct of doubles with the parameters of a load type, in the order of its declaration.
+template <class T>
+concept LoadParameters = std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> && sizeof(T) %
+                                 sizeof(double) ==
+                             0 &&
+                         requires {
+  { T::type() } -> std::same_as<const LoadType&>;
+};
+
 /// Horizontal force that stays at the current height z = h while the cilium slides under it (paper,
 /// Eq. 1–2).
 struct ContactLoad {
-  static constexpr std::string_view type = "contact";
+  static const LoadType& type();
   double force = 0;    ///< F, N
   double height = 0;   ///< h, m
   double azimuth = 0;  ///< φ, rad
@@ -23,14 +67,14 @@ struct ContactLoad {
 /// Horizontal force q per unit current height over the whole cilium: drag on the projected area
 /// (paper, Eq. 3–4, 10–11).
 struct FlowLoad {
-  static constexpr std::string_view type = "flow";
+  static const LoadType& type();
   double force_per_height = 0;  ///< q, N/m
   double azimuth = 0;           ///< φ, rad
 };
 
 /// Horizontal dead force spread evenly over the material cross-section at reference arc length S.
 struct SectionLoad {
-  static constexpr std::string_view type = "section";
+  static const LoadType& type();
   double force = 0;      ///< F, N
   double arclength = 0;  ///< S, m
   double azimuth = 0;    ///< φ, rad
@@ -39,7 +83,7 @@ struct SectionLoad {
 /// Horizontal dead force per reference length over the whole cilium, spread evenly over the
 /// section.
 struct DeadLoad {
-  static constexpr std::string_view type = "dead";
+  static const LoadType& type();
   double force_per_length = 0;  ///< q, N/m
   double azimuth = 0;           ///< φ, rad
 };
@@ -48,21 +92,65 @@ struct DeadLoad {
 /// the current height z = h is pushed aside to the deflection δ along e. The contact force is that
 /// of ContactLoad, horizontal and at z = h; its amount is a result (MechanicsStep::applied_force).
 ///
-/// Any δ is valid. One that is larger than the cilium can reach is a slip-off, not an error of the
-/// input: a bench that drives its probe on sees the cilium let go, the δ where it does so is the
-/// model's to find (MechanicsStep::slip_off_displacement) and differs from model to model.
+/// Any δ is valid. A δ that the cilium cannot reach is a slip-off, not an error of the input: each
+/// model finds the δ at which the cilium lets go (MechanicsStep::slip_off_displacement).
 struct ProbeLoad {
-  static constexpr std::string_view type = "probe";
+  static const LoadType& type();
   double displacement = 0;  ///< δ, m
   double height = 0;        ///< h, m
   double azimuth = 0;       ///< φ, rad
 };
 
-/// One step of a load path.
-using Load = std::variant<ContactLoad, FlowLoad, SectionLoad, DeadLoad, ProbeLoad>;
+/// One step of a load path: a load type and the values of its parameters, SI.
+class Load {
+ public:
+  static constexpr std::size_t most_parameters = 8;
+
+  Load() : Load(ContactLoad{}) {}
+  template <LoadParameters T>
+  Load(const T& load) : type_(&T::type()) {  // NOLINT: a load of a type is a load
+    static_assert(sizeof(T) / sizeof(double) <= most_parameters);
+    const auto values = std::bit_cast<std::array<double, sizeof(T) / sizeof(double)>>(load);
+    std::copy(values.begin(), values.end(), values_.begin());
+  }
+  /// Throws InputError unless there are as many values as the type has parameters.
+  Load(const LoadType& type, std::span<const double> values);
+
+  const LoadType& type() const { return *type_; }
+  std::span<const double> values() const { return std::span(values_).first(count()); }
+  /// The value of a parameter; none if the type has none of this name.
+  std::optional<double> value(std::string_view parameter) const;
+  void set_value(std::size_t parameter, double value) { values_.at(parameter) = value; }
+
+  template <LoadParameters T>
+  bool is() const {
+    return type_ == &T::type();
+  }
+  /// A copy of the parameters of a load of type T; none of another type.
+  template <LoadParameters T>
+  std::optional<const T> as() const {
+    if (!is<T>()) return std::nullopt;
+    std::array<double, sizeof(T) / sizeof(double)> values;
+    std::copy_n(values_.begin(), values.size(), values.begin());
+    return std::bit_cast<T>(values);
+  }
+
+ private:
+  std::size_t count() const { return type_->parameters.size(); }
+
+  const LoadType* type_;
+  std::array<double, most_parameters> values_{};
+};
 
 /// Loads that the cilium bears one after the other, all of one type.
 using LoadPath = std::vector<Load>;
+
+/// Every load type, those of this file first.
+std::span<const LoadType* const> load_types();
+/// Adds a type that a program brings along. It must live as long as the program.
+void add_load_type(const LoadType& type);
+/// The load type of this name, or null.
+const LoadType* find_load_type(std::string_view name);
 
 std::string_view type(const Load& load);
 double azimuth(const Load& load);
@@ -74,10 +162,19 @@ double magnitude(const Load& load);
 std::string_view magnitude_unit(const Load& load);
 /// h of a load that acts at a current height (contact, probe), m.
 std::optional<double> contact_height(const Load& load);
+/// S of a load that acts at a material section (section), m.
+std::optional<double> loaded_arclength(const Load& load);
 /// The same load with another magnitude.
 Load with_magnitude(const Load& load, double magnitude);
+/// The same load in another direction, rad.
+Load with_azimuth(const Load& load, double azimuth);
 /// (1−t)·from + t·to in every parameter, for load stepping. Throws InputError if the types differ.
 Load interpolate(const Load& from, const Load& to, double t);
+/// Whether type and values are the same.
+bool operator==(const Load& a, const Load& b);
+
+/// Throws the InputError of a model that does not know the load's type.
+[[noreturn]] void refuse_type(const Load& load, std::string_view model);
 
 /// Throws InputError if the load is not one the cilium can bear in the models' sense: magnitude
 /// finite and not negative (turn the azimuth by 180° instead), 0 < h < L, 0 < S ≤ L.

@@ -1,6 +1,7 @@
 # Sourced by run.sh and test.sh: installs what is missing, configures and builds one preset.
 # SPDX-License-Identifier: LGPL-2.1-or-later
 
+configure_options=()
 say() { printf '\n== %s\n' "$*" >&2; }
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
@@ -27,10 +28,10 @@ install_packages() {
     die "apt-get could not install ${missing[*]}"
 }
 
-# build PRESET [TARGET]: configures and builds it, or of it the target; what has not changed is not built again.
+# build PRESET [TARGET]: configures it, with $configure_options, and builds it or its target; what has not changed is not built again.
 build() {
   say "building build/$1"
   local log
-  log=$(cmake --preset "$1" 2>&1) || { printf '%s\n' "$log" >&2; die "configuring the preset '$1' failed"; }
+  log=$(cmake --preset "$1" "${configure_options[@]}" 2>&1) || { printf '%s\n' "$log" >&2; die "configuring the preset '$1' failed"; }
   cmake --build --preset "$1" ${2:+--target "$2"} >&2 || die "the build failed"
 }

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "analytic/sources/adaptive_order.h"
 #include "analytic/sources/dipole.h"
 #include "analytic/sources/field_points.h"
-#include "analytic/sources/adaptive_order.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::body {
 
 /// A point of a patch and the strength of its source per dξ: a charge (double, A·m) or a moment
 /// (Vector3, A·m²).
@@ -25,17 +25,17 @@ struct PatchPoint {
 };
 
 inline Vector3 source_field(double charge, const Vector3& offset) {
-  return pole_field(charge, offset);
+  return sources::pole_field(charge, offset);
 }
 inline Vector3 source_field(const Vector3& moment, const Vector3& offset) {
-  return dipole_field(moment, offset);
+  return sources::dipole_field(moment, offset);
 }
 
 /// B of sources spread over smooth patches ξ ∈ [0,1]^dim, by tensor Gauss–Legendre quadrature.
 /// A patch is cut into 2^dim boxes as long as its middle is nearer to the field point than 1.5
-/// times its half-diameter; then the order is raised box by box (`raise_orders`). Points and
-/// strengths of uncut patches are kept for the next field point, up to order 8. Several threads may
-/// ask at once.
+/// times its half-diameter; then the order is raised box by box (`integrate_adaptively`). Points
+/// and strengths of uncut patches are kept for the next field point, up to order 8. Several threads
+/// may ask at once.
 template <int dim, class Strength>
 class PatchIntegral {
  public:
@@ -55,12 +55,12 @@ class PatchIntegral {
 
   /// `inside` (T, the μ₀m of a point in the magnet) plus B of the sources at x, its tolerance
   /// relative to |B|. Throws SolverError on or too near to a patch.
-  FieldValue field(const Vector3& x, const Vector3& inside, double tolerance) const {
+  sources::FieldValue field(const Vector3& x, const Vector3& inside, double tolerance) const {
     std::vector<Box> boxes;
     for (std::size_t i = 0; i < whole_.size(); ++i) append_graded(whole_[i], balls_[i], x, boxes);
-    return raise_orders(boxes,
-                        [&](const Box& box, std::size_t order) { return field_of(box, order, x); },
-                        {tolerance, dim == 2 ? 24 : 16, name_, x, inside});
+    return sources::integrate_adaptively(
+        boxes, [&](const Box& box, std::size_t order) { return field_of(box, order, x); },
+        {tolerance, dim == 2 ? 24 : 16, name_, x, inside});
   }
 
  private:
@@ -143,7 +143,7 @@ class PatchIntegral {
     }
     const std::size_t direction = longest_direction(box);
     if (box.size[direction] < 1e-7)
-      throw SolverError("the " + name_ + " was asked at " + to_string(x) +
+      throw SolverError("the " + name_ + " was asked at " + sources::to_string(x) +
                         ", on one of them or too near to it: move the point away");
     Box half = box;
     half.size[direction] /= 2;
@@ -153,7 +153,7 @@ class PatchIntegral {
   }
 
   std::vector<PatchPoint<Strength>> points_of(const Box& box, std::size_t order) const {
-    const QuadratureRule& rule = unit_gauss_legendre(order);
+    const QuadratureRule& rule = sources::unit_gauss_legendre(order);
     std::vector<PatchPoint<Strength>> points;
     for_each_index(order, [&](const std::array<std::size_t, dim>& index) {
       Coordinates xi;
@@ -184,7 +184,7 @@ class PatchIntegral {
   Vector3 field_of(const Box& box, std::size_t order, const Vector3& x) const {
     if (box.is_whole())
       for (std::size_t i = 0; i < kept_orders; ++i) {
-        if (quadrature_orders[i] != order) continue;
+        if (sources::quadrature_orders[i] != order) continue;
         Kept& kept = kept_[box.patch];
         std::call_once(kept.made[i], [&] { kept.points[i] = points_of(box, order); });
         return field_of(kept.points[i], x);
@@ -199,4 +199,4 @@ class PatchIntegral {
   mutable std::vector<Kept> kept_;
 };
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::body

@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "analytic/body/body_quadrature.h"
-#include "analytic/rod/field_models.h"
+#include "analytic/body/mesh_field.h"
 #include "analytic/sources/field_points.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::body {
 namespace {
 
 /// The cells that carry magnetisation and the boxes around their nodes, a quarter larger than the
@@ -84,7 +84,7 @@ PatchPoint<Vector3> rotated_moment(const SolidBody& body, const SolidCell& cell,
   const double J = F.determinant();
   if (!(J > 0))
     throw SolverError("det F is not positive in a cell of the magnet near " +
-                      to_string(point.current) +
+                      sources::to_string(point.current) +
                       ", so that F has no rotation: refine the solid model or lower the load");
   const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix3 R = svd.matrixU() * svd.matrixV().transpose();
@@ -99,7 +99,7 @@ Field field_of_charges(const SolidBody& body, double tolerance, std::span<const 
         return charge(body, body.charged_faces[face], xi);
       },
       "field of the charged faces of the mesh");
-  return field_at(points, 1, [&](const Vector3& x) {
+  return sources::field_at(points, 1, [&](const Vector3& x) {
     const auto m = magnetization_at(body.nodes, cells, x);
     const Vector3 inside = m ? Vector3(vacuum_permeability * *m) : Vector3(Vector3::Zero());
     return integral.field(x, inside, tolerance);
@@ -114,9 +114,9 @@ Field field_of_moments(const SolidBody& body, double tolerance, std::span<const 
         return rotated_moment(body, *cells[cell].cell, xi);
       },
       "field of the dipoles R·M of the mesh");
-  return field_at(points, 1, [&](const Vector3& x) {
+  return sources::field_at(points, 1, [&](const Vector3& x) {
     if (magnetization_at(body.nodes, cells, x))
-      throw SolverError("the field inside the magnet was asked at " + to_string(x) +
+      throw SolverError("the field inside the magnet was asked at " + sources::to_string(x) +
                         ": with the push-forward R it is not available, take F");
     return integral.field(x, Vector3::Zero(), tolerance);
   });
@@ -130,9 +130,9 @@ Field MeshField::field(const Cilium&, const Deformation& deformation,
     throw InputError(
         "the field model `mesh` was asked for a deformation without a body: only the "
         "solid model has one, take `line` or `volume`");
-  return options_.push_forward == PushForward::F
+  return options_.push_forward == sources::PushForward::F
              ? field_of_charges(*deformation.body, options_.tolerance, points)
              : field_of_moments(*deformation.body, options_.tolerance, points);
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::body

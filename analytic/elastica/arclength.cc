@@ -15,7 +15,7 @@
 #include "analytic/elastica/taylor.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 namespace {
 
 constexpr double right_angle = std::numbers::pi / 2;
@@ -371,4 +371,4 @@ double slip_off_arclength(const PlanarProblem& problem, double tolerance) {
   throw SolverError("elastica: no slip-off force found");
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

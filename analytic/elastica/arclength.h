@@ -5,7 +5,7 @@
 
 #include "analytic/elastica/planar.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 
 /// The arc-length form dθ/dS = M/(EI) of a planar problem, integrated by Taylor series.
 ///
@@ -23,4 +23,4 @@ std::optional<PlanarShape> solve_arclength(const PlanarProblem& problem, double 
 /// z(1) = h (the tip's height decreases with the load). `problem.load` is not used.
 double slip_off_arclength(const PlanarProblem& problem, double tolerance);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

@@ -16,7 +16,7 @@
 #include "analytic/elastica/probe.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 namespace {
 
 /// Slip-off of the last contact height asked for: the same all along most load paths.
@@ -43,7 +43,7 @@ double probe_tolerance(const ElasticaOptions& options) {
 SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options,
                  const SlipOff& known) {
   const double height = contact_height(load).value();
-  const bool probes = std::holds_alternative<ProbeLoad>(load);
+  const bool probes = load.is<ProbeLoad>();
   if (known.height == height && (known.displacement || !probes)) return known;
   PlanarProblem problem = planar_problem(cilium, ContactLoad{1, height, 0});
   const double of_one_newton = problem.load;
@@ -85,17 +85,16 @@ ProbeForce probe_force(const Cilium& cilium, const ProbeLoad& load, double slip_
 /// The horizontal force along e: F, q z_tip or q L.
 double applied_force(const Load& load, const PlanarUnits& units, const Deformation& deformation) {
   const Centreline& centreline = deformation.centreline;
-  if (const auto* flow = std::get_if<FlowLoad>(&load))
+  if (const auto flow = load.as<FlowLoad>())
     return flow->force_per_height * centreline.at(centreline.length()).position.z();
-  if (const auto* dead = std::get_if<DeadLoad>(&load))
-    return dead->force_per_length * centreline.length();
+  if (const auto dead = load.as<DeadLoad>()) return dead->force_per_length * centreline.length();
   return units.force;
 }
 
 std::string slipped_off(const Load& load, double force, std::optional<double> displacement) {
   std::ostringstream message;
   message << std::setprecision(8) << "the contact slips off: ";
-  if (std::holds_alternative<ProbeLoad>(load))
+  if (load.is<ProbeLoad>())
     message << "the largest displacement in an equilibrium, at which the tip sinks to the contact "
                "height, is "
             << 1e3 * displacement.value_or(0) << " mm, under " << 1e3 * force << " mN";
@@ -111,11 +110,10 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsS
   PlanarUnits units = planar_units(cilium, step.load);
   const bool height_form = has_height_form(options);
   std::optional<PlanarShape> shape;
-  const std::optional<double> limit = std::holds_alternative<ProbeLoad>(step.load)
-                                          ? step.slip_off_displacement
-                                          : step.slip_off_force;
+  const std::optional<double> limit =
+      step.load.is<ProbeLoad>() ? step.slip_off_displacement : step.slip_off_force;
   if (!limit || magnitude(step.load) <= *limit) {
-    if (const auto* probe = std::get_if<ProbeLoad>(&step.load)) {
+    if (const auto probe = step.load.as<ProbeLoad>()) {
       ProbeForce found = probe_force(cilium, *probe, step.slip_off_force.value(), options);
       units.force = found.force;
       shape = std::move(found.shape);
@@ -162,8 +160,7 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
       if (contact_height(load)) {
         known = slip_off(cilium, load, options_, known);
         step.slip_off_force = known.force;
-        if (std::holds_alternative<ProbeLoad>(load))
-          step.slip_off_displacement = known.displacement;
+        if (load.is<ProbeLoad>()) step.slip_off_displacement = known.displacement;
       }
       solve_step(cilium, options_, step);
     } catch (const SolverError& error) {
@@ -179,4 +176,4 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
   return result;
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

@@ -3,7 +3,7 @@
 
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 
 struct ElasticaOptions {
   enum class Form {
@@ -18,12 +18,11 @@ struct ElasticaOptions {
 ///
 ///     E I θ' = M,  w' = sin θ,  z' = cos θ,  M = F (h − z)₊, q (z_tip − z)²/2, …
 ///
-/// docs/elastica.md has the equations of all loads, the limits of both forms and the measured
-/// errors. A contact step above the slip-off force, or a probe beyond the displacement that goes
-/// with it, has the status slipped_off; one that misses the
-/// tolerance has the status failed. Both leave the other steps alone. solve() throws InputError if
-/// the cilium, a load or the tolerance is not valid, or if the height form is asked for a section
-/// or dead load.
+/// docs/theory/elastica.md has the equations of all loads, the limits of both forms and the
+/// measured errors. A contact step above the slip-off force, or a probe beyond the displacement
+/// that goes with it, has the status slipped_off; one that misses the tolerance has the status
+/// failed. Both leave the other steps alone. solve() throws InputError if the cilium, a load or the
+/// tolerance is not valid, or if the height form is asked for a section or dead load.
 class Elastica : public MechanicsModel {
  public:
   explicit Elastica(ElasticaOptions options = {}) : options_(options) {}
@@ -34,4 +33,4 @@ class Elastica : public MechanicsModel {
   ElasticaOptions options_;
 };
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

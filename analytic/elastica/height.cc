@@ -13,7 +13,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 namespace {
 
 double integral(const auto& integrand, double a, double b) {
@@ -228,4 +228,4 @@ double slip_off_height(const PlanarProblem& problem) {
   throw SolverError("elastica, height form: no slip-off force found");
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

@@ -5,7 +5,7 @@
 
 #include "analytic/elastica/planar.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 
 /// The paper's form of a planar problem (Eq. 1–4): sin θ = S̃(z) is a polynomial on each segment,
 /// the heights z_i of the interfaces follow from ∫ dz/cos θ = L_i, and w = ∫ tan θ dz. Contact and
@@ -19,4 +19,4 @@ std::optional<PlanarShape> solve_height(const PlanarProblem& problem);
 /// As slip_off_arclength(), by the quadrature in z.
 double slip_off_height(const PlanarProblem& problem);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

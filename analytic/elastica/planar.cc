@@ -7,12 +7,13 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "problem/error.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 namespace {
 
 constexpr std::size_t node_count = 16;
@@ -133,36 +134,27 @@ struct KindAndPoint {
   double point;  // m
 };
 
-KindAndPoint kind_and_point(const ContactLoad& load) {
-  return {PlanarLoad::contact, load.height};
-}
-KindAndPoint kind_and_point(const FlowLoad& /*load*/) {
-  return {PlanarLoad::flow, 0};
-}
-KindAndPoint kind_and_point(const SectionLoad& load) {
-  return {PlanarLoad::section, load.arclength};
-}
-KindAndPoint kind_and_point(const DeadLoad& /*load*/) {
-  return {PlanarLoad::dead, 0};
-}
-KindAndPoint kind_and_point(const ProbeLoad& load) {
-  return {PlanarLoad::contact, load.height};
+KindAndPoint kind_and_point(const Load& load) {
+  if (const auto height = contact_height(load)) return {PlanarLoad::contact, *height};
+  if (const auto section = load.as<SectionLoad>()) return {PlanarLoad::section, section->arclength};
+  if (load.is<FlowLoad>()) return {PlanarLoad::flow, 0};
+  if (load.is<DeadLoad>()) return {PlanarLoad::dead, 0};
+  refuse_type(load, "elastica");
 }
 
 }  // namespace
 
 PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
   const double length = cilium.length();
-  if (std::holds_alternative<ProbeLoad>(load)) return {length, 1};
-  const bool distributed =
-      std::holds_alternative<FlowLoad>(load) || std::holds_alternative<DeadLoad>(load);
+  if (load.is<ProbeLoad>()) return {length, 1};
+  const bool distributed = load.is<FlowLoad>() || load.is<DeadLoad>();
   return {length, distributed ? magnitude(load) * length : magnitude(load)};
 }
 
 PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
   const PlanarUnits units = planar_units(cilium, load);
   PlanarProblem problem;
-  const KindAndPoint where = std::visit([](const auto& l) { return kind_and_point(l); }, load);
+  const KindAndPoint where = kind_and_point(load);
   problem.kind = where.kind;
   problem.point = where.point / units.length;
   for (const double end : cilium.interfaces()) problem.ends.push_back(end / units.length);
@@ -193,4 +185,4 @@ Centreline planar_centreline(const PlanarShape& shape, const PlanarUnits& units,
   return CentrelineBuilder(shape, units, direction, tolerance).build();
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

@@ -13,7 +13,7 @@
 
 /// The planar elastica without units, which both forms of analytic::Elastica solve: lengths in L,
 /// forces in P (F of a point force, qL of a distributed one), moments in PL.
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 
 /// How the internal force H(S) depends on the shape.
 enum class PlanarLoad {
@@ -76,4 +76,4 @@ void add_break(std::vector<double>& breaks, double S);
 Centreline planar_centreline(const PlanarShape& shape, const PlanarUnits& units,
                              const Vector3& direction, double tolerance);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

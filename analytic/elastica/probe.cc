@@ -10,7 +10,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -174,4 +174,4 @@ PlanarProbe probe_by_arclength(PlanarProblem problem, double deflection, double 
   return probe;
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

@@ -14,7 +14,7 @@
 /// slip-off, for any stiffnesses: the two determine each other. Only their conditioning differs. As
 /// θ_c → 90°, δ grows without bound while F stays at a limit (2EI/h² for one material): the last
 /// bit of F moves δ by ε h/cos²θ_c. There S_c is the well-conditioned unknown.
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 
 /// Solves a planar problem; empty if the contact force is above the slip-off force.
 using PlanarSolver = std::function<std::optional<PlanarShape>(const PlanarProblem&)>;
@@ -49,4 +49,4 @@ std::optional<PlanarProbe> probe_by_load(PlanarProblem problem, double deflectio
 PlanarProbe probe_by_arclength(PlanarProblem problem, double deflection, double guess,
                                const PlanarSolver& solver);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

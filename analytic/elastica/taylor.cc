@@ -10,7 +10,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 namespace {
 
 constexpr std::size_t order = TaylorStep::order;
@@ -203,4 +203,4 @@ void TaylorStep::translate(double w, double z) {
   z_[0] += z;
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

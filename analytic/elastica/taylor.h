@@ -6,7 +6,7 @@
 
 #include "analytic/elastica/planar.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::elastica {
 
 /// How the internal force changes along the arc length, dH/dS.
 enum class ForceLaw {
@@ -74,4 +74,4 @@ class TaylorStep {
   Series force_{};
 };
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::elastica

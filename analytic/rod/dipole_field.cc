@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <numbers>
 
-#include "analytic/sources/dipole.h"
 #include "analytic/rod/field_models.h"
-#include "analytic/sources/field_points.h"
-#include "analytic/sources/adaptive_order.h"
 #include "analytic/rod/rod_magnet.h"
+#include "analytic/sources/adaptive_order.h"
+#include "analytic/sources/dipole.h"
+#include "analytic/sources/field_points.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 namespace {
 
 struct Dipole {
@@ -24,23 +24,23 @@ struct StretchIntegrals {
 };
 
 StretchIntegrals integrate(const RodMagnet& magnet, const RodStretch& stretch,
-                           PushForward push_forward) {
+                           sources::PushForward push_forward) {
   const std::size_t nodes = magnet.centreline.pieces()[stretch.piece].S.size();
   const QuadratureRule rule = gauss_legendre(2 * nodes + 8, stretch.begin, stretch.end);
   StretchIntegrals integrals;
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
     const CentrelinePoint point = at(magnet, stretch, rule.nodes[i]);
     integrals.position += rule.weights[i] * point.position;
-    if (push_forward == PushForward::R) integrals.axis += rule.weights[i] * point.normal();
+    if (push_forward == sources::PushForward::R) integrals.axis += rule.weights[i] * point.normal();
   }
-  if (push_forward == PushForward::F)
+  if (push_forward == sources::PushForward::F)
     integrals.axis =
         at(magnet, stretch, stretch.end).position - at(magnet, stretch, stretch.begin).position;
   return integrals;
 }
 
 std::vector<Dipole> dipoles(const Cilium& cilium, const RodMagnet& magnet,
-                            PushForward push_forward) {
+                            sources::PushForward push_forward) {
   std::vector<Dipole> result;
   for (std::size_t i = 0; i < magnet.stretches.size(); ++i) {
     const RodStretch& stretch = magnet.stretches[i];
@@ -59,17 +59,18 @@ Field DipoleField::field(const Cilium& cilium, const Deformation& deformation,
                          std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   const std::vector<Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
-  return field_at(points, 4096, [&](const Vector3& x) {
-    FieldValue sum;
+  return sources::field_at(points, 4096, [&](const Vector3& x) {
+    sources::FieldValue sum;
     for (const Dipole& dipole : sources) {
       const Vector3 offset = x - dipole.position;
       if (offset.norm() <= 1e-12 * cilium.length())
-        throw InputError("the field of the dipole diverges at its own position " + to_string(x) +
-                         ": move the point, or take the model `volume`");
-      sum += with_rounding(dipole_field(dipole.moment, offset), x, dipole.position);
+        throw InputError("the field of the dipole diverges at its own position " +
+                         sources::to_string(x) + ": move the point, or take the model `volume`");
+      sum +=
+          sources::with_rounding(sources::dipole_field(dipole.moment, offset), x, dipole.position);
     }
     return sum;
   });
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

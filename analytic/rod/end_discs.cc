@@ -7,14 +7,14 @@
 #include "analytic/sources/charged_disc.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 [[noreturn]] void throw_on_the_rim(const Vector3& x) {
-  throw InputError("the field diverges on the rim of the magnet's end face, at " + to_string(x) +
-                   ": move the point off the rim");
+  throw InputError("the field diverges on the rim of the magnet's end face, at " +
+                   sources::to_string(x) + ": move the point off the rim");
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ EndDiscs::EndDiscs(std::span<const RodEnd> ends) {
         {end.section, vacuum_permeability * end.magnetization_jump, end.section.centre.norm()});
 }
 
-FieldValue EndDiscs::field(const Vector3& x) const {
+sources::FieldValue EndDiscs::field(const Vector3& x) const {
   const double x_norm = x.norm();
   Vector3 B = Vector3::Zero();
   double error = 0;
@@ -37,15 +37,15 @@ FieldValue EndDiscs::field(const Vector3& x) const {
     const Vector3 radial = offset - zeta * disc.circle.normal;
     const double rho2 = radial.squaredNorm();
     const double a2 = (rho2 + zeta * zeta) / (R * R);
-    DiscField H{};
+    sources::DiscField H{};
     double gradient_over_strength = 0;
     if (a2 > 9) {
-      H = far_disc_field(zeta / R, a2);
+      H = sources::far_disc_field(zeta / R, a2);
     } else {
       const double rho = std::sqrt(rho2);
       const double to_the_rim = std::hypot(rho - R, zeta);
       if (to_the_rim <= 2 * rounding) throw_on_the_rim(x);
-      H = near_disc_field(rho / R, zeta / R);
+      H = sources::near_disc_field(rho / R, zeta / R);
       gradient_over_strength = 1 / to_the_rim;
     }
     const Vector3 share =
@@ -62,9 +62,9 @@ FieldValue EndDiscs::field(const Vector3& x) const {
 void require_off_the_rims(std::span<const RodEnd> ends, const Vector3& x) {
   for (const RodEnd& end : ends) {
     const double rounding =
-        rounding_of_offset(x, end.section.centre) + epsilon * end.section.radius;
-    if (distance_from_line(end.section, x) <= 2 * rounding) throw_on_the_rim(x);
+        sources::rounding_of_offset(x, end.section.centre) + epsilon * end.section.radius;
+    if (sources::distance_from_line(end.section, x) <= 2 * rounding) throw_on_the_rim(x);
   }
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include "analytic/sources/push_forward.h"
 #include "problem/field_model.h"
 
-namespace ciliaval::analytic {
-
-/// How the magnetisation is carried along. F (ideal hard magnet): m = F·M/J in solids, M dr in
-/// rods. R (rigid sections): m = R·M with the polar rotation in solids, M d₃ dS in rods. The two
-/// differ under shear and extension only.
-enum class PushForward { F, R };
+namespace ciliaval::analytic::rod {
 
 /// How an integral that has a closed form is computed.
 enum class Method {
@@ -19,7 +15,7 @@ enum class Method {
 
 /// Each magnetic segment's total moment as one dipole at the centroid of its centreline.
 struct DipoleOptions {
-  PushForward push_forward = PushForward::F;
+  sources::PushForward push_forward = sources::PushForward::F;
 };
 class DipoleField : public FieldModel {
  public:
@@ -33,7 +29,7 @@ class DipoleField : public FieldModel {
 
 /// Dipoles along the centreline (Eq. 5–7, the paper's "single-dipole" model).
 struct LineOptions {
-  PushForward push_forward = PushForward::F;
+  sources::PushForward push_forward = sources::PushForward::F;
   Method method =
       Method::closed_form;   ///< two poles, F only: R has no closed form and takes the quadrature
   double tolerance = 1e-10;  ///< relative to |B|, of the quadrature
@@ -71,21 +67,4 @@ class VolumeField : public FieldModel {
   VolumeOptions options_;
 };
 
-/// The field of a solid model's own deformed magnet.
-struct MeshOptions {
-  PushForward push_forward =
-      PushForward::F;       ///< F: reference charge on the deformed faces; R: volume quadrature
-  double tolerance = 1e-8;  ///< relative to |B|
-};
-class MeshField : public FieldModel {
- public:
-  explicit MeshField(MeshOptions options = {}) : options_(options) {}
-  bool needs_body() const override { return true; }
-  Field field(const Cilium& cilium, const Deformation& deformation,
-              std::span<const Vector3> points) const override;
-
- private:
-  MeshOptions options_;
-};
-
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

@@ -15,12 +15,12 @@
 #include <span>
 #include <utility>
 
-#include "analytic/sources/current_loop.h"
 #include "analytic/rod/end_discs.h"
 #include "analytic/sources/adaptive_order.h"
+#include "analytic/sources/current_loop.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -47,7 +47,7 @@ Vector3 field_of(std::span<const Loops> all, const Vector3& x) {
                                       oz - zeta * loops.normal[2]};
     const Lanes rho =
         (radial[0] * radial[0] + radial[1] * radial[1] + radial[2] * radial[2]).sqrt();
-    const LoopField<Lanes> H = loop_field(rho, zeta);
+    const sources::LoopField<Lanes> H = sources::loop_field(rho, zeta);
     for (std::size_t i = 0; i < 3; ++i)
       B[i] += loops.strength * (H.radial_over_rho * radial[i] + H.axial * loops.normal[i]);
   }
@@ -55,9 +55,9 @@ Vector3 field_of(std::span<const Loops> all, const Vector3& x) {
 }
 
 std::size_t level_of(std::size_t order) {
-  return static_cast<std::size_t>(
-      std::find(std::begin(quadrature_orders), std::end(quadrature_orders), order) -
-      std::begin(quadrature_orders));
+  return static_cast<std::size_t>(std::find(std::begin(sources::quadrature_orders),
+                                            std::end(sources::quadrature_orders), order) -
+                                  std::begin(sources::quadrature_orders));
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ class LoopStack::Part {
   /// other.
   Vector3 offset(double dS) const {
     const std::size_t nodes = magnet_.centreline.pieces()[stretch_.piece].S.size();
-    const QuadratureRule& rule = unit_gauss_legendre(nodes / 2 + 1);
+    const QuadratureRule& rule = sources::unit_gauss_legendre(nodes / 2 + 1);
     Vector3 sum = Vector3::Zero();
     for (std::size_t i = 0; i < rule.nodes.size(); ++i)
       sum += rule.weights[i] * at(magnet_, stretch_, middle_S_ + rule.nodes[i] * dS).derivative;
@@ -136,7 +136,7 @@ class LoopStack::Part {
   }
 
   std::vector<Loops> make_loops(std::size_t order) const {
-    const QuadratureRule& rule = unit_gauss_legendre(order);
+    const QuadratureRule& rule = sources::unit_gauss_legendre(order);
     const double R = magnet_.radius;
     std::vector<Loops> all((order + lanes - 1) / lanes);
     for (std::size_t i = 0; i < lanes * all.size(); ++i) {
@@ -169,8 +169,8 @@ class LoopStack::Part {
   Vector3 from_whole_ = Vector3::Zero();
   mutable std::once_flag split_;
   mutable std::array<std::unique_ptr<Part>, 2> halves_;
-  mutable std::array<std::once_flag, std::size(quadrature_orders)> made_;
-  mutable std::array<std::vector<Loops>, std::size(quadrature_orders)> loops_;
+  mutable std::array<std::once_flag, std::size(sources::quadrature_orders)> made_;
+  mutable std::array<std::vector<Loops>, std::size(sources::quadrature_orders)> loops_;
 };
 
 LoopStack::LoopStack(const RodMagnet& magnet) : magnet_(magnet) {
@@ -188,13 +188,13 @@ double LoopStack::gradient_bound(const Vector3& x) const {
     const double a = (x - end.section.centre).norm();
     const double R = end.section.radius;
     const double strength = vacuum_permeability * std::abs(end.magnetization_jump);
-    bound +=
-        a > 3 * R ? strength * R * R / (a * a * a) : strength / distance_from_line(end.section, x);
+    bound += a > 3 * R ? strength * R * R / (a * a * a)
+                       : strength / sources::distance_from_line(end.section, x);
   }
   return bound;
 }
 
-FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
+sources::FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
   struct Near {
     const Part* part;
     Vector3 offset;   // of x from its middle
@@ -209,7 +209,7 @@ FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
       return;
     }
     if (!(part.length() > shortest))
-      throw SolverError("the field of the stacked slices was asked at " + to_string(x) +
+      throw SolverError("the field of the stacked slices was asked at " + sources::to_string(x) +
                         ", on the magnet's mantle, where it jumps: move the point off the mantle");
     for (const auto& half : part.halves()) self(self, *half, offset - half->from_whole());
   };
@@ -224,13 +224,15 @@ FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
     const double q = 2 * near.distance / near.part->length();
     const double order = -std::log(tolerance) / (2 * std::asinh(q));
     std::size_t level = 1;
-    while (level + 1 < std::size(quadrature_orders) && quadrature_orders[level] < 54 &&
-           static_cast<double>(quadrature_orders[level - 1]) < order)
+    while (level + 1 < std::size(sources::quadrature_orders) &&
+           sources::quadrature_orders[level] < 54 &&
+           static_cast<double>(sources::quadrature_orders[level - 1]) < order)
       ++level;
     return level;
   };
-  const OrderRaising asked{tolerance, 54, "field of the stacked slices", x};
-  FieldValue value = raise_orders(parts, contribution, asked, first_level);
+  const sources::AdaptiveOrder asked{tolerance, 54, "field of the stacked slices", x};
+  sources::FieldValue value =
+      sources::integrate_adaptively(parts, contribution, asked, first_level);
   // A rounding error δ that differs from loop to loop moves the field of a loop at the distance d
   // by up to I δ/(2πd²), and the integral by μ₀Mδ/(2 min d), on top of the rounding of its sum; far
   // away B by 4|B|δ/d.
@@ -246,8 +248,8 @@ FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
   rounding += 40 * epsilon * value.B.norm();
   rounding += 4 * epsilon * (x.norm() + magnet_.centreline.length()) * gradient_bound(x);
   value.uncertainty += Vector3::Constant(rounding);
-  require_tolerance(value, asked);
+  sources::require_tolerance(value, asked);
   return value;
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

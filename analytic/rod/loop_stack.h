@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "analytic/sources/field_points.h"
 #include "analytic/rod/rod_magnet.h"
+#include "analytic/sources/field_points.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 
 /// The flat slices of the paper's Eq. 8–9 as current loops: each slice of thickness dS and
 /// magnetisation M d₃ is a current M dS around its edge, so that B = μ₀ ∫ M H(loop at S) dS, inside
@@ -24,7 +24,7 @@ class LoopStack {
   /// B (T) at x, the estimate of its error not above tolerance·|B|: the change of the last raising
   /// of the orders plus what the rounding of the positions makes. Throws InputError on the rim of
   /// an end face, SolverError on the mantle or if the tolerance cannot be reached.
-  FieldValue field(const Vector3& x, double tolerance) const;
+  sources::FieldValue field(const Vector3& x, double tolerance) const;
 
  private:
   class Part;
@@ -34,4 +34,4 @@ class LoopStack {
   std::vector<std::unique_ptr<Part>> roots_;  ///< one for each stretch
 };
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

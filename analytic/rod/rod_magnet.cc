@@ -9,7 +9,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 namespace {
 
 /// The stretches of one segment. Interfaces and breaks are sums of the same lengths, perhaps in
@@ -24,7 +24,7 @@ void append_stretches(RodMagnet& magnet, std::size_t segment, double begin, doub
   }
 }
 
-Circle section_at(const RodMagnet& magnet, const RodStretch& stretch, double S) {
+sources::Circle section_at(const RodMagnet& magnet, const RodStretch& stretch, double S) {
   return section(magnet, at(magnet, stretch, S));
 }
 
@@ -103,7 +103,7 @@ CentrelinePoint at(const RodMagnet& magnet, const RodStretch& stretch, double S)
   return magnet.centreline.at(S, stretch.piece);
 }
 
-Circle section(const RodMagnet& magnet, const CentrelinePoint& point) {
+sources::Circle section(const RodMagnet& magnet, const CentrelinePoint& point) {
   return {point.position, point.normal(), magnet.radius};
 }
 
@@ -224,4 +224,4 @@ std::optional<Vector3> RodInterior::magnetization_at(const Vector3& x) const {
   return std::nullopt;
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

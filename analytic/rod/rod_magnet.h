@@ -12,7 +12,7 @@
 #include "problem/cilium.h"
 #include "problem/deformation.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 
 /// A smooth stretch of a magnetic segment: its part on one piece of the centreline.
 struct RodStretch {
@@ -26,7 +26,7 @@ struct RodStretch {
 /// A section where the magnetisation changes: an end of the magnet or an interface between two of
 /// its segments.
 struct RodEnd {
-  Circle section;             ///< centred on the centreline, normal d₃
+  sources::Circle section;    ///< centred on the centreline, normal d₃
   double magnetization_jump;  ///< M below − M above, A/m; the reference charge on the section
 };
 
@@ -46,7 +46,7 @@ RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation);
 CentrelinePoint at(const RodMagnet& magnet, const RodStretch& stretch, double S);
 
 /// The section at S as a circle.
-Circle section(const RodMagnet& magnet, const CentrelinePoint& point);
+sources::Circle section(const RodMagnet& magnet, const CentrelinePoint& point);
 
 /// ∂x/∂S = r' + κ × (x − r): how the rod map x = r + X d₁ + Y d₂ carries a unit of reference
 /// length at the point x of the section.
@@ -96,4 +96,4 @@ class RodInterior {
   mutable std::vector<Line> lines_;
 };
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

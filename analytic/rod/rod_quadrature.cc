@@ -6,17 +6,17 @@
 #include <numbers>
 #include <vector>
 
-#include "analytic/sources/dipole.h"
 #include "analytic/sources/adaptive_order.h"
+#include "analytic/sources/dipole.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 namespace {
 
 using Slices = VolumeOptions::Slices;
 
 [[noreturn]] void throw_too_near(const Vector3& x) {
-  throw SolverError("the quadrature of the model `volume` was asked at " + to_string(x) +
+  throw SolverError("the quadrature of the model `volume` was asked at " + sources::to_string(x) +
                     ", inside the magnet or too near to it: take the closed form");
 }
 
@@ -52,8 +52,8 @@ Vector3 slice_field(const CentrelinePoint& point, double radius, Slices slices,
     Vector3 ring = Vector3::Zero();
     for (const Eigen::Vector2d& direction : azimuthal) {
       const Vector3 y = point.position + r * (directors.leftCols<2>() * direction);
-      ring += dipole_field(slices == Slices::wedge ? stretch_vector(point, y) : directors.col(2),
-                           x - y);
+      ring += sources::dipole_field(
+          slices == Slices::wedge ? stretch_vector(point, y) : directors.col(2), x - y);
     }
     B += radius * radial.weights[j] * r * angle * ring;
   }
@@ -63,8 +63,8 @@ Vector3 slice_field(const CentrelinePoint& point, double radius, Slices slices,
 Vector3 rod_field(const RodMagnet& magnet, Slices slices, const std::vector<RodStretch>& parts,
                   const Orders& orders, const Vector3& x) {
   if (orders.nodes() * static_cast<double>(parts.size()) > 2e7) throw_too_near(x);
-  const QuadratureRule& axial = unit_gauss_legendre(orders[0]);
-  const QuadratureRule& radial = unit_gauss_legendre(orders[1]);
+  const QuadratureRule& axial = sources::unit_gauss_legendre(orders[0]);
+  const QuadratureRule& radial = sources::unit_gauss_legendre(orders[1]);
   const std::vector<Eigen::Vector2d> azimuthal = directions(orders[2]);
   Vector3 B = Vector3::Zero();
   for (const RodStretch& part : parts) {
@@ -80,18 +80,20 @@ Vector3 rod_field(const RodMagnet& magnet, Slices slices, const std::vector<RodS
 
 }  // namespace
 
-FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodInterior& interior,
-                                   Slices slices, double tolerance, const Vector3& x) {
+sources::FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodInterior& interior,
+                                            Slices slices, double tolerance, const Vector3& x) {
   if (interior.magnetization_at(x)) throw_too_near(x);
   const auto parts = graded_stretches(
       magnet,
-      [&](const CentrelinePoint& point) { return distance_from_disc(section(magnet, point), x); },
+      [&](const CentrelinePoint& point) {
+        return sources::distance_from_disc(section(magnet, point), x);
+      },
       1e-4 * magnet.radius);
   if (!parts) throw_too_near(x);
   if (parts->empty()) return {};
   Orders orders{{6, 6, 12}};
   while (true) {
-    FieldValue value{rod_field(magnet, slices, *parts, orders, x), Vector3::Zero()};
+    sources::FieldValue value{rod_field(magnet, slices, *parts, orders, x), Vector3::Zero()};
     const double allowed = tolerance * value.B.norm() / 3;
     Orders next = orders;
     for (std::size_t direction = 0; direction < 3; ++direction) {
@@ -102,12 +104,12 @@ FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodInterior& i
       if (change.norm() > allowed) next[direction] = raised[direction];
       // Sums of some thousand terms are rounded at this level: a higher order changes no more.
       if (change.norm() > allowed && change.norm() < 1e-14 * value.B.norm())
-        throw_tolerance_missed({tolerance, 0, "quadrature of the model `volume`", x},
-                               change.norm() / value.B.norm());
+        sources::throw_tolerance_missed({tolerance, 0, "quadrature of the model `volume`", x},
+                                        change.norm() / value.B.norm());
     }
     if (next.n == orders.n) return value;
     orders = next;
   }
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

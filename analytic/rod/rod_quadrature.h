@@ -2,10 +2,10 @@
 #pragma once
 
 #include "analytic/rod/field_models.h"
-#include "analytic/sources/field_points.h"
 #include "analytic/rod/rod_magnet.h"
+#include "analytic/sources/field_points.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 
 /// B (T) at x outside the rod by quadrature over its reference volume,
 ///   B = ∫∫∫ dipole_field(M v, x − y) r dr dφ dS,  y = r(S) + r cosφ d₁ + r sinφ d₂,
@@ -15,8 +15,8 @@ namespace ciliaval::analytic {
 /// raising it by half moves B by less than tolerance·|B|/3. The three changes are the uncertainty.
 /// Throws SolverError inside the rod, so near to it that the tolerance needs more than 2·10⁷
 /// nodes, or if the changes are down to rounding (10⁻¹⁴|B|) and still above the tolerance.
-FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodInterior& interior,
-                                   VolumeOptions::Slices slices, double tolerance,
-                                   const Vector3& x);
+sources::FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodInterior& interior,
+                                            VolumeOptions::Slices slices, double tolerance,
+                                            const Vector3& x);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

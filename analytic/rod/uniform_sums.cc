@@ -13,7 +13,7 @@
 #include "analytic/sources/field_points.h"
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 namespace {
 
 double height(const RodMagnet& magnet, const RodStretch& stretch, double S) {
@@ -69,9 +69,9 @@ void append_slices(const RodMagnet& magnet, std::span<const RodStretch> segment,
 template <class Sum>
 Field field_of_sums(std::span<const Vector3> points, std::size_t grain, const Sum& sum,
                     const Sum& other) {
-  return field_at(points, grain, [&](const Vector3& x) {
+  return sources::field_at(points, grain, [&](const Vector3& x) {
     const Vector3 B = sum(x);
-    return FieldValue{B, (B - other(x)).cwiseAbs()};
+    return sources::FieldValue{B, (B - other(x)).cwiseAbs()};
   });
 }
 
@@ -89,8 +89,8 @@ std::vector<Dipole> line_dipoles(const RodMagnet& magnet, const LineOptions& opt
   const double area = std::numbers::pi * magnet.radius * magnet.radius;
   std::vector<Dipole> dipoles;
   for (const UniformSlice& slice : uniform_slices(magnet, n)) {
-    const Vector3 axis =
-        options.push_forward == PushForward::F ? slice.point.derivative : slice.point.normal();
+    const Vector3 axis = options.push_forward == sources::PushForward::F ? slice.point.derivative
+                                                                         : slice.point.normal();
     dipoles.push_back({slice.point.position, slice.magnetization * area * slice.thickness * axis});
   }
   return dipoles;
@@ -119,7 +119,7 @@ class VolumeSum {
       for (const Place& place : places_) {
         const Vector3 y = slice.point.position + directors.leftCols<2>() * place.offset;
         const Vector3 axis = wedge_ ? stretch_vector(slice.point, y) : Vector3(directors.col(2));
-        section += dipole_field(place.area * axis, x - y);
+        section += sources::dipole_field(place.area * axis, x - y);
       }
       B += slice.magnetization * slice.thickness * section;
     }
@@ -157,7 +157,8 @@ Field field_of_uniform_line(const RodMagnet& magnet, const LineOptions& options,
   const auto sum_of = [&](std::size_t n) {
     return [dipoles = line_dipoles(magnet, options, n)](const Vector3& x) {
       Vector3 B = Vector3::Zero();
-      for (const Dipole& dipole : dipoles) B += dipole_field(dipole.moment, x - dipole.position);
+      for (const Dipole& dipole : dipoles)
+        B += sources::dipole_field(dipole.moment, x - dipole.position);
       return B;
     };
   };
@@ -171,7 +172,7 @@ Field field_of_uniform_volume(const RodMagnet& magnet, const VolumeOptions& opti
   for (const Vector3& x : points)
     if (x.allFinite() && interior.magnetization_at(x))
       throw SolverError("the sum of the model `volume` with the method `uniform` was asked at " +
-                        to_string(x) +
+                        sources::to_string(x) +
                         ", inside the magnet, where it does not converge: take "
                         "`closed_form`");
   const std::size_t n = options.elements;
@@ -179,4 +180,4 @@ Field field_of_uniform_volume(const RodMagnet& magnet, const VolumeOptions& opti
                        VolumeSum(magnet, options, other_count(n)));
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

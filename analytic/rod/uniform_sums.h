@@ -8,7 +8,7 @@
 #include "analytic/rod/field_models.h"
 #include "analytic/rod/rod_magnet.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 
 /// The slice of the magnet at the middle of one of n equal steps of height.
 struct UniformSlice {
@@ -34,4 +34,4 @@ Field field_of_uniform_line(const RodMagnet& magnet, const LineOptions& options,
 Field field_of_uniform_volume(const RodMagnet& magnet, const VolumeOptions& options,
                               std::span<const Vector3> points);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

@@ -4,14 +4,14 @@
 
 #include "analytic/rod/end_discs.h"
 #include "analytic/rod/field_models.h"
-#include "analytic/sources/field_points.h"
 #include "analytic/rod/loop_stack.h"
-#include "analytic/sources/adaptive_order.h"
 #include "analytic/rod/rod_magnet.h"
 #include "analytic/rod/rod_quadrature.h"
 #include "analytic/rod/uniform_sums.h"
+#include "analytic/sources/adaptive_order.h"
+#include "analytic/sources/field_points.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::rod {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -20,20 +20,20 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 Field field_of_discs(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
   const EndDiscs discs(magnet.ends);
   const RodInterior interior(magnet);
-  return field_at(points, 256, [&](const Vector3& x) {
-    FieldValue sum = discs.field(x);
+  return sources::field_at(points, 256, [&](const Vector3& x) {
+    sources::FieldValue sum = discs.field(x);
     if (const auto m = interior.magnetization_at(x)) {
       const Vector3 inside = vacuum_permeability * *m;
       sum += {inside, Vector3::Constant(40 * epsilon * inside.norm())};
     }
-    require_tolerance(sum, {tolerance, 0, "field of the charged discs", x});
+    sources::require_tolerance(sum, {tolerance, 0, "field of the charged discs", x});
     return sum;
   });
 }
 
 Field field_of_loops(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
   const LoopStack stack(magnet);
-  return field_at(points, 16, [&](const Vector3& x) {
+  return sources::field_at(points, 16, [&](const Vector3& x) {
     require_off_the_rims(magnet.ends, x);
     return stack.field(x, tolerance);
   });
@@ -51,10 +51,10 @@ Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
                     : field_of_loops(magnet, options_.tolerance, points);
   if (options_.method == Method::uniform) return field_of_uniform_volume(magnet, options_, points);
   const RodInterior interior(magnet);
-  return field_at(points, 1, [&](const Vector3& x) {
+  return sources::field_at(points, 1, [&](const Vector3& x) {
     require_off_the_rims(magnet.ends, x);
     return rod_field_by_quadrature(magnet, interior, options_.slices, options_.tolerance, x);
   });
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::rod

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 const QuadratureRule& unit_gauss_legendre(std::size_t n) {
   constexpr std::size_t kept_without_lock = 64;
@@ -26,7 +26,7 @@ const QuadratureRule& unit_gauss_legendre(std::size_t n) {
   return rule->second;
 }
 
-void throw_tolerance_missed(const OrderRaising& asked, double reached) {
+void throw_tolerance_missed(const AdaptiveOrder& asked, double reached) {
   char text[128];
   std::snprintf(text, sizeof text, " to %.2g of |B|, but is uncertain by %.2g", asked.tolerance,
                 reached);
@@ -34,4 +34,4 @@ void throw_tolerance_missed(const OrderRaising& asked, double reached) {
                     text + ": move the point away from the magnet or ask for a larger tolerance");
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

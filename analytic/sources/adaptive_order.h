@@ -9,16 +9,16 @@
 #include "problem/error.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 /// The n-point Gauss–Legendre rule on [0, 1], computed once for each n.
 const QuadratureRule& unit_gauss_legendre(std::size_t n);
 
-/// The orders tried one after the other by `raise_orders`.
+/// The orders tried one after the other by `integrate_adaptively`.
 inline constexpr std::size_t quadrature_orders[] = {4, 6, 8, 12, 16, 24, 36, 54};
 
-/// What `raise_orders` is asked.
-struct OrderRaising {
+/// What `integrate_adaptively` is asked.
+struct AdaptiveOrder {
   double tolerance;                      ///< relative to |B|
   std::size_t highest_order;             ///< one of `quadrature_orders`
   std::string_view integral;             ///< its name, for the message
@@ -27,10 +27,10 @@ struct OrderRaising {
 };
 
 /// Throws the SolverError of an integral that cannot be brought to its tolerance.
-[[noreturn]] void throw_tolerance_missed(const OrderRaising& asked, double reached);
+[[noreturn]] void throw_tolerance_missed(const AdaptiveOrder& asked, double reached);
 
 /// Throws it if the estimate of the value's error, rounding included, is above the tolerance.
-inline void require_tolerance(const FieldValue& value, const OrderRaising& asked) {
+inline void require_tolerance(const FieldValue& value, const AdaptiveOrder& asked) {
   const double reached = value.uncertainty.norm();
   if (!(reached <= asked.tolerance * value.B.norm()))
     throw_tolerance_missed(asked, reached / value.B.norm());
@@ -44,8 +44,8 @@ inline void require_tolerance(const FieldValue& value, const OrderRaising& asked
 /// `first_level(part)`: a good guess saves the lower ones, a bad one costs time alone. Throws
 /// SolverError if the tolerance is missed at the highest order.
 template <class Parts, class Contribution, class FirstLevel>
-FieldValue raise_orders(const Parts& parts, Contribution contribution, const OrderRaising& asked,
-                        FirstLevel first_level) {
+FieldValue integrate_adaptively(const Parts& parts, Contribution contribution,
+                                const AdaptiveOrder& asked, FirstLevel first_level) {
   struct State {
     std::size_t level;
     Vector3 value;
@@ -81,8 +81,10 @@ FieldValue raise_orders(const Parts& parts, Contribution contribution, const Ord
 
 /// The same from the two lowest orders on.
 template <class Parts, class Contribution>
-FieldValue raise_orders(const Parts& parts, Contribution contribution, const OrderRaising& asked) {
-  return raise_orders(parts, contribution, asked, [](const auto&) { return std::size_t{1}; });
+FieldValue integrate_adaptively(const Parts& parts, Contribution contribution,
+                                const AdaptiveOrder& asked) {
+  return integrate_adaptively(parts, contribution, asked,
+                              [](const auto&) { return std::size_t{1}; });
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

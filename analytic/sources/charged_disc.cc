@@ -8,7 +8,7 @@
 
 #include "analytic/sources/elliptic.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -117,4 +117,4 @@ MeridianVector charged_disc_field(double rho, double zeta) {
   return {rho * H.radial_over_rho, H.axial};
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

@@ -3,7 +3,7 @@
 
 #include "analytic/sources/circle.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 /// Field H of a disc of unit radius with unit magnetic surface charge, at the distance ρ ≥ 0 from
 /// its axis and the height ζ above its plane (in radii). With s² = ζ² + (1+ρ)²,
@@ -27,4 +27,4 @@ struct DiscField {
 DiscField near_disc_field(double rho, double zeta);
 DiscField far_disc_field(double zeta, double a2);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

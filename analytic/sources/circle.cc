@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 CylindricalPoint cylindrical(const Circle& circle, const Vector3& x) {
   const Vector3 offset = x - circle.centre;
@@ -24,4 +24,4 @@ double distance_from_disc(const Circle& circle, const Vector3& x) {
   return std::hypot(std::max(point.rho - circle.radius, 0.0), point.zeta);
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

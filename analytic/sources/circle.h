@@ -3,7 +3,7 @@
 
 #include "problem/types.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 /// A circle in space: the edge of a charged disc, or a current loop, positive about the normal.
 struct Circle {
@@ -32,4 +32,4 @@ double distance_from_line(const Circle& circle, const Vector3& x);
 /// Distance (m) of a point from the flat disc that the circle bounds.
 double distance_from_disc(const Circle& circle, const Vector3& x);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

@@ -8,7 +8,7 @@
 #include "analytic/sources/circle.h"
 #include "analytic/sources/elliptic.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 /// H_ρ/ρ, which has no pole on the axis, and H_ζ of a loop.
 template <class Real>
@@ -52,4 +52,4 @@ LoopField<Real> loop_field(const Real& rho, const Real& zeta) {
 /// H_ρ and H_ζ of the same loop.
 MeridianVector current_loop_field(double rho, double zeta);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

@@ -6,7 +6,7 @@
 
 #include "problem/field_model.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 Vector3 dipole_field(const Vector3& moment, const Vector3& offset) {
   const double a2 = offset.squaredNorm();
@@ -19,4 +19,4 @@ Vector3 pole_field(double strength, const Vector3& offset) {
   return vacuum_permeability / (4 * std::numbers::pi) * strength / (a2 * std::sqrt(a2)) * offset;
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

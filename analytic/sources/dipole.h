@@ -3,7 +3,7 @@
 
 #include "problem/types.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 /// Flux density (T) of a dipole of moment m (A·m²) at the offset a (m) from it, paper's Eq. 5:
 ///   B = μ₀/4π [3(m·a)a/a⁵ − m/a³].  Not finite at a = 0.
@@ -13,4 +13,4 @@ Vector3 dipole_field(const Vector3& moment, const Vector3& offset);
 ///   B = μ₀ q a/(4π a³).  Not finite at a = 0.
 Vector3 pole_field(double strength, const Vector3& offset);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

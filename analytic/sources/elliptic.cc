@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 namespace {
 
 // The mean converges quadratically: a difference of √ε now is one of ε at the next step.
@@ -33,4 +33,4 @@ double bulirsch_cel(double kc, double p, double c, double s) {
   return std::numbers::pi / 2 * (s + c * mean) / (mean * (mean + root_p));
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

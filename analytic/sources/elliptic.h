@@ -6,7 +6,7 @@
 #include <numbers>
 #include <type_traits>
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 /// Bulirsch's general complete elliptic integral (Numer. Math. 13, 305, 1969),
 ///   C(kc, p, c, s) = ∫₀^{π/2} (c cos²φ + s sin²φ) / [(cos²φ + p sin²φ) √(cos²φ + kc² sin²φ)] dφ,
@@ -61,4 +61,4 @@ CompleteElliptic<Real> complete_elliptic(const Real& kc, const Real& m) {
   return {K, K - m * D, D, C};
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

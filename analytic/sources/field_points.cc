@@ -11,7 +11,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -63,4 +63,4 @@ FieldValue with_rounding(const Vector3& B, const Vector3& x, const Vector3& y) {
   return {B, Vector3::Constant(relative * B.norm())};
 }
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

@@ -8,7 +8,7 @@
 
 #include "problem/field_model.h"
 
-namespace ciliaval::analytic {
+namespace ciliaval::analytic::sources {
 
 /// B at one point and the estimate of its numerical error, T.
 struct FieldValue {
@@ -63,4 +63,4 @@ double rounding_of_offset(const Vector3& x, const Vector3& y);
 /// rounding of the offset times the largest gradient 4|B|/a that a dipole's field has.
 FieldValue with_rounding(const Vector3& B, const Vector3& x, const Vector3& y);
 
-}  // namespace ciliaval::analytic
+}  // namespace ciliaval::analytic::sources

@@ -2,6 +2,7 @@
 #include "compare/app/case_files.h"
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <map>
@@ -12,12 +13,12 @@
 #include "compare/app/terminal.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app {
 
 namespace fs = std::filesystem;
 
-std::vector<Case> read_cases(const std::vector<fs::path>& files) {
-  std::vector<Case> cases;
+std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
+  std::vector<input::Case> cases;
   std::string faults;
   for (const fs::path& file : files) {
     try {
@@ -25,8 +26,8 @@ std::vector<Case> read_cases(const std::vector<fs::path>& files) {
         throw InputError(file.string() + ": is a study, not a case: `ciliaval study` runs it");
       if (is_bench_file(file))
         throw InputError(file.string() + ": is a test bench, not a case: `ciliaval sense` runs it");
-      cases.push_back(read_case(file));
-      for (const std::string& remark : check_case_mesh(cases.back()))
+      cases.push_back(input::read_case(file));
+      for (const std::string& remark : commands::check_case_mesh(cases.back()))
         print(fmt::format("Remark: {}: {}\n", cases.back().options.solid.mesh.string(), remark));
     } catch (const InputError& error) {
       faults += (faults.empty() ? "" : "\n") + std::string(error.what());
@@ -43,6 +44,20 @@ std::vector<Case> read_cases(const std::vector<fs::path>& files) {
                       first->second.string(), files[i].string(), cases[i].name));
   }
   return cases;
+}
+
+std::vector<fs::path> input_files(const fs::path& file, const input::Case& problem) {
+  std::vector<fs::path> files{file, problem.options.solid.mesh};
+  for (const char* table : {"study", "bench"})
+    if (is_study_file(file) || is_bench_file(file))
+      if (const auto name = toml::parse_file(file.string())[table]["case"].value<std::string>())
+        files.push_back(file.parent_path() / *name);
+  for (const input::external::ExternalModel& model : problem.external) {
+    files.insert(files.end(), model.centreline_files.begin(), model.centreline_files.end());
+    files.insert(files.end(), {model.readings_file, model.background_file});
+  }
+  std::erase_if(files, [](const fs::path& name) { return name.empty(); });
+  return files;
 }
 
 bool is_study_file(const fs::path& file) {
@@ -75,4 +90,4 @@ ShippedCases shipped_cases() {
   return {};
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app

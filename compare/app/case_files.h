@@ -6,16 +6,22 @@
 
 #include "compare/input/case.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app {
 
 /// All cases, or one InputError with the faults of all files; two cases of the same name are one.
 /// Prints what is odd about the users' meshes.
-std::vector<Case> read_cases(const std::vector<std::filesystem::path>& files);
+std::vector<input::Case> read_cases(const std::vector<std::filesystem::path>& files);
 
-/// Whether a file is called like a study (docs/study.md), NAME.study.toml.
+/// The files that a command reads for a case: `file`, which is the case, or a study or test bench,
+/// then the case that it names; the case's mesh; the files of its external models.
+std::vector<std::filesystem::path> input_files(const std::filesystem::path& file,
+                                               const input::Case& problem);
+
+/// Whether a file is called like a study (docs/guide/studies.md), NAME.study.toml.
 bool is_study_file(const std::filesystem::path& file);
 
-/// Whether a file is called like a test bench to be simulated (docs/sense.md), NAME.sense.toml.
+/// Whether a file is called like a test bench to be simulated (docs/guide/sensing.md),
+/// NAME.sense.toml.
 bool is_bench_file(const std::filesystem::path& file);
 
 /// The cases, studies and benches that come with the program.
@@ -29,4 +35,4 @@ struct ShippedCases {
 /// Those installed beside the program, or the build tree's sources.
 ShippedCases shipped_cases();
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app

@@ -15,7 +15,7 @@
 #include "compare/app/commands/sense_command.h"
 #include "compare/app/commands/study_command.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ NAME.sense.toml: errors of speed and direction, and which error of the sensor ma
 
 The load found is the least-squares solution with the chosen pair of models, its interval that of
 the noise. `nothing`: the interval holds zero; `misfit`: no load explains the reading; `beyond
-range`: see --largest (docs/sense.md).)";
+range`: see --largest (docs/guide/sensing.md).)";
 
 constexpr const char* study_help = R"(
 A study file names a case, the numbers of it to vary, and the pairs of models to run:
@@ -63,7 +63,8 @@ A study file names a case, the numbers of it to vary, and the pairs of models to
   at_least.range = "2 mN"                # with all of them
 
 Each point is kept as soon as it is solved: a study that was killed goes on where it was when the
-same command is given again. All keys and outputs: docs/study.md; examples: `ciliaval list`.)";
+same command is given again. All keys and outputs: docs/guide/studies.md; examples:
+`ciliaval list`.)";
 
 constexpr const char* report_help = R"(
 The page shows what lies in DIR and in the folders in it, whatever the files are called:
@@ -79,7 +80,7 @@ The page shows what lies in DIR and in the folders in it, whatever the files are
 
 What is not there is named in the page with its command. No number is computed: each is from a
 file that the page names. A file that is damaged is named, the others are shown, and the exit code
-is 4; so it is where gnuplot, which draws the figures, is not installed (docs/report.md).)";
+is 4; so it is where gnuplot, which draws the figures, is not installed (docs/guide/report.md).)";
 
 /// Lets `chosen` become the command when the command line names it.
 void choose(CLI::App* command, Command& chosen, Command execute) {
@@ -93,7 +94,7 @@ CLI::Option* add_file(CLI::App* command, const char* name, fs::path& file, const
 
 void add_run(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto files = std::make_shared<std::vector<fs::path>>();
-  const auto options = std::make_shared<RunOptions>();
+  const auto options = std::make_shared<commands::RunOptions>();
   options->command = command_line;
   CLI::App* run = app.add_subcommand("run", "Run cases, compare the models, write the results");
   run->add_option("CASE", *files, "Case files (TOML)")->required()->check(CLI::ExistingFile);
@@ -103,7 +104,7 @@ void add_run(CLI::App& app, const std::string& command_line, Command& chosen) {
       ->capture_default_str();
   run->add_flag("--fresh", options->fresh,
                 "Start anew: delete the checkpoint of a run that was killed or did not converge");
-  choose(run, chosen, [files, options] { return run_cases(*files, *options); });
+  choose(run, chosen, [files, options] { return commands::run_cases(*files, *options); });
 }
 
 void add_validate(CLI::App& app, Command& chosen) {
@@ -113,8 +114,8 @@ void add_validate(CLI::App& app, Command& chosen) {
       ->required()
       ->check(CLI::ExistingFile);
   choose(validate, chosen, [files] {
-    validate_cases(*files);
-    return ExitCode::pass;
+    commands::validate_cases(*files);
+    return commands::ExitCode::pass;
   });
 }
 
@@ -129,7 +130,7 @@ void add_mesh(CLI::App& app, const std::string& command_line, Command& chosen) {
       "mesh",
       "Write the solid's mesh of a case to a file: FILE.msh for Gmsh, with the names of the\n"
       "segments and the boundary, or FILE.vtu for ParaView. A .msh can be changed and named\n"
-      "in the case, [models.solid] mesh = \"FILE.msh\" (docs/meshes.md).");
+      "in the case, [models.solid] mesh = \"FILE.msh\" (docs/guide/meshes.md).");
   add_file(mesh, "CASE", options->problem, "Case file (TOML)");
   mesh->add_option("-o,--output", options->output,
                    "File to write: .msh or .vtu; one that is there is replaced")
@@ -139,19 +140,20 @@ void add_mesh(CLI::App& app, const std::string& command_line, Command& chosen) {
                    "0 coarse, 1 default, 2 fine; left out: as the case says")
       ->type_name("N");
   choose(mesh, chosen, [options, command_line] {
-    write_mesh(options->problem, options->output, options->refinement, command_line);
-    return ExitCode::pass;
+    commands::write_mesh(options->problem, options->output, options->refinement, command_line);
+    return commands::ExitCode::pass;
   });
 }
 
 void add_check(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto files = std::make_shared<std::vector<fs::path>>();
-  const auto options = std::make_shared<CheckOptions>();
+  const auto options = std::make_shared<commands::CheckOptions>();
   options->command = command_line;
   CLI::App* check = app.add_subcommand(
       "check",
       "Regression check: run cases, by default all shipped ones, and hold every result against\n"
-      "the accepted one in the baseline beside the case, NAME.baseline.json (docs/evidence.md).");
+      "the accepted one in the baseline beside the case, NAME.baseline.json "
+      "(docs/guide/accuracy.md).");
   check->add_option("CASE", *files, "Case files (TOML); none: all shipped ones")
       ->check(CLI::ExistingFile);
   check->add_flag("--quick", options->quick,
@@ -163,12 +165,12 @@ void add_check(CLI::App& app, const std::string& command_line, Command& chosen) 
   check->add_option("--junit", options->junit, "Write the report as JUnit's XML too")
       ->type_name("FILE");
   check->add_option("--json", options->json, "Write the report as JSON too")->type_name("FILE");
-  choose(check, chosen, [files, options] { return check_cases(*files, *options); });
+  choose(check, chosen, [files, options] { return commands::check_cases(*files, *options); });
 }
 
 void add_converge(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto file = std::make_shared<fs::path>();
-  const auto options = std::make_shared<ConvergeOptions>();
+  const auto options = std::make_shared<commands::ConvergeOptions>();
   options->command = command_line;
   CLI::App* converge = app.add_subcommand(
       "converge",
@@ -188,12 +190,12 @@ void add_converge(CLI::App& app, const std::string& command_line, Command& chose
           "--plot", options->plot,
           "Plot the errors over the levels' sizes, with the fitted orders; SVG, by gnuplot")
       ->type_name("FILE.svg");
-  choose(converge, chosen, [file, options] { return converge_case(*file, *options); });
+  choose(converge, chosen, [file, options] { return commands::converge_case(*file, *options); });
 }
 
 void add_budget(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto file = std::make_shared<fs::path>();
-  const auto options = std::make_shared<BudgetOptions>();
+  const auto options = std::make_shared<commands::BudgetOptions>();
   options->command = command_line;
   CLI::App* budget = app.add_subcommand(
       "budget",
@@ -214,13 +216,13 @@ void add_budget(CLI::App& app, const std::string& command_line, Command& chosen)
       ->add_option("--plot", options->plot,
                    "Plot tip and dB of the last step as a waterfall; SVG, by gnuplot")
       ->type_name("FILE.svg");
-  choose(budget, chosen, [file, options] { return budget_case(*file, *options); });
+  choose(budget, chosen, [file, options] { return commands::budget_case(*file, *options); });
 }
 
 void add_sense(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto file = std::make_shared<fs::path>();
   const auto readings = std::make_shared<fs::path>();
-  const auto options = std::make_shared<SenseOptions>();
+  const auto options = std::make_shared<commands::SenseOptions>();
   options->command = command_line;
   CLI::App* sense = app.add_subcommand(
       "sense",
@@ -256,13 +258,16 @@ void add_sense(CLI::App& app, const std::string& command_line, Command& chosen) 
       ->add_option("--plot", options->plot,
                    "Of a test bench: plot the loads found over the true ones; SVG, by gnuplot")
       ->type_name("FILE.svg");
-  choose(sense, chosen,
-         [file, readings, options] { return compare::sense(*file, *readings, *options); });
+  choose(sense, chosen, [file, readings, options, sense] {
+    for (const CLI::Option* option : sense->get_options())
+      if (option->count() > 0) options->given.push_back(option->get_name());
+    return compare::app::commands::sense(*file, *readings, *options);
+  });
 }
 
 void add_study(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto file = std::make_shared<fs::path>();
-  const auto options = std::make_shared<StudyOptions>();
+  const auto options = std::make_shared<commands::StudyOptions>();
   options->command = command_line;
   CLI::App* study = app.add_subcommand(
       "study",
@@ -281,25 +286,25 @@ void add_study(CLI::App& app, const std::string& command_line, Command& chosen) 
       ->type_name("FILE");
   study->add_flag("--fresh", options->fresh,
                   "Start anew: forget what an earlier run of the study has solved");
-  choose(study, chosen, [file, options] { return run_study(*file, *options); });
+  choose(study, chosen, [file, options] { return commands::run_study(*file, *options); });
 }
 
 void add_claims(CLI::App& app, const std::string& command_line, Command& chosen) {
-  const auto options = std::make_shared<ClaimsOptions>();
+  const auto options = std::make_shared<commands::ClaimsOptions>();
   options->command = command_line;
   CLI::App* claims = app.add_subcommand(
       "claims",
       "The paper's quantitative statements, each with what the models find: reproduced, not\n"
-      "reproduced, depends on the model, or not checkable and why (docs/paper.md).");
+      "reproduced, depends on the model, or not checkable and why (docs/evidence/paper.md).");
   claims->add_flag("--quick", options->quick,
                    "Without the 3D solid: seconds instead of two minutes");
   claims->add_option("--json", options->json, "Write the ledger as JSON too")->type_name("FILE");
-  choose(claims, chosen, [options] { return print_claims(*options); });
+  choose(claims, chosen, [options] { return commands::print_claims(*options); });
 }
 
 void add_report(CLI::App& app, const std::string& command_line, Command& chosen) {
   const auto folder = std::make_shared<fs::path>("results");
-  const auto options = std::make_shared<ReportOptions>();
+  const auto options = std::make_shared<commands::ReportOptions>();
   options->command = command_line;
   CLI::App* report = app.add_subcommand(
       "report",
@@ -311,7 +316,7 @@ void add_report(CLI::App& app, const std::string& command_line, Command& chosen)
       ->add_option("-o,--output", options->output,
                    "File to write; left out: DIR/report.html. One that is there is replaced")
       ->type_name("FILE.html");
-  choose(report, chosen, [folder, options] { return write_report(*folder, *options); });
+  choose(report, chosen, [folder, options] { return commands::write_report(*folder, *options); });
 }
 
 }  // namespace
@@ -329,9 +334,9 @@ void add_commands(CLI::App& app, const std::string& command_line, Command& chose
   add_report(app, command_line, chosen);
   choose(app.add_subcommand("list", "List models, loads, shipped cases, studies and benches"),
          chosen, [] {
-           list();
-           return ExitCode::pass;
+           commands::list();
+           return commands::ExitCode::pass;
          });
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -8,10 +9,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <iostream>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -19,12 +21,15 @@
 
 #include "compare/app/command_line.h"
 #include "compare/app/commands/commands.h"
+#include "compare/app/terminal.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
+#include "problem/support/words.h"
 
 namespace {
 
-using ciliaval::compare::ExitCode;
+namespace commands = ciliaval::compare::app::commands;
+using commands::ExitCode;
 
 constexpr const char* examples = R"(
 Examples:
@@ -43,11 +48,11 @@ Examples:
   paraview --script=results/<case name>/vtk/open.py
 
 A run or study that was killed goes on where it was when the same command is given again; --fresh
-starts anew (docs/restart.md).
+starts anew (docs/guide/restart.md).
 
 A case file states the cilium, its load, the sensors and the models, each quantity with its unit
-(docs/cases.md). The results are explained in docs/results.md, meshes of one's own in
-docs/meshes.md.
+(docs/guide/cases.md). The results are explained in docs/guide/results.md, meshes of one's own in
+docs/guide/meshes.md.
 
 Exit codes: 0 done, 1 `check`: a result is not as accepted, 2 wrong usage or case file, 3 a model
 did not converge (the results of the others are written; `study`: every point failed), 4 a file
@@ -86,17 +91,28 @@ void check_command(const CLI::App& app, int argc, char** argv) {
 
 /// Help, version or a fault of the command line, as CLI11 words it.
 ExitCode print_parse_result(const CLI::App& app, const CLI::ParseError& error) {
-  const int code = app.exit(error);
-  std::cout.flush();
-  if (!std::cout)
-    throw ciliaval::FileError("cannot write to the standard output; is the disk full?");
+  std::ostringstream out;
+  std::ostringstream err;
+  const int code = app.exit(error, out, err);
+  ciliaval::compare::app::print(out.str());
+  fmt::print(stderr, "{}", ciliaval::support::printable(err.str()));
   return code == 0 ? ExitCode::pass : ExitCode::usage;
 }
 
 /// Whether a message starts with `file:line:column: `, which editors jump to.
 bool is_located(const std::string& message) {
   static const std::regex located("^[^\n]+:[0-9]+:[0-9]+: ");
-  return std::regex_search(message, located, std::regex_constants::match_continuous);
+  constexpr std::size_t longest =
+      5000;  // of a path and a place; std::regex recurses on each letter
+  return std::regex_search(message.substr(0, longest), located,
+                           std::regex_constants::match_continuous);
+}
+
+/// A file that the program opens must not become the standard output of a user who has closed it.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDWR) != stream)
+      throw ciliaval::FileError("cannot open /dev/null");
 }
 
 ExitCode execute(int argc, char** argv) {
@@ -104,11 +120,11 @@ ExitCode execute(int argc, char** argv) {
       "Cross-validation of models of magnetic-cilium tactile sensors: runs several models of\n"
       "the bending and of the magnetic field on one case and says what separates them.",
       "ciliaval"};
-  app.set_version_flag("--version", ciliaval::compare::version_line());
+  app.set_version_flag("--version", ciliaval::compare::app::commands::version_line());
   app.footer(examples);
   app.require_subcommand(1);
-  ciliaval::compare::Command chosen;
-  ciliaval::compare::add_commands(app, command_line(argc, argv), chosen);
+  ciliaval::compare::app::Command chosen;
+  ciliaval::compare::app::add_commands(app, command_line(argc, argv), chosen);
   check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
@@ -120,6 +136,19 @@ ExitCode execute(int argc, char** argv) {
 
 /// The stderr of a rank that keeps silent.
 int silenced_stderr = STDERR_FILENO;
+
+/// Spares Open MPI a daemon to start other ranks and the search for fast networks, which one rank,
+/// or ranks on one machine, do not need: 0.3 s together. What the user has set stands; other MPI
+/// libraries do not know these names.
+void spare_open_mpi_the_network() {
+  constexpr int keep_what_is_set = 0;
+  const char* all = std::getenv("OMPI_COMM_WORLD_SIZE");
+  const char* here = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+  const bool single = all == nullptr && !ciliaval::fem::launched_on_several_ranks();
+  if (single) setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_what_is_set);
+  if (single || (all != nullptr && here != nullptr && std::string_view(all) == here))
+    setenv("OMPI_MCA_pml", "ob1", keep_what_is_set);
+}
 
 /// Under mpirun: rank 0 alone reads, writes and prints.
 void start_ranks() {
@@ -136,7 +165,8 @@ void start_ranks() {
 void print_error(const std::string& message, bool of_this_rank_alone) {
   using namespace std::chrono_literals;
   if (ciliaval::fem::rank() > 0 && !of_this_rank_alone) std::this_thread::sleep_for(10s);
-  const std::string line = fmt::format("{}{}\n", is_located(message) ? "" : "ciliaval: ", message);
+  const std::string line =
+      fmt::format("{}{}\n", is_located(message) ? "" : "ciliaval: ", ciliaval::support::printable(message));
   const int file = ciliaval::fem::rank() > 0 ? silenced_stderr : STDERR_FILENO;
   if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
 }
@@ -149,6 +179,8 @@ int main(int argc, char** argv) {
   std::string message;
   bool alone = false;
   try {
+    open_standard_streams();
+    spare_open_mpi_the_network();
     if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
     code = execute(argc, argv);
   } catch (const ciliaval::InputError& error) {

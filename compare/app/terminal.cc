@@ -8,13 +8,22 @@
 #include <cstdio>
 #include <cstring>
 #include <mutex>
+#include <utility>
 
 #include "problem/error.h"
+#include "problem/support/words.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app {
 
 ProgressLine::~ProgressLine() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  clear();
+}
+
+void ProgressLine::clear() {
+  const std::lock_guard lock(mutex_);
+  if (!std::exchange(shown_, false)) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
 }
 
 Progress ProgressLine::callback() {
@@ -27,15 +36,21 @@ void ProgressLine::show(const std::string& text) {
   const std::lock_guard lock(mutex_);
   const auto now = Clock::now();
   if (now - start_ < 2s || now - last_ < 100ms) return;
-  fmt::print(stderr, "\r\033[K{}", text);
+  fmt::print(stderr, "\r\033[K{}", support::printable(text, ""));
   std::fflush(stderr);
   last_ = now;
   shown_ = true;
 }
 
 void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+  const std::string shown = support::printable(text);
+  if (std::fwrite(shown.data(), 1, shown.size(), stdout) != shown.size() ||
+      std::fflush(stdout) != 0)
     throw FileError(std::string("cannot write to the standard output: ") + std::strerror(errno));
 }
 
-}  // namespace ciliaval::compare
+void warn(const std::string& text) {
+  fmt::print(stderr, "ciliaval: {}\n", support::printable(text));
+}
+
+}  // namespace ciliaval::compare::app

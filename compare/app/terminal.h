@@ -7,7 +7,7 @@
 
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app {
 
 /// One line of stderr that is written over and over, if stderr is a terminal; nothing in the first
 /// two seconds. It must outlive its callback.
@@ -20,6 +20,8 @@ class ProgressLine {
 
   /// Empty unless stderr is a terminal. Several threads may call it.
   Progress callback();
+  /// Takes the line off the terminal.
+  void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -31,7 +33,11 @@ class ProgressLine {
   std::mutex mutex_;
 };
 
-/// Writes to stdout, which is the result: throws FileError if it cannot be written.
+/// Writes to stdout, which is the result: throws FileError if it cannot be written. Control
+/// characters from users' files are shown, not obeyed.
 void print(const std::string& text);
 
-}  // namespace ciliaval::compare
+/// Writes "ciliaval: TEXT" and a line break to stderr, likewise.
+void warn(const std::string& text);
+
+}  // namespace ciliaval::compare::app

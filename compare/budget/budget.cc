@@ -15,7 +15,7 @@
 #include "compare/budget/sensitivity.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 namespace {
 
 const std::array<std::string, 3> axis_names{"x", "y", "z"};
@@ -31,62 +31,64 @@ const Entry& entry_of(std::span<const Entry> entries, const std::string& id) {
 /// The fields of one station, and where the steps of the case are among them.
 struct StationFields {
   const Station* station;
-  const MechanicsRun* mechanics;
+  const models::MechanicsRun* mechanics;
   const std::vector<std::size_t>* place;
-  FieldRun run;
+  models::FieldRun run;
 
-  std::optional<FieldValue> value(std::size_t step, std::size_t sensor, bool change) const {
+  std::optional<models::FieldValue> value(std::size_t step, std::size_t sensor, bool change) const {
     if (run.steps.empty()) return std::nullopt;
-    return field_value(run, *mechanics, (*place)[step], sensor, change);
+    return models::field_value(run, *mechanics, (*place)[step], sensor, change);
   }
 };
 
 /// Everything that was computed.
 struct Computed {
   SurroundedPath path;
-  std::vector<std::size_t> steps;              ///< 0, 1, …: the places in `alone`
-  std::map<std::string, MechanicsRun> around;  ///< by id, on the surrounded path
-  std::map<std::string, MechanicsRun> alone;   ///< the steps of the case only
-  std::vector<StationFields> chain;            ///< in the order of the stations
+  std::vector<std::size_t> steps;                      ///< 0, 1, …: the places in `alone`
+  std::map<std::string, models::MechanicsRun> around;  ///< by id, on the surrounded path
+  std::map<std::string, models::MechanicsRun> alone;   ///< the steps of the case only
+  std::vector<StationFields> chain;                    ///< in the order of the stations
   std::optional<StationFields> beside;
 };
 
-MechanicsRun steps_of(const MechanicsRun& run, const std::vector<std::size_t>& places) {
-  MechanicsRun result{run.model, {run.result.undeformed, {}}};
+models::MechanicsRun steps_of(const models::MechanicsRun& run,
+                              const std::vector<std::size_t>& places) {
+  models::MechanicsRun result{run.model, {run.result.undeformed, {}}};
   for (const std::size_t place : places) result.result.steps.push_back(run.result.steps[place]);
   return result;
 }
 
-StationFields compute_fields(const Station& station, const Case& problem,
-                             std::span<const FieldEntry> entries, const Computed& computed,
+StationFields compute_fields(const Station& station, const input::Case& problem,
+                             std::span<const models::FieldEntry> entries, const Computed& computed,
                              const Progress& progress) {
-  ModelOptions options = problem.options;
+  input::ModelOptions options = problem.options;
   station.set(options);
   const auto model = entry_of(entries, station.field).make(options);
-  const MechanicsRun& mechanics =
+  const models::MechanicsRun& mechanics =
       (station.sensitivity ? computed.around : computed.alone).at(station.mechanics);
   StationFields result{
       &station, &mechanics, station.sensitivity ? &computed.path.step : &computed.steps, {}};
   if (!mechanics.result.undeformed.centreline.pieces().empty() &&
       (!model->needs_body() || mechanics.result.undeformed.body))
-    result.run = run_field(station.field_name(), *model, mechanics, problem, progress);
+    result.run = models::run_field(station.field_name(), *model, mechanics, problem, progress);
   return result;
 }
 
-void compute(const Case& problem, std::span<const MechanicsEntry> mechanics,
-             std::span<const FieldEntry> fields, const Chain& chain, const Progress& progress,
-             Computed& computed) {
+void compute(const input::Case& problem, std::span<const models::MechanicsEntry> mechanics,
+             std::span<const models::FieldEntry> fields, const Chain& chain,
+             const Progress& progress, Computed& computed) {
   const bool any = std::any_of(chain.stations.begin(), chain.stations.end(),
                                [](const Station& station) { return station.sensitivity; });
   computed.path = surround(problem.load_path, any && !problem.sensors.empty());
-  Case surrounded = problem;
+  input::Case surrounded = problem;
   surrounded.load_path = computed.path.loads;
   for (std::size_t i = 0; i < problem.load_path.size(); ++i) computed.steps.push_back(i);
   for (const std::string& id : chain.mechanics) {
     if (progress) progress(id + ": starting");
     const auto model = entry_of(mechanics, id).make(problem.options);
-    const MechanicsRun& run =
-        computed.around.emplace(id, run_mechanics(id, *model, surrounded, progress)).first->second;
+    const models::MechanicsRun& run =
+        computed.around.emplace(id, models::run_mechanics(id, *model, surrounded, progress))
+            .first->second;
     computed.alone.emplace(id, steps_of(run, computed.path.step));
   }
   if (problem.sensors.empty()) return;
@@ -111,8 +113,8 @@ BudgetLink make_link(const Numbers& numbers, std::size_t from, std::size_t to) {
                   *numbers.values[to] - *numbers.values[from], numbers.uncertainty(from, to)};
   if (link.uncertainty && !std::isfinite(*link.uncertainty)) link.uncertainty.reset();
   if (link.uncertainty)
-    link.verdict =
-        std::abs(link.value) > *link.uncertainty ? Verdict::resolved : Verdict::below_uncertainty;
+    link.verdict = std::abs(link.value) > *link.uncertainty ? models::Verdict::resolved
+                                                            : models::Verdict::below_uncertainty;
   return link;
 }
 
@@ -144,19 +146,25 @@ class MechanicsRows {
       add(
           step, "tip", axis_names[static_cast<std::size_t>(axis)], "m",
           [axis](const CentrelinePoint& tip) { return tip.position[axis]; },
-          [step](const MechanicsRun& run) { return run.result.steps[step].tip_uncertainty; }, rows);
+          [step](const models::MechanicsRun& run) {
+            return run.result.steps[step].tip_uncertainty;
+          },
+          rows);
     add(
         step, "tip_angle", "", "rad", [](const CentrelinePoint& tip) { return tip.theta(); },
-        [step](const MechanicsRun& run) { return tip_angle_uncertainty(run, step); }, rows);
+        [step](const models::MechanicsRun& run) {
+          return models::tip_angle_uncertainty(run, step);
+        },
+        rows);
   }
 
  private:
   void add(std::size_t step, const char* quantity, const std::string& component, const char* unit,
            const std::function<double(const CentrelinePoint&)>& value,
-           const std::function<std::optional<double>(const MechanicsRun&)>& uncertainty,
+           const std::function<std::optional<double>(const models::MechanicsRun&)>& uncertainty,
            std::vector<BudgetRow>& rows) const {
     Numbers numbers{chain_.mechanics, {}, {}, {}};
-    for (const MechanicsRun* run : runs_) {
+    for (const models::MechanicsRun* run : runs_) {
       const Centreline& centreline = run->result.steps[step].deformation->centreline;
       numbers.values.emplace_back(value(centreline.at(centreline.length())));
     }
@@ -177,7 +185,7 @@ class MechanicsRows {
   }
 
   const Chain& chain_;
-  std::vector<const MechanicsRun*> runs_;
+  std::vector<const models::MechanicsRun*> runs_;
 };
 
 /// One vector of a field at a sensor at one step by all stations.
@@ -201,7 +209,7 @@ class FieldRows {
     const auto va = a.value(step_, sensor_, change);
     const auto vb = b.value(step_, sensor_, change);
     if (!va || !vb) return std::nullopt;
-    return combined_uncertainty(*va, *vb, a.station->mechanics == b.station->mechanics);
+    return models::combined_uncertainty(*va, *vb, a.station->mechanics == b.station->mechanics);
   }
 
   void add_field(const char* quantity, bool change, std::vector<BudgetRow>& rows) const {
@@ -330,7 +338,7 @@ void remark_neighbours(const Computed& computed, const Chain& chain, std::size_t
 
 void remark_failures(const StationFields& fields, Budget& budget) {
   std::vector<std::string> messages;
-  const auto add = [&](const FieldStep& step) {
+  const auto add = [&](const models::FieldStep& step) {
     if (!step.failure.empty() &&
         std::find(messages.begin(), messages.end(), step.failure) == messages.end())
       messages.push_back(step.failure);
@@ -361,14 +369,14 @@ void remark_sensitivity(const Chain& chain, const Computed& computed, Budget& bu
 bool Budget::decided() const {
   return std::any_of(rows.begin(), rows.end(), [](const BudgetRow& row) {
     return std::any_of(row.links.begin(), row.links.end(), [](const BudgetLink& link) {
-      return link.verdict != Verdict::inconclusive;
+      return link.verdict != models::Verdict::inconclusive;
     });
   });
 }
 
-Budget error_budget(const Case& problem, std::span<const MechanicsEntry> mechanics,
-                    std::span<const FieldEntry> fields, const std::vector<std::string>& without,
-                    const Progress& progress) {
+Budget error_budget(const input::Case& problem, std::span<const models::MechanicsEntry> mechanics,
+                    std::span<const models::FieldEntry> fields,
+                    const std::vector<std::string>& without, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   Budget budget;
   budget.case_name = problem.name;
@@ -422,4 +430,4 @@ std::string fault(const BudgetRow& row) {
   return {};
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

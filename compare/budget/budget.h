@@ -11,7 +11,7 @@
 #include "compare/models/errors.h"
 #include "compare/models/registry.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 
 /// What one change of model does to one number: next − previous.
 struct BudgetLink {
@@ -20,7 +20,7 @@ struct BudgetLink {
   std::string physics;                ///< what changes
   double value = 0;                   ///< in the row's unit
   std::optional<double> uncertainty;  ///< numerical: of `value`, in the row's unit
-  Verdict verdict = Verdict::inconclusive;
+  models::Verdict verdict = models::Verdict::inconclusive;
 };
 
 /// A number of one load step, and what lies between the paper's model and the best one of it.
@@ -62,12 +62,12 @@ struct Budget {
 ///
 /// Throws InputError if `without` is not as make_chain() takes it or a model is not among the
 /// entries.
-Budget error_budget(const Case& problem, std::span<const MechanicsEntry> mechanics,
-                    std::span<const FieldEntry> fields, const std::vector<std::string>& without,
-                    const Progress& progress = {});
+Budget error_budget(const input::Case& problem, std::span<const models::MechanicsEntry> mechanics,
+                    std::span<const models::FieldEntry> fields,
+                    const std::vector<std::string>& without, const Progress& progress = {});
 
 /// What is wrong with the links of a row: they must lead from the paper's model to the best one and
 /// add up to their difference to rounding. Empty if nothing is.
 std::string fault(const BudgetRow& row);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

@@ -11,10 +11,10 @@
 #include "problem/error.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 namespace {
 
-using Set = std::function<void(ModelOptions&)>;
+using Set = std::function<void(input::ModelOptions&)>;
 
 void require_words(const std::vector<std::string>& without) {
   const std::vector<std::string>& words = words_to_leave_out();
@@ -27,25 +27,25 @@ void require_words(const std::vector<std::string>& without) {
       throw InputError(
           fmt::format("--without {}: there is nothing of that name to leave out{}; "
                       "there are {}",
-                      word, did_you_mean(word, views), fmt::join(words, ", ")));
+                      word, support::did_you_mean(word, views), fmt::join(words, ", ")));
   }
 }
 
-void set_line(ModelOptions& options) {
-  options.line.push_forward = analytic::PushForward::F;
+void set_line(input::ModelOptions& options) {
+  options.line.push_forward = analytic::sources::PushForward::F;
 }
 
-Set set_slices(analytic::VolumeOptions::Slices slices) {
-  return [slices](ModelOptions& options) { options.volume.slices = slices; };
+Set set_slices(analytic::rod::VolumeOptions::Slices slices) {
+  return [slices](input::ModelOptions& options) { options.volume.slices = slices; };
 }
 
-Set set_mesh(analytic::PushForward push_forward) {
-  return [push_forward](ModelOptions& options) { options.mesh.push_forward = push_forward; };
+Set set_mesh(analytic::sources::PushForward push_forward) {
+  return [push_forward](input::ModelOptions& options) { options.mesh.push_forward = push_forward; };
 }
 
 Set set_potential(double relative_permeability, bool plates) {
-  return [=](ModelOptions& options) {
-    options.potential.push_forward = fem::MagnetPushForward::F;
+  return [=](input::ModelOptions& options) {
+    options.potential.push_forward = fem::potential::MagnetPushForward::F;
     options.potential.relative_permeability = relative_permeability;
     if (!plates) options.potential.plates.clear();
   };
@@ -62,20 +62,20 @@ std::vector<Station> mechanics_stations() {
 }
 
 /// The fields on the best mechanics.
-std::vector<Station> field_stations(const Case& problem, const std::string& mechanics) {
-  using Slices = analytic::VolumeOptions::Slices;
+std::vector<Station> field_stations(const input::Case& problem, const std::string& mechanics) {
+  using Slices = analytic::rod::VolumeOptions::Slices;
   std::vector<Station> stations{
       {mechanics, "volume", "stacked", set_slices(Slices::stacked),
        "the magnet's thickness, in flat slices (Eq. 8-9)"},
       {mechanics, "volume", "wedge", set_slices(Slices::wedge),
        "wedges in place of flat slices: Jacobian 1 - kappa*offset"},
-      {mechanics, "mesh", "R", set_mesh(analytic::PushForward::R),
+      {mechanics, "mesh", "R", set_mesh(analytic::sources::PushForward::R),
        "the solid's own sections, warped and stretched, with rotated moments"},
-      {mechanics, "mesh", "F", set_mesh(analytic::PushForward::F),
+      {mechanics, "mesh", "F", set_mesh(analytic::sources::PushForward::F),
        "moments carried along by F, in place of the rotation R"},
       {mechanics, "potential", "mu_r = 1", set_potential(1, false),
        "the same physics by another method: a potential by finite elements", false}};
-  const fem::PotentialOptions& potential = problem.options.potential;
+  const fem::potential::PotentialOptions& potential = problem.options.potential;
   const std::string permeability = fmt::format("mu_r = {:g}", potential.relative_permeability);
   if (potential.relative_permeability != 1)
     stations.push_back({mechanics, "potential", permeability,
@@ -102,7 +102,7 @@ std::string Chain::physics(std::size_t from, std::size_t to) const {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-Chain make_chain(const Case& problem, const std::vector<std::string>& without) {
+Chain make_chain(const input::Case& problem, const std::vector<std::string>& without) {
   require_words(without);
   const auto is_left_out = [&](const std::string& word) {
     return std::find(without.begin(), without.end(), word) != without.end();
@@ -133,7 +133,7 @@ Chain make_chain(const Case& problem, const std::vector<std::string>& without) {
   Station dipole{"elastica",
                  "dipole",
                  "",
-                 [](ModelOptions&) {},
+                 [](input::ModelOptions&) {},
                  "the whole magnet as one dipole at its centroid",
                  !is_left_out("sensitivity")};
   if (is_left_out("dipole"))
@@ -143,4 +143,4 @@ Chain make_chain(const Case& problem, const std::vector<std::string>& without) {
   return chain;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

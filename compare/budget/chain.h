@@ -8,16 +8,16 @@
 
 #include "compare/input/case.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 
 /// A pair of models on the way from the paper's to the best one.
 struct Station {
-  std::string mechanics;                   ///< id
-  std::string field;                       ///< id
-  std::string variant;                     ///< of the field model: "stacked"; empty if it has none
-  std::function<void(ModelOptions&)> set;  ///< makes the variant
-  std::string physics;                     ///< what changes from the station before to this one
-  bool sensitivity = true;                 ///< whether dB/dF is computed here
+  std::string mechanics;  ///< id
+  std::string field;      ///< id
+  std::string variant;    ///< of the field model: "stacked"; empty if it has none
+  std::function<void(input::ModelOptions&)> set;  ///< makes the variant
+  std::string physics;      ///< what changes from the station before to this one
+  bool sensitivity = true;  ///< whether dB/dF is computed here
 
   std::string field_name() const { return variant.empty() ? field : field + ' ' + variant; }
   std::string name() const { return mechanics + '/' + field_name(); }
@@ -40,9 +40,9 @@ struct Chain {
 /// potential push forward by F. `without` names models to leave out: beam, solid (its fields then
 /// go with the beam, and mesh with it is left out), volume, mesh, potential, dipole. Throws
 /// InputError if one is not one of these.
-Chain make_chain(const Case& problem, const std::vector<std::string>& without);
+Chain make_chain(const input::Case& problem, const std::vector<std::string>& without);
 
 /// The words that `without` may have; "sensitivity" leaves out dB/dF.
 const std::vector<std::string>& words_to_leave_out();
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

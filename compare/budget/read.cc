@@ -4,14 +4,15 @@
 #include "compare/budget/report.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Verdict verdict_of(const std::string& text) {
-  for (const Verdict verdict :
-       {Verdict::resolved, Verdict::below_uncertainty, Verdict::inconclusive})
+models::Verdict verdict_of(const std::string& text) {
+  for (const models::Verdict verdict :
+       {models::Verdict::resolved, models::Verdict::below_uncertainty,
+        models::Verdict::inconclusive})
     if (to_string(verdict) == text) return verdict;
   throw FileError("there is no verdict `" + text + "`");
 }
@@ -75,4 +76,4 @@ Budget read_budget(const Json& json) {
   return budget;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

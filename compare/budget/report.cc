@@ -11,9 +11,11 @@
 #include <optional>
 #include <string_view>
 
+#include "compare/output/csv_writer.h"
 #include "compare/output/table.h"
+#include "compare/output/text_table.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -34,29 +36,19 @@ Unit shown_unit(std::string_view si) {
   return {"uT/mm", 1e-3, 3};
 }
 
-/// A number without the sign of a zero.
-std::string number(double value, int decimals) {
-  const std::string text = fmt::format("{:.{}f}", value, decimals);
-  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
-  return is_zero && text.starts_with('-') ? text.substr(1) : text;
-}
-
-constexpr int cell_width = 26;
-
-/// "-0.06421 +- 2.1e-06" and a mark: ~ below its uncertainty, ? inconclusive.
-std::string link_cell(const BudgetLink& link, const Unit& unit) {
-  const char mark = link.verdict == Verdict::resolved            ? ' '
-                    : link.verdict == Verdict::below_uncertainty ? '~'
-                                                                 : '?';
-  const std::string value = number(link.value / unit.size, unit.decimals);
-  const std::string interval =
-      link.uncertainty ? fmt::format("{:.2g}", *link.uncertainty / unit.size) : "unknown";
-  return fmt::format("{:>13} +-{:>8} {}", value, interval, mark);
-}
-
+/// "{:.5f}" for five decimals.
 std::string value_cell(double value, const Unit& unit) {
-  return fmt::format("{:<{}}", fmt::format("{:>13}", number(value / unit.size, unit.decimals)),
-                     cell_width);
+  return output::number_cell(value, unit.size, fmt::format("{{:.{}f}}", unit.decimals));
+}
+
+/// "+- 2.1e-06" and a mark: ~ below its uncertainty, ? inconclusive.
+std::string interval_cell(const BudgetLink& link, const Unit& unit) {
+  const char* mark = link.verdict == models::Verdict::resolved            ? ""
+                     : link.verdict == models::Verdict::below_uncertainty ? " ~"
+                                                                          : " ?";
+  return fmt::format(
+      "+- {}{}",
+      link.uncertainty ? fmt::format("{:.2g}", *link.uncertainty / unit.size) : "unknown", mark);
 }
 
 /// The rows that stand side by side in a table.
@@ -79,61 +71,49 @@ std::string percent(const Group& group, const std::vector<const BudgetLink*>& li
     link += std::pow(links[i]->value, 2);
     best += std::pow(group[i]->best, 2);
   }
-  return best > 0 ? fmt::format("{:>10.3g}", 100 * std::sqrt(link / best))
-                  : fmt::format("{:>10}", "-");
-}
-
-std::string link_line(const Group& group, const std::string& label,
-                      const std::vector<const BudgetLink*>& links, bool with_percent) {
-  std::string line = fmt::format("  {:<32}", label);
-  for (std::size_t i = 0; i < group.size(); ++i)
-    line += link_cell(*links[i], shown_unit(group[i]->unit));
-  if (with_percent) line += percent(group, links);
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line + '\n';
-}
-
-std::string value_line(const Group& group, const std::string& label, bool best) {
-  std::string line = fmt::format("  {:<32}", label);
-  for (const BudgetRow* row : group)
-    line += value_cell(best ? row->best : row->paper, shown_unit(row->unit));
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line + '\n';
+  return best > 0 ? fmt::format("{:.3g}", 100 * std::sqrt(link / best)) : "-";
 }
 
 /// The paper's values, the links, their total, the best values, the model beside.
 std::string group_table(const Group& group, const std::string& title, bool is_field) {
   if (group.empty()) return {};
-  std::string text = fmt::format("\n  {:<32}", title);
-  for (const BudgetRow* row : group)
-    text += fmt::format(
-        "{:<{}}",
-        fmt::format("{:>13}",
-                    fmt::format("{} ({})", row->component.empty() ? "angle" : row->component,
-                                shown_unit(row->unit).name)),
-        cell_width);
-  if (is_field)
-    text += fmt::format("{:>10}", "% (1)");
-  else
-    text.erase(text.find_last_not_of(' ') + 1);
-  text += '\n';
-  const auto collect = [&](auto&& link_of) {
-    std::vector<const BudgetLink*> links;
-    for (const BudgetRow* row : group) links.push_back(link_of(*row));
-    return links;
-  };
-  text += value_line(group, group.front()->total.from, false);
-  for (std::size_t i = 0; i < group.front()->links.size(); ++i) {
-    const auto links = collect([&](const BudgetRow& row) { return &row.links[i]; });
-    text += link_line(group, "-> " + links.front()->to, links, is_field);
+  output::TextRows rows{{title}};
+  std::string alignment = "<";
+  for (const BudgetRow* row : group) {
+    rows[0].push_back(fmt::format("{} ({})", row->component.empty() ? "angle" : row->component,
+                                  shown_unit(row->unit).name));
+    rows[0].emplace_back();
+    alignment += "><";
   }
-  text +=
-      link_line(group, "total", collect([](const BudgetRow& row) { return &row.total; }), is_field);
-  text += value_line(group, group.front()->total.to, true);
-  if (group.front()->beside)
-    text += link_line(group, "beside: " + group.front()->beside->to,
-                      collect([](const BudgetRow& row) { return &*row.beside; }), is_field);
-  return text;
+  if (is_field) rows[0].emplace_back("% (1)");
+  const auto add_values = [&](const std::string& label, double BudgetRow::*value) {
+    std::vector<std::string>& cells = rows.emplace_back(1, label);
+    for (const BudgetRow* row : group)
+      cells.insert(cells.end(), {value_cell(row->*value, shown_unit(row->unit)), ""});
+  };
+  const auto add_links = [&](const std::string& label, auto&& link_of) {
+    std::vector<std::string>& cells = rows.emplace_back(1, label);
+    std::vector<const BudgetLink*> links;
+    for (const BudgetRow* row : group) {
+      const Unit unit = shown_unit(row->unit);
+      links.push_back(&link_of(*row));
+      cells.insert(cells.end(),
+                   {value_cell(links.back()->value, unit), interval_cell(*links.back(), unit)});
+    }
+    if (is_field) cells.push_back(percent(group, links));
+  };
+  const BudgetRow& first = *group.front();
+  add_values(first.total.from, &BudgetRow::paper);
+  for (std::size_t i = 0; i < first.links.size(); ++i)
+    add_links(
+        "-> " + first.links[i].to, [&](const BudgetRow& row) -> auto& { return row.links[i]; });
+  add_links(
+      "total", [](const BudgetRow& row) -> auto& { return row.total; });
+  add_values(first.total.to, &BudgetRow::best);
+  if (first.beside)
+    add_links(
+        "beside: " + first.beside->to, [](const BudgetRow& row) -> auto& { return *row.beside; });
+  return "\n" + output::text_table(rows, alignment + ">");
 }
 
 std::string step_text(const Budget& budget, std::size_t step) {
@@ -147,27 +127,24 @@ std::string step_text(const Budget& budget, std::size_t step) {
       group_table(group_of(budget, step, "sensitivity"), "d(dB)/d(load) at sensor 0", true);
   if (text.empty()) return {};
   return fmt::format("\nStep {} of {}: {}\n", step + 1, budget.load_path.size(),
-                     describe(budget.load_path[step])) +
+                     output::describe(budget.load_path[step])) +
          text;
 }
 
 std::string chain_text(const Budget& budget) {
-  std::string text =
-      budget.case_name + ": from the paper's model to the best one, an assumption at a time\n\n";
-  const auto line = [&](const std::string& label, const std::string& physics) {
-    text += fmt::format("  {:<32}{}\n", label, physics);
-  };
+  output::TextRows rows;
   for (const Station& station : budget.chain.stations)
     if (&station == &budget.chain.stations.front())
-      line(station.name(), "the paper's model: elastica, dipoles along the centreline");
+      rows.push_back({station.name(), "the paper's model: elastica, dipoles along the centreline"});
     else
-      line("-> " + station.name(), station.physics);
+      rows.push_back({"-> " + station.name(), station.physics});
   if (budget.chain.beside)
-    line("beside: " + budget.chain.beside->name(),
-         budget.chain.beside->physics + "; not in the sum");
-  for (const std::string& name : budget.chain.not_run) line("not run", name);
-  for (const std::string& remark : budget.remarks) line("note", remark);
-  return text;
+    rows.push_back({"beside: " + budget.chain.beside->name(),
+                    budget.chain.beside->physics + "; not in the sum"});
+  for (const std::string& name : budget.chain.not_run) rows.push_back({"not run", name});
+  for (const std::string& remark : budget.remarks) rows.push_back({"note", remark});
+  return fmt::format("{}: from the paper's model to the best one, an assumption at a time\n\n{}",
+                     budget.case_name, output::text_table(rows, "<"));
 }
 
 constexpr const char* legend =
@@ -186,7 +163,7 @@ Json link_json(const BudgetLink& link) {
           {"physics", link.physics},
           {"value", link.value},
           {"uncertainty", link.uncertainty ? Json(*link.uncertainty) : Json(nullptr)},
-          {"verdict", to_string(link.verdict)}};
+          {"verdict", models::to_string(link.verdict)}};
 }
 
 Json row_json(const BudgetRow& row) {
@@ -206,14 +183,6 @@ Json row_json(const BudgetRow& row) {
   return json;
 }
 
-std::string csv_line(const BudgetRow& row, std::string_view kind, const BudgetLink& link) {
-  return fmt::format("{},{},{},{},{},{},\"{}\",\"{}\",{},{},{}\n", row.step,
-                     row.sensor ? fmt::format("{}", *row.sensor) : "", row.quantity, row.component,
-                     row.unit, kind, link.from, link.to, link.value,
-                     link.uncertainty ? fmt::format("{}", *link.uncertainty) : "",
-                     to_string(link.verdict));
-}
-
 }  // namespace
 
 std::string budget_text(const Budget& budget) {
@@ -228,17 +197,17 @@ std::string budget_text(const Budget& budget) {
   return text;
 }
 
-std::string budget_json(const Budget& budget, const Provenance& provenance) {
+std::string budget_json(const Budget& budget, const output::Provenance& provenance) {
   Json json{{"schema", 1},
             {"case", budget.case_name},
-            {"provenance", to_json(provenance)},
+            {"provenance", output::to_json(provenance)},
             {"loads", Json::array()},
             {"chain", Json::array()},
             {"not_run", budget.chain.not_run},
             {"remarks", budget.remarks},
             {"seconds", budget.seconds},
             {"rows", Json::array()}};
-  for (const Load& load : budget.load_path) json["loads"].push_back(describe(load));
+  for (const Load& load : budget.load_path) json["loads"].push_back(output::describe(load));
   for (const Station& station : budget.chain.stations)
     json["chain"].push_back({{"name", station.name()}, {"physics", station.physics}});
   for (const BudgetRow& row : budget.rows) json["rows"].push_back(row_json(row));
@@ -246,13 +215,19 @@ std::string budget_json(const Budget& budget, const Provenance& provenance) {
 }
 
 std::string budget_csv(const Budget& budget) {
-  std::string text = "step,sensor,quantity,component,unit,kind,from,to,value,uncertainty,verdict\n";
+  output::CsvWriter csv;
+  csv.row("step", "sensor", "quantity", "component", "unit", "kind", "from", "to", "value",
+          "uncertainty", "verdict");
   for (const BudgetRow& row : budget.rows) {
-    for (const BudgetLink& link : row.links) text += csv_line(row, "link", link);
-    text += csv_line(row, "total", row.total);
-    if (row.beside) text += csv_line(row, "beside", *row.beside);
+    const auto add = [&](std::string_view kind, const BudgetLink& link) {
+      csv.row(row.step, row.sensor, row.quantity, row.component, row.unit, kind, link.from, link.to,
+              link.value, link.uncertainty, models::to_string(link.verdict));
+    };
+    for (const BudgetLink& link : row.links) add("link", link);
+    add("total", row.total);
+    if (row.beside) add("beside", *row.beside);
   }
-  return text;
+  return csv.text();
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "compare/budget/budget.h"
-#include "compare/plot/gnuplot.h"
 #include "compare/output/provenance.h"
+#include "compare/plot/gnuplot.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 
 /// The budget for a terminal: what each link changes, then for each step a table of tip and tip
 /// angle and of B, ΔB and dB/dF at the first sensor: the paper's value, each link with its
@@ -21,7 +21,7 @@ std::string budget_text(const Budget& budget);
 /// "best", "total": LINK, "links": [LINK], "beside": LINK or null}]}, LINK = {"from", "to",
 /// "physics", "value", "uncertainty", "verdict"}; SI units. "loads" are the steps' in words,
 /// "provenance" as in summary.json.
-std::string budget_json(const Budget& budget, const Provenance& provenance);
+std::string budget_json(const Budget& budget, const output::Provenance& provenance);
 
 /// A line for each link, total and model beside: step, sensor, quantity, component, unit, kind
 /// ("link", "total", "beside"), from, to, value, uncertainty, verdict; SI units.
@@ -50,4 +50,4 @@ std::vector<WaterfallPanel> waterfall_panels(const Budget& budget);
 /// nlohmann::json does if it is not.
 Budget read_budget(const nlohmann::ordered_json& json);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/budget/sensitivity.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 
 SurroundedPath surround(const LoadPath& path, bool with_neighbours) {
   SurroundedPath result;
@@ -23,7 +23,7 @@ SurroundedPath surround(const LoadPath& path, bool with_neighbours) {
   return result;
 }
 
-std::optional<Sensitivity> sensitivity(const FieldRun& run, const SurroundedPath& path,
+std::optional<Sensitivity> sensitivity(const models::FieldRun& run, const SurroundedPath& path,
                                        std::size_t step, std::size_t sensor) {
   if (!path.around[step] || run.steps.empty()) return std::nullopt;
   std::array<Vector3, 4> B;
@@ -39,4 +39,4 @@ std::optional<Sensitivity> sensitivity(const FieldRun& run, const SurroundedPath
   return Sensitivity{(4 * fine - coarse) / 3, fine};
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

@@ -8,7 +8,7 @@
 
 #include "compare/models/run.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 
 /// Relative step h of the load in the differences below. The truncation of the five-point formula
 /// is h⁴ F⁵ B⁽⁵⁾/(30 F), that of the solvers' tolerances (1e-9) about 1e-9/h of dB/dF: at h = 0.01
@@ -33,7 +33,7 @@ struct Sensitivity {
   Vector3 plain;  ///< D(h) = [B(F + hF) − B(F − hF)]/(2hF): `value` less its truncation error
 };
 /// None if one of the neighbours is missing. `run` is that of the surrounded path.
-std::optional<Sensitivity> sensitivity(const FieldRun& run, const SurroundedPath& path,
+std::optional<Sensitivity> sensitivity(const models::FieldRun& run, const SurroundedPath& path,
                                        std::size_t step, std::size_t sensor);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

@@ -9,7 +9,7 @@
 #include "compare/budget/report.h"
 #include "compare/output/table.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::budget {
 namespace {
 
 /// A drawn row with the unit of its axis.
@@ -34,13 +34,13 @@ std::vector<Panel> panels_of(const Budget& budget, std::size_t step) {
   return panels;
 }
 
-std::string_view style_of(Verdict verdict) {
+std::string_view style_of(models::Verdict verdict) {
   switch (verdict) {
-    case Verdict::resolved:
+    case models::Verdict::resolved:
       return "fc rgb '#4477aa' fs solid 1 border lc rgb '#4477aa'";
-    case Verdict::below_uncertainty:
+    case models::Verdict::below_uncertainty:
       return "fc rgb '#aaaaaa' fs solid 1 border lc rgb '#777777'";
-    case Verdict::inconclusive:
+    case models::Verdict::inconclusive:
       break;
   }
   return "fc rgb '#aa3377' fs empty border lc rgb '#aa3377'";
@@ -158,7 +158,7 @@ Waterfall waterfall(const Budget& budget) {
           "below it; hollow: it is not known"),
       count,
       plot::quoted(fmt::format("{}, step {} of {}: {}", budget.case_name, step + 1,
-                               budget.load_path.size(), describe(budget.load_path[step]))),
+                               budget.load_path.size(), output::describe(budget.load_path[step]))),
       static_cast<double>(names_width) / size.width,
       1 - static_cast<double>(right_margin) / size.width);
   for (const Panel& panel : panels)
@@ -176,4 +176,4 @@ std::vector<WaterfallPanel> waterfall_panels(const Budget& budget) {
   return result;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::budget

@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-namespace ciliaval::compare {
+#include "compare/output/text_table.h"
+
+namespace ciliaval::compare::claims {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -73,9 +75,11 @@ std::string claims_text(const std::vector<Claim>& claims) {
     ++counts[static_cast<int>(claim.verdict())];
     text +=
         fmt::format("{}: {}\n  -> {}\n", claim.place, claim.statement, to_string(claim.verdict()));
+    output::TextRows rows;
     for (const Finding& finding : claim.findings)
-      text += fmt::format("     {:<54} {:<32} {}\n", finding.models, value_text(finding),
-                          holds_text(finding.holds));
+      rows.push_back(
+          {"  " + finding.models, value_text(finding), std::string(holds_text(finding.holds))});
+    text += output::text_table(rows, "<");
     if (!claim.note.empty()) text += fmt::format("     {}\n", claim.note);
     text += '\n';
   }
@@ -85,7 +89,7 @@ std::string claims_text(const std::vector<Claim>& claims) {
                     claims.size(), counts[0], counts[1], counts[2], counts[3]);
 }
 
-std::string claims_json(const std::vector<Claim>& claims, const Provenance& provenance) {
+std::string claims_json(const std::vector<Claim>& claims, const output::Provenance& provenance) {
   Json json{{"schema", 1}, {"provenance", to_json(provenance)}, {"claims", Json::array()}};
   for (const Claim& claim : claims) {
     Json entry{{"place", claim.place},
@@ -105,4 +109,4 @@ std::string claims_json(const std::vector<Claim>& claims, const Provenance& prov
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

@@ -8,7 +8,7 @@
 
 #include "compare/output/provenance.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::claims {
 
 /// What one pair of models (or one measure) finds for a claim: a value, or the range of values over
 /// the loads.
@@ -47,6 +47,6 @@ struct Claim {
 std::string claims_text(const std::vector<Claim>& claims);
 /// {"schema": 1, "provenance", "claims": [{"place", "statement", "verdict", "note", "findings":
 /// [{"models", "low", "high", "unit", "uncertainty", "holds"}]}]}
-std::string claims_json(const std::vector<Claim>& claims, const Provenance& provenance);
+std::string claims_json(const std::vector<Claim>& claims, const output::Provenance& provenance);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

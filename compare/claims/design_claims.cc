@@ -11,7 +11,7 @@
 #include "compare/study/report.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::claims {
 namespace {
 
 using study::Output;
@@ -30,7 +30,7 @@ StudyResult evaluated(study::Study its, Output output, const Progress& progress)
     std::vector<study::PairResult> pairs(study.pairs.size());
     for (const std::string& mechanics : study.mechanics()) {
       const auto of_model = study::evaluate(study, study.case_at(point), mechanics,
-                                            mechanics_models(), field_models());
+                                            models::mechanics_models(), models::field_models());
       std::size_t next = 0;
       for (std::size_t p = 0; p < study.pairs.size(); ++p)
         if (study.pairs[p].mechanics == mechanics) pairs[p] = of_model.at(next++);
@@ -108,7 +108,7 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
        "the signal |dB| grows with E2",
        {},
        "Below some 0.2 MPa the magnet bends so far that dB_x has the other sign, and |dB| falls "
-       "first; above it grows (docs/study.md). The paper's range of E2 is not given."});
+       "first; above it grows (docs/evidence/studies.md). The paper's range of E2 is not given."});
   add_trends(
       e2, 0, [](const Trend& t) { return t.kind == Trend::Kind::rising; }, claims.back());
   const StudyResult e2_x = run("fig4a-e2.study.toml", Output::dB_x);
@@ -126,7 +126,7 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
                     "the signal grows with the aspect ratio (thinner cilia)",
                     {},
                     "Where the cilium bears the force at all: thinner ones slip off "
-                    "(docs/study.md)."});
+                    "(docs/evidence/studies.md)."});
   add_trends(
       run("fig4b.study.toml", Output::dB_norm), 0,
       [](const Trend& t) { return t.kind == Trend::Kind::falling; }, claims.back());
@@ -148,4 +148,4 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
   return claims;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

@@ -10,7 +10,7 @@
 #include "compare/sensing/bench.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::claims {
 namespace {
 
 struct Linearity {
@@ -20,13 +20,13 @@ struct Linearity {
 
 /// R² of |ΔB| = a v² + b over the case's velocities, as measured at one azimuth. The interpolation
 /// of the response may change each |ΔB| and thus the misfit; errors in proportion to |ΔB| cancel.
-Linearity linearity(const Response& response, const std::vector<double>& forces) {
+Linearity linearity(const sensing::Response& response, const std::vector<double>& forces) {
   Eigen::MatrixX2d A(static_cast<Eigen::Index>(forces.size()), 2);
   Eigen::VectorXd y(A.rows());
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     const double q = forces[static_cast<std::size_t>(i)];
     A.row(i) << q, 1;  // q is v² but for a factor
-    y[i] = response.change(Vector2(q, 0)).norm();
+    y[i] = response.change(sensing::Vector2(q, 0)).norm();
   }
   const Eigen::VectorXd residual = y - A * A.colPivHouseholderQr().solve(y);
   const double deviation = (y.array() - y.mean()).matrix().norm();
@@ -36,16 +36,16 @@ Linearity linearity(const Response& response, const std::vector<double>& forces)
   return {1 - misfit * misfit, off * (2 * misfit + off)};
 }
 
-Claim largest_force(const Bench& bench) {
-  const FlowLaw flow = *flow_law(bench.problem);
-  const double q = flow.force_per_height(bench.problem.flow_velocity.back());
+Claim largest_force(const sensing::Bench& bench) {
+  const sensing::FlowLaw flow = *sensing::flow_law(bench.problem);
+  const double q = flow.force_per_height(input::stated_values(bench.problem, "velocity").back());
   return {"3.5, Eq. 11",
           "the largest force per length is 0.375 N/m at 0.5 m/s",
           {in_range("rho v2 C_d d/2", q, q, "N/m", 0.3745, 0.3755)},
           {}};
 }
 
-Claim linear_response(const Bench& bench, bool with_solid, const Progress& progress) {
+Claim linear_response(const sensing::Bench& bench, bool with_solid, const Progress& progress) {
   Claim claim{"3.5",
               "the field's change is approximately linear in v2",
               {},
@@ -53,12 +53,14 @@ Claim linear_response(const Bench& bench, bool with_solid, const Progress& progr
               "the paper's other comparisons are. The paper gives no figure."};
   std::vector<double> forces;
   for (const Load& load : bench.problem.load_path) forces.push_back(magnitude(load));
-  std::vector<ModelPair> pairs{{"elastica", "line"}, {"elastica", "volume"}, {"beam", "volume"}};
+  std::vector<models::ModelPair> pairs{
+      {"elastica", "line"}, {"elastica", "volume"}, {"beam", "volume"}};
   if (with_solid) pairs.push_back({"solid", "mesh"});
-  for (const ModelPair& pair : pairs) {
-    const Response response(bench.problem, pair.field,
-                            shapes_up_to(bench.problem, pair.mechanics, forces.back(), progress),
-                            bench.problem.sensors);
+  for (const models::ModelPair& pair : pairs) {
+    const sensing::Response response(
+        bench.problem, pair.field,
+        sensing::shapes_up_to(bench.problem, pair.mechanics, forces.back(), progress),
+        bench.problem.sensors);
     const Linearity found = linearity(response, forces);
     claim.findings.push_back(
         in_range(pair.name() + ": R2", found.r2, found.r2, "", 0.99, 1, found.uncertainty));
@@ -66,7 +68,7 @@ Claim linear_response(const Bench& bench, bool with_solid, const Progress& progr
   return claim;
 }
 
-Claim direction(Bench bench, bool with_solid, const Progress& progress) {
+Claim direction(sensing::Bench bench, bool with_solid, const Progress& progress) {
   Claim claim{
       "abstract, 3.5, Fig. 5e",
       "direction of the flow within 10 deg, 0 to 0.5 m/s",
@@ -75,11 +77,11 @@ Claim direction(Bench bench, bool with_solid, const Progress& progress) {
       "turbulence; +-: 95 %, from the scatter of the simulated sensors. Towards 0 the direction is "
       "lost in the noise. The paper's readings were not published."};
   if (!with_solid) bench.truth = {"beam", "volume"};
-  const BenchResult result = run_bench(bench, progress);
-  const BenchRow& all = result.rows.back();
+  const sensing::BenchResult result = sensing::run_bench(bench, progress);
+  const sensing::BenchRow& all = result.rows.back();
   const std::string pair = bench.truth.name() + " by " + bench.models.name();
   const auto degrees = [](double angle) { return angle * 180 / std::numbers::pi; };
-  const auto add = [&](const std::string& what, const BenchErrors& errors) {
+  const auto add = [&](const std::string& what, const sensing::BenchErrors& errors) {
     const double rms = degrees(errors.azimuth_rms);
     claim.findings.push_back(
         in_range(what + ", rms", rms, rms, "deg", 0, 10, degrees(errors.azimuth_rms_interval)));
@@ -96,11 +98,11 @@ Claim direction(Bench bench, bool with_solid, const Progress& progress) {
 
 std::vector<Claim> flow_claims(const std::filesystem::path& folder, bool with_solid,
                                const Progress& progress) {
-  const Bench bench = read_bench(folder / "fig5.sense.toml");
-  if (bench.problem.flow_velocity.empty())
+  const sensing::Bench bench = sensing::read_bench(folder / "fig5.sense.toml");
+  if (input::stated_values(bench.problem, "velocity").empty())
     throw InputError("fig5.sense.toml: its case is no flow of a velocity");
   return {largest_force(bench), linear_response(bench, with_solid, progress),
           direction(bench, with_solid, progress)};
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

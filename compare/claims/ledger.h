@@ -7,7 +7,7 @@
 #include "compare/claims/claim.h"
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::claims {
 
 /// Every quantitative statement of the paper that its text allows to be checked, and those that it
 /// does not, in the paper's order, each with what the models find. `folder` is that of the shipped
@@ -29,4 +29,4 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
 std::vector<Claim> flow_claims(const std::filesystem::path& folder, bool with_solid,
                                const Progress& progress);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

@@ -7,7 +7,7 @@
 
 #include "problem/field_model.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::claims {
 namespace {
 
 constexpr int angles = 24;
@@ -75,4 +75,4 @@ PrintedFields printed_fields(const Cilium& cilium, const Centreline& centreline,
   return sum;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

@@ -5,7 +5,7 @@
 #include "problem/cilium.h"
 #include "problem/types.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::claims {
 
 /// The integrals of Eq. 6 and of Eq. 8 to the letter, and as they are meant (Eq. 5 with dS =
 /// dz/cos θ). To the letter Eq. 6 has 1/cos θ once in x and twice in y and z, Eq. 8 twice in all:
@@ -21,4 +21,4 @@ struct PrintedFields {
 /// over the section, Gauss in r and equal angles).
 PrintedFields printed_fields(const Cilium& cilium, const Centreline& centreline, const Vector3& x);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

@@ -18,7 +18,7 @@
 #include "compare/models/run.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::claims {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -41,31 +41,33 @@ Finding span_in_range(std::string models, const Span& span, std::string unit, do
                   span.uncertainty);
 }
 
-Case paper_case(const std::filesystem::path& folder, const std::string& name, bool with_solid) {
-  Case problem = read_case(folder / name);
+input::Case paper_case(const std::filesystem::path& folder, const std::string& name,
+                       bool with_solid) {
+  input::Case problem = input::read_case(folder / name);
   problem.external.clear();
   problem.mechanics = {"elastica", "beam"};
   if (with_solid) problem.mechanics.emplace_back("solid");
   return problem;
 }
 
-CaseResult solved(const Case& problem, const Progress& progress) {
-  CaseResult result = run(problem, mechanics_models(), field_models(), progress);
-  if (!all_solved(result)) throw SolverError("a model fails on the case " + problem.name);
+models::CaseResult solved(const input::Case& problem, const Progress& progress) {
+  models::CaseResult result =
+      models::run(problem, models::mechanics_models(), models::field_models(), progress);
+  if (!models::all_solved(result)) throw SolverError("a model fails on the case " + problem.name);
   return result;
 }
 
 /// R² between the shapes of the elastica and of finite elements.
-Claim shapes(const CaseResult& result) {
+Claim shapes(const models::CaseResult& result) {
   Claim claim{"abstract, 3.2, Fig. 3b",
               "deformation agrees with finite elements, R2 > 0.99",
               {},
               "R2 is not defined in the paper: 1 - SSE/SST of w(z), and the squared correlation, "
               "which is blind to a factor."};
-  for (const MechanicsRun& reference : result.mechanics) {
+  for (const models::MechanicsRun& reference : result.mechanics) {
     Span r2;
     Span correlation;
-    for (const Comparison& c : compare_models(result)) {
+    for (const models::Comparison& c : models::compare_models(result)) {
       if (c.statistic != "r2" || c.model != "elastica" || c.reference != reference.model || !c.r2)
         continue;
       // w(z) may be off by u everywhere: the misfit by u, R² = 1 − (misfit/deviation)² by as much
@@ -86,12 +88,12 @@ Claim shapes(const CaseResult& result) {
 }
 
 /// Where the rotation is made.
-Claim base_bends(const CaseResult& result) {
+Claim base_bends(const models::CaseResult& result) {
   Claim claim{"2.2, 3.2",
               "deformation is predominantly in the non-magnetic base",
               {},
               "Share of the tip's rotation that the base makes."};
-  for (const MechanicsRun& run : result.mechanics) {
+  for (const models::MechanicsRun& run : result.mechanics) {
     Span share;
     for (std::size_t step = 0; step < run.result.steps.size(); ++step) {
       const Centreline& line = run.result.steps[step].deformation->centreline;
@@ -99,7 +101,7 @@ Claim base_bends(const CaseResult& result) {
       const double part =
           100 * line.at(result.problem.cilium.segments.front().length).theta() / tip;
       // Either angle may be off by as much, in proportion.
-      share.add(part, 2 * part * tip_angle_uncertainty(run, step).value() / std::abs(tip));
+      share.add(part, 2 * part * models::tip_angle_uncertainty(run, step).value() / std::abs(tip));
     }
     claim.findings.push_back(span_in_range(run.model, share, "%", 50, 100));
   }
@@ -108,11 +110,12 @@ Claim base_bends(const CaseResult& result) {
 
 /// B or ΔB of two field models on one deformation, sensor 0.
 struct FieldsOfAStep {
-  FieldValue line;
-  FieldValue volume;
+  models::FieldValue line;
+  models::FieldValue volume;
   double proportion = 0;  ///< what the deformation's error makes of both ΔB: a part of it
 
-  FieldsOfAStep(const CaseResult& result, const MechanicsRun& run, std::size_t step, bool change)
+  FieldsOfAStep(const models::CaseResult& result, const models::MechanicsRun& run, std::size_t step,
+                bool change)
       : line(value_of(result, run, "line", step, change)),
         volume(value_of(result, run, "volume", step, change)),
         line_change_(value_of(result, run, "line", step, true).value),
@@ -135,11 +138,12 @@ struct FieldsOfAStep {
   }
 
  private:
-  static FieldValue value_of(const CaseResult& result, const MechanicsRun& run,
-                             const std::string& field, std::size_t step, bool change) {
-    for (const FieldRun& fields : result.fields)
+  static models::FieldValue value_of(const models::CaseResult& result,
+                                     const models::MechanicsRun& run, const std::string& field,
+                                     std::size_t step, bool change) {
+    for (const models::FieldRun& fields : result.fields)
       if (fields.mechanics == run.model && fields.field == field)
-        if (const auto value = field_value(fields, run, step, 0, change)) return *value;
+        if (const auto value = models::field_value(fields, run, step, 0, change)) return *value;
     throw SolverError("there is no field of " + run.model + "/" + field);
   }
 
@@ -169,7 +173,7 @@ class Rrmse {
 };
 
 /// What lies between `volume` (Eq. 8-9, the multi-dipole model) and `line` on each deformation.
-std::vector<Claim> two_dipole_models(const CaseResult& result) {
+std::vector<Claim> two_dipole_models(const models::CaseResult& result) {
   Claim horizontal{
       "3.3, Fig. 3d", "multi-dipole: horizontal field stronger by some 10.0 %", {}, {}};
   Claim vertical{"3.3, Fig. 3d", "multi-dipole: B_z weaker by 4.8 to 6.3 %", {}, {}};
@@ -181,7 +185,7 @@ std::vector<Claim> two_dipole_models(const CaseResult& result) {
   using Part = std::function<double(const Vector3&)>;
   const Part across = [](const Vector3& B) { return B.head<2>().norm(); };
   const Part up = [](const Vector3& B) { return B.z(); };
-  for (const MechanicsRun& run : result.mechanics)
+  for (const models::MechanicsRun& run : result.mechanics)
     for (const bool change : {false, true}) {
       const std::string name = run.model + (change ? ": dB" : ": B");
       const auto compare = [&](const Part& part, Claim& ratios, double at_least, double at_most,
@@ -252,17 +256,17 @@ Span order_of(const Timing& a, const Timing& b, double doublings) {
 }
 
 /// Times of the paper's sums, with n elements and n³.
-std::vector<Claim> costs(const CaseResult& result) {
-  const Case& problem = result.problem;
+std::vector<Claim> costs(const models::CaseResult& result) {
+  const input::Case& problem = result.problem;
   const Deformation& shape = *result.mechanics.front().result.steps.back().deformation;
   const auto line = [&](unsigned int n) {
-    const analytic::LineField model({.method = analytic::Method::uniform, .elements = n});
+    const analytic::rod::LineField model({.method = analytic::rod::Method::uniform, .elements = n});
     return time_of([&] { model.field(problem.cilium, shape, problem.sensors); });
   };
   const auto volume = [&](unsigned int n) {
-    const analytic::VolumeField model({.slices = analytic::VolumeOptions::Slices::stacked,
-                                       .method = analytic::Method::uniform,
-                                       .elements = n});
+    const analytic::rod::VolumeField model({.slices = analytic::rod::VolumeOptions::Slices::stacked,
+                                            .method = analytic::rod::Method::uniform,
+                                            .elements = n});
     return time_of([&] { model.field(problem.cilium, shape, problem.sensors); });
   };
   Claim scaling{"3.3", "cost O(n) of the single-dipole, O(n3) of the multi-dipole model", {}, {}};
@@ -270,14 +274,15 @@ std::vector<Claim> costs(const CaseResult& result) {
                                     order_of(line(4096), line(256), 4), "", 0.5, 1.5),
                       span_in_range("volume: order, n = 24 to 96",
                                     order_of(volume(96), volume(24), 2), "", 2.5, 3.5)};
-  scaling.note = "Neither is needed: both have closed forms, O(1) and O(n) (docs/fields.md).";
+  scaling.note =
+      "Neither is needed: both have closed forms, O(1) and O(n) (docs/theory/fields.md).";
   Claim ratio{"3.3", "the multi-dipole model takes 100 to 1,000 times as long", {}, {}};
   ratio.findings = {in_range("numbers of dipoles, n = 10 to 30", 100, 900, "times", 100, 1000)};
   for (const unsigned int n : {10U, 30U, 100U})
     ratio.findings.push_back(span_in_range(fmt::format("time of the sums, n = {}", n),
                                            ratio_of(volume(n), line(n)), "times", 100, 1000));
-  const analytic::LineField poles;
-  const analytic::VolumeField discs;
+  const analytic::rod::LineField poles;
+  const analytic::rod::VolumeField discs;
   const Timing closed_volume =
       time_of([&] { discs.field(problem.cilium, shape, problem.sensors); });
   const Timing closed_line = time_of([&] { poles.field(problem.cilium, shape, problem.sensors); });
@@ -290,9 +295,9 @@ std::vector<Claim> costs(const CaseResult& result) {
 }
 
 /// "Computationally intractable": the seconds of the 3D solid.
-Claim intractable(const CaseResult& result) {
+Claim intractable(const models::CaseResult& result) {
   Claim claim{"1, 2.2", "finite elements are computationally intractable here", {}, {}};
-  for (const MechanicsRun& run : result.mechanics) {
+  for (const models::MechanicsRun& run : result.mechanics) {
     if (run.model == "elastica") continue;
     Span seconds;
     for (const MechanicsStep& step : run.result.steps) seconds.add(step.seconds);
@@ -304,8 +309,8 @@ Claim intractable(const CaseResult& result) {
 }
 
 /// The effect of the misprints, by the elastica at the last load.
-Claim misprints(const CaseResult& result) {
-  const MechanicsRun& run = result.mechanics.front();
+Claim misprints(const models::CaseResult& result) {
+  const models::MechanicsRun& run = result.mechanics.front();
   Claim claim{"2.2.2, Eq. 6, 8", "Eq. 6 and 8 to the letter are the field of Eq. 5", {}, {}};
   for (const std::size_t step : {std::size_t{0}, run.result.steps.size() - 1}) {
     const PrintedFields fields =
@@ -333,10 +338,10 @@ Claim misprints(const CaseResult& result) {
 
 std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_solid,
                                 const Progress& progress) {
-  Case problem = paper_case(folder, "fig3d.toml", with_solid);
+  input::Case problem = paper_case(folder, "fig3d.toml", with_solid);
   problem.fields = {"line", "volume"};
-  problem.options.volume.slices = analytic::VolumeOptions::Slices::stacked;
-  const CaseResult result = solved(problem, progress);
+  problem.options.volume.slices = analytic::rod::VolumeOptions::Slices::stacked;
+  const models::CaseResult result = solved(problem, progress);
   std::vector<Claim> claims{intractable(result), base_bends(result), misprints(result),
                             shapes(result)};
   claims.push_back(
@@ -361,4 +366,4 @@ std::vector<Claim> claims(const std::filesystem::path& folder, bool with_solid,
   return all;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::claims

@@ -14,7 +14,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::convergence {
 namespace {
 
 constexpr double least_order = 0.1;
@@ -221,4 +221,4 @@ Extrapolation kept_tolerances(std::span<const Level> levels, double scale) {
   return result;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::convergence

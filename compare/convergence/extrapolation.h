@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::convergence {
 
 /// A quantity on one level of refinement.
 struct Level {
@@ -64,4 +64,4 @@ Extrapolation extrapolate(std::span<const Level> levels, std::optional<double> f
 /// grid_convergence().
 Extrapolation kept_tolerances(std::span<const Level> levels, double scale);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::convergence

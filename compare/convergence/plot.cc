@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::convergence {
 namespace {
 
 constexpr plot::Size panel_size{560, 560};
@@ -137,7 +137,8 @@ std::size_t step_count(const RefinementStudy& study) {
 
 }  // namespace
 
-ConvergencePlot convergence_plot(const Case& problem, const std::vector<RefinementStudy>& studies) {
+ConvergencePlot convergence_plot(const input::Case& problem,
+                                 const std::vector<RefinementStudy>& studies) {
   std::string panels;
   int count = 0;
   for (const RefinementStudy& study : studies)
@@ -161,4 +162,4 @@ ConvergencePlot convergence_panel(const RefinementStudy& study) {
   return {header + panel, panel_size};
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::convergence

@@ -7,7 +7,7 @@
 #include "compare/convergence/study.h"
 #include "compare/plot/gnuplot.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::convergence {
 
 struct ConvergencePlot {
   std::string script;  ///< for gnuplot; empty if there is nothing to draw
@@ -18,9 +18,10 @@ struct ConvergencePlot {
 /// tip's deflection and of |ΔB| of each pair at sensor 0 over the level's size h, and the line α
 /// h^p of the observed order. f₀ is the extrapolated limit and f the finest level's value. What is
 /// inconclusive has no limit and no line: grey crosses show the distances from the finest level.
-ConvergencePlot convergence_plot(const Case& problem, const std::vector<RefinementStudy>& studies);
+ConvergencePlot convergence_plot(const input::Case& problem,
+                                 const std::vector<RefinementStudy>& studies);
 
 /// The panel of one study alone, without a title above it.
 ConvergencePlot convergence_panel(const RefinementStudy& study);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::convergence

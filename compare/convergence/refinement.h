@@ -8,7 +8,7 @@
 
 #include "compare/input/case.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::convergence {
 
 /// How a model is refined: a knob of it, and the values that the knob takes.
 struct Refinement {
@@ -20,7 +20,7 @@ struct Refinement {
   bool is_field;               ///< … which then runs on one of the case's mechanics models
   std::string knob;            ///< as in `[models.solid] refinement`
   std::vector<double> values;  ///< of the knob, coarsest first
-  std::function<void(ModelOptions&, double)> set;
+  std::function<void(input::ModelOptions&, double)> set;
   std::function<double(double)> size;  ///< h of a value
   std::string size_name;               ///< what h is, for people
   Law law = Law::power;
@@ -35,6 +35,6 @@ struct Refinement {
 const std::vector<Refinement>& refinements();
 
 /// Those of the models that the case asks for, with the method that it asks for.
-std::vector<Refinement> refinements(const Case& problem);
+std::vector<Refinement> refinements(const input::Case& problem);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::convergence

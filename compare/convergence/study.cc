@@ -12,12 +12,14 @@
 #include <span>
 #include <utility>
 
-#include "compare/regression/quantities.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "compare/output/csv_writer.h"
+#include "compare/output/text_table.h"
+#include "compare/regression/quantities.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::convergence {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -33,17 +35,17 @@ double rounding_of(const std::string& model) {
 /// What one level gave, by id.
 struct LevelResult {
   double size = 0;
-  std::map<std::string, Quantity> quantities;
+  std::map<std::string, regression::Quantity> quantities;
 };
 
 /// Adds the lengths of the vectors that people look at first.
-void add_lengths(std::map<std::string, Quantity>& quantities) {
-  std::vector<Quantity> lengths;
+void add_lengths(std::map<std::string, regression::Quantity>& quantities) {
+  std::vector<regression::Quantity> lengths;
   for (const auto& [id, x] : quantities) {
     if (!id.ends_with("/x")) continue;
     const std::string vector = id.substr(0, id.size() - 2);
     const double y = quantities.at(vector + "/y").value;
-    Quantity length = x;
+    regression::Quantity length = x;
     if (vector.ends_with("/tip")) {
       length.id = vector + "/deflection";
       length.value = std::hypot(x.value, y);
@@ -54,7 +56,7 @@ void add_lengths(std::map<std::string, Quantity>& quantities) {
       lengths.push_back(std::move(length));
     }
   }
-  for (Quantity& length : lengths) quantities.emplace(length.id, std::move(length));
+  for (regression::Quantity& length : lengths) quantities.emplace(length.id, std::move(length));
 }
 
 Progress named(const Progress& progress, const Refinement& refinement, double value) {
@@ -65,12 +67,14 @@ Progress named(const Progress& progress, const Refinement& refinement, double va
 
 /// The first of the case's mechanics models, the cheapest first, that gives the field model what it
 /// needs.
-MechanicsRun mechanics_for(const FieldModel& field, const Case& problem, const Progress& progress) {
-  for (const MechanicsEntry& entry : mechanics_models()) {
+models::MechanicsRun mechanics_for(const FieldModel& field, const input::Case& problem,
+                                   const Progress& progress) {
+  for (const models::MechanicsEntry& entry : models::mechanics_models()) {
     if (std::find(problem.mechanics.begin(), problem.mechanics.end(), entry.id) ==
         problem.mechanics.end())
       continue;
-    MechanicsRun run = run_mechanics(entry.id, *entry.make(problem.options), problem, progress, {});
+    models::MechanicsRun run =
+        models::run_mechanics(entry.id, *entry.make(problem.options), problem, progress, {});
     const Deformation& undeformed = run.result.undeformed;
     if (!undeformed.centreline.pieces().empty() && (!field.needs_body() || undeformed.body))
       return run;
@@ -79,69 +83,72 @@ MechanicsRun mechanics_for(const FieldModel& field, const Case& problem, const P
 }
 
 /// What makes a study of this level impossible; else empty.
-std::string failure_of(const CaseResult& result, const Refinement& refinement) {
-  for (const MechanicsRun& run : result.mechanics)
+std::string failure_of(const models::CaseResult& result, const Refinement& refinement) {
+  for (const models::MechanicsRun& run : result.mechanics)
     for (const MechanicsStep& step : run.result.steps)
       if (step.status == Status::failed) return step.message;
   if (!refinement.is_field) return {};
-  for (const FieldRun& run : result.fields)
+  for (const models::FieldRun& run : result.fields)
     for (const auto& step : run.steps)
       if (step && !step->any()) return step->failure;
   return {};
 }
 
-double seconds_of(const CaseResult& result, bool is_field) {
+double seconds_of(const models::CaseResult& result, bool is_field) {
   double seconds = 0;
   if (is_field)
-    for (const FieldRun& run : result.fields) {
+    for (const models::FieldRun& run : result.fields) {
       seconds += run.undeformed.seconds;
       for (const auto& step : run.steps)
         if (step) seconds += step->seconds;
     }
   else
-    for (const MechanicsRun& run : result.mechanics)
+    for (const models::MechanicsRun& run : result.mechanics)
       for (const MechanicsStep& step : run.result.steps) seconds += step.seconds;
   return seconds;
 }
 
 /// Runs a mechanics model, and the fields on it, at each value of its knob.
-std::vector<CaseResult> run_mechanics_levels(Case problem, const Refinement& refinement,
-                                             std::span<const double> values,
-                                             const Progress& progress) {
-  std::vector<CaseResult> results;
+std::vector<models::CaseResult> run_mechanics_levels(input::Case problem,
+                                                     const Refinement& refinement,
+                                                     std::span<const double> values,
+                                                     const Progress& progress) {
+  std::vector<models::CaseResult> results;
   problem.mechanics = {refinement.model};
   problem.external.clear();  // the same at every level
   if (refinement.law == Refinement::Law::tolerance) problem.fields.clear();
   for (const double value : values) {
     refinement.set(problem.options, value);
-    results.push_back(
-        run(problem, mechanics_models(), field_models(), named(progress, refinement, value)));
+    results.push_back(models::run(problem, models::mechanics_models(), models::field_models(),
+                                  named(progress, refinement, value)));
   }
   return results;
 }
 
 /// Runs a field model at each value of its knob, on one deformation.
-std::vector<CaseResult> run_field_levels(Case problem, const Refinement& refinement,
-                                         std::span<const double> values, const Progress& progress) {
-  const auto entry = std::find_if(field_models().begin(), field_models().end(),
-                                  [&](const FieldEntry& e) { return e.id == refinement.model; });
-  std::vector<CaseResult> results;
-  std::optional<MechanicsRun> mechanics;
+std::vector<models::CaseResult> run_field_levels(input::Case problem, const Refinement& refinement,
+                                                 std::span<const double> values,
+                                                 const Progress& progress) {
+  const auto entry =
+      std::find_if(models::field_models().begin(), models::field_models().end(),
+                   [&](const models::FieldEntry& e) { return e.id == refinement.model; });
+  std::vector<models::CaseResult> results;
+  std::optional<models::MechanicsRun> mechanics;
   for (const double value : values) {
     refinement.set(problem.options, value);
     const auto field = entry->make(problem.options);
     if (!mechanics) mechanics = mechanics_for(*field, problem, progress);
     results.push_back({problem,
                        {*mechanics},
-                       {run_field(refinement.model, *field, *mechanics, problem,
-                                  named(progress, refinement, value))}});
+                       {models::run_field(refinement.model, *field, *mechanics, problem,
+                                          named(progress, refinement, value))}});
   }
   return results;
 }
 
-LevelResult level_of(const CaseResult& result, const Refinement& refinement, double value) {
+LevelResult level_of(const models::CaseResult& result, const Refinement& refinement, double value) {
   LevelResult level{refinement.size(value), {}};
-  for (Quantity& quantity : measurements(result).quantities)
+  for (regression::Quantity& quantity : regression::measurements(result).quantities)
     if (!quantity.id.ends_with("/tip_uncertainty") &&
         (!refinement.is_field || quantity.id.find("/mechanics/") == std::string::npos))
       level.quantities.emplace(quantity.id, std::move(quantity));
@@ -149,7 +156,7 @@ LevelResult level_of(const CaseResult& result, const Refinement& refinement, dou
   return level;
 }
 
-Extrapolation extrapolation_of(const std::vector<Level>& levels, const Quantity& finest,
+Extrapolation extrapolation_of(const std::vector<Level>& levels, const regression::Quantity& finest,
                                const Refinement& refinement) {
   if (refinement.law == Refinement::Law::power)
     return extrapolate(levels, refinement.formal_order,
@@ -221,14 +228,14 @@ ConvergedQuantity read_quantity(const Json& json) {
 
 }  // namespace
 
-RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,
+RefinementStudy refinement_study(const input::Case& problem, const Refinement& refinement,
                                  unsigned int count, const Progress& progress) {
   RefinementStudy study{refinement.model, refinement.knob, refinement.size_name, {}, {}, {}, {}};
   if (count < 3)
     throw InputError(fmt::format("a study needs 3 levels of refinement or more, not {}", count));
   const auto values =
       std::span(refinement.values).first(std::min<std::size_t>(count, refinement.values.size()));
-  const std::vector<CaseResult> results =
+  const std::vector<models::CaseResult> results =
       refinement.is_field ? run_field_levels(problem, refinement, values, progress)
                           : run_mechanics_levels(problem, refinement, values, progress);
   std::vector<LevelResult> levels;
@@ -252,32 +259,33 @@ std::string study_text(const std::vector<RefinementStudy>& studies) {
       text += fmt::format("  inconclusive: {}\n", study.failure);
       continue;
     }
-    text += fmt::format("  {:<44} {:>16} {:>7} {:>16} {:>10}\n", "quantity", "finest", "order",
-                        "extrapolated", "+-");
+    output::TextRows rows{{"quantity", "finest", "order", "extrapolated", "+-", "unit"}};
     for (const ConvergedQuantity& quantity : study.quantities) {
       if (!is_shown(quantity.id)) continue;
       const Extrapolation& e = quantity.extrapolation;
       if (e.conclusive) {
-        text += fmt::format("  {:<44} {:>16.9g} {:>7} {:>16.9g} {:>10.2g} {}\n", quantity.id,
-                            quantity.levels.front().value,
-                            e.order ? fmt::format("{:.2f}", *e.order) : "-", e.limit, e.uncertainty,
-                            quantity.unit);
+        rows.push_back(
+            {quantity.id, output::number_cell(quantity.levels.front().value, 1, "{:.9g}"),
+             output::number_cell(e.order, 1, "{:.2f}"), output::number_cell(e.limit, 1, "{:.9g}"),
+             output::number_cell(e.uncertainty, 1, "{:.2g}"), quantity.unit});
         continue;
       }
       std::vector<double> values;
       for (const Level& level : quantity.levels) values.push_back(level.value);
-      text += fmt::format("  {:<44} inconclusive: {}: {:.9g} {}\n", quantity.id, e.reason,
-                          fmt::join(values, ", "), quantity.unit);
+      rows.push_back({quantity.id, "-", "-", "-", "-",
+                      fmt::format("{}; inconclusive: {}: {:.9g}", quantity.unit, e.reason,
+                                  fmt::join(values, ", "))});
     }
+    text += output::text_table(rows, "<>>>><");
   }
   return text;
 }
 
 std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
-                       const Provenance& provenance) {
+                       const output::Provenance& provenance) {
   Json json{{"schema", 1},
             {"case", case_name},
-            {"provenance", to_json(provenance)},
+            {"provenance", output::to_json(provenance)},
             {"studies", Json::array()}};
   for (const RefinementStudy& study : studies) {
     Json entry{{"model", study.model},
@@ -312,23 +320,37 @@ std::vector<RefinementStudy> read_studies(const Json& json) {
 }
 
 std::string study_csv(const std::vector<RefinementStudy>& studies) {
-  std::string text =
-      "model,quantity,unit,conclusive,order,limit,uncertainty,safety,reason,levels\n";
+  std::size_t levels = 0;
+  for (const RefinementStudy& study : studies) levels = std::max(levels, study.settings.size());
+  output::CsvWriter csv;
+  for (const char* name : {"model", "option", "quantity", "unit", "conclusive", "order", "limit",
+                           "uncertainty", "safety", "reason"})
+    csv.add(name);
+  for (std::size_t i = 1; i <= levels; ++i) {
+    csv.add(fmt::format("size_{}", i));
+    csv.add(fmt::format("value_{}", i));
+  }
+  csv.end_row();
   for (const RefinementStudy& study : studies)
     for (const ConvergedQuantity& quantity : study.quantities) {
       const Extrapolation& e = quantity.extrapolation;
       const auto number = [&](double value) {
-        return e.conclusive ? fmt::format("{}", value) : std::string();
+        return e.conclusive ? std::optional(value) : std::nullopt;
       };
-      text += fmt::format("{},{},{},{},{},{},{},{},{},\"{}\"", study.model, study.knob, quantity.id,
-                          quantity.unit, e.conclusive ? 1 : 0,
-                          e.order ? fmt::format("{}", *e.order) : "", number(e.limit),
-                          number(e.uncertainty), number(e.safety), e.reason);
-      for (const Level& level : quantity.levels)
-        text += fmt::format(",{},{}", level.size, level.value);
-      text += '\n';
+      for (const std::string& text : {study.model, study.knob, quantity.id, quantity.unit})
+        csv.add(text);
+      csv.add(e.conclusive ? 1 : 0);
+      for (const auto& value : {e.order, number(e.limit), number(e.uncertainty), number(e.safety)})
+        csv.add(value);
+      csv.add(e.reason);
+      for (std::size_t i = 0; i < levels; ++i) {
+        const bool is_there = i < quantity.levels.size();
+        csv.add(is_there ? std::optional(quantity.levels[i].size) : std::nullopt);
+        csv.add(is_there ? std::optional(quantity.levels[i].value) : std::nullopt);
+      }
+      csv.end_row();
     }
-  return text;
+  return csv.text();
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::convergence

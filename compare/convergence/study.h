@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "compare/input/case.h"
 #include "compare/convergence/extrapolation.h"
 #include "compare/convergence/refinement.h"
+#include "compare/input/case.h"
 #include "compare/output/provenance.h"
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::convergence {
 
-/// One quantity of a case on all levels, finest first: those of compare/check/quantities.h, and
-/// made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and
+/// One quantity of a case on all levels, finest first: those of compare/regression/quantities.h,
+/// and made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and
 /// `…/dB/SENSOR/norm`, |ΔB|.
 struct ConvergedQuantity {
   std::string id;
@@ -38,7 +38,7 @@ struct RefinementStudy {
 /// that there are, and extrapolates each quantity. Tolerances of a mechanics model are those of its
 /// shape: fields are left out. A model that fails on a level leaves none with a study, a quantity
 /// that a level lacks has none. Throws InputError if `count` is below 3.
-RefinementStudy refinement_study(const Case& problem, const Refinement& refinement,
+RefinementStudy refinement_study(const input::Case& problem, const Refinement& refinement,
                                  unsigned int count, const Progress& progress = {});
 
 /// Tables for people: of each model the tip, its angle and the field components, with what the
@@ -48,12 +48,12 @@ std::string study_text(const std::vector<RefinementStudy>& studies);
 /// "seconds", "failure", "quantities": [{"id", "unit", "levels": [{"size", "value"}], "conclusive",
 /// "reason", "order", "limit", "uncertainty", "safety"}]}]}
 std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
-                       const Provenance& provenance);
+                       const output::Provenance& provenance);
 /// The studies of a text that study_json() made. Throws what nlohmann::json does if it is not.
 std::vector<RefinementStudy> read_studies(const nlohmann::ordered_json& json);
 
-/// A line for each quantity: model, knob, id, unit, conclusive, order, limit, uncertainty, safety,
-/// reason, then size and value of each level.
+/// A row for each quantity: model, option, quantity, unit, conclusive, order, limit, uncertainty,
+/// safety, reason, then size and value of each level, finest first.
 std::string study_csv(const std::vector<RefinementStudy>& studies);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::convergence

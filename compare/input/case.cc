@@ -6,7 +6,7 @@
 #include "compare/input/external/external_files.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 /// A file name that the case states is that of a file beside the case file, unless absolute.
@@ -17,11 +17,11 @@ void put_beside(std::string_view case_file, std::filesystem::path& file) {
 }
 
 /// Reads the files of all external models. Throws InputError with all their faults.
-void read_files(std::vector<ExternalModel>& external, const Case& c) {
+void read_files(std::vector<external::ExternalModel>& external, const Case& c) {
   std::string faults;
-  for (ExternalModel& model : external) {
+  for (external::ExternalModel& model : external) {
     try {
-      read_external_files(model, c.cilium, c.load_path, c.sensors.size());
+      external::read_external_files(model, c.cilium, c.load_path, c.sensors.size());
     } catch (const InputError& error) {
       faults += (faults.empty() ? "" : "\n") + std::string(error.what());
     }
@@ -44,7 +44,7 @@ Case read_case(std::string_view text, std::string_view file) {
   put_beside(file, c.options.solid.mesh);
   put_beside(file, c.options.calculix.keep);
   if (c.options.calculix.program.has_parent_path()) put_beside(file, c.options.calculix.program);
-  for (ExternalModel& model : c.external) {
+  for (external::ExternalModel& model : c.external) {
     for (std::filesystem::path& centreline : model.centreline_files) put_beside(file, centreline);
     put_beside(file, model.readings_file);
     put_beside(file, model.background_file);
@@ -65,4 +65,4 @@ Case read_case(const std::filesystem::path& file) {
   return read_case(read_toml_file(file, "case"), file.string());
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -10,10 +10,11 @@
 #include "compare/input/case_sections.h"
 #include "fem/solid/material/hyperelastic.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 constexpr double longest_cilium = 100;  ///< m
+constexpr double most_slender = 1e5;    ///< length over diameter: bounds the graded quadratures
 constexpr std::size_t most_rows =
     200000;  ///< of results; a row takes about 3 kB of memory in a run
 
@@ -56,9 +57,9 @@ void check_contact(const toml::table& root, const Case& c, Faults& faults) {
   const double w = c.options.solid.kernel_width;
   for (std::size_t i = 0; i < c.load_path.size(); ++i) {
     const std::optional<double> height = contact_height(c.load_path[i]);
-    if (!height || !is_told_first(root, key::height.name, i)) continue;
+    if (!height || !is_told_first(root, "height", i)) continue;
     const double h = *height;
-    const Place where = place_of_step(root, key::height.name, i);
+    const Place where = place_of_step(root, "height", i);
     if (!(h > 0 && h < length)) {
       faults.add(where, fmt::format("the contact height {:g} m must lie between the base and the "
                                     "tip of the cilium, which is {:g} m high",
@@ -86,26 +87,26 @@ void check_mesh(const toml::table& root, const Case& c, Faults& faults) {
 
 void check_section(const toml::table& root, const Case& c, Faults& faults) {
   for (std::size_t i = 0; i < c.load_path.size(); ++i) {
-    const auto* section = std::get_if<SectionLoad>(&c.load_path[i]);
-    if (section == nullptr || !is_told_first(root, key::arclength.name, i)) continue;
-    if (section->arclength > c.cilium.length())
+    const std::optional<double> arclength = loaded_arclength(c.load_path[i]);
+    if (!arclength || !is_told_first(root, "arclength", i)) continue;
+    if (*arclength > c.cilium.length())
       faults.add(
-          place_of_step(root, key::arclength.name, i),
+          place_of_step(root, "arclength", i),
           fmt::format("the loaded section at arc length {:g} m lies beyond the tip at {:g} m",
-                      section->arclength, c.cilium.length()));
+                      *arclength, c.cilium.length()));
   }
 }
 
 void check_elastica_form(const toml::table& root, const Case& c, Faults& faults) {
-  if (c.options.elastica.form != analytic::ElasticaOptions::Form::height ||
+  if (c.options.elastica.form != analytic::elastica::ElasticaOptions::Form::height ||
       !asks_for(c.mechanics, "elastica") || c.load_path.empty())
     return;
-  const std::string_view load = type(c.load_path.front());
-  if (load == ContactLoad::type || load == FlowLoad::type || load == ProbeLoad::type) return;
+  const Load& load = c.load_path.front();
+  if (load.is<ContactLoad>() || load.is<FlowLoad>() || load.is<ProbeLoad>()) return;
   faults.add(place_of(root, "models.elastica.form"),
              fmt::format("the elastica's form 'height' (Eq. 1-4) takes the load types "
                          "'contact', 'flow' and 'probe', not '{}': use the form 'arclength'",
-                         load));
+                         type(load)));
 }
 
 void check_calculix(const toml::table& root, const Case& c, bool load_is_right, Faults& faults) {
@@ -113,13 +114,13 @@ void check_calculix(const toml::table& root, const Case& c, bool load_is_right, 
     faults.add(place_of(root, "models.calculix.program"),
                "'program' must name a program, such as \"ccx\"");
   if (!asks_for(c.mechanics, "calculix") || !load_is_right || c.load_path.empty()) return;
-  const std::string_view load = type(c.load_path.front());
-  if (load == SectionLoad::type || load == DeadLoad::type) return;
+  const Load& load = c.load_path.front();
+  if (load.is<SectionLoad>() || load.is<DeadLoad>()) return;
   faults.add(place_of_id(root, "mechanics", "calculix"),
              fmt::format("CalculiX takes the load types 'section' and 'dead', not '{}', which "
                          "follows the current height: leave out 'calculix', or state the load as "
                          "one of those",
-                         load));
+                         type(load)));
 }
 
 void check_fields(const toml::table& root, const Case& c, bool cilium_is_right, Faults& faults) {
@@ -145,7 +146,7 @@ std::size_t pairs(std::size_t n) {
 
 void check_material(const toml::table& root, const Case& c, Faults& faults) {
   const auto [ratio_2, ratio_3] = c.options.solid.yeoh_ratios;
-  if (fem::yeoh_is_stable(ratio_2, ratio_3)) return;
+  if (fem::solid::material::yeoh_is_stable(ratio_2, ratio_3)) return;
   faults.add(place_of(root, "models.solid.yeoh_ratios"),
              fmt::format("a Yeoh solid with C20/C10 = {:g} and C30/C10 = {:g} is unstable: from "
                          "some shear on its shear stress falls; {}",
@@ -156,8 +157,8 @@ void check_material(const toml::table& root, const Case& c, Faults& faults) {
 }
 
 /// The figures of a run: B and ΔB of each field run at each sensor, straight and at each step, and
-/// the comparisons of each pair of runs (compare/errors.h): of mechanics five a step, of fields six
-/// components at each sensor a step and over the path.
+/// the comparisons of each pair of runs (compare/models/errors.h): of mechanics five a step, of
+/// fields six components at each sensor a step and over the path.
 void check_size(const toml::table& root, const Case& c, Faults& faults) {
   const std::size_t steps = c.load_path.size();
   const std::size_t sensors = c.sensors.size();
@@ -165,7 +166,7 @@ void check_size(const toml::table& root, const Case& c, Faults& faults) {
   std::size_t bodies = 0;
   std::size_t mechanics = c.mechanics.size();
   std::size_t readings = 0;
-  for (const ExternalModel& model : c.external) {
+  for (const external::ExternalModel& model : c.external) {
     if (!model.centreline_files.empty()) ++mechanics;
     if (!model.readings_file.empty()) ++readings;
   }
@@ -191,6 +192,11 @@ void check_together(const toml::table& root, const Case& c, const RightTables& r
                fmt::format("the segments are {:g} m long together; more than {:g} m is taken for a "
                            "slip in the unit",
                            c.cilium.length(), longest_cilium));
+  else if (right.cilium && c.cilium.length() > most_slender * c.cilium.diameter)
+    faults.add(place_of(root, "cilium.diameter"),
+               fmt::format("the cilium is {:g} diameters long; more than {:g} is taken for a slip "
+                           "in the unit",
+                           c.cilium.length() / c.cilium.diameter, most_slender));
   if (right.cilium && right.load && right.models) check_contact(root, c, faults);
   if (right.cilium && right.load) check_section(root, c, faults);
   if (right.load && right.models) check_elastica_form(root, c, faults);
@@ -202,4 +208,4 @@ void check_together(const toml::table& root, const Case& c, const RightTables& r
   if (right.load && right.models) check_size(root, c, faults);
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -6,7 +6,7 @@
 
 #include "compare/input/case_sections.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::size_t most_external = 20;
@@ -39,8 +39,8 @@ std::vector<std::filesystem::path> read_file_names(const toml::node& node, std::
   return result;
 }
 
-void read_name(const toml::node& node, const std::vector<ExternalModel>& others,
-               ExternalModel& model, Faults& faults) {
+void read_name(const toml::node& node, const std::vector<external::ExternalModel>& others,
+               external::ExternalModel& model, Faults& faults) {
   model.name = read_text(node, "name", faults).value_or("");
   const auto is_name = [&](std::string_view id) { return id == model.name; };
   if (!is_plain_file_name(model.name))
@@ -49,20 +49,23 @@ void read_name(const toml::node& node, const std::vector<ExternalModel>& others,
                                         in_quotes(model.name)));
   else if (std::any_of(mechanics_ids().begin(), mechanics_ids().end(), is_name) ||
            std::any_of(field_ids().begin(), field_ids().end(), is_name) ||
-           std::any_of(others.begin(), others.end(),
-                       [&](const ExternalModel& other) { return other.name == model.name; }))
+           std::any_of(others.begin(), others.end(), [&](const external::ExternalModel& other) {
+             return other.name == model.name;
+           }))
     faults.add(place(node),
                fmt::format("the name {} is already that of a model", in_quotes(model.name)));
 }
 
-ExternalModel read_model(Section& table, const std::vector<ExternalModel>& others) {
+external::ExternalModel read_model(Section& table,
+                                   const std::vector<external::ExternalModel>& others) {
   Faults& faults = table.faults();
-  ExternalModel model;
+  external::ExternalModel model;
   if (const toml::node* node = table.require("name")) read_name(*node, others, model, faults);
   if (const toml::node* node = table.find("centrelines"))
     model.centreline_files = read_file_names(*node, "centrelines", faults);
-  for (const auto& [key, file] : {std::pair{"readings", &ExternalModel::readings_file},
-                                  std::pair{"background", &ExternalModel::background_file}})
+  for (const auto& [key, file] :
+       {std::pair{"readings", &external::ExternalModel::readings_file},
+        std::pair{"background", &external::ExternalModel::background_file}})
     if (const toml::node* node = table.find(key))
       model.*file = read_file_name(*node, key, faults).value_or("");
   const auto uncertainty = [&](const QuantityKey& k) -> std::optional<double> {
@@ -82,7 +85,7 @@ ExternalModel read_model(Section& table, const std::vector<ExternalModel>& other
 
 }  // namespace
 
-void read_external(Section& models, std::vector<ExternalModel>& external) {
+void read_external(Section& models, std::vector<external::ExternalModel>& external) {
   Faults& faults = models.faults();
   const toml::node* node = models.find("external");
   if (node == nullptr) return;
@@ -107,7 +110,7 @@ void read_external(Section& models, std::vector<ExternalModel>& external) {
 
 void check_external(const toml::table& root, const Case& c, Faults& faults) {
   for (std::size_t i = 0; i < c.external.size(); ++i) {
-    const ExternalModel& model = c.external[i];
+    const external::ExternalModel& model = c.external[i];
     const auto at = [&](std::string_view key) {
       const auto node = root.at_path(fmt::format("{}[{}].{}", path_name, i, key));
       return node.node() == nullptr ? Place{} : place(*node.node());
@@ -121,4 +124,4 @@ void check_external(const toml::table& root, const Case& c, Faults& faults) {
   }
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

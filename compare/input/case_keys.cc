@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <numbers>
 #include <type_traits>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::array<std::string_view, 4> known_mechanics{"elastica", "beam", "calculix", "solid"};
@@ -34,7 +35,7 @@ const std::array<TextKey, 10> text_keys{{
      "The field models to run on the deformation of each mechanics model; `mesh` takes "
      "`solid` and `calculix` only."},
     {key::external_table, "name", "text", "",
-     "Name of an external model (docs/referees.md), not that of a model; a plain file name."},
+     "Name of an external model (docs/guide/referees.md), not that of a model; a plain file name."},
     {key::external_table, "centrelines", "list of file names", "none",
      "CSV files with a centreline each, one for each load step, beside the case file unless "
      "absolute; these or `readings`."},
@@ -44,14 +45,30 @@ const std::array<TextKey, 10> text_keys{{
      "CSV file with the ambient field at each azimuth, to be taken off the readings."},
 }};
 
-const std::array<const QuantityKey*, 21> quantity_keys{
-    &key::diameter,           &key::segment_length,   &key::young_modulus,
-    &key::poisson_ratio,      &key::magnetization,    &key::load_force,
-    &key::displacement,       &key::height,           &key::force_per_height,
-    &key::velocity,           &key::density,          &key::drag_coefficient,
-    &key::arclength,          &key::force_per_length, &key::azimuth,
-    &key::position,           &key::plate_lower,      &key::plate_upper,
-    &key::plate_permeability, &key::tip_uncertainty,  &key::field_uncertainty};
+const std::vector<const QuantityKey*>& quantity_keys() {
+  static const std::vector<const QuantityKey*> keys = [] {
+    std::vector<const QuantityKey*> all{&key::diameter, &key::segment_length, &key::young_modulus,
+                                        &key::poisson_ratio, &key::magnetization};
+    const auto add = [&](const std::vector<LoadParameter>& parameters, bool last) {
+      for (const LoadParameter& parameter : parameters)
+        if ((parameter.key.name == "azimuth") == last &&
+            std::none_of(all.begin(), all.end(), [&](const QuantityKey* k) {
+              return k->table == parameter.key.table && k->name == parameter.key.name;
+            }))
+          all.push_back(&parameter.key);
+    };
+    for (const bool last : {false, true})
+      for (const LoadType* type : load_types()) {
+        add(type->parameters, last);
+        if (type->statement) add(type->statement->parameters, last);
+      }
+    all.insert(all.end(),
+               {&key::position, &key::plate_lower, &key::plate_upper, &key::plate_permeability,
+                &key::tip_uncertainty, &key::field_uncertainty});
+    return all;
+  }();
+  return keys;
+}
 
 /// A knob that is a double, an unsigned int, a bool or two doubles of the options of one model.
 template <typename Options, typename T>
@@ -127,7 +144,7 @@ constexpr Range iterations_range{1, 1000, false, "the solver must end"};
 constexpr Range cutbacks_range{0, 50, false, "50 halvings leave nothing of a step"};
 
 void append_elastica(std::vector<Knob>& all) {
-  using analytic::ElasticaOptions;
+  using analytic::elastica::ElasticaOptions;
   all.push_back(choice_knob(
       &ModelOptions::elastica, &ElasticaOptions::form, "elastica", "form",
       {{"arclength", ElasticaOptions::Form::arclength}, {"height", ElasticaOptions::Form::height}},
@@ -139,7 +156,7 @@ void append_elastica(std::vector<Knob>& all) {
 }
 
 void append_beam(std::vector<Knob>& all) {
-  using fem::BeamOptions;
+  using fem::beam::BeamOptions;
   constexpr auto beam = &ModelOptions::beam;
   all.push_back(number_knob(beam, &BeamOptions::degree, "beam", "degree", quantity::number,
                             {1, 20, false, "higher elements gain nothing here"},
@@ -165,7 +182,7 @@ void append_beam(std::vector<Knob>& all) {
 /// Yeoh (Rubber Chem. Technol. 66, 754, 1993) finds a C₂₀ of −0.1 to −0.01 C₁₀, which makes rubber
 /// softer in moderate shear, and a C₃₀ of some +0.01 C₁₀, which makes it stiff again.
 void append_material(std::vector<Knob>& all) {
-  using fem::SolidOptions;
+  using fem::solid::SolidOptions;
   using Material = SolidOptions::Material;
   constexpr auto solid = &ModelOptions::solid;
   all.push_back(choice_knob(solid, &SolidOptions::material, "solid", "material",
@@ -196,7 +213,7 @@ void append_material(std::vector<Knob>& all) {
 }
 
 void append_calculix(std::vector<Knob>& all) {
-  using fem::CalculixOptions;
+  using fem::calculix::CalculixOptions;
   constexpr auto calculix = &ModelOptions::calculix;
   all.push_back(number_knob(calculix, &CalculixOptions::refinement, "calculix", "refinement",
                             quantity::number, {0, 3, false, "the solid has the meshes 0 to 3"},
@@ -212,7 +229,7 @@ void append_calculix(std::vector<Knob>& all) {
                             quantity::number, {1, 1024, false, "a machine has no more"},
                             "Threads of CalculiX."));
   all.push_back(number_knob(calculix, &CalculixOptions::time_limit, "calculix", "time_limit",
-                            quantity::time, {1e-3, 1e7, false, key::unit_slip},
+                            quantity::time, {1e-3, 1e7, false, unit_slip},
                             "Of one run of CalculiX, of which each step takes one, or two with "
                             "`error_estimate`; then it is ended, and the step has failed."));
   all.push_back(file_knob(calculix, &CalculixOptions::program, "calculix", "program",
@@ -224,32 +241,33 @@ void append_calculix(std::vector<Knob>& all) {
 }
 
 void append_solid(std::vector<Knob>& all) {
-  using fem::SolidOptions;
+  using fem::solid::SolidOptions;
   constexpr auto solid = &ModelOptions::solid;
   append_material(all);
   all.push_back(number_knob(solid, &SolidOptions::refinement, "solid", "refinement",
                             quantity::number, {0, 3, false, "the solid has the meshes 0 to 3"},
                             "Mesh: 0 coarse, 1 default, 2 fine, 3 to certify these."));
-  all.push_back(choice_knob(solid, &SolidOptions::initial_guess, "solid", "initial_guess",
-                            {{"beam", fem::InitialGuess::beam}, {"none", fem::InitialGuess::none}},
-                            "What the coarsest mesh starts from: the beam's solution at the same "
-                            "load, or its own last ones."));
+  all.push_back(choice_knob(
+      solid, &SolidOptions::initial_guess, "solid", "initial_guess",
+      {{"beam", fem::solid::InitialGuess::beam}, {"none", fem::solid::InitialGuess::none}},
+      "What the coarsest mesh starts from: the beam's solution at the same "
+      "load, or its own last ones."));
   all.push_back(number_knob(solid, &SolidOptions::symmetry, "solid", "symmetry", quantity::number,
                             any_bool,
                             "Solve one side of the bending plane; the other is its mirror "
                             "image."));
-  all.push_back(file_knob(solid, &SolidOptions::mesh, "solid", "mesh",
-                          "Gmsh file (docs/meshes.md) in place of the built-in mesh, beside the "
-                          "case file unless absolute; `refinement` and `symmetry` are then not "
-                          "used. Empty: the built-in mesh."));
-  all.push_back(number_knob(solid, &SolidOptions::mesh_unit, "solid", "mesh_unit", quantity::length,
-                            {1e-9, 1, false, key::unit_slip},
-                            "What a coordinate of 1 in that file is: `\"1 mm\"`."));
   all.push_back(
-      number_knob(solid, &SolidOptions::kernel_width, "solid", "kernel_width", quantity::length,
-                  key::length_range,
-                  "Half-width w of the contact kernel; `contact` and `probe` need 0 < h-w "
-                  "and h+w below the tip."));
+      file_knob(solid, &SolidOptions::mesh, "solid", "mesh",
+                "Gmsh file (docs/guide/meshes.md) in place of the built-in mesh, beside the "
+                "case file unless absolute; `refinement` and `symmetry` are then not "
+                "used. Empty: the built-in mesh."));
+  all.push_back(number_knob(solid, &SolidOptions::mesh_unit, "solid", "mesh_unit", quantity::length,
+                            {1e-9, 1, false, unit_slip},
+                            "What a coordinate of 1 in that file is: `\"1 mm\"`."));
+  all.push_back(number_knob(
+      solid, &SolidOptions::kernel_width, "solid", "kernel_width", quantity::length, length_range,
+      "Half-width w of the contact kernel; `contact` and `probe` need 0 < h-w "
+      "and h+w below the tip."));
   all.push_back(number_knob(solid, &SolidOptions::tolerance, "solid", "tolerance", quantity::number,
                             tolerance_range,
                             "Of the residual, relative to the applied force, and of the "
@@ -262,17 +280,17 @@ void append_solid(std::vector<Knob>& all) {
       "Cuts, to a quarter, of a load step that does not converge, in a row."));
   all.push_back(
       choice_knob(solid, &SolidOptions::solver, "solid", "solver",
-                  {{"auto", fem::SolverKind::automatic},
-                   {"direct", fem::SolverKind::direct},
-                   {"iterative", fem::SolverKind::iterative}},
+                  {{"auto", fem::solid::solvers::SolverKind::automatic},
+                   {"direct", fem::solid::solvers::SolverKind::direct},
+                   {"iterative", fem::solid::solvers::SolverKind::iterative}},
                   "Linear systems: sparse LU, or GMRES with multigrid; `auto` takes LU up "
                   "to 100,000 unknowns."));
 }
 
 void append_fields(std::vector<Knob>& all) {
-  using analytic::Method;
-  using analytic::PushForward;
-  using Slices = analytic::VolumeOptions::Slices;
+  using analytic::rod::Method;
+  using analytic::sources::PushForward;
+  using Slices = analytic::rod::VolumeOptions::Slices;
   const std::vector<std::pair<std::string_view, PushForward>> push_forward{{"F", PushForward::F},
                                                                            {"R", PushForward::R}};
   const std::vector<std::pair<std::string_view, Method>> method{
@@ -281,52 +299,52 @@ void append_fields(std::vector<Knob>& all) {
       {"uniform", Method::uniform}};
   constexpr std::string_view rod = "`F`: M dr (ideal hard magnet); `R`: M d₃ dS (rigid sections).";
 
-  all.push_back(choice_knob(&ModelOptions::dipole, &analytic::DipoleOptions::push_forward, "dipole",
+  all.push_back(choice_knob(&ModelOptions::dipole, &analytic::rod::DipoleOptions::push_forward,
+                            "dipole", "push_forward", push_forward, rod));
+  all.push_back(choice_knob(&ModelOptions::line, &analytic::rod::LineOptions::push_forward, "line",
                             "push_forward", push_forward, rod));
-  all.push_back(choice_knob(&ModelOptions::line, &analytic::LineOptions::push_forward, "line",
-                            "push_forward", push_forward, rod));
-  all.push_back(
-      choice_knob(&ModelOptions::line, &analytic::LineOptions::method, "line", "method", method,
-                  "`closed_form`: two poles; `quadrature`: its check; `uniform`: the paper's "
-                  "sum over slices of equal height."));
-  all.push_back(number_knob(&ModelOptions::line, &analytic::LineOptions::tolerance, "line",
+  all.push_back(choice_knob(
+      &ModelOptions::line, &analytic::rod::LineOptions::method, "line", "method", method,
+      "`closed_form`: two poles; `quadrature`: its check; `uniform`: the paper's "
+      "sum over slices of equal height."));
+  all.push_back(number_knob(&ModelOptions::line, &analytic::rod::LineOptions::tolerance, "line",
                             "tolerance", quantity::number, tolerance_range,
                             "Relative to the field, of the quadrature."));
-  Knob line = number_knob(&ModelOptions::line, &analytic::LineOptions::elements, "line", "elements",
-                          quantity::number, {1, 1e6, false, "more take gigabytes"},
+  Knob line = number_knob(&ModelOptions::line, &analytic::rod::LineOptions::elements, "line",
+                          "elements", quantity::number, {1, 1e6, false, "more take gigabytes"},
                           "`uniform`: n dipoles in each magnetic segment.");
   line.goes_with = "method = \"uniform\"";
   line.belongs = [](const ModelOptions& o) { return o.line.method == Method::uniform; };
   all.push_back(std::move(line));
-  all.push_back(choice_knob(&ModelOptions::volume, &analytic::VolumeOptions::slices, "volume",
+  all.push_back(choice_knob(&ModelOptions::volume, &analytic::rod::VolumeOptions::slices, "volume",
                             "slices", {{"wedge", Slices::wedge}, {"stacked", Slices::stacked}},
                             "`wedge`: the true volume of the bent rod; `stacked`: the paper's Eq. "
                             "8-9, flat slices of equal thickness."));
-  all.push_back(choice_knob(&ModelOptions::volume, &analytic::VolumeOptions::method, "volume",
+  all.push_back(choice_knob(&ModelOptions::volume, &analytic::rod::VolumeOptions::method, "volume",
                             "method", method,
                             "`closed_form`: charged discs or current loops; `quadrature`: their "
                             "check; `uniform`: the paper's sum over slices of equal height."));
-  all.push_back(number_knob(&ModelOptions::volume, &analytic::VolumeOptions::tolerance, "volume",
-                            "tolerance", quantity::number, tolerance_range,
+  all.push_back(number_knob(&ModelOptions::volume, &analytic::rod::VolumeOptions::tolerance,
+                            "volume", "tolerance", quantity::number, tolerance_range,
                             "Relative to the field."));
-  Knob volume =
-      number_knob(&ModelOptions::volume, &analytic::VolumeOptions::elements, "volume", "elements",
-                  quantity::number, {1, 400, false, "more than 400^3 dipoles take too long"},
-                  "`uniform`: n³ dipoles in each magnetic segment, n in z, r and φ.");
+  Knob volume = number_knob(&ModelOptions::volume, &analytic::rod::VolumeOptions::elements,
+                            "volume", "elements", quantity::number,
+                            {1, 400, false, "more than 400^3 dipoles take too long"},
+                            "`uniform`: n³ dipoles in each magnetic segment, n in z, r and φ.");
   volume.goes_with = "method = \"uniform\"";
   volume.belongs = [](const ModelOptions& o) { return o.volume.method == Method::uniform; };
   all.push_back(std::move(volume));
-  all.push_back(choice_knob(&ModelOptions::mesh, &analytic::MeshOptions::push_forward, "mesh",
+  all.push_back(choice_knob(&ModelOptions::mesh, &analytic::body::MeshOptions::push_forward, "mesh",
                             "push_forward", push_forward,
                             "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M (rigid sections)."));
-  all.push_back(number_knob(&ModelOptions::mesh, &analytic::MeshOptions::tolerance, "mesh",
+  all.push_back(number_knob(&ModelOptions::mesh, &analytic::body::MeshOptions::tolerance, "mesh",
                             "tolerance", quantity::number, tolerance_range,
                             "Relative to the field."));
 }
 
 void append_potential(std::vector<Knob>& all) {
-  using fem::MagnetPushForward;
-  using fem::PotentialOptions;
+  using fem::potential::MagnetPushForward;
+  using fem::potential::PotentialOptions;
   constexpr auto potential = &ModelOptions::potential;
   all.push_back(number_knob(potential, &PotentialOptions::relative_permeability, "potential",
                             "relative_permeability", quantity::number, key::permeability_range,
@@ -443,20 +461,20 @@ std::string key_table() {
   for (const std::string_view part : {"case", "cilium", "cilium.segment", "load", "sensor"}) {
     for (const TextKey& k : text_keys)
       if (k.table == part) table += row(k.table, k.name, k.value, "", k.fallback, k.doc);
-    for (const QuantityKey* k : quantity_keys)
+    for (const QuantityKey* k : quantity_keys())
       if (k->table == part) table += row(*k);
   }
   for (const TextKey& k : text_keys)
     if (k.table == "models") table += row(k.table, k.name, k.value, "", k.fallback, k.doc);
   for (const Knob& knob : knobs()) table += row(knob);
-  for (const QuantityKey* k : quantity_keys)
+  for (const QuantityKey* k : quantity_keys())
     if (k->table == key::plate_table) table += row(*k);
   for (const TextKey& k : text_keys)
     if (k.table == key::external_table)
       table += row(k.table, k.name, k.value, "", k.fallback, k.doc);
-  for (const QuantityKey* k : quantity_keys)
+  for (const QuantityKey* k : quantity_keys())
     if (k->table == key::external_table) table += row(*k);
   return table;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

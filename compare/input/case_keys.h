@@ -13,43 +13,14 @@
 
 #include "compare/input/case.h"
 #include "compare/input/units.h"
+#include "problem/parameter.h"
 
-namespace ciliaval::compare {
-
-/// The values of a key that make sense, in SI units.
-struct Range {
-  double lower = 0;
-  double upper = 0;
-  bool excludes_ends = false;
-  std::string_view reason;  ///< why, said when a value is refused
-
-  bool contains(double value) const {
-    return excludes_ends ? value > lower && value < upper : value >= lower && value <= upper;
-  }
-};
+namespace ciliaval::compare::input {
 
 /// "from 1e-09 m to 100 m" or "between -1 and 0.5, both excluded"; angles in deg.
 std::string describe(const Range& range, const Quantity& quantity);
 
-/// A quantity or number that a case file states: the one place that says where it stands, what it
-/// may be, what it is if it is left out, and what it means.
-struct QuantityKey {
-  std::string_view table;  ///< "cilium.segment"
-  std::string_view name;   ///< "length"
-  Quantity quantity;
-  Range range;
-  std::string_view fallback;  ///< default as the file would state it; empty: the key is required
-  std::string_view doc;       ///< one sentence
-};
-
 namespace key {
-inline constexpr std::string_view unit_slip =
-    "a value beyond is taken for a slip in the sign or the unit";
-inline constexpr Range length_range{1e-9, 100, false, unit_slip};
-inline constexpr std::string_view turn_round =
-    "a load is not negative (to turn it round, add 180 deg to the azimuth) and a larger one is "
-    "taken for a slip in the unit";
-
 inline constexpr QuantityKey diameter{
     "cilium",     "diameter", quantity::length,
     length_range, "",         "Diameter d of the circular section, the same all along."};
@@ -73,75 +44,6 @@ inline constexpr QuantityKey magnetization{
     {-1e8, 1e8, false, "the strongest magnets have about 1.2e6 A/m; divide a B_r in T by mu_0"},
     "0 A/m",
     "Axial magnetisation B_r/mu_0 from base to tip; negative points to the base."};
-inline constexpr QuantityKey load_force{"load",
-                                        "force",
-                                        quantity::force,
-                                        {0, 1e9, false, turn_round},
-                                        "",
-                                        "`contact`, `section`: the horizontal force."};
-inline constexpr QuantityKey displacement{
-    "load",
-    "displacement",
-    quantity::length,
-    {0, 100, false,
-     "a displacement is not negative (to turn it round, add 180 deg to the azimuth) and a larger "
-     "one is taken for a slip in the unit"},
-    "",
-    "`probe`: the deflection of the contact point; the force is a result."};
-inline constexpr QuantityKey height{
-    "load",
-    "height",
-    quantity::length,
-    length_range,
-    "",
-    "`contact`, `probe`: the height z at which the force stays; between the base and the tip."};
-inline constexpr QuantityKey force_per_height{
-    "load",
-    "force_per_height",
-    quantity::force_per_length,
-    {0, 1e9, false, turn_round},
-    "from `velocity`",
-    "`flow`: the force q per unit of current height; this or `velocity`."};
-inline constexpr QuantityKey velocity{
-    "load",
-    "velocity",
-    quantity::velocity,
-    {0, 1e4, false, turn_round},
-    "none",
-    "`flow`: the fluid's velocity v, q = density v^2 drag_coefficient d/2 (paper, Eq. 11)."};
-inline constexpr QuantityKey density{"load",
-                                     "density",
-                                     quantity::density,
-                                     {1e-9, 1e6, false, unit_slip},
-                                     "1000 kg/m^3",
-                                     "`flow` by `velocity`: the fluid's density."};
-inline constexpr QuantityKey drag_coefficient{"load",
-                                              "drag_coefficient",
-                                              quantity::number,
-                                              {1e-6, 1e6, false, "a drag coefficient is near 1"},
-                                              "1",
-                                              "`flow` by `velocity`: the drag coefficient C_d."};
-inline constexpr QuantityKey arclength{
-    "load",
-    "arclength",
-    quantity::length,
-    length_range,
-    "",
-    "`section`: the arc length of the loaded section; not beyond the tip."};
-inline constexpr QuantityKey force_per_length{"load",
-                                              "force_per_length",
-                                              quantity::force_per_length,
-                                              {0, 1e9, false, turn_round},
-                                              "",
-                                              "`dead`: the force per reference length."};
-inline constexpr double two_turns = 4 * std::numbers::pi * (1 + 1e-12);  ///< rad, 720 deg included
-inline constexpr QuantityKey azimuth{
-    "load",
-    "azimuth",
-    quantity::angle,
-    {-two_turns, two_turns, false, "more than two turns is taken for a slip in the unit"},
-    "0 deg",
-    "Direction of the load in the plane, from +x towards +y."};
 /// Each coordinate of a sensor point.
 inline constexpr QuantityKey position{
     "sensor",
@@ -217,8 +119,8 @@ const std::vector<Knob>& knobs();
 /// Whether a case with these options may state the knob.
 bool belongs(const Knob& knob, const ModelOptions& options);
 
-/// The ids that a case file may name, as in the registry (compare/registry.h), which is not used
-/// here so that reading a case needs none of the models.
+/// The ids that a case file may name, as in the registry (compare/models/registry.h), which is not
+/// used here so that reading a case needs none of the models.
 std::span<const std::string_view> mechanics_ids();
 std::span<const std::string_view> field_ids();
 
@@ -235,4 +137,4 @@ std::string to_toml(const Knob& knob, const KnobValue& value);
 /// Every key of a case file as a Markdown table: key, value, range, default, meaning.
 std::string key_table();
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::size_t most_segments = 1000;
@@ -161,7 +161,7 @@ void read_knob(const Knob& knob, const toml::node& node, ModelOptions& options, 
 }
 
 /// [[models.potential.plate]]: the boxes that are right by themselves and beside each other.
-void read_plates(Section& potential, std::vector<fem::PermeableBox>& plates) {
+void read_plates(Section& potential, std::vector<fem::potential::PermeableBox>& plates) {
   constexpr std::size_t most_plates = 100;
   Faults& faults = potential.faults();
   const toml::node* node = potential.find("plate");
@@ -183,7 +183,7 @@ void read_plates(Section& potential, std::vector<fem::PermeableBox>& plates) {
     const std::size_t before = faults.size();
     Section table(element.as_table(), "[[models.potential.plate]]", "models.potential.plate",
                   place(element), faults);
-    fem::PermeableBox plate;
+    fem::potential::PermeableBox plate;
     const auto corner = [&](const QuantityKey& k, auto set) {
       const toml::node* value = table.require(k.name);
       if (value == nullptr) return;
@@ -205,7 +205,7 @@ void read_plates(Section& potential, std::vector<fem::PermeableBox>& plates) {
       faults.add(place(element),
                  "a plate's 'upper' corner must lie above its 'lower' one in x, y "
                  "and z");
-    for (const fem::PermeableBox& other : plates)
+    for (const fem::potential::PermeableBox& other : plates)
       if (faults.size() == before && other.box.intersection(plate.box).sizes().minCoeff() > 0)
         faults.add(place(element), "the plate overlaps one above: cut them apart");
     if (faults.size() == before) plates.push_back(plate);
@@ -349,4 +349,4 @@ bool read_models(Section& root, Case& c) {
   return faults.size() == before;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -10,7 +10,7 @@
 #include "compare/input/case.h"
 #include "compare/input/case_toml.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 
 /// Each function reads one table of a case file into the case and adds a fault for everything in it
 /// that is wrong by itself; what contradicts another table is check_together()'s. They return
@@ -23,7 +23,7 @@ bool read_sensor(Section& root, Case& c);  ///< [sensor]
 bool read_models(Section& root, Case& c);  ///< [models], [models.<id>]
 
 /// [[models.external]], a part of [models]: the tables, not the files that they name.
-void read_external(Section& models, std::vector<ExternalModel>& external);
+void read_external(Section& models, std::vector<external::ExternalModel>& external);
 /// Faults between these tables and the load and the sensors.
 void check_external(const toml::table& root, const Case& c, Faults& faults);
 
@@ -58,4 +58,4 @@ void read_name_and_title(Section& table, std::string& name, std::string& title);
 /// '-'.
 bool is_plain_file_name(std::string_view name);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -16,7 +16,7 @@
 #include "compare/input/case_toml.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::uintmax_t largest_file = 1'000'000;  ///< bytes
@@ -178,4 +178,4 @@ std::string read_toml_file(const std::filesystem::path& file, std::string_view k
   return text;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

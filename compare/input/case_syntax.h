@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 
 /// The text of a regular file of at most 1 MB, of a `kind` ("case", "study") that messages name.
 /// Throws InputError.
@@ -18,4 +18,4 @@ std::string read_toml_file(const std::filesystem::path& file, std::string_view k
 /// parts is refused too.
 toml::table parse_toml(std::string_view text, std::string_view file);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -11,7 +11,7 @@
 #include "problem/error.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::size_t most_faults = 50;  ///< that a report lists
@@ -138,9 +138,10 @@ void Section::finish() const {
                    fmt::format("{} is not available in this version: {}", in_quotes(full), k->doc));
       continue;
     }
-    std::erase(missing, nearest(key.str(), candidates));
-    faults_->add(place(key), fmt::format("unknown key {} in {}{}{}", in_quotes(key.str()), name_,
-                                         valid(valid_), did_you_mean(key.str(), candidates)));
+    std::erase(missing, support::nearest(key.str(), candidates));
+    faults_->add(place(key),
+                 fmt::format("unknown key {} in {}{}{}", in_quotes(key.str()), name_, valid(valid_),
+                             support::did_you_mean(key.str(), candidates)));
   }
   for (const std::string& key : missing)
     faults_->add(where_, fmt::format("{} needs '{}'", name_, key));
@@ -171,10 +172,11 @@ std::optional<std::string> read_choice(const toml::node& node, std::string_view 
   if (!text) return std::nullopt;
   if (std::find(choices.begin(), choices.end(), *text) != choices.end()) return text;
   const bool planned = std::find(not_yet.begin(), not_yet.end(), *text) != not_yet.end();
-  faults.add(place(node), planned ? fmt::format("'{}' = {} is not available in this version{}",
-                                                name, in_quotes(*text), valid(choices))
-                                  : fmt::format("'{}' cannot be {}{}{}", name, in_quotes(*text),
-                                                valid(choices), did_you_mean(*text, choices)));
+  faults.add(place(node), planned
+                              ? fmt::format("'{}' = {} is not available in this version{}", name,
+                                            in_quotes(*text), valid(choices))
+                              : fmt::format("'{}' cannot be {}{}{}", name, in_quotes(*text),
+                                            valid(choices), support::did_you_mean(*text, choices)));
   return std::nullopt;
 }
 
@@ -204,4 +206,4 @@ std::optional<unsigned int> read_whole_number(const toml::node& node, std::strin
   return std::nullopt;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

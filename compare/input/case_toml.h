@@ -12,7 +12,7 @@
 
 #include "compare/input/case_keys.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 
 /// A place in a file, from 1.
 struct Place {
@@ -94,4 +94,4 @@ std::optional<unsigned int> read_whole_number(const toml::node& node, std::strin
 /// What stands in the file, for messages: "a table", "the number 3".
 std::string describe(const toml::node& node);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -12,7 +12,7 @@
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 /// The text in quotes, escaped where TOML wants it.
@@ -53,47 +53,20 @@ std::string line(const QuantityKey& k, const std::vector<double>& values,
   return fmt::format("{} = {}\n", k.name, list(texts));
 }
 
-/// One parameter of every step of a path of loads of type T.
-template <typename T>
-std::vector<double> along(const LoadPath& path, double T::*parameter) {
-  std::vector<double> values;
-  values.reserve(path.size());
-  for (const Load& load : path) values.push_back(std::get<T>(load).*parameter);
-  return values;
-}
-
-std::string parameters(const Case& c, const ContactLoad&) {
-  return line(key::load_force, along(c.load_path, &ContactLoad::force), Listed::always) +
-         line(key::height, along(c.load_path, &ContactLoad::height)) +
-         line(key::azimuth, along(c.load_path, &ContactLoad::azimuth));
-}
-
-std::string parameters(const Case& c, const FlowLoad&) {
-  const std::string azimuth = line(key::azimuth, along(c.load_path, &FlowLoad::azimuth));
-  if (c.flow_velocity.empty())
-    return line(key::force_per_height, along(c.load_path, &FlowLoad::force_per_height),
-                Listed::always) +
-           azimuth;
-  return line(key::velocity, c.flow_velocity, Listed::always) + line(key::density, c.flow_density) +
-         line(key::drag_coefficient, c.flow_drag_coefficient) + azimuth;
-}
-
-std::string parameters(const Case& c, const SectionLoad&) {
-  return line(key::load_force, along(c.load_path, &SectionLoad::force), Listed::always) +
-         line(key::arclength, along(c.load_path, &SectionLoad::arclength)) +
-         line(key::azimuth, along(c.load_path, &SectionLoad::azimuth));
-}
-
-std::string parameters(const Case& c, const DeadLoad&) {
-  return line(key::force_per_length, along(c.load_path, &DeadLoad::force_per_length),
-              Listed::always) +
-         line(key::azimuth, along(c.load_path, &DeadLoad::azimuth));
-}
-
-std::string parameters(const Case& c, const ProbeLoad&) {
-  return line(key::displacement, along(c.load_path, &ProbeLoad::displacement), Listed::always) +
-         line(key::height, along(c.load_path, &ProbeLoad::height)) +
-         line(key::azimuth, along(c.load_path, &ProbeLoad::azimuth));
+/// The parameters of the load path; its first one is always a list, which tells the number of
+/// steps.
+std::string parameters(const Case& c) {
+  const LoadType& type = c.load_path.front().type();
+  std::string text;
+  for (std::size_t p = 0; p < c.stated_by.size(); ++p)
+    text += line(type.statement->parameters[p].key, c.stated_by[p],
+                 p == 0 ? Listed::always : Listed::if_they_differ);
+  for (std::size_t p = c.stated_by.empty() ? 0 : 1; p < type.parameters.size(); ++p) {
+    std::vector<double> values;
+    for (const Load& load : c.load_path) values.push_back(load.values()[p]);
+    text += line(type.parameters[p].key, values, p == 0 ? Listed::always : Listed::if_they_differ);
+  }
+  return text;
 }
 
 std::string cilium(const Case& c) {
@@ -118,7 +91,7 @@ std::string sensor(const Case& c) {
                      points.size() == 1 ? points.front() : list(points));
 }
 
-std::string external(const ExternalModel& model) {
+std::string external(const external::ExternalModel& model) {
   std::string text =
       fmt::format("\n[[{}]]\nname = {}\n", key::external_table, toml_text(model.name));
   std::vector<std::string> files;
@@ -153,11 +126,11 @@ std::string models(const Case& c) {
   const auto corner = [](const QuantityKey& k, const Vector3& x) {
     return fmt::format("{} = {}\n", k.name, list({value(k, x[0]), value(k, x[1]), value(k, x[2])}));
   };
-  for (const fem::PermeableBox& plate : c.options.potential.plates)
+  for (const fem::potential::PermeableBox& plate : c.options.potential.plates)
     text += fmt::format("\n[[{}]]\n", key::plate_table) +
             corner(key::plate_lower, plate.box.min()) + corner(key::plate_upper, plate.box.max()) +
             line(key::plate_permeability, plate.relative_permeability);
-  for (const ExternalModel& given : c.external) text += external(given);
+  for (const external::ExternalModel& given : c.external) text += external(given);
   return text;
 }
 
@@ -169,9 +142,9 @@ std::string to_toml(const Case& c) {
   text += cilium(c);
   if (!c.load_path.empty()) {
     text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));
-    text += std::visit([&c](const auto& load) { return parameters(c, load); }, c.load_path.front());
+    text += parameters(c);
   }
   return text + sensor(c) + models(c);
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -18,10 +18,14 @@
 #include "problem/error.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
+// They bound the memory of a file that is no table of readings.
 constexpr std::uintmax_t largest_file = 100'000'000;  ///< bytes
+constexpr std::size_t most_cells = 1000;              ///< of a line
+constexpr std::size_t most_rows = 1'000'000;
+constexpr std::size_t most_faults = 100;
 
 struct Cell {
   std::string text;
@@ -34,11 +38,11 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
 }
 
-/// The cells of a line; quotes as in RFC 4180, but not over several lines.
+/// The cells of a line, of very many the first; quotes as in RFC 4180, but not over several lines.
 std::vector<Cell> cells_of(std::string_view line, std::size_t number) {
   std::vector<Cell> cells{{{}, {number, 1}}};
   bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
+  for (std::size_t i = 0; i < line.size() && cells.size() <= most_cells; ++i) {
     if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
       cells.back().text += line[i++];
     } else if (line[i] == '"') {
@@ -84,17 +88,13 @@ std::map<std::string, std::string> units_of(std::string_view comment) {
   return units;
 }
 
-/// The lines of a text, numbered from 1, without LF or CRLF.
-std::vector<std::string_view> lines_of(std::string_view text) {
-  std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const auto end = text.find('\n');
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    lines.push_back(line);
-  }
-  return lines;
+/// Takes the first line, without LF or CRLF, off a text.
+std::string_view take_line(std::string_view& text) {
+  const auto end = text.find('\n');
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
 }
 
 class Reader {
@@ -131,19 +131,24 @@ CsvTable Reader::read(std::string_view text) {
     return table_;
   }
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  const std::vector<std::string_view> lines = lines_of(text);
   std::map<std::string, std::string> units;
   bool header = false;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string line = trimmed(lines[i]);
-    if (line.empty()) continue;
-    if (line.front() == '#' || line.front() == '%') {
+  std::size_t number = 0;
+  while (!text.empty() && faults_.size() < most_faults) {
+    const std::string_view line = take_line(text);
+    ++number;
+    const auto first = line.find_first_not_of(" \t");
+    if (first == std::string_view::npos) continue;
+    if (line[first] == '#' || line[first] == '%') {
       units.merge(units_of(line));
     } else if (!header) {
-      if (!read_header(lines[i], i + 1, units)) return table_;
+      if (!read_header(line, number, units)) return table_;
       header = true;
+    } else if (table_.rows.size() == most_rows) {
+      faults_.add({number, 1}, fmt::format("there are more than {} rows", most_rows));
+      return table_;
     } else {
-      read_row(lines[i], i + 1);
+      read_row(line, number);
     }
   }
   if (!header)
@@ -151,7 +156,7 @@ CsvTable Reader::read(std::string_view text) {
                 "the file is empty: it needs a header line with the names and units of the "
                 "columns");
   else if (table_.rows.empty())
-    faults_.add({lines.size(), 1}, "there are no rows below the header");
+    faults_.add({number, 1}, "there are no rows below the header");
   return table_;
 }
 
@@ -170,6 +175,10 @@ bool Reader::read_header(std::string_view line, std::size_t number,
     }
   const std::vector<Cell> cells = cells_of(line, number);
   width_ = cells.size();
+  if (width_ > most_cells) {
+    faults_.add({number, 1}, fmt::format("there are more than {} columns", most_cells));
+    return false;
+  }
   for (std::size_t i = 0; i < cells.size(); ++i) take(header_of(cells[i], units), i);
   for (std::size_t c = 0; c < columns_.size(); ++c)
     if (columns_[c].required && !index_[c])
@@ -273,4 +282,4 @@ std::string read_csv_file(const std::filesystem::path& file) {
   return text;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -11,7 +11,7 @@
 #include "compare/input/case_toml.h"
 #include "compare/input/units.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 
 /// A column that a CSV file may have.
 struct CsvColumn {
@@ -50,4 +50,4 @@ CsvTable read_csv(std::string_view text, std::span<const CsvColumn> columns,
 /// The text of a file. Throws InputError if there is none, or of more than 100 MB.
 std::string read_csv_file(const std::filesystem::path& file);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

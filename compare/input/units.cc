@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -19,7 +20,7 @@
 #include "problem/field_model.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::string_view blanks = " \t";
@@ -241,8 +242,8 @@ std::span<const std::string_view> usual_units(const Quantity& expected) {
 std::string did_you_mean_unit(std::string_view unit, const Quantity& expected) {
   constexpr std::size_t longest_symbol = 3;
   for (const std::string_view usual : usual_units(expected))
-    if (equal_but_case(unit, usual)) return fmt::format("; did you mean '{}'?", usual);
-  return unit.size() > longest_symbol ? did_you_mean(unit, usual_units(expected)) : "";
+    if (support::equal_but_case(unit, usual)) return fmt::format("; did you mean '{}'?", usual);
+  return unit.size() > longest_symbol ? support::did_you_mean(unit, usual_units(expected)) : "";
 }
 
 /// The factor from one unit to another; none if they do not have the same dimension.
@@ -346,20 +347,10 @@ std::string format_quantity(double value, const Quantity& quantity) {
 
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 60;
-  std::string result = "'";
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    // Cut between characters only: bytes 10xxxxxx continue one.
-    if (i >= longest && (byte & 0xC0) != 0x80) {
-      result += "...";
-      break;
-    }
-    if (byte < 0x20 || byte == 0x7F)
-      result += fmt::format("\\x{:02X}", byte);
-    else
-      result += text[i];
-  }
-  return result + "'";
+  // Cut between characters only: bytes 10xxxxxx continue one.
+  std::size_t end = std::min(text.size(), longest);
+  while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) ++end;
+  return "'" + support::printable(text.substr(0, end), "") + (end < text.size() ? "...'" : "'");
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

@@ -4,29 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace ciliaval::compare {
+#include "problem/parameter.h"
 
-/// A kind of physical quantity that a file states as text with a unit.
-struct Quantity {
-  std::string_view article;  ///< "a" or "an", for messages
-  std::string_view name;     ///< "length"
-  std::string_view unit;     ///< its SI unit as UDUNITS-2 writes it, "m"; empty: a plain number
-  std::string_view example;  ///< as a person would write it, "3 mm"
-};
-
-namespace quantity {
-inline constexpr Quantity length{"a", "length", "m", "3 mm"};
-inline constexpr Quantity pressure{"a", "pressure", "Pa", "0.1 MPa"};
-inline constexpr Quantity magnetization{"a", "magnetization M = B_r/mu_0", "A/m", "75 kA/m"};
-inline constexpr Quantity force{"a", "force", "N", "1 mN"};
-inline constexpr Quantity force_per_length{"a", "force per length", "N/m", "0.3 N/m"};
-inline constexpr Quantity velocity{"a", "velocity", "m/s", "0.5 m/s"};
-inline constexpr Quantity density{"a", "density", "kg/m^3", "1000 kg/m^3"};
-inline constexpr Quantity angle{"an", "angle", "rad", "30 deg"};
-inline constexpr Quantity time{"a", "time", "s", "10 min"};
-inline constexpr Quantity flux_density{"a", "flux density", "T", "50 uT"};
-inline constexpr Quantity number{"a", "plain number", "", "0.49"};
-}  // namespace quantity
+namespace ciliaval::compare::input {
 
 /// The value in SI units of a text such as "3 mm", "1.5e-3 N" or "30 deg".
 ///
@@ -55,4 +35,4 @@ std::string format_quantity(double value, const Quantity& quantity);
 /// text cut off.
 std::string in_quotes(std::string_view text);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input

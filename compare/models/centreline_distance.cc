@@ -10,7 +10,7 @@
 #include "compare/models/errors.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::models {
 namespace {
 
 constexpr double same_length = 1e-9;  ///< relative to L
@@ -115,4 +115,4 @@ std::optional<ShapeAgreement> compare_deflection(const Centreline& model,
                             std::sqrt(from_mean.square().mean() * model_from_mean.square().mean())};
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::models

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::models {
 namespace {
 
 /// A length or angle this small (relative to L, or in rad) is rounding error: no scale.
@@ -322,4 +322,4 @@ std::vector<Comparison> compare_models(const CaseResult& result) {
   return out;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::models

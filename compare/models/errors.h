@@ -9,7 +9,7 @@
 
 #include "compare/models/run.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::models {
 
 enum class Verdict {
   resolved,           ///< |difference| is larger than the combined numerical uncertainty
@@ -18,8 +18,8 @@ enum class Verdict {
 };
 std::string_view to_string(Verdict verdict);
 
-/// One figure that separates a model from its reference (docs/results.md). An empty optional is
-/// undefined or unknown; `note` says why.
+/// One figure that separates a model from its reference (docs/guide/results.md). An empty optional
+/// is undefined or unknown; `note` says why.
 struct Comparison {
   std::optional<std::size_t> step;    ///< none: over the whole load path
   std::optional<std::size_t> sensor;  ///< none: not a field
@@ -100,4 +100,4 @@ std::optional<double> change_uncertainty(const CaseResult& result, const FieldRu
 /// Every pair of mechanics models and every pair of field results, step by step and over the path.
 std::vector<Comparison> compare_models(const CaseResult& result);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::models

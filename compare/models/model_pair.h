@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::models {
 
 /// A pair of models by their ids, "elastica/volume".
 struct ModelPair {
@@ -12,4 +12,4 @@ struct ModelPair {
   std::string name() const { return mechanics + "/" + field; }
 };
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::models

@@ -10,18 +10,18 @@
 #include "problem/field_model.h"
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::models {
 
 struct MechanicsEntry {
   std::string id;
   std::string description;  ///< one line for `ciliaval list`
-  std::function<std::unique_ptr<MechanicsModel>(const ModelOptions&)> make;
+  std::function<std::unique_ptr<MechanicsModel>(const input::ModelOptions&)> make;
 };
 
 struct FieldEntry {
   std::string id;
   std::string description;
-  std::function<std::unique_ptr<FieldModel>(const ModelOptions&)> make;
+  std::function<std::unique_ptr<FieldModel>(const input::ModelOptions&)> make;
 };
 
 /// Every model, the more detailed ones later: in a comparison the later one is the reference.
@@ -29,4 +29,4 @@ struct FieldEntry {
 const std::vector<MechanicsEntry>& mechanics_models();
 const std::vector<FieldEntry>& field_models();
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::models

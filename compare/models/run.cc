@@ -15,7 +15,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::models {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -25,7 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// The models that the case asks for, each with its id, in the order of the registry.
 template <class Entry>
 auto make_chosen(std::span<const Entry> entries, const std::vector<std::string>& ids,
-                 const ModelOptions& options) {
+                 const input::ModelOptions& options) {
   for (const std::string& id : ids)
     if (std::none_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; }))
       throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
@@ -128,7 +128,7 @@ std::string describe(const std::vector<std::pair<std::size_t, std::string>>& fai
 }
 
 /// The field at the sensors. What the model throws becomes `failure`.
-FieldStep field_at_sensors(const FieldModel& model, const Case& problem,
+FieldStep field_at_sensors(const FieldModel& model, const input::Case& problem,
                            const Deformation& deformation) {
   FieldStep step;
   const auto start = std::chrono::steady_clock::now();
@@ -159,13 +159,14 @@ void subtract(FieldStep& step, const FieldStep& undeformed) {
 
 /// The horizontal force of a load whose shape is known from outside, N; NaN for a probe.
 double stated_force(const Load& load, const Cilium& cilium, const Vector3& tip) {
-  if (std::holds_alternative<ProbeLoad>(load)) return std::numeric_limits<double>::quiet_NaN();
-  if (std::holds_alternative<FlowLoad>(load)) return magnitude(load) * tip.z();
-  return magnitude(load) * (std::holds_alternative<DeadLoad>(load) ? cilium.length() : 1);
+  if (load.is<ProbeLoad>()) return std::numeric_limits<double>::quiet_NaN();
+  if (load.is<FlowLoad>()) return magnitude(load) * tip.z();
+  return magnitude(load) * (load.is<DeadLoad>() ? cilium.length() : 1);
 }
 
 /// The centrelines of an external model as those of a mechanics model.
-MechanicsRun external_mechanics(const ExternalModel& model, const Case& problem) {
+MechanicsRun external_mechanics(const input::external::ExternalModel& model,
+                                const input::Case& problem) {
   MechanicsRun run{model.name, {}};
   run.result.undeformed.centreline = straight_centreline(problem.cilium.interfaces());
   for (std::size_t i = 0; i < problem.load_path.size(); ++i) {
@@ -183,8 +184,8 @@ MechanicsRun external_mechanics(const ExternalModel& model, const Case& problem)
   return run;
 }
 
-FieldStep external_step(const ExternalReading& reading, std::optional<double> uncertainty,
-                        bool undeformed_was_read) {
+FieldStep external_step(const input::external::ExternalReading& reading,
+                        std::optional<double> uncertainty, bool undeformed_was_read) {
   FieldStep step;
   step.B = reading.B;
   step.dB = reading.dB;
@@ -201,14 +202,14 @@ FieldStep external_step(const ExternalReading& reading, std::optional<double> un
 }
 
 /// The readings of an external model as those of a field model.
-FieldRun external_fields(const ExternalModel& model, std::size_t sensors) {
+FieldRun external_fields(const input::external::ExternalModel& model, std::size_t sensors) {
   FieldRun run;
   run.mechanics = model.name;
   run.field = "readings";
   run.measured = true;
-  ExternalReading none{AtSensors(sensors), AtSensors(sensors)};
+  input::external::ExternalReading none{AtSensors(sensors), AtSensors(sensors)};
   run.undeformed = external_step(model.undeformed.value_or(none), model.field_uncertainty, true);
-  for (const ExternalReading& reading : model.readings)
+  for (const input::external::ExternalReading& reading : model.readings)
     run.steps.emplace_back(
         external_step(reading, model.field_uncertainty, model.undeformed.has_value()));
   return run;
@@ -221,8 +222,9 @@ bool FieldStep::any() const {
   return std::any_of(B.begin(), B.end(), there) || std::any_of(dB.begin(), dB.end(), there);
 }
 
-MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
-                           const Progress& progress, const Checkpoint& checkpoint) {
+MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
+                           const input::Case& problem, const Progress& progress,
+                           const Checkpoint& checkpoint) {
   MechanicsRun run{id, {}};
   std::string failure;
   try {
@@ -253,7 +255,7 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, c
 }
 
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
-                   const Case& problem, const Progress& progress) {
+                   const input::Case& problem, const Progress& progress) {
   FieldRun run;
   run.mechanics = mechanics.model;
   run.field = id;
@@ -274,7 +276,7 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
   return run;
 }
 
-CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
+CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress,
                const Checkpoint& checkpoints) {
   const auto mechanics_models = make_chosen(mechanics, problem.mechanics, problem.options);
@@ -285,7 +287,7 @@ CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
     result.mechanics.push_back(
         run_mechanics(id, *model, problem, progress, checkpoint_of(id, checkpoints)));
   }
-  for (const ExternalModel& model : problem.external)
+  for (const input::external::ExternalModel& model : problem.external)
     if (!model.centrelines.empty()) result.mechanics.push_back(external_mechanics(model, problem));
   for (const MechanicsRun& mechanics_run : result.mechanics) {
     const Deformation& undeformed = mechanics_run.result.undeformed;
@@ -294,13 +296,14 @@ CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
       if (!model->needs_body() || undeformed.body)
         result.fields.push_back(run_field(id, *model, mechanics_run, problem, progress));
   }
-  for (const ExternalModel& model : problem.external)
+  for (const input::external::ExternalModel& model : problem.external)
     if (!model.readings.empty())
       result.fields.push_back(external_fields(model, problem.sensors.size()));
   return result;
 }
 
-std::vector<Kept> kept_checkpoints(const Case& problem, std::span<const MechanicsEntry> mechanics,
+std::vector<Kept> kept_checkpoints(const input::Case& problem,
+                                   std::span<const MechanicsEntry> mechanics,
                                    const Checkpoint& checkpoints) {
   std::vector<Kept> result;
   for (const auto& [id, model] : make_chosen(mechanics, problem.mechanics, problem.options))
@@ -327,4 +330,4 @@ bool all_solved(const CaseResult& result) {
          });
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::models

@@ -13,7 +13,7 @@
 #include "problem/field_model.h"
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::models {
 
 /// What one mechanics model made of the load path.
 struct MechanicsRun {
@@ -55,7 +55,7 @@ struct FieldRun {
 /// then the case's external models; field runs go by mechanics first. In a comparison the later one
 /// is the reference.
 struct CaseResult {
-  Case problem;
+  input::Case problem;
   std::vector<MechanicsRun> mechanics;
   std::vector<FieldRun> fields;
 };
@@ -68,19 +68,20 @@ struct CaseResult {
 /// keeps it in the folder `checkpoints.path`, under its id; without a path there is none. Throws
 /// InputError if the case names a model that is not among the entries, CheckpointError,
 /// RankFailure.
-CaseResult run(const Case& problem, std::span<const MechanicsEntry> mechanics,
+CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress = {},
                const Checkpoint& checkpoints = {});
 
 /// A part of run(): one mechanics model, which goes by the name `id` in messages and in the result,
 /// along the load path of a case. Throws CheckpointError, RankFailure.
-MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model, const Case& problem,
-                           const Progress& progress = {}, const Checkpoint& checkpoint = {});
+MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
+                           const input::Case& problem, const Progress& progress = {},
+                           const Checkpoint& checkpoint = {});
 
 /// A part of run(): one field model at the sensors of a case, on the undeformed cilium and on every
 /// converged step of a mechanics run, whatever the load path of the case.
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
-                   const Case& problem, const Progress& progress = {});
+                   const input::Case& problem, const Progress& progress = {});
 
 /// A mechanics model of a case that keeps a checkpoint, and the steps that it holds.
 struct Kept {
@@ -90,7 +91,8 @@ struct Kept {
 
 /// Those of the case, in the order of the registry. Throws CheckpointError if one of the
 /// checkpoints cannot be used.
-std::vector<Kept> kept_checkpoints(const Case& problem, std::span<const MechanicsEntry> mechanics,
+std::vector<Kept> kept_checkpoints(const input::Case& problem,
+                                   std::span<const MechanicsEntry> mechanics,
                                    const Checkpoint& checkpoints);
 
 /// Whether no step of the model failed.
@@ -99,4 +101,4 @@ bool all_solved(const MechanicsRun& run);
 /// Whether nothing failed. A cilium that slipped off is a result, not a failure.
 bool all_solved(const CaseResult& result);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::models

@@ -14,7 +14,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 
 namespace fs = std::filesystem;
 
@@ -74,4 +74,4 @@ void CheckpointFolder::clear() {
   }
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

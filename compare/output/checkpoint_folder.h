@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 
 /// DIR/.NAME.checkpoint, in which the models of a case keep how far they have come
-/// (docs/restart.md).
+/// (docs/guide/restart.md).
 std::filesystem::path checkpoint_path(const std::filesystem::path& directory,
                                       const std::string& name);
 
@@ -36,4 +36,4 @@ class CheckpointFolder {
   int descriptor_ = -1;  ///< of the folder, locked
 };
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

@@ -9,28 +9,28 @@
 #include "compare/output/results.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 namespace {
 
-bool converged_anywhere(const MechanicsRun& run) {
+bool converged_anywhere(const models::MechanicsRun& run) {
   return std::any_of(run.result.steps.begin(), run.result.steps.end(),
                      [](const MechanicsStep& step) { return step.deformation.has_value(); });
 }
 
 /// The most detailed one: the last that converged.
-const MechanicsRun* mechanics_to_draw(const CaseResult& result) {
+const models::MechanicsRun* mechanics_to_draw(const models::CaseResult& result) {
   const auto last =
       std::find_if(result.mechanics.rbegin(), result.mechanics.rend(), converged_anywhere);
   return last == result.mechanics.rend() ? nullptr : &*last;
 }
 
-ModelOptions with_closed_forms(ModelOptions options) {
-  options.line.method = analytic::Method::closed_form;
-  options.volume.method = analytic::Method::closed_form;
+input::ModelOptions with_closed_forms(input::ModelOptions options) {
+  options.line.method = analytic::rod::Method::closed_form;
+  options.volume.method = analytic::rod::Method::closed_form;
   return options;
 }
 
-void lay_out(FieldGrid& grid, const CaseResult& result, const MechanicsRun& run) {
+void lay_out(FieldGrid& grid, const models::CaseResult& result, const models::MechanicsRun& run) {
   Eigen::AlignedBox3d box;
   for (const MechanicsStep& step : run.result.steps)
     if (step.deformation)
@@ -89,13 +89,14 @@ FieldGrid::Step sample_grid(const FieldGrid& grid, const FieldModel& model, cons
 
 }  // namespace
 
-std::optional<FieldGrid> field_grid(const CaseResult& result, std::span<const FieldEntry> fields,
+std::optional<FieldGrid> field_grid(const models::CaseResult& result,
+                                    std::span<const models::FieldEntry> fields,
                                     const Progress& progress) {
-  const MechanicsRun* run = mechanics_to_draw(result);
+  const models::MechanicsRun* run = mechanics_to_draw(result);
   const std::vector<std::string>& asked = result.problem.fields;
   std::shared_ptr<const FieldModel> model;
   FieldGrid grid;
-  for (const FieldEntry& entry : fields) {
+  for (const models::FieldEntry& entry : fields) {
     if (std::find(asked.begin(), asked.end(), entry.id) == asked.end()) continue;
     auto candidate = entry.make(with_closed_forms(result.problem.options));
     if (candidate->needs_body() || !candidate->pointwise()) continue;
@@ -115,4 +116,4 @@ std::optional<FieldGrid> field_grid(const CaseResult& result, std::span<const Fi
   return grid;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

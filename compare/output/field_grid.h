@@ -13,7 +13,7 @@
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 
 /// B of one pair of models on a regular grid around the cilium, for drawing.
 struct FieldGrid {
@@ -36,7 +36,8 @@ struct FieldGrid {
 /// the sensors no farther than two lengths from it, two diameters wider. Closed forms are used
 /// whatever the case asks: the picture checks no quadrature. None if no such pair converged at any
 /// step. The result refers to `result` and calls `progress`.
-std::optional<FieldGrid> field_grid(const CaseResult& result, std::span<const FieldEntry> fields,
+std::optional<FieldGrid> field_grid(const models::CaseResult& result,
+                                    std::span<const models::FieldEntry> fields,
                                     const Progress& progress = {});
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

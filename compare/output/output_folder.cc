@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): kill() is POSIX
 #include <stdio.h>   // NOLINT(modernize-deprecated-headers): renameat2() is Linux
 #include <unistd.h>
@@ -13,17 +12,18 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "compare/models/registry.h"
+#include "compare/output/output_file.h"
 #include "compare/output/results.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,37 +63,65 @@ void remove_stale(const fs::path& directory, const fs::path& target, const std::
   }
 }
 
-/// `(a|b|c)`: the ids of all models of a kind.
-template <class Entry>
-std::string any_id(const std::vector<Entry>& entries) {
-  std::vector<std::string> ids;
-  ids.reserve(entries.size());
-  for (const Entry& entry : entries) ids.push_back(entry.id);
-  return fmt::format("({})", fmt::join(ids, "|"));
+/// The series of files that a run writes: the names in the folder of a case without step and
+/// extension.
+struct Series {
+  std::set<std::string> csv;
+  std::set<std::string> vtk{"sensors"};
+
+  void add(const std::string& mechanics, const std::vector<std::string>& fields) {
+    csv.insert(mechanics);
+    for (const char* kind : {"body", "centreline", "dipoles"})
+      vtk.insert(fmt::format("{}_{}", kind, mechanics));
+    for (const std::string& field : fields)
+      vtk.insert(fmt::format("field_{}_{}", mechanics, field));
+  }
+};
+
+/// The name of the series if the file is called SERIES_STEP; else empty.
+std::string series_of(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const std::size_t end = stem.find_last_not_of("0123456789");
+  if (end == std::string::npos || stem[end] != '_' || stem.size() - end - 1 < 4) return {};
+  return stem.substr(0, end);
 }
 
-/// The names, relative to the folder of a case, that a run writes.
-std::regex result_files() {
-  const std::string mechanics = any_id(mechanics_models());
-  const std::string series = fmt::format("((body|centreline|dipoles)_{0}|field_{0}_{1}|sensors)",
-                                         mechanics, any_id(field_models()));
-  return std::regex(
-      fmt::format(R"(summary\.json|report\.html|errors\.csv|case\.toml|{}_[0-9]{{4,}}\.csv|)"
-                  R"(vtk/open\.py|vtk/{}(\.pvd|_[0-9]{{4,}}\.vt[upi]))",
-                  mechanics, series));
+/// Whether a run writes a file of this name, relative to the folder of its case.
+bool is_result(const fs::path& name, const Series& series) {
+  for (const char* file : {"summary.json", "report.html", "errors.csv", "case.toml", "vtk/open.py"})
+    if (name == file) return true;
+  const std::string extension = name.extension().string();
+  if (!name.has_parent_path()) return extension == ".csv" && series.csv.contains(series_of(name));
+  if (name.parent_path() != "vtk") return false;
+  if (extension == ".pvd") return series.vtk.contains(name.stem().string());
+  const bool is_vtk = extension == ".vtp" || extension == ".vtu" || extension == ".vti";
+  return is_vtk && series.vtk.contains(series_of(name));
 }
 
-/// Whether a summary is that of a run of this case. Its lists are skipped: they may be long.
-bool is_summary_of(const fs::path& file, const std::string& case_name) {
+/// The series of a run of this case with any model of the program and with the external ones that
+/// its summary names; none if there is no such summary. The list of comparisons, which may be long,
+/// is skipped.
+std::optional<Series> series_in(const fs::path& folder, const std::string& case_name) {
   using Json = nlohmann::json;
-  std::ifstream stream(file);
-  const auto outermost = [](int depth, Json::parse_event_t event, const Json&) {
-    return depth == 0 || (event != Json::parse_event_t::object_start &&
-                          event != Json::parse_event_t::array_start);
+  std::ifstream stream(folder / "summary.json");
+  const auto wanted = [](int, Json::parse_event_t event, const Json& parsed) {
+    return event != Json::parse_event_t::key || parsed != "comparisons";
   };
-  const Json summary = Json::parse(stream, outermost, false);
-  return summary.is_object() && summary.contains("schema") && summary.contains("case") &&
-         summary["schema"].is_number_integer() && summary["case"] == case_name;
+  const Json summary = Json::parse(stream, wanted, false);
+  if (!summary.is_object() || !summary.contains("schema") ||
+      !summary["schema"].is_number_integer() || summary.value("case", Json()) != case_name)
+    return std::nullopt;
+  std::vector<std::string> fields;
+  for (const models::FieldEntry& entry : models::field_models()) fields.push_back(entry.id);
+  Series series;
+  for (const models::MechanicsEntry& entry : models::mechanics_models())
+    series.add(entry.id, fields);
+  for (const Json& step : summary.value("steps", Json::array())) {
+    if (!step.is_object()) continue;
+    const Json mechanics = step.value("mechanics", Json::object());
+    for (const auto& [id, result] : mechanics.items()) series.add(id, fields);
+  }
+  return series;
 }
 
 /// Throws FileError if the results may not take the place of what is there.
@@ -114,32 +142,45 @@ void check_target(const fs::path& target, const std::string& name) {
                     "choose another folder with -o DIR");
 }
 
+/// Whether a file lies in a folder, links resolved.
+bool is_inside(const fs::path& file, const fs::path& folder) {
+  const fs::path relative =
+      fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(folder));
+  return !relative.empty() && *relative.begin() != "..";
+}
+
 }  // namespace
 
 std::optional<fs::path> foreign_file(const fs::path& folder, const std::string& case_name) {
-  const bool ours = is_summary_of(folder / "summary.json", case_name);
-  const std::regex known = result_files();
+  const std::optional<Series> series = series_in(folder, case_name);
   std::optional<fs::path> first;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path name = entry.path().lexically_relative(folder);
     const fs::file_status status = entry.symlink_status();
-    const bool expected = fs::is_directory(status) ? name == "vtk"
-                                                   : fs::is_regular_file(status) &&
-                                                         std::regex_match(name.string(), known);
-    if (!(ours && expected) && (!first || name < *first)) first = name;
+    const bool is_ours = series && (fs::is_directory(status)
+                                        ? name == "vtk"
+                                        : fs::is_regular_file(status) && is_result(name, *series));
+    if (!is_ours && (!first || name < *first)) first = name;
   }
   return first;
 }
 
-OutputFolder::OutputFolder(const fs::path& directory, const std::string& name)
+OutputFolder::OutputFolder(const fs::path& directory, const std::string& name,
+                           const std::vector<fs::path>& inputs)
     : target_(directory / name) {
   fs::path temporary = directory / temporary_name(name, ".tmp");
   try {
     fs::create_directories(directory);
     remove_stale(directory, target_, name);
     check_target(target_, name);
+    for (const fs::path& input : inputs)
+      if (is_inside(input, target_))
+        throw InputError(fmt::format(
+            "the results would replace the folder `{}`, but the command reads `{}` in it; choose "
+            "another folder with -o DIR",
+            target_.string(), input.string()));
     fs::create_directory(temporary);
-    write_text(temporary / "probe", "can this folder be written?");
+    write_file(temporary / "probe", "can this folder be written?");
     fs::remove(temporary / "probe");
   } catch (const fs::filesystem_error& error) {
     throw FileError("cannot write to the output folder `" + directory.string() +
@@ -206,4 +247,4 @@ void OutputFolder::replace() {
   temporary_.clear();
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

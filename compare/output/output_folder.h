@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 
 /// The first file (in alphabetical order) in the folder of a case's results that is not one of
-/// those that a run writes (docs/results.md): it is the user's. Every file is, if there is no
+/// those that a run writes (docs/guide/results.md): it is the user's. Every file is, if there is no
 /// summary.json of a run of this case. None in an empty folder.
 std::optional<std::filesystem::path> foreign_file(const std::filesystem::path& folder,
                                                   const std::string& case_name);
@@ -22,8 +23,9 @@ class OutputFolder {
   /// Makes DIR and the temporary folder, and removes temporary folders of the same name that
   /// processes which are no longer alive have left. Throws FileError with the path and the reason
   /// if they cannot be made and written, or if DIR/NAME is a file, a link or a folder that holds
-  /// anything but former results of this case.
-  OutputFolder(const std::filesystem::path& directory, const std::string& name);
+  /// anything but former results of this case; InputError if one of the `inputs` lies in it.
+  OutputFolder(const std::filesystem::path& directory, const std::string& name,
+               const std::vector<std::filesystem::path>& inputs = {});
   /// Removes the temporary folder unless it was committed.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -47,4 +49,4 @@ class OutputFolder {
   std::filesystem::path temporary_;  ///< empty once committed
 };
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

@@ -15,7 +15,7 @@
 
 #include "ciliaval_version.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 
 Provenance provenance(const std::string& command) {
   const auto now =
@@ -46,4 +46,4 @@ nlohmann::ordered_json to_json(const Provenance& provenance) {
           {"date", provenance.date}};
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 
 /// Where a result comes from.
 struct Provenance {
@@ -22,4 +22,4 @@ Provenance provenance(const std::string& command);
 /// The "provenance" of a result file: version, git, libraries, command, date.
 nlohmann::ordered_json to_json(const Provenance& provenance);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

@@ -4,16 +4,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "problem/error.h"
+#include "compare/output/csv_writer.h"
+#include "compare/output/output_file.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -41,7 +38,7 @@ Json vector(const Vector3& v) {
 }
 
 /// A row for each sensor, null where there is none; null if there is none at all.
-Json rows(const AtSensors& vectors) {
+Json rows(const models::AtSensors& vectors) {
   Json result = Json::array();
   bool any = false;
   for (const std::optional<Vector3>& v : vectors) {
@@ -53,25 +50,12 @@ Json rows(const AtSensors& vectors) {
 
 Json load_json(const Load& load) {
   Json json{{"type", type(load)}};
-  if (const auto* contact = std::get_if<ContactLoad>(&load)) {
-    json["force"] = contact->force;
-    json["height"] = contact->height;
-  } else if (const auto* flow = std::get_if<FlowLoad>(&load)) {
-    json["force_per_height"] = flow->force_per_height;
-  } else if (const auto* section = std::get_if<SectionLoad>(&load)) {
-    json["force"] = section->force;
-    json["arclength"] = section->arclength;
-  } else if (const auto* dead = std::get_if<DeadLoad>(&load)) {
-    json["force_per_length"] = dead->force_per_length;
-  } else if (const auto* probe = std::get_if<ProbeLoad>(&load)) {
-    json["displacement"] = probe->displacement;
-    json["height"] = probe->height;
-  }
-  json["azimuth"] = azimuth(load);
+  for (std::size_t i = 0; i < load.values().size(); ++i)
+    json[std::string(load.type().parameters[i].key.name)] = load.values()[i];
   return json;
 }
 
-Json mechanics_json(const MechanicsRun& run, std::size_t index) {
+Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   const MechanicsStep& step = run.result.steps[index];
   Json json{{"status", to_string(step.status)}, {"message", step.message}};
   json["tip"] = nullptr;
@@ -87,7 +71,7 @@ Json mechanics_json(const MechanicsRun& run, std::size_t index) {
     json["applied_force"] = step.applied_force;
   }
   json["slip_off_force"] = optional(step.slip_off_force);
-  if (std::holds_alternative<ProbeLoad>(step.load))
+  if (step.load.is<ProbeLoad>())
     json["slip_off_displacement"] = optional(step.slip_off_displacement);
   json["contact_arclength"] = optional(step.contact_arclength);
   json["unknowns"] = step.unknowns;
@@ -97,7 +81,7 @@ Json mechanics_json(const MechanicsRun& run, std::size_t index) {
   return json;
 }
 
-Json field_json(const FieldStep& step) {
+Json field_json(const models::FieldStep& step) {
   return {{"status", step.failure.empty() ? "computed" : "failed"},
           {"message", step.failure},
           {"B", rows(step.B)},
@@ -107,20 +91,20 @@ Json field_json(const FieldStep& step) {
           {"seconds", step.seconds}};
 }
 
-Json step_json(const CaseResult& result, std::size_t index) {
+Json step_json(const models::CaseResult& result, std::size_t index) {
   Json json{{"load", load_json(result.problem.load_path[index])}};
-  if (index < result.problem.flow_velocity.size())
-    json["load"]["velocity"] = result.problem.flow_velocity[index];
+  if (const auto velocity = input::stated_values(result.problem, "velocity"); !velocity.empty())
+    json["load"]["velocity"] = velocity[index];
   json["mechanics"] = Json::object();
-  for (const MechanicsRun& run : result.mechanics)
+  for (const models::MechanicsRun& run : result.mechanics)
     json["mechanics"][run.model] = mechanics_json(run, index);
   json["fields"] = Json::object();
-  for (const FieldRun& run : result.fields)
+  for (const models::FieldRun& run : result.fields)
     if (run.steps[index]) json["fields"][run.name()] = field_json(*run.steps[index]);
   return json;
 }
 
-Json comparison_json(const Comparison& c) {
+Json comparison_json(const models::Comparison& c) {
   Json json{{"step", optional(c.step)},
             {"sensor", optional(c.sensor)},
             {"quantity", c.quantity},
@@ -142,11 +126,6 @@ Json comparison_json(const Comparison& c) {
   return json;
 }
 
-template <class T>
-std::string csv(const std::optional<T>& value) {
-  return value ? fmt::format("{}", *value + T{}) : std::string();  // −0.0 + 0.0 = 0.0
-}
-
 }  // namespace
 
 std::string_view to_string(Status status) {
@@ -159,13 +138,6 @@ std::string_view to_string(Status status) {
       break;
   }
   return "failed";
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
 }
 
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension) {
@@ -184,75 +156,58 @@ std::vector<double> output_points(const Centreline& centreline) {
   return result;
 }
 
-std::string summary_json(const CaseResult& result, const std::vector<Comparison>& comparisons,
+std::string summary_json(const models::CaseResult& result,
+                         const std::vector<models::Comparison>& comparisons,
                          const Provenance& provenance) {
   Json json{{"schema", 1}, {"case", result.problem.name}, {"title", result.problem.title}};
   json["provenance"] = to_json(provenance);
   json["sensors"] = Json::array();
   for (const Vector3& sensor : result.problem.sensors) json["sensors"].push_back(vector(sensor));
   json["undeformed"] = {{"fields", Json::object()}};
-  for (const FieldRun& run : result.fields)
+  for (const models::FieldRun& run : result.fields)
     json["undeformed"]["fields"][run.name()] = field_json(run.undeformed);
   json["steps"] = Json::array();
   for (std::size_t i = 0; i < result.problem.load_path.size(); ++i)
     json["steps"].push_back(step_json(result, i));
   json["comparisons"] = Json::array();
-  for (const Comparison& c : comparisons) json["comparisons"].push_back(comparison_json(c));
+  for (const models::Comparison& c : comparisons) json["comparisons"].push_back(comparison_json(c));
   unsign_zeros(json);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-std::string errors_csv(const std::vector<Comparison>& comparisons) {
-  std::string text =
-      "step,sensor,quantity,component,statistic,model,reference,difference,relative,scale,unit,"
-      "uncertainty,verdict,r2,correlation,note\n";
-  for (const Comparison& c : comparisons)
-    text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv(c.step), csv(c.sensor),
-                    c.quantity, c.component, c.statistic, c.model, c.reference, csv(c.difference),
-                    csv(c.relative), csv(c.scale), c.unit, csv(c.uncertainty), to_string(c.verdict),
-                    csv(c.r2), csv(c.correlation), csv_field(c.note));
-  return text;
+std::string errors_csv(const std::vector<models::Comparison>& comparisons) {
+  CsvWriter csv;
+  csv.row("step", "sensor", "quantity", "component", "statistic", "model", "reference",
+          "difference", "relative", "scale", "unit", "uncertainty", "verdict", "r2", "correlation",
+          "note");
+  for (const models::Comparison& c : comparisons)
+    csv.row(c.step, c.sensor, c.quantity, c.component, c.statistic, c.model, c.reference,
+            c.difference, c.relative, c.scale, c.unit, c.uncertainty, to_string(c.verdict), c.r2,
+            c.correlation, c.note);
+  return csv.text();
 }
 
 std::string centreline_csv(const Centreline& centreline) {
-  std::string text = "# units: S m, x m, y m, z m, theta rad, kappa 1/m\nS,x,y,z,theta,kappa\n";
+  CsvWriter csv;
+  csv.comment("units: S m, x m, y m, z m, theta rad, kappa 1/m");
+  csv.row("S", "x", "y", "z", "theta", "kappa");
   for (const double S : output_points(centreline)) {
     const CentrelinePoint p = centreline.at(S);
-    const Vector3 r = p.position.array() + 0.0;  // −0.0 + 0.0 = 0.0
-    text += fmt::format("{},{},{},{},{},{}\n", S, r.x(), r.y(), r.z(), p.theta() + 0.0,
-                        p.bending_curvature() + 0.0);
+    csv.row(S, p.position.x(), p.position.y(), p.position.z(), p.theta(), p.bending_curvature());
   }
-  return text;
+  return csv.text();
 }
 
-void write_text(const std::filesystem::path& file, std::string_view text) {
-  const auto fail = [&](int error) {
-    throw FileError("cannot write `" + file.string() + "`: " + std::strerror(error));
-  };
-  const auto close = [](std::FILE* f) { return std::fclose(f); };
-  std::unique_ptr<std::FILE, decltype(close)> stream(std::fopen(file.c_str(), "wb"), close);
-  if (!stream) fail(errno);
-  if (std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size()) fail(errno);
-  if (std::fflush(stream.get()) != 0) fail(errno);
-  if (std::fclose(stream.release()) != 0) fail(errno);
-}
-
-void replace_text(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path unfinished = file.string() + ".tmp";
-  write_text(unfinished, text);
-  std::filesystem::rename(unfinished, file);
-}
-
-void write_results(const CaseResult& result, const std::vector<Comparison>& comparisons,
-                   const Provenance& provenance, const std::filesystem::path& folder) {
-  for (const MechanicsRun& run : result.mechanics)
+void write_results(const models::CaseResult& result,
+                   const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
+                   const std::filesystem::path& folder) {
+  for (const models::MechanicsRun& run : result.mechanics)
     for (std::size_t i = 0; i < run.result.steps.size(); ++i)
       if (run.result.steps[i].deformation)
-        write_text(folder / step_file(run.model, i, "csv"),
+        write_file(folder / step_file(run.model, i, "csv"),
                    centreline_csv(run.result.steps[i].deformation->centreline));
-  write_text(folder / "errors.csv", errors_csv(comparisons));
-  write_text(folder / "summary.json", summary_json(result, comparisons, provenance));
+  write_file(folder / "errors.csv", errors_csv(comparisons));
+  write_file(folder / "summary.json", summary_json(result, comparisons, provenance));
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

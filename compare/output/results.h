@@ -8,16 +8,13 @@
 #include <vector>
 
 #include "compare/models/errors.h"
-#include "compare/output/provenance.h"
 #include "compare/models/run.h"
+#include "compare/output/provenance.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 
 /// "converged", "slipped_off" or "failed".
 std::string_view to_string(Status status);
-
-/// A CSV field, quoted if it must be (RFC 4180).
-std::string csv_field(const std::string& text);
 
 /// `elastica_0002.csv`: file of a series at a step.
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension);
@@ -25,26 +22,22 @@ std::string step_file(std::string_view series, std::size_t step, std::string_vie
 /// The material points at which a centreline is written: 201 equidistant ones and its breaks, m.
 std::vector<double> output_points(const Centreline& centreline);
 
-/// summary.json as text: the contract of docs/results.md, SI units, every double with the digits
-/// that give it back, what is undefined or not finite as null.
-std::string summary_json(const CaseResult& result, const std::vector<Comparison>& comparisons,
+/// summary.json as text: the contract of docs/guide/results.md, SI units, every double with the
+/// digits that give it back, what is undefined or not finite as null.
+std::string summary_json(const models::CaseResult& result,
+                         const std::vector<models::Comparison>& comparisons,
                          const Provenance& provenance);
 
 /// errors.csv as text: a header and one line for each comparison; what is undefined is empty.
-std::string errors_csv(const std::vector<Comparison>& comparisons);
+std::string errors_csv(const std::vector<models::Comparison>& comparisons);
 
 /// `S,x,y,z,theta,kappa` at output_points(), units in the comment line above; at a break κ is that
 /// of the upper piece.
 std::string centreline_csv(const Centreline& centreline);
 
-/// Writes text to a file. Throws FileError with the path and the reason, also if the disk is full.
-void write_text(const std::filesystem::path& file, std::string_view text);
-
-/// The same under another name first: what is there is replaced at once or not at all.
-void replace_text(const std::filesystem::path& file, std::string_view text);
-
 /// Writes summary.json, errors.csv and the centrelines of all converged steps into a folder.
-void write_results(const CaseResult& result, const std::vector<Comparison>& comparisons,
-                   const Provenance& provenance, const std::filesystem::path& folder);
+void write_results(const models::CaseResult& result,
+                   const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
+                   const std::filesystem::path& folder);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

@@ -10,61 +10,57 @@
 #include <string_view>
 
 #include "compare/output/results.h"
+#include "compare/output/text_table.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::output {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// A number in a unit, or a dash for what is undefined. What rounds to zero has no sign.
-std::string cell(std::optional<double> value, double unit, std::string_view format) {
-  if (!value) return "-";
-  const std::string text = fmt::format(fmt::runtime(format), *value / unit);
-  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
-  return is_zero && text.starts_with('-') ? text.substr(1) : text;
-}
-
 /// The relative error in percent: two decimals, or the order of magnitude of a smaller one.
-std::string percent(const Comparison* c) {
+std::string percent(const models::Comparison* c) {
   if (c == nullptr || !c->relative) return "-";
   const double value = *c->relative * 100;
-  return std::abs(value) >= 0.01 || value == 0 ? cell(value, 1, "{:.2f}")
+  return std::abs(value) >= 0.01 || value == 0 ? number_cell(value, 1, "{:.2f}")
                                                : fmt::format("{:.0e}", value);
 }
 
-const Comparison* find(const std::vector<Comparison>& comparisons, std::optional<std::size_t> step,
-                       std::string_view quantity, std::string_view component,
-                       std::string_view statistic, std::string_view model,
-                       std::string_view reference) {
-  const auto it = std::find_if(comparisons.begin(), comparisons.end(), [&](const Comparison& c) {
-    return c.step == step && c.sensor.value_or(0) == 0 && c.quantity == quantity &&
-           c.component == component && c.statistic == statistic && c.model == model &&
-           c.reference == reference;
-  });
+const models::Comparison* find(const std::vector<models::Comparison>& comparisons,
+                               std::optional<std::size_t> step, std::string_view quantity,
+                               std::string_view component, std::string_view statistic,
+                               std::string_view model, std::string_view reference) {
+  const auto it =
+      std::find_if(comparisons.begin(), comparisons.end(), [&](const models::Comparison& c) {
+        return c.step == step && c.sensor.value_or(0) == 0 && c.quantity == quantity &&
+               c.component == component && c.statistic == statistic && c.model == model &&
+               c.reference == reference;
+      });
   return it == comparisons.end() ? nullptr : &*it;
 }
 
-std::string mechanics_table(const CaseResult& result, std::size_t index) {
-  std::string text = fmt::format("  {:<22}{:<12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>7}{:>9}\n",
-                                 "mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)",
-                                 "force(mN)", "unknowns", "iter.", "time (s)");
-  for (const MechanicsRun& run : result.mechanics) {
+std::string mechanics_table(const models::CaseResult& result, std::size_t index) {
+  TextRows rows{{"mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)", "force(mN)",
+                 "unknowns", "iter.", "time (s)"}};
+  for (const models::MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
-    std::array<std::string, 6> cells{"-", "-", "-", "-", "-", "-"};
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {run.model, std::string(to_string(step.status))};
     if (step.deformation) {
       const Centreline& centreline = step.deformation->centreline;
       const CentrelinePoint tip = centreline.at(centreline.length());
-      for (std::size_t i = 0; i < 3; ++i)
-        cells[i] = cell(tip.position[static_cast<Eigen::Index>(i)], 1e-3, "{:.4f}");
-      if (step.tip_uncertainty) cells[3] = cell(*step.tip_uncertainty, 1e-6, "{:.2g}");
-      cells[4] = cell(tip.theta(), degree, "{:.3f}");
-      cells[5] = cell(step.applied_force, 1e-3, "{:.5g}");
+      for (const double x : tip.position) row.push_back(number_cell(x, 1e-3, "{:.4f}"));
+      row.push_back(number_cell(step.tip_uncertainty, 1e-6, "{:.2g}"));
+      row.push_back(number_cell(tip.theta(), degree, "{:.3f}"));
+      row.push_back(number_cell(step.applied_force, 1e-3, "{:.5g}"));
+    } else {
+      row.insert(row.end(), 6, "-");
     }
-    text += fmt::format("  {:<22}{:<12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}{:>7}{:>9.3g}\n",
-                        run.model, to_string(step.status), cells[0], cells[1], cells[2], cells[3],
-                        cells[4], cells[5], step.unknowns, step.iterations, step.seconds);
+    row.push_back(fmt::format("{}", step.unknowns));
+    row.push_back(fmt::format("{}", step.iterations));
+    row.push_back(fmt::format("{:.3g}", step.seconds));
   }
-  for (const MechanicsRun& run : result.mechanics) {
+  std::string text = text_table(rows, "<<>");
+  for (const models::MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
     if (!step.message.empty()) text += fmt::format("  {}: {}\n", run.model, step.message);
     if (step.status != Status::slipped_off) continue;
@@ -78,9 +74,10 @@ std::string mechanics_table(const CaseResult& result, std::size_t index) {
   return text;
 }
 
-std::string mechanics_errors(const CaseResult& result, const std::vector<Comparison>& comparisons,
-                             std::size_t step) {
-  std::string rows;
+std::string mechanics_errors(const models::CaseResult& result,
+                             const std::vector<models::Comparison>& comparisons, std::size_t step) {
+  TextRows rows{{"difference (1)", "max (%)", "RMS (%)", "tip (%)", "angle (%)", "R2 of w(z)",
+                 "corr.^2", "tip"}};
   for (std::size_t b = 0; b < result.mechanics.size(); ++b)
     for (std::size_t a = 0; a < b; ++a) {
       const std::string& model = result.mechanics[a].model;
@@ -88,20 +85,16 @@ std::string mechanics_errors(const CaseResult& result, const std::vector<Compari
       const auto get = [&](const char* quantity, const char* statistic) {
         return find(comparisons, step, quantity, "", statistic, model, reference);
       };
-      const Comparison* tip = get("tip", "value");
+      const models::Comparison* tip = get("tip", "value");
       if (tip == nullptr) continue;
-      const Comparison* shape = get("deflection", "r2");
-      rows += fmt::format("  {:<22}{:>9}{:>9}{:>9}{:>11}{:>12}{:>12}  {}\n",
-                          fmt::format("{} - {}", model, reference),
-                          percent(get("centreline", "maximum")), percent(get("centreline", "rms")),
-                          percent(tip), percent(get("tip_angle", "value")),
-                          cell(shape->r2, 1, "{:.6f}"), cell(shape->correlation, 1, "{:.6f}"),
-                          to_string(tip->verdict));
+      const models::Comparison* shape = get("deflection", "r2");
+      rows.push_back(
+          {fmt::format("{} - {}", model, reference), percent(get("centreline", "maximum")),
+           percent(get("centreline", "rms")), percent(tip), percent(get("tip_angle", "value")),
+           number_cell(shape->r2, 1, "{:.6f}"), number_cell(shape->correlation, 1, "{:.6f}"),
+           std::string(to_string(tip->verdict))});
     }
-  if (rows.empty()) return rows;
-  return fmt::format("\n  {:<22}{:>9}{:>9}{:>9}{:>11}{:>12}{:>12}  {}\n", "difference (1)",
-                     "max (%)", "RMS (%)", "tip (%)", "angle (%)", "R2 of w(z)", "corr.^2", "tip") +
-         rows;
+  return rows.size() == 1 ? "" : "\n" + text_table(rows, "<>>>>>><");
 }
 
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
@@ -111,70 +104,65 @@ std::optional<double> component(const std::optional<Vector3>& v, Eigen::Index ax
 }
 
 /// Whether a pair has B or ΔB at the sensor that is shown.
-bool has_field(const FieldRun& run, std::size_t step) {
+bool has_field(const models::FieldRun& run, std::size_t step) {
   return run.steps[step] && (run.steps[step]->B.front() || run.steps[step]->dB.front());
 }
 
-std::string fields_table(const CaseResult& result, const std::vector<Comparison>& comparisons,
-                         std::size_t step) {
-  std::string rows;
+std::string fields_table(const models::CaseResult& result,
+                         const std::vector<models::Comparison>& comparisons, std::size_t step) {
+  TextRows rows{{"field at sensor 0", "Bx", "By", "Bz (mT)", "dBx", "dBy", "dBz (uT)", "+-dB",
+                 "x (%)", "y", "z (2)", "time (s)"}};
   std::string failures;
-  const FieldRun* reference = nullptr;  // the most detailed pair that has a field here
-  for (const FieldRun& run : result.fields)
+  const models::FieldRun* reference = nullptr;  // the most detailed pair that has a field here
+  for (const models::FieldRun& run : result.fields)
     if (has_field(run, step)) reference = &run;
-  for (const FieldRun& run : result.fields) {
+  for (const models::FieldRun& run : result.fields) {
     if (!run.steps[step]) continue;
-    const FieldStep& field = *run.steps[step];
+    const models::FieldStep& field = *run.steps[step];
     if (!field.failure.empty()) failures += fmt::format("  {}: {}\n", run.name(), field.failure);
     if (!has_field(run, step)) continue;
-    rows += fmt::format("  {:<18}", run.name());
+    std::vector<std::string>& row = rows.emplace_back();
+    row.push_back(run.name());
     for (Eigen::Index i = 0; i < 3; ++i)
-      rows += fmt::format("{:>10}", cell(component(field.B.front(), i), 1e-3, "{:.4f}"));
+      row.push_back(number_cell(component(field.B.front(), i), 1e-3, "{:.4f}"));
     for (Eigen::Index i = 0; i < 3; ++i)
-      rows += fmt::format("{:>10}", cell(component(field.dB.front(), i), 1e-6, "{:.2f}"));
-    rows += fmt::format("{:>8}", cell(change_uncertainty(result, run, step, 0), 1e-6, "{:.1g}"));
+      row.push_back(number_cell(component(field.dB.front(), i), 1e-6, "{:.2f}"));
+    row.push_back(number_cell(models::change_uncertainty(result, run, step, 0), 1e-6, "{:.1g}"));
     for (const char* axis : axis_names)
-      rows += fmt::format("{:>9}", &run == reference
-                                       ? "ref."
-                                       : percent(find(comparisons, step, "dB", axis, "value",
-                                                      run.name(), reference->name())));
-    rows += fmt::format("{:>9.2g}\n", field.seconds);
+      row.push_back(&run == reference ? "ref."
+                                      : percent(find(comparisons, step, "dB", axis, "value",
+                                                     run.name(), reference->name())));
+    row.push_back(fmt::format("{:.2g}", field.seconds));
   }
-  if (rows.empty()) return failures;
-  return fmt::format("\n  {:<18}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>8}{:>9}{:>9}{:>9}{:>9}\n",
-                     "field at sensor 0", "Bx", "By", "Bz (mT)", "dBx", "dBy", "dBz (uT)", "+-dB",
-                     "x (%)", "y", "z (2)", "time (s)") +
-         rows + failures;
+  return (rows.size() == 1 ? "" : "\n" + text_table(rows, "<>")) + failures;
 }
 
 /// Every pair against the most detailed one that has a field at any step.
-std::string path_errors(const CaseResult& result, const std::vector<Comparison>& comparisons) {
-  const FieldRun* last = nullptr;
-  for (const FieldRun& run : result.fields)
+std::string path_errors(const models::CaseResult& result,
+                        const std::vector<models::Comparison>& comparisons) {
+  const models::FieldRun* last = nullptr;
+  for (const models::FieldRun& run : result.fields)
     for (std::size_t step = 0; step < run.steps.size(); ++step)
       if (has_field(run, step)) last = &run;
   if (last == nullptr) return {};
   const std::string reference = last->name();
-  std::string rows;
-  for (const FieldRun& run : result.fields) {
+  TextRows rows{{"field", "Bx", "By", "Bz", "dBx", "dBy", "dBz"}};
+  for (const models::FieldRun& run : result.fields) {
     if (&run == last) break;
-    std::string row = fmt::format("  {:<18}", run.name());
+    std::vector<std::string> row{run.name()};
     bool any = false;
     for (const char* quantity : {"B", "dB"})
       for (const char* axis : axis_names) {
-        const Comparison* c =
+        const models::Comparison* c =
             find(comparisons, std::nullopt, quantity, axis, "rrmse", run.name(), reference);
         any = any || c != nullptr;
-        row += fmt::format("{:>9}", percent(c));
+        row.push_back(percent(c));
       }
-    if (any) rows += row + '\n';
+    if (any) rows.push_back(std::move(row));
   }
-  if (rows.empty()) return rows;
-  return fmt::format(
-             "\nOver the load path, at sensor 0: RRMSE (3) against {}, in %\n"
-             "  {:<18}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}\n",
-             reference, "field", "Bx", "By", "Bz", "dBx", "dBy", "dBz") +
-         rows;
+  if (rows.size() == 1) return {};
+  return fmt::format("\nOver the load path, at sensor 0: RRMSE (3) against {}, in %\n{}", reference,
+                     text_table(rows, "<>"));
 }
 
 constexpr const char* mechanics_legend =
@@ -195,24 +183,16 @@ constexpr const char* fields_legend =
 
 std::string describe(const Load& load) {
   std::string text(type(load));
-  if (const auto* contact = std::get_if<ContactLoad>(&load))
-    text += fmt::format(", force {:g} mN at height {:g} mm", contact->force * 1e3,
-                        contact->height * 1e3);
-  else if (const auto* flow = std::get_if<FlowLoad>(&load))
-    text += fmt::format(", {:g} N per metre of height", flow->force_per_height);
-  else if (const auto* section = std::get_if<SectionLoad>(&load))
-    text += fmt::format(", force {:g} mN at arc length {:g} mm", section->force * 1e3,
-                        section->arclength * 1e3);
-  else if (const auto* dead = std::get_if<DeadLoad>(&load))
-    text += fmt::format(", {:g} N per metre of length", dead->force_per_length);
-  else if (const auto* probe = std::get_if<ProbeLoad>(&load))
-    text += fmt::format(", displacement {:g} mm at height {:g} mm", probe->displacement * 1e3,
-                        probe->height * 1e3);
-  return text + fmt::format(", azimuth {:g} deg", azimuth(load) / degree);
+  for (std::size_t i = 0; i < load.values().size(); ++i) {
+    const LoadParameter& parameter = load.type().parameters[i];
+    text += fmt::format(fmt::runtime(parameter.words), parameter.display_factor * load.values()[i]);
+  }
+  return text;
 }
 
-std::string table(const CaseResult& result, const std::vector<Comparison>& comparisons) {
-  const Case& problem = result.problem;
+std::string table(const models::CaseResult& result,
+                  const std::vector<models::Comparison>& comparisons) {
+  const input::Case& problem = result.problem;
   std::string text = problem.name + (problem.title.empty() ? "" : ": " + problem.title) + '\n';
   bool pairs = false;
   for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
@@ -236,4 +216,4 @@ std::string table(const CaseResult& result, const std::vector<Comparison>& compa
   return text;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::output

@@ -1,49 +1,29 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/plot/gnuplot.h"
 
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <memory>
+#include <fstream>
+#include <sstream>
 #include <utility>
 #include <vector>
 
-#include "compare/output/results.h"
+#include "compare/output/output_file.h"
 #include "problem/error.h"
+#include "problem/support/child_process.h"
 
 namespace ciliaval::compare::plot {
 namespace {
 
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-/// Without a name: gone when it is closed.
-using File = std::unique_ptr<std::FILE, Close>;
-
-File temporary_file() {
-  File file(std::tmpfile());
-  if (!file)
-    throw FileError(
-        fmt::format("cannot make a temporary file for gnuplot: {}", std::strerror(errno)));
-  return file;
-}
-
-std::string content(std::FILE* file) {
-  std::string text;
-  std::array<char, 65536> part{};
-  std::rewind(file);
-  while (const std::size_t n = std::fread(part.data(), 1, part.size(), file))
-    text.append(part.data(), n);
-  return text;
+/// A file's text; empty where there is none.
+std::string content(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
 }
 
 /// The first of gnuplot's complaints, which begins after the copy of the line and a caret.
@@ -53,49 +33,18 @@ std::string complaint(const std::string& text) {
   return message.substr(0, message.find('\n'));
 }
 
-/// gnuplot with the three files as its standard streams; its exit code. Files, not pipes: none of
-/// the two has to read while the other one writes.
-int run_gnuplot(std::FILE* in, std::FILE* out, std::FILE* err) {
-  posix_spawn_file_actions_t streams;
-  posix_spawn_file_actions_init(&streams);
-  posix_spawn_file_actions_adddup2(&streams, fileno(in), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&streams, fileno(out), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&streams, fileno(err), STDERR_FILENO);
-  std::string program = "gnuplot";
-  std::string defaults = "-d";  // not the user's ~/.gnuplot
-  // By its name: standard input itself gnuplot reads byte by byte, which takes most of its time.
-  std::string input = "/dev/stdin";
-  const std::array<char*, 4> arguments{program.data(), defaults.data(), input.data(), nullptr};
-  pid_t process = 0;
-  const int error =
-      posix_spawnp(&process, program.c_str(), &streams, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&streams);
-  if (error == ENOENT)
+void require_success(const support::ChildEnd& end, const std::filesystem::path& log) {
+  if (end.how == support::ChildEnd::How::not_found)
     throw FileError(
         "cannot plot: there is no gnuplot; install it (apt-get install gnuplot-nox) and run the "
         "command again");
-  if (error != 0)
-    throw FileError(fmt::format("cannot plot: gnuplot does not start: {}", std::strerror(error)));
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0)
-    if (errno != EINTR)
-      throw FileError(fmt::format("cannot plot: gnuplot is lost: {}", std::strerror(errno)));
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/// The complete SVG documents in what gnuplot wrote one after the other.
-std::vector<std::string> documents(std::string_view text) {
-  constexpr std::string_view head = "<?xml";
-  constexpr std::string_view tail = "</svg>\n";
-  std::vector<std::string> result;
-  for (std::size_t begin = text.find(head); begin != std::string_view::npos;) {
-    const std::size_t next = text.find(head, begin + head.size());
-    std::string_view document = text.substr(begin, next - begin);
-    document = document.substr(0, document.find_last_not_of('\n') + 2);
-    if (document.ends_with(tail)) result.emplace_back(document);
-    begin = next;
-  }
-  return result;
+  if (end.how == support::ChildEnd::How::timed_out)
+    throw FileError(fmt::format(
+        "cannot plot: gnuplot {}; see that the gnuplot in PATH draws, or leave out --plot",
+        end.text()));
+  if (!end.succeeded())
+    throw FileError(
+        fmt::format("cannot plot: gnuplot {}: {}", end.text(), complaint(content(log))));
 }
 
 }  // namespace
@@ -125,25 +74,33 @@ std::string logarithmic_x_axis(double from, double to) {
   return script + fmt::format("set xtics ({})\n", fmt::join(marks, ", "));
 }
 
-std::vector<std::string> draw_svgs(std::span<const Script> scripts) {
-  const File in = temporary_file();
-  const File out = temporary_file();
-  const File err = temporary_file();
-  std::string input;
-  for (const Script& script : scripts)
-    input += fmt::format(
+std::vector<std::string> draw_svgs(std::span<const Script> scripts, double time_limit) {
+  const support::SignalPause pause;  // the folder is removed before a signal ends the program
+  const support::WorkFolder folder;
+  const auto drawing = [&](std::size_t i) { return folder.path() / fmt::format("{}.svg", i); };
+  const std::filesystem::path input = folder.path() / "script";
+  std::ofstream out(input);
+  for (std::size_t i = 0; i < scripts.size(); ++i)
+    out << fmt::format(
         "reset session\nset encoding utf8\n"
-        "set terminal svg size {},{} font 'sans,12' background 'white'\n{}\n",
-        script.size.width, script.size.height, script.text);
-  if (std::fwrite(input.data(), 1, input.size(), in.get()) != input.size() ||
-      std::fflush(in.get()) != 0)
-    throw FileError(fmt::format("cannot write a script for gnuplot: {}", std::strerror(errno)));
-  std::rewind(in.get());
-  const int code = run_gnuplot(in.get(), out.get(), err.get());
-  std::vector<std::string> drawings = documents(content(out.get()));
-  if (code != 0 || drawings.size() != scripts.size())
-    throw FileError(
-        fmt::format("cannot plot: gnuplot ended with {}: {}", code, complaint(content(err.get()))));
+        "set terminal svg size {},{} font 'sans,12' background 'white'\nset output '{}.svg'\n{}\n"
+        "set output\n",
+        scripts[i].size.width, scripts[i].size.height, i, scripts[i].text);
+  out.close();
+  if (!out) throw FileError(fmt::format("cannot write `{}`: is the disk full?", input.string()));
+  const std::filesystem::path log = folder.path() / "log";
+  // -d: not the user's ~/.gnuplot.
+  require_success(
+      support::run_child({"gnuplot", {"-d", "script"}, folder.path(), log, time_limit, {}}), log);
+  std::vector<std::string> drawings;
+  for (std::size_t i = 0; i < scripts.size(); ++i) {
+    std::string document = content(drawing(i));  // ends with an empty line
+    document.erase(std::min(document.size(), document.find_last_not_of('\n') + 2));
+    drawings.push_back(std::move(document));
+    if (!drawings.back().ends_with("</svg>\n"))
+      throw FileError("cannot plot: a script draws nothing, or the disk is full: " +
+                      complaint(content(log)));
+  }
   return drawings;
 }
 
@@ -153,7 +110,7 @@ std::string draw_svg(std::string_view script, Size size) {
 }
 
 void write_svg(const std::filesystem::path& file, std::string_view script, Size size) {
-  replace_text(file, draw_svg(script, size));
+  output::write_file(file, draw_svg(script, size));
 }
 
 }  // namespace ciliaval::compare::plot

@@ -33,11 +33,14 @@ struct Script {
   Size size;
 };
 
+inline constexpr double gnuplot_time_limit = 120;  ///< s; a report's drawings take a few
+
 /// What gnuplot draws from each script, as SVG. Starts gnuplot once and directly, without a shell
 /// and without the user's settings; no script sees the settings and data of another. Throws
-/// FileError if it is not installed, with what to install, or if it refuses a script, with its
-/// message.
-std::vector<std::string> draw_svgs(std::span<const Script> scripts);
+/// FileError if it is not installed, with what to install, if it refuses a script, with its
+/// message, or if it does not end within the time limit (s).
+std::vector<std::string> draw_svgs(std::span<const Script> scripts,
+                                   double time_limit = gnuplot_time_limit);
 /// One script alone.
 std::string draw_svg(std::string_view script, Size size);
 

@@ -14,7 +14,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -107,9 +107,9 @@ Expected read_expected(const Json& json, const std::string& file) {
   return expected;
 }
 
-Provenance read_origin(const Json& json, const std::string& file) {
+output::Provenance read_origin(const Json& json, const std::string& file) {
   Reader reader(json, file, "origin");
-  Provenance origin;
+  output::Provenance origin;
   origin.version = reader.text("version");
   origin.git = reader.text("git");
   origin.command = reader.text("command");
@@ -199,17 +199,17 @@ std::filesystem::path baseline_path(const std::filesystem::path& case_file) {
   return case_file.parent_path() / (case_file.stem().string() + ".baseline.json");
 }
 
-std::vector<std::string> case_text(const Case& problem) {
-  Case portable = problem;
+std::vector<std::string> case_text(const input::Case& problem) {
+  input::Case portable = problem;
   portable.options.solid.mesh = problem.options.solid.mesh.filename();
   portable.options.calculix.program = problem.options.calculix.program.filename();
   portable.options.calculix.keep.clear();
-  for (ExternalModel& model : portable.external) {
+  for (input::external::ExternalModel& model : portable.external) {
     for (std::filesystem::path& file : model.centreline_files) file = file.filename();
     model.readings_file = model.readings_file.filename();
     model.background_file = model.background_file.filename();
   }
-  std::istringstream text(to_toml(portable));
+  std::istringstream text(input::to_toml(portable));
   const auto used = [&](const std::string& model) {
     const auto among = [&](const std::vector<std::string>& ids) {
       return std::find(ids.begin(), ids.end(), model) != ids.end();
@@ -262,7 +262,7 @@ std::string to_json(const Baseline& baseline) {
     quantities.push_back(std::move(json));
   }
   const std::vector<Json> text(baseline.case_text.begin(), baseline.case_text.end());
-  const Provenance& o = baseline.origin;
+  const output::Provenance& o = baseline.origin;
   const Json origin{{"version", o.version},
                     {"git", o.git},
                     {"libraries", o.libraries},
@@ -288,8 +288,8 @@ Tolerance regression_tolerance(const Quantity& quantity) {
   return {relative, relative * quantity.scale};
 }
 
-Baseline make_baseline(const Case& problem, const Measurements& measured, const Provenance& origin,
-                       const Baseline* old) {
+Baseline make_baseline(const input::Case& problem, const Measurements& measured,
+                       const output::Provenance& origin, const Baseline* old) {
   Baseline baseline{problem.name, case_text(problem), origin, {}, {}, {}};
   for (const Outcome& outcome : measured.outcomes) {
     if (outcome.value == "failed")
@@ -321,4 +321,4 @@ Baseline make_baseline(const Case& problem, const Measurements& measured, const 
   return baseline;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

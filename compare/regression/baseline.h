@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/regression/quantities.h"
 #include "compare/output/provenance.h"
+#include "compare/regression/quantities.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 
 /// |a − b| ≤ max(ρ max(|a|, |b|), ε).
 struct Tolerance {
@@ -52,7 +52,7 @@ struct Change {
 struct Baseline {
   std::string case_name;
   std::vector<std::string> case_text;  ///< to_toml() of the case, line by line
-  Provenance origin;                   ///< of the run that was accepted
+  output::Provenance origin;           ///< of the run that was accepted
   std::vector<Change> changes;         ///< from the baseline before
   std::vector<Expected> quantities;
   std::vector<ExpectedOutcome> outcomes;
@@ -63,7 +63,7 @@ std::filesystem::path baseline_path(const std::filesystem::path& case_file);
 
 /// The case as a baseline keeps it: the same on every machine (a mesh file without its folder), and
 /// without the options of models that it does not use, of which there will be more.
-std::vector<std::string> case_text(const Case& problem);
+std::vector<std::string> case_text(const input::Case& problem);
 
 /// Reads a baseline. Every key must be known and there, every number finite, every tolerance
 /// positive and at most 10 % of the value's scale, every id once. Throws InputError
@@ -75,13 +75,13 @@ Baseline read_baseline(std::string_view text, std::string_view file);
 std::string to_json(const Baseline& baseline);
 
 /// The tolerance of a quantity in a new baseline, above what was measured between machines, kernels
-/// and ranks (docs/evidence.md).
+/// and ranks (docs/evidence/regression.md).
 Tolerance regression_tolerance(const Quantity& quantity);
 
 /// A baseline of what was measured. `old` gives the references, the values that differ from it by
 /// less than their tolerance, and what the others were in `changes`. Throws SolverError if
 /// something failed or is not finite: that is no baseline.
-Baseline make_baseline(const Case& problem, const Measurements& measured, const Provenance& origin,
-                       const Baseline* old);
+Baseline make_baseline(const input::Case& problem, const Measurements& measured,
+                       const output::Provenance& origin, const Baseline* old);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

@@ -12,7 +12,7 @@
 
 #include "compare/models/errors.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 namespace {
 
 /// A tolerance beyond this part of the quantity's scale checks nothing.
@@ -101,7 +101,7 @@ Finding compare(const Quantity& measured, double expected, const Tolerance& tole
   return finding;
 }
 
-void check_case(const Case& asked, const Baseline& baseline, CheckReport& report) {
+void check_case(const input::Case& asked, const Baseline& baseline, CheckReport& report) {
   if (baseline.case_name != asked.name)
     report.findings.push_back(
         failure("case", fmt::format("the baseline is that of case \"{}\"", baseline.case_name)));
@@ -185,11 +185,11 @@ void check_quantities(const std::vector<Quantity>& measured, const Baseline& bas
 }
 
 /// ΔB must be B − B(undeformed), to rounding.
-void check_differences(const CaseResult& result, CheckReport& report) {
-  for (const FieldRun& run : result.fields)
+void check_differences(const models::CaseResult& result, CheckReport& report) {
+  for (const models::FieldRun& run : result.fields)
     for (std::size_t i = 0; i < run.steps.size(); ++i) {
       if (!run.steps[i]) continue;
-      const FieldStep& step = *run.steps[i];
+      const models::FieldStep& step = *run.steps[i];
       for (std::size_t s = 0; s < step.dB.size(); ++s) {
         if (!step.dB[s] || (run.measured && !step.B[s])) continue;  // readings of ΔB alone
         const std::string id = fmt::format("steps/{}/fields/{}/dB/{}", i, run.name(), s);
@@ -211,7 +211,7 @@ bool same_bits(const Deformation& a, const Deformation& b) {
   return true;
 }
 
-bool same_mechanics(const MechanicsRun& a, const MechanicsRun& b) {
+bool same_mechanics(const models::MechanicsRun& a, const models::MechanicsRun& b) {
   bool any = false;
   for (std::size_t i = 0; i < a.result.steps.size() && i < b.result.steps.size(); ++i) {
     const auto& one = a.result.steps[i].deformation;
@@ -223,7 +223,7 @@ bool same_mechanics(const MechanicsRun& a, const MechanicsRun& b) {
   return any;
 }
 
-bool same_field(const FieldRun& a, const FieldRun& b) {
+bool same_field(const models::FieldRun& a, const models::FieldRun& b) {
   bool any = false;
   for (std::size_t i = 0; i < a.steps.size() && i < b.steps.size(); ++i) {
     if (!a.steps[i] || !b.steps[i]) continue;
@@ -234,7 +234,7 @@ bool same_field(const FieldRun& a, const FieldRun& b) {
 }
 
 /// Models that are compared must be two, and something must be compared.
-void check_independence(const CaseResult& result, const Baseline& baseline, bool complete,
+void check_independence(const models::CaseResult& result, const Baseline& baseline, bool complete,
                         CheckReport& report) {
   const auto same = [&](const std::string& a, const std::string& b) {
     report.findings.push_back(
@@ -256,7 +256,7 @@ void check_independence(const CaseResult& result, const Baseline& baseline, bool
   const bool references =
       std::any_of(baseline.quantities.begin(), baseline.quantities.end(),
                   [](const Expected& expected) { return expected.reference.has_value(); });
-  if (complete && !references && compare_models(result).empty())
+  if (complete && !references && models::compare_models(result).empty())
     report.findings.push_back(
         failure("comparison",
                 "is empty: no two models have a result at the same step, and the baseline has no "
@@ -275,11 +275,11 @@ std::size_t CheckReport::compared() const {
       findings.begin(), findings.end(), [](const Finding& f) { return f.limit.has_value(); }));
 }
 
-CheckReport check(const Case& asked, const CaseResult& result, const Baseline& baseline,
-                  const std::vector<std::string>& left_out) {
+CheckReport check(const input::Case& asked, const models::CaseResult& result,
+                  const Baseline& baseline, const std::vector<std::string>& left_out) {
   CheckReport report;
   report.case_name = asked.name;
-  for (const MechanicsRun& run : result.mechanics)
+  for (const models::MechanicsRun& run : result.mechanics)
     for (const MechanicsStep& step : run.result.steps) report.seconds += step.seconds;
   const LeftOut absent(left_out);
   const Measurements measured = measurements(result);
@@ -293,4 +293,4 @@ CheckReport check(const Case& asked, const CaseResult& result, const Baseline& b
   return report;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

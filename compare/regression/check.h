@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "compare/input/case.h"
-#include "compare/regression/baseline.h"
 #include "compare/models/run.h"
+#include "compare/regression/baseline.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 
 /// One thing that was checked.
 struct Finding {
@@ -45,7 +45,7 @@ struct CheckReport {
 /// that give the same bits, hence are one; nothing that is compared with anything but its own past;
 /// no number at all. `asked` is the case as the file states it. Models of it that `result` leaves
 /// out on purpose are in `left_out`; all others must be there.
-CheckReport check(const Case& asked, const CaseResult& result, const Baseline& baseline,
-                  const std::vector<std::string>& left_out = {});
+CheckReport check(const input::Case& asked, const models::CaseResult& result,
+                  const Baseline& baseline, const std::vector<std::string>& left_out = {});
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

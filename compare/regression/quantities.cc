@@ -10,7 +10,7 @@
 
 #include "compare/output/results.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 namespace {
 
 constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
@@ -26,8 +26,8 @@ void add_vector(Quantity quantity, const Vector3& value, const std::optional<Vec
   }
 }
 
-void add_shape(const std::string& prefix, const MechanicsRun& run, const MechanicsStep& step,
-               double largest_force, Measurements& out) {
+void add_shape(const std::string& prefix, const models::MechanicsRun& run,
+               const MechanicsStep& step, double largest_force, Measurements& out) {
   const Centreline& centreline = step.deformation->centreline;
   const double L = centreline.length();
   constexpr std::array<std::string_view, 4> places{"quarter", "middle", "three_quarters", "tip"};
@@ -48,7 +48,7 @@ void add_shape(const std::string& prefix, const MechanicsRun& run, const Mechani
   if (step.tip_uncertainty) add("tip_uncertainty", "m", *step.tip_uncertainty, L);
 }
 
-void add_mechanics(const MechanicsRun& run, Measurements& out) {
+void add_mechanics(const models::MechanicsRun& run, Measurements& out) {
   double largest_force = 0;
   for (const MechanicsStep& step : run.result.steps)
     for (const double force : {step.applied_force, step.slip_off_force.value_or(0)})
@@ -56,7 +56,8 @@ void add_mechanics(const MechanicsRun& run, Measurements& out) {
   for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
     const MechanicsStep& step = run.result.steps[i];
     const std::string prefix = fmt::format("steps/{}/mechanics/{}", i, run.model);
-    out.outcomes.push_back({prefix + "/status", run.model, std::string(to_string(step.status))});
+    out.outcomes.push_back(
+        {prefix + "/status", run.model, std::string(output::to_string(step.status))});
     if (step.deformation) add_shape(prefix, run, step, largest_force, out);
     if (step.slip_off_force)
       out.quantities.push_back(
@@ -72,9 +73,9 @@ void add_mechanics(const MechanicsRun& run, Measurements& out) {
 }
 
 /// The largest |B| or |ΔB| of a pair at each sensor, over the undeformed cilium and the path, T.
-std::vector<double> largest_fields(const FieldRun& run) {
+std::vector<double> largest_fields(const models::FieldRun& run) {
   std::vector<double> largest(run.undeformed.B.size(), 0);
-  const auto look = [&](const FieldStep& step) {
+  const auto look = [&](const models::FieldStep& step) {
     for (std::size_t s = 0; s < step.B.size() && s < largest.size(); ++s)
       for (const auto& value : {step.B[s], step.dB[s]})  // readings may have ΔB alone
         if (value && value->allFinite()) largest[s] = std::max(largest[s], value->norm());
@@ -85,10 +86,10 @@ std::vector<double> largest_fields(const FieldRun& run) {
   return largest;
 }
 
-void add_fields(const FieldRun& run, Measurements& out) {
+void add_fields(const models::FieldRun& run, Measurements& out) {
   const std::vector<double> scale = largest_fields(run);
-  const auto add_rows = [&](const std::string& prefix, const AtSensors& values,
-                            const AtSensors& uncertainty) {
+  const auto add_rows = [&](const std::string& prefix, const models::AtSensors& values,
+                            const models::AtSensors& uncertainty) {
     for (std::size_t s = 0; s < values.size(); ++s)
       if (values[s])
         add_vector({fmt::format("{}/{}", prefix, s),
@@ -99,7 +100,8 @@ void add_fields(const FieldRun& run, Measurements& out) {
                     {}},
                    *values[s], s < uncertainty.size() ? uncertainty[s] : std::nullopt, out);
   };
-  const auto add_step = [&](const std::string& prefix, const FieldStep& step, bool deformed) {
+  const auto add_step = [&](const std::string& prefix, const models::FieldStep& step,
+                            bool deformed) {
     out.outcomes.push_back(
         {prefix + "/status", run.mechanics, step.failure.empty() ? "computed" : "failed"});
     add_rows(prefix + "/B", step.B, step.uncertainty);
@@ -113,11 +115,11 @@ void add_fields(const FieldRun& run, Measurements& out) {
 
 }  // namespace
 
-Measurements measurements(const CaseResult& result) {
+Measurements measurements(const models::CaseResult& result) {
   Measurements out;
-  for (const MechanicsRun& run : result.mechanics) add_mechanics(run, out);
-  for (const FieldRun& run : result.fields) add_fields(run, out);
+  for (const models::MechanicsRun& run : result.mechanics) add_mechanics(run, out);
+  for (const models::FieldRun& run : result.fields) add_fields(run, out);
   return out;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

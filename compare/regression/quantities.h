@@ -7,7 +7,7 @@
 
 #include "compare/models/run.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 
 /// One number that a case's models have computed. Its id is its place in summary.json:
 /// `steps/1/mechanics/elastica/tip/x`, `steps/1/fields/elastica/line/dB/0/y` (sensor 0).
@@ -39,6 +39,6 @@ struct Measurements {
 /// L, the tip's angle, applied force, contact arc length and tip uncertainty, or the slip-off; of
 /// each pair B and ΔB at each sensor, B of the straight cilium too. No means, in which errors could
 /// cancel.
-Measurements measurements(const CaseResult& result);
+Measurements measurements(const models::CaseResult& result);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <sstream>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -113,4 +113,4 @@ std::string report_junit(const std::vector<CheckReport>& reports) {
   return text.str() + '\n';
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

@@ -6,7 +6,7 @@
 
 #include "compare/regression/check.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::regression {
 
 /// A line for each case, below it one for each failure, and a line that sums up.
 std::string report_text(const std::vector<CheckReport>& reports);
@@ -20,4 +20,4 @@ std::string report_json(const std::vector<CheckReport>& reports);
 /// finding with measured value, expected value, limit and uncertainty as its properties.
 std::string report_junit(const std::vector<CheckReport>& reports);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::regression

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "compare/input/csv.h"
+#include "compare/output/table.h"
 #include "compare/report/curves.h"
 #include "compare/report/sections.h"
-#include "compare/output/table.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::report {
@@ -42,7 +42,7 @@ std::vector<std::string> models_of(const Json& summary, const char* kind) {
 
 /// The load of a step for people, with the flow's velocity if the case stated one.
 std::string load_text(const Json& load) {
-  const std::string text = describe(load_of(load));
+  const std::string text = output::describe(load_of(load));
   return load.contains("velocity") ? fmt::format("{} m/s: {}", number(load["velocity"]), text)
                                    : text;
 }
@@ -72,12 +72,14 @@ LoadAxis load_axis(const Json& steps) {
 
 /// (deflection along the load, height) of a centreline, mm.
 std::vector<std::pair<double, double>> shape_of(const fs::path& file, double phi) {
-  constexpr std::array columns{CsvColumn{"x", CsvColumn::Kind::quantity, quantity::length},
-                               CsvColumn{"y", CsvColumn::Kind::quantity, quantity::length},
-                               CsvColumn{"z", CsvColumn::Kind::quantity, quantity::length}};
+  constexpr std::array columns{
+      input::CsvColumn{"x", input::CsvColumn::Kind::quantity, quantity::length},
+      input::CsvColumn{"y", input::CsvColumn::Kind::quantity, quantity::length},
+      input::CsvColumn{"z", input::CsvColumn::Kind::quantity, quantity::length}};
   constexpr std::array<std::string_view, 3> ignored{"S", "theta", "kappa"};
-  Faults faults;
-  const CsvTable table = read_csv(read_csv_file(file), columns, ignored, faults);
+  input::Faults faults;
+  const input::CsvTable table =
+      input::read_csv(input::read_csv_file(file), columns, ignored, faults);
   if (!faults.empty()) throw InputError(faults.report(file.string()));
   std::vector<std::pair<double, double>> points;
   for (std::size_t i = 0; i < table.numbers[0].size(); ++i)

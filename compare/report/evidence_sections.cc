@@ -12,7 +12,7 @@
 namespace ciliaval::compare::report {
 namespace {
 
-std::string row_name(const BudgetRow& row) {
+std::string row_name(const budget::BudgetRow& row) {
   if (row.quantity == "tip") return "tip " + row.component;
   if (row.quantity == "tip_angle") return "tip angle";
   return fmt::format("{}{}{}", row.quantity == "sensitivity" ? "d|ΔB|/dF" : row.quantity,
@@ -20,25 +20,25 @@ std::string row_name(const BudgetRow& row) {
                      row.sensor.value_or(0) > 0 ? fmt::format(", sensor {}", *row.sensor) : "");
 }
 
-std::string link_text(const BudgetLink& link, double unit) {
-  const std::string mark = link.verdict == Verdict::resolved            ? ""
-                           : link.verdict == Verdict::below_uncertainty ? "~ "
-                                                                        : "? ";
+std::string link_text(const budget::BudgetLink& link, double unit) {
+  const std::string mark = link.verdict == models::Verdict::resolved            ? ""
+                           : link.verdict == models::Verdict::below_uncertainty ? "~ "
+                                                                                : "? ";
   const std::string value = number(link.value, unit, 4);
   return mark + (link.uncertainty
                      ? fmt::format("{} ± {}", value, number(*link.uncertainty, unit, 1))
                      : value);
 }
 
-Table budget_table(const Budget& budget, std::size_t step, const std::string& load) {
+Table budget_table(const budget::Budget& budget, std::size_t step, const std::string& load) {
   Table table{fmt::format("Load step {}{}", step + 1, load.empty() ? "" : ": " + load),
               {"number", "paper's model", "links: next − previous", "best model", "total"},
               {}};
-  for (const BudgetRow& row : budget.rows) {
+  for (const budget::BudgetRow& row : budget.rows) {
     if (row.step != step) continue;
     const ShownUnit unit = shown_unit(row.unit);
     std::vector<std::string> links;
-    for (const BudgetLink& link : row.links)
+    for (const budget::BudgetLink& link : row.links)
       links.push_back(fmt::format("{} {}", link.to, link_text(link, unit.size)));
     table.rows.push_back({fmt::format("{}, {}", row_name(row), unit.name),
                           number(row.paper, unit.size),
@@ -54,14 +54,14 @@ bool is_shown(const std::string& id) {
          id.find("slip_off") != std::string::npos || id.find("/dB/") != std::string::npos;
 }
 
-Table convergence_table(const RefinementStudy& study) {
+Table convergence_table(const convergence::RefinementStudy& study) {
   Table table{fmt::format("{}, {} {:g}, finest first ({:.3g} s)", study.model, study.knob,
                           fmt::join(study.settings, ", "), fmt::join(study.seconds, ", ")),
               {"quantity", "unit", "finest", "order", "extrapolated", "±", "remark"},
               {}};
-  for (const ConvergedQuantity& q : study.quantities) {
+  for (const convergence::ConvergedQuantity& q : study.quantities) {
     if (!is_shown(q.id) || q.levels.empty()) continue;
-    const Extrapolation& e = q.extrapolation;
+    const convergence::Extrapolation& e = q.extrapolation;
     table.rows.push_back({q.id,
                           {q.unit, "word"},
                           number(q.levels.front().value, 1, 9),
@@ -76,11 +76,11 @@ Table convergence_table(const RefinementStudy& study) {
 }  // namespace
 
 std::string budget_content(const Json& json, Figures& figures) {
-  const Budget budget = read_budget(json);
+  const budget::Budget budget = budget::read_budget(json);
   Table chain{"From the paper's model to the best one, an assumption at a time",
               {"model", "what changes"},
               {}};
-  for (const Station& station : budget.chain.stations)
+  for (const budget::Station& station : budget.chain.stations)
     chain.rows.push_back(
         {station.name(),
          {station.physics.empty() ? "the paper's model: elastica, dipoles along the centreline"
@@ -95,7 +95,7 @@ std::string budget_content(const Json& json, Figures& figures) {
     return loads.is_null() ? std::string() : loads.at(step).get<std::string>();
   };
   std::vector<Drawing> drawings;
-  for (const WaterfallPanel& panel : waterfall_panels(budget))
+  for (const budget::WaterfallPanel& panel : budget::waterfall_panels(budget))
     drawings.push_back(
         {fmt::format("Error budget of {}", panel.quantity),
          fmt::format("{} at load step {}{}: bars from the paper's model to the best, whiskers the "
@@ -105,7 +105,7 @@ std::string budget_content(const Json& json, Figures& figures) {
          panel.drawing.script, panel.drawing.size});
   text += figures.row(drawings, Figures::Width::wide);
   std::vector<std::size_t> steps;
-  for (const BudgetRow& row : budget.rows)
+  for (const budget::BudgetRow& row : budget.rows)
     if (std::find(steps.begin(), steps.end(), row.step) == steps.end()) steps.push_back(row.step);
   std::string tables;
   for (const std::size_t step : steps) tables += html(budget_table(budget, step, load(step)));
@@ -117,16 +117,16 @@ std::string budget_content(const Json& json, Figures& figures) {
 }
 
 std::string convergence_content(const Json& json, Figures& figures) {
-  const std::vector<RefinementStudy> studies = read_studies(json);
+  const std::vector<convergence::RefinementStudy> studies = convergence::read_studies(json);
   std::vector<std::string> failures;
   std::vector<Drawing> drawings;
   std::string tables;
-  for (const RefinementStudy& study : studies) {
+  for (const convergence::RefinementStudy& study : studies) {
     if (!study.failure.empty()) {
       failures.push_back(fmt::format("{}: inconclusive: {}", study.model, study.failure));
       continue;
     }
-    const ConvergencePlot drawing = convergence_panel(study);
+    const convergence::ConvergencePlot drawing = convergence::convergence_panel(study);
     drawings.push_back(
         {fmt::format("Convergence of {}", study.model),
          fmt::format("{}, {}: distance from the extrapolated limit f₀ over h, {}. Lines: "

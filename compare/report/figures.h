@@ -25,7 +25,9 @@ struct Drawing {
 class Figures {
  public:
   using Draw = std::function<std::vector<std::string>(std::span<const plot::Script> scripts)>;
-  explicit Figures(Draw draw = plot::draw_svgs) : draw_(std::move(draw)) {}
+  explicit Figures(
+      Draw draw = [](std::span<const plot::Script> scripts) { return plot::draw_svgs(scripts); })
+      : draw_(std::move(draw)) {}
 
   /// What stands for the figure in the page's HTML until it is drawn; empty if there is nothing to
   /// draw.

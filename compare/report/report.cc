@@ -238,7 +238,7 @@ std::string case_page(const fs::path& folder, Figures& figures) {
            "Made by `ciliaval run` from summary.json and the centrelines beside it."));
 }
 
-Report results_page(const fs::path& folder, const Provenance& maker, Figures& figures) {
+Report results_page(const fs::path& folder, const output::Provenance& maker, Figures& figures) {
   Report report;
   std::vector<Document> found;
   for (const fs::path& file : json_files(folder)) try {

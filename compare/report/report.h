@@ -27,6 +27,7 @@ struct Report {
 /// that is damaged or no result is named in the page and in `damaged`, and the others are shown:
 /// one bad file costs no other result. `maker` is the program's own provenance. Throws FileError
 /// if the folder cannot be read or holds no result at all.
-Report results_page(const std::filesystem::path& folder, const Provenance& maker, Figures& figures);
+Report results_page(const std::filesystem::path& folder, const output::Provenance& maker,
+                    Figures& figures);
 
 }  // namespace ciliaval::compare::report

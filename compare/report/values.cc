@@ -54,14 +54,13 @@ std::string text_at(const Json& json, const char* key) {
 }
 
 Load load_of(const Json& json) {
-  const auto at = [&](const char* key) { return json.at(key).get<double>(); };
-  const std::string type = json.at("type").get<std::string>();
-  if (type == "contact") return ContactLoad{at("force"), at("height"), at("azimuth")};
-  if (type == "flow") return FlowLoad{at("force_per_height"), at("azimuth")};
-  if (type == "section") return SectionLoad{at("force"), at("arclength"), at("azimuth")};
-  if (type == "dead") return DeadLoad{at("force_per_length"), at("azimuth")};
-  if (type == "probe") return ProbeLoad{at("displacement"), at("height"), at("azimuth")};
-  throw FileError("there is no load `" + type + "`");
+  const std::string name = json.at("type").get<std::string>();
+  const LoadType* type = find_load_type(name);
+  if (type == nullptr) throw FileError("there is no load `" + name + "`");
+  std::vector<double> values;
+  for (const LoadParameter& parameter : type->parameters)
+    values.push_back(json.at(std::string(parameter.key.name)).get<double>());
+  return Load(*type, values);
 }
 
 std::string in_words(const std::vector<std::string>& names) {

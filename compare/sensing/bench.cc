@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
@@ -13,7 +14,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 namespace {
 
 constexpr double beyond_the_largest = 1.25;  ///< the range of loads looked for, over the largest
@@ -261,29 +262,14 @@ BenchResult Simulation::run(const Progress& progress) const {
 }  // namespace
 
 std::string_view to_string(ErrorSource source) {
-  switch (source) {
-    case ErrorSource::none:
-      return "none";
-    case ErrorSource::noise:
-      return "noise";
-    case ErrorSource::quantum:
-      return "digits";
-    case ErrorSource::sensor_position:
-      return "sensor position";
-    case ErrorSource::stage_azimuth:
-      return "stage azimuth";
-    case ErrorSource::ambient:
-      return "ambient field";
-    case ErrorSource::models:
-      return "models";
-    case ErrorSource::all:
-      break;
-  }
-  return "all";
+  constexpr std::array<std::string_view, 8> names{
+      "none",          "noise",         "digits", "sensor position",
+      "stage azimuth", "ambient field", "models", "all"};
+  return names.at(static_cast<std::size_t>(source));
 }
 
 BenchResult run_bench(const Bench& bench, const Progress& progress) {
   return Simulation(bench, progress).run(progress);
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

@@ -5,21 +5,21 @@
 #include <string>
 #include <vector>
 
-#include "compare/plot/gnuplot.h"
 #include "compare/output/provenance.h"
+#include "compare/plot/gnuplot.h"
 #include "compare/sensing/inversion.h"
 #include "compare/sensing/sensing.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 
-/// A test bench to be simulated, as a file NAME.sense.toml states it (docs/sense.md): a sensor on a
-/// rotation stage, a load of fixed direction, the ambient field measured at each azimuth before,
-/// the unloaded cilium read at the first.
+/// A test bench to be simulated, as a file NAME.sense.toml states it (docs/guide/sensing.md): a
+/// sensor on a rotation stage, a load of fixed direction, the ambient field measured at each
+/// azimuth before, the unloaded cilium read at the first.
 struct Bench {
   std::string title;
-  Case problem;      ///< its load path has the magnitudes, its sensors are where they should be
-  ModelPair models;  ///< by which the readings are inverted
-  ModelPair truth;   ///< what bends and is read
+  input::Case problem;  ///< its load path has the magnitudes, its sensors are where they should be
+  models::ModelPair models;    ///< by which the readings are inverted
+  models::ModelPair truth;     ///< what bends and is read
   unsigned int azimuths = 12;  ///< of the load as the sensor sees it, evenly round the circle
   unsigned int draws = 20;     ///< sensors built and benches run, each with its own errors
   unsigned int seed = 1;
@@ -83,9 +83,10 @@ struct BenchResult {
 BenchResult run_bench(const Bench& bench, const Progress& progress = {});
 
 std::string bench_text(const Bench& bench, const BenchResult& result);
-/// docs/sense.md; "provenance" as in summary.json.
-std::string bench_json(const Bench& bench, const BenchResult& result, const Provenance& provenance);
+/// docs/guide/sensing.md; "provenance" as in summary.json.
+std::string bench_json(const Bench& bench, const BenchResult& result,
+                       const output::Provenance& provenance);
 /// The readings of the first draw over the true loads, in the plane of the load.
 std::string bench_script(const Bench& bench, const BenchResult& result);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

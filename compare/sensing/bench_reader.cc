@@ -11,84 +11,86 @@
 #include "compare/sensing/bench.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 namespace {
 
 constexpr std::size_t longest_title = 200;  ///< bytes
 constexpr Range azimuth_count{1, 3600, false, "a stage stops at so many azimuths"};
 constexpr Range draw_count{1, 100'000, false, "a simulation must end"};
 constexpr Range seed_range{0, 4294967295.0, false, "a seed is a whole number of 32 bits"};
-constexpr Range field_range{0, 1, false, key::unit_slip};
-constexpr Range ambient_range{-1, 1, false, key::unit_slip};
-constexpr Range position_range{0, 1, false, key::unit_slip};
+constexpr Range field_range{0, 1, false, unit_slip};
+constexpr Range ambient_range{-1, 1, false, unit_slip};
+constexpr Range position_range{0, 1, false, unit_slip};
 constexpr Range angle_range{0, 1.6, false, "a stage is not that far off"};
 
 /// The value under a key, or as it was.
-void read_if_there(Section& table, std::string_view name, const Quantity& quantity,
+void read_if_there(input::Section& table, std::string_view name, const Quantity& quantity,
                    const Range& range, double& value) {
   if (const toml::node* node = table.find(name))
-    value = read_value(*node, name, quantity, range, table.faults()).value_or(value);
+    value = input::read_value(*node, name, quantity, range, table.faults()).value_or(value);
 }
 
-void read_if_there(Section& table, std::string_view name, const Range& range, unsigned int& value) {
+void read_if_there(input::Section& table, std::string_view name, const Range& range,
+                   unsigned int& value) {
   if (const toml::node* node = table.find(name))
-    value = read_whole_number(*node, name, range, table.faults()).value_or(value);
+    value = input::read_whole_number(*node, name, range, table.faults()).value_or(value);
 }
 
 /// A pair of models; one that there is not is a fault at its place.
-void read_pair(Section& table, std::string_view name, ModelPair& pair) {
+void read_pair(input::Section& table, std::string_view name, models::ModelPair& pair) {
   const toml::node* node = table.find(name);
   if (node == nullptr) return;
-  const std::optional<std::string> text = read_text(*node, name, table.faults());
+  const std::optional<std::string> text = input::read_text(*node, name, table.faults());
   if (!text) return;
   try {
     pair = parse_pair(*text);
   } catch (const InputError& error) {
-    table.faults().add(place(*node), error.what());
+    table.faults().add(input::place(*node), error.what());
   }
 }
 
-void read_ambient(Section& table, Vector3& ambient) {
+void read_ambient(input::Section& table, Vector3& ambient) {
   const toml::node* node = table.find("ambient");
   if (node == nullptr) return;
   const toml::array* list = node->as_array();
   if (list == nullptr || list->size() != 3) {
-    table.faults().add(place(*node),
+    table.faults().add(input::place(*node),
                        "'ambient' has three components, such as [\"20 uT\", \"0 uT\", \"-43 uT\"]");
     return;
   }
   for (std::size_t i = 0; i < 3; ++i)
-    if (const auto value = read_value((*list)[i], "ambient", quantity::flux_density, ambient_range,
-                                      table.faults()))
+    if (const auto value = input::read_value((*list)[i], "ambient", quantity::flux_density,
+                                             ambient_range, table.faults()))
       ambient[static_cast<Eigen::Index>(i)] = *value;
 }
 
 /// The case that the bench names, beside the bench's file.
-void read_problem(Section& table, const std::filesystem::path& file, Case& problem) {
+void read_problem(input::Section& table, const std::filesystem::path& file, input::Case& problem) {
   const toml::node* node = table.require("case");
   if (node == nullptr) return;
-  const std::optional<std::string> name = read_text(*node, "case", table.faults());
+  const std::optional<std::string> name = input::read_text(*node, "case", table.faults());
   if (!name) return;
   try {
-    problem = read_case(file.parent_path() / *name);
+    problem = input::read_case(file.parent_path() / *name);
     if (problem.sensors.empty()) throw InputError("the case has no sensor");
     for (const Load& load : problem.load_path)
       if (!(magnitude(load) > 0)) throw InputError("the case has a load that is zero");
   } catch (const InputError& error) {
-    table.faults().add(place(*node), fmt::format("the case cannot be used: {}", error.what()));
+    table.faults().add(input::place(*node),
+                       fmt::format("the case cannot be used: {}", error.what()));
   }
 }
 
 }  // namespace
 
 Bench read_bench(const std::filesystem::path& file) {
-  const toml::table root = parse_toml(read_toml_file(file, "bench"), file.string());
-  Faults faults;
-  Section top(&root, "the bench", "", {}, faults);
+  const toml::table root = input::parse_toml(input::read_toml_file(file, "bench"), file.string());
+  input::Faults faults;
+  input::Section top(&root, "the bench", "", {}, faults);
   Bench bench;
-  Section table = require_section(top, "bench");
+  input::Section table = input::require_section(top, "bench");
   if (const toml::node* node = table.find("title"))
-    bench.title = read_line(*node, "title", longest_title, faults).value_or("");
+    bench.title = input::read_line(*node, "title", longest_title, faults).value_or("");
   read_problem(table, file, bench.problem);
   read_pair(table, "models", bench.models);
   bench.truth = bench.models;
@@ -97,7 +99,7 @@ Bench read_bench(const std::filesystem::path& file) {
   read_if_there(table, "draws", draw_count, bench.draws);
   read_if_there(table, "seed", seed_range, bench.seed);
   table.finish();
-  Section errors = require_section(top, "errors");
+  input::Section errors = input::require_section(top, "errors");
   read_if_there(errors, "noise", quantity::flux_density, field_range, bench.noise);
   read_if_there(errors, "quantum", quantity::flux_density, field_range, bench.quantum);
   read_if_there(errors, "sensor_position", quantity::length, position_range, bench.sensor_position);
@@ -109,4 +111,4 @@ Bench read_bench(const std::filesystem::path& file) {
   return bench;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

@@ -5,20 +5,23 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "compare/output/text_table.h"
 #include "compare/sensing/bench.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr double degree = std::numbers::pi / 180;
 
-std::string errors_text(const BenchErrors& errors, bool flow) {
-  return fmt::format("{:>8.2f}{} {:>8.2f} {:>8.2f} {:>8.1f}", 100 * errors.magnitude_rms,
-                     flow ? fmt::format(" {:>8.4f}", errors.speed_rms) : "",
-                     errors.azimuth_rms / degree, errors.azimuth_largest / degree,
-                     100 * errors.below_ten_degrees);
+std::vector<std::string> error_cells(const BenchErrors& errors, bool flow) {
+  std::vector<std::string> cells{fmt::format("{:.2f}", 100 * errors.magnitude_rms)};
+  if (flow) cells.push_back(fmt::format("{:.4f}", errors.speed_rms));
+  cells.push_back(fmt::format("{:.2f}", errors.azimuth_rms / degree));
+  cells.push_back(fmt::format("{:.2f}", errors.azimuth_largest / degree));
+  cells.push_back(fmt::format("{:.1f}", 100 * errors.below_ten_degrees));
+  return cells;
 }
 
 Json errors_json(const BenchErrors& errors) {
@@ -33,9 +36,9 @@ Json errors_json(const BenchErrors& errors) {
 
 /// "0.3 m/s", "2 mN"
 std::string magnitude_text(const Bench& bench, std::size_t step) {
-  const Case& problem = bench.problem;
-  if (step < problem.flow_velocity.size())
-    return fmt::format("{:g} m/s", problem.flow_velocity[step]);
+  const input::Case& problem = bench.problem;
+  if (const auto velocity = input::stated_values(problem, "velocity"); !velocity.empty())
+    return fmt::format("{:g} m/s", velocity[step]);
   const Load& load = problem.load_path[step];
   const std::string_view unit = magnitude_unit(load);
   if (unit == "N/m") return fmt::format("{:g} N/m", magnitude(load));
@@ -45,7 +48,7 @@ std::string magnitude_text(const Bench& bench, std::size_t step) {
 }  // namespace
 
 std::string bench_text(const Bench& bench, const BenchResult& result) {
-  const bool flow = !bench.problem.flow_velocity.empty();
+  const bool flow = !input::stated_values(bench.problem, "velocity").empty();
   std::string text = fmt::format(
       "{}\n{}: {} loads at {} azimuths, {} sensors; read by {}, inverted by {}\n"
       "Stated errors (standard deviations): noise {:.3g} uT, digits of {:.3g} uT, sensor position "
@@ -53,28 +56,33 @@ std::string bench_text(const Bench& bench, const BenchResult& result) {
       bench.title, bench.problem.name, bench.problem.load_path.size(), bench.azimuths, bench.draws,
       bench.truth.name(), bench.models.name(), bench.noise * 1e6, bench.quantum * 1e6,
       bench.sensor_position * 1e3, bench.stage_azimuth / degree, bench.ambient.norm() * 1e6);
-  const std::string columns =
-      fmt::format("{:>8}{} {:>8} {:>8} {:>8}", "load %", flow ? fmt::format(" {:>8}", "v m/s") : "",
-                  "dir deg", "largest", "<10 deg%");
-  text += fmt::format("  {:<16}  {}   {}\n", "", "full inversion",
-                      std::string(flow ? 33 : 24, ' ') + "linear fit of dB (paper)");
-  text += fmt::format("  {:<16} {}  {}\n", "error alone", columns, columns);
-  for (const BenchRow& row : result.rows)
-    text += fmt::format("  {:<16} {}  {}\n", to_string(row.source),
-                        errors_text(row.inversion, flow), errors_text(row.linear_fit, flow));
-  text += fmt::format("\n  {:<16} {}\n", "all, by load", columns);
+  output::TextRows rows{{"error alone", "found by", "load %"}};
+  if (flow) rows[0].emplace_back("v m/s");
+  rows[0].insert(rows[0].end(), {"dir deg", "largest", "<10 deg%"});
+  const auto add = [&](const std::string& label, const std::string& method,
+                       const BenchErrors& errors) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {label, method};
+    for (std::string& cell : error_cells(errors, flow)) row.push_back(std::move(cell));
+  };
+  for (const BenchRow& row : result.rows) {
+    add(std::string(to_string(row.source)), "full inversion", row.inversion);
+    add("", "linear fit of dB (paper)", row.linear_fit);
+  }
   for (std::size_t m = 0; m < result.by_magnitude.size(); ++m)
-    text += fmt::format("  {:<16} {}\n", magnitude_text(bench, m),
-                        errors_text(result.by_magnitude[m], flow));
-  return text + fmt::format(
-                    "\nRoot mean squares of (found - true)/true load, speed and direction; largest "
-                    "error of direction; part of the readings within 10 deg.\ndB is linear in the "
-                    "load but for {:.2g} % over the range.\n",
-                    100 * result.linear_misfit);
+    add(fmt::format("all at {}", magnitude_text(bench, m)), "full inversion",
+        result.by_magnitude[m]);
+  return text + output::text_table(rows, "<<>") +
+         fmt::format(
+             "\nRoot mean squares of (found - true)/true load, speed and direction; largest error "
+             "of "
+             "direction; part of the readings within 10 deg.\ndB is linear in the load but for "
+             "{:.2g} % over the range.\n",
+             100 * result.linear_misfit);
 }
 
 std::string bench_json(const Bench& bench, const BenchResult& result,
-                       const Provenance& provenance) {
+                       const output::Provenance& provenance) {
   Json json{{"schema", 1},
             {"title", bench.title},
             {"case", bench.problem.name},
@@ -131,4 +139,4 @@ std::string bench_script(const Bench& bench, const BenchResult& result) {
              plot::quoted("found by " + bench.models.name() + " with all errors, one sensor"));
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

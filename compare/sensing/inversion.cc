@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/sensing/inversion.h"
 
-#include <ceres/ceres.h>
 #include <fmt/core.h>
 
 #include <Eigen/LU>
@@ -11,40 +10,49 @@
 #include <boost/math/distributions/complement.hpp>
 #include <cmath>
 #include <numbers>
+#include <unsupported/Eigen/LevenbergMarquardt>
 
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 namespace {
 
-/// (ΔB(p) − reading)/σ. The loads are scaled by the largest, or the solver's tolerances would mean
-/// different things for newtons and metres.
-class Misfit : public ceres::CostFunction {
- public:
-  Misfit(const Response& response, const Eigen::VectorXd& weights, const Eigen::VectorXd& reading)
-      : response_(response), weights_(weights), reading_(reading) {
-    set_num_residuals(static_cast<int>(reading.size()));
-    mutable_parameter_block_sizes()->push_back(2);
+/// (ΔB(p) − reading)/σ as a function of p over the largest load: the solver's tolerances mean the
+/// same for newtons and metres.
+struct Misfit : Eigen::DenseFunctor<double> {
+  Misfit(const Response& r, const Eigen::VectorXd& w, const Eigen::VectorXd& read)
+      : DenseFunctor(2, static_cast<int>(read.size())), response(r), weights(w), reading(read) {}
+
+  int operator()(const InputType& x, ValueType& residuals) const {
+    residuals = weights.cwiseProduct(response.change(response.largest() * x) - reading);
+    return 0;
+  }
+  int df(const InputType& x, JacobianType& jacobian) const {
+    const double scale = response.largest();
+    jacobian = scale * (weights.asDiagonal() * response.derivative(scale * x));
+    return 0;
   }
 
-  bool Evaluate(const double* const* parameters, double* residuals,
-                double** jacobians) const override {
-    const double scale = response_.largest();
-    const Vector2 p = scale * Vector2(parameters[0][0], parameters[0][1]);
-    Eigen::Map<Eigen::VectorXd>(residuals, reading_.size()) =
-        weights_.cwiseProduct(response_.change(p) - reading_);
-    if (jacobians != nullptr && jacobians[0] != nullptr)
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>>(jacobians[0],
-                                                                            reading_.size(), 2) =
-          scale * (weights_.asDiagonal() * response_.derivative(p));
-    return true;
-  }
-
- private:
-  const Response& response_;
-  const Eigen::VectorXd& weights_;
-  const Eigen::VectorXd& reading_;
+  const Response& response;
+  const Eigen::VectorXd& weights;
+  const Eigen::VectorXd& reading;
 };
+
+/// The minimum of |misfit|² from x, which becomes it. False without convergence.
+bool minimise(Misfit& misfit, Eigen::VectorXd& x) {
+  Eigen::LevenbergMarquardt<Misfit> solver(misfit);
+  solver.setFtol(1e-14);
+  solver.setXtol(1e-12);
+  solver.setGtol(1e-12);
+  solver.setMaxfev(200);
+  switch (solver.minimize(x)) {
+    case Eigen::LevenbergMarquardtSpace::ImproperInputParameters:
+    case Eigen::LevenbergMarquardtSpace::TooManyFunctionEvaluation:
+      return false;
+    default:  // also where rounding leaves no smaller step
+      return x.allFinite();
+  }
+}
 
 Vector2 polar(double magnitude, double azimuth) {
   return {magnitude * std::cos(azimuth), magnitude * std::sin(azimuth)};
@@ -102,24 +110,11 @@ SensedLoad Inversion::operator()(const Eigen::VectorXd& change) const {
       .colwise()
       .squaredNorm()
       .minCoeff(&nearest);
-  Vector2 x = starts_[static_cast<std::size_t>(nearest)] / response_.largest();
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  Eigen::VectorXd x = starts_[static_cast<std::size_t>(nearest)] / response_.largest();
   Misfit misfit(response_, weights_, change);
-  ceres::Problem problem(ownership);
-  problem.AddResidualBlock(&misfit, nullptr, x.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  options.max_num_iterations = 100;
-  options.function_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-12;
-  options.gradient_tolerance = 1e-12;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
   SensedLoad result;
+  result.converged = minimise(misfit, x);
   result.load = x * response_.largest();
-  result.converged = summary.IsSolutionUsable() && x.allFinite();
   result.beyond_range = result.magnitude() > response_.largest() * (1 + 1e-9);
   const Eigen::VectorXd residuals = weights_.cwiseProduct(response_.change(result.load) - change);
   result.chi_squared = residuals.squaredNorm();
@@ -148,4 +143,4 @@ LinearFit::LinearFit(const Response& response, const Vector3& noise) {
       (weighted.transpose() * weighted).inverse() * weighted.transpose() * weights.asDiagonal();
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

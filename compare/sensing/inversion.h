@@ -6,7 +6,7 @@
 
 #include "compare/sensing/response.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 
 /// A load found from one reading.
 struct SensedLoad {
@@ -29,7 +29,7 @@ struct SensedLoad {
 inline constexpr double two_sided_95 = 1.959963984540054;
 
 /// The load whose ΔB is nearest to a reading: the least squares weighted by the noise, by
-/// Levenberg and Marquardt's method (Ceres Solver) from the nearest of a grid of loads over the
+/// Levenberg and Marquardt's method (Eigen) from the nearest of a grid of loads over the
 /// whole range. covariance = (JᵀJ/σ²)⁻¹.
 class Inversion {
  public:
@@ -62,4 +62,4 @@ class LinearFit {
   double misfit_ = 0;
 };
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

@@ -9,14 +9,14 @@
 #include <map>
 #include <utility>
 
-#include "compare/input/external/background.h"
 #include "compare/input/csv.h"
+#include "compare/input/external/background.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 namespace {
 
-using Kind = CsvColumn::Kind;
+using Kind = input::CsvColumn::Kind;
 
 constexpr std::string_view unloaded = "unloaded";
 
@@ -27,15 +27,18 @@ constexpr std::size_t azimuth_column = 2;
 constexpr std::size_t field_column = 3;
 constexpr std::size_t change_column = 6;
 
-CsvTable readings_table(std::string_view text, std::size_t sensors, Faults& faults) {
-  const std::vector<CsvColumn> columns =
-      with_field_columns({{"sample", Kind::word, quantity::number, false},
-                          {"sensor", Kind::word, quantity::number, false},
-                          {"azimuth", Kind::quantity, quantity::angle, false}});
+input::CsvTable readings_table(std::string_view text, std::size_t sensors, input::Faults& faults) {
+  const std::vector<input::CsvColumn> columns =
+      input::external::with_field_columns({{"sample", Kind::word, quantity::number, false},
+                                           {"sensor", Kind::word, quantity::number, false},
+                                           {"azimuth", Kind::quantity, quantity::angle, false}});
   constexpr std::array<std::string_view, 1> ignored{"time"};
-  CsvTable table = read_csv(text, columns, ignored, faults);
+  input::CsvTable table = input::read_csv(text, columns, ignored, faults);
   if (!faults.empty()) return table;
-  require_field_or_change(table, field_column, change_column, faults);
+  input::external::require_field_or_change(table, field_column, change_column, faults);
+  if (!faults.empty()) return table;
+  input::external::require_field_range(
+      table, table.has(change_column) ? change_column : field_column, faults);
   if (sensors > 1 && !(table.has(sample_column) && table.has(sensor_column)))
     faults.add({}, fmt::format("the case has {} sensors: the file needs the columns 'sample' and "
                                "'sensor', and a row for each",
@@ -47,35 +50,35 @@ CsvTable readings_table(std::string_view text, std::size_t sensors, Faults& faul
 using Rows = std::vector<std::vector<std::size_t>>;
 
 /// The samples in the order of the file.
-std::vector<std::pair<std::string, Rows>> samples_of(const CsvTable& table, std::size_t sensors,
-                                                     Faults& faults) {
+std::vector<std::pair<std::string, Rows>> samples_of(const input::CsvTable& table,
+                                                     std::size_t sensors, input::Faults& faults) {
   std::vector<std::pair<std::string, Rows>> samples;
   std::map<std::string, std::size_t> index;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const std::string name =
         table.has(sample_column) ? table.words[sample_column][i] : std::to_string(i + 1);
-    const auto sensor = sensor_of(table, sensor_column, i, sensors, faults);
+    const auto sensor = input::external::sensor_of(table, sensor_column, i, sensors, faults);
     if (!sensor) continue;
     const auto [place, is_new] = index.emplace(name, samples.size());
     if (is_new) samples.emplace_back(name, Rows(sensors));
     std::vector<std::size_t>& rows = samples[place->second].second[*sensor];
     if (!rows.empty() && name != unloaded)
       faults.add(table.rows[i], fmt::format("there is a second row of sample {}, sensor {}",
-                                            in_quotes(name), *sensor));
+                                            input::in_quotes(name), *sensor));
     rows.push_back(i);
   }
   for (const auto& [name, rows] : samples)
     for (std::size_t s = 0; s < sensors; ++s)
       if (rows[s].empty())
-        faults.add(table.rows.back(),
-                   fmt::format("there is no row of sample {}, sensor {}", in_quotes(name), s));
+        faults.add(table.rows.back(), fmt::format("there is no row of sample {}, sensor {}",
+                                                  input::in_quotes(name), s));
   return samples;
 }
 
 /// What a row reads less the background at its azimuth.
-Vector3 without_background(const CsvTable& table, std::size_t row, std::size_t sensor,
-                           const Background* background, Faults& faults) {
-  Vector3 B = row_vector(table, field_column, row);
+Vector3 without_background(const input::CsvTable& table, std::size_t row, std::size_t sensor,
+                           const input::external::Background* background, input::Faults& faults) {
+  Vector3 B = input::external::row_vector(table, field_column, row);
   if (background == nullptr) return B;
   const auto ambient = background->at(table.numbers[azimuth_column][row], sensor);
   if (!ambient) {
@@ -87,8 +90,8 @@ Vector3 without_background(const CsvTable& table, std::size_t row, std::size_t s
 }
 
 /// The mean of each sensor's rows.
-Eigen::VectorXd mean_of(const CsvTable& table, const Rows& rows, const Background* background,
-                        Faults& faults) {
+Eigen::VectorXd mean_of(const input::CsvTable& table, const Rows& rows,
+                        const input::external::Background* background, input::Faults& faults) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * rows.size()));
   for (std::size_t s = 0; s < rows.size(); ++s)
     for (const std::size_t row : rows[s])
@@ -98,8 +101,9 @@ Eigen::VectorXd mean_of(const CsvTable& table, const Rows& rows, const Backgroun
   return result;
 }
 
-SensorReadings readings_of(const CsvTable& table, const Background* background, std::size_t sensors,
-                           Faults& faults) {
+SensorReadings readings_of(const input::CsvTable& table,
+                           const input::external::Background* background, std::size_t sensors,
+                           input::Faults& faults) {
   const auto samples = samples_of(table, sensors, faults);
   SensorReadings result;
   if (!faults.empty()) return result;
@@ -125,7 +129,7 @@ SensorReadings readings_of(const CsvTable& table, const Background* background, 
       sample.change.resize(offset.size());
       for (std::size_t s = 0; s < sensors; ++s)
         sample.change.segment<3>(static_cast<Eigen::Index>(3 * s)) =
-            row_vector(table, change_column, rows[s].front());
+            input::external::row_vector(table, change_column, rows[s].front());
     } else {
       sample.change = mean_of(table, rows, background, faults) - offset;
     }
@@ -138,7 +142,7 @@ SensorReadings readings_of(const CsvTable& table, const Background* background, 
 }
 
 /// Throws InputError with the faults of a file.
-void require_none(const Faults& faults, const std::filesystem::path& file) {
+void require_none(const input::Faults& faults, const std::filesystem::path& file) {
   if (!faults.empty()) throw InputError(faults.report(file.string()));
 }
 
@@ -147,16 +151,16 @@ void require_none(const Faults& faults, const std::filesystem::path& file) {
 SensorReadings read_sensor_readings(const std::filesystem::path& file,
                                     const std::optional<std::filesystem::path>& background,
                                     std::size_t sensors) {
-  std::optional<Background> ambient;
+  std::optional<input::external::Background> ambient;
   if (background) {
-    Faults faults;
-    const std::string text = read_csv_file(*background);
+    input::Faults faults;
+    const std::string text = input::read_csv_file(*background);
     ambient.emplace(text, sensors, faults);
     require_none(faults, *background);
   }
-  Faults faults;
-  const std::string text = read_csv_file(file);
-  const CsvTable table = readings_table(text, sensors, faults);
+  input::Faults faults;
+  const std::string text = input::read_csv_file(file);
+  const input::CsvTable table = readings_table(text, sensors, faults);
   if (faults.empty() && ambient && !table.has(azimuth_column))
     faults.add({}, "the background depends on the azimuth: the readings need a column 'azimuth'");
   if (faults.empty() && ambient && table.has(change_column))
@@ -167,4 +171,4 @@ SensorReadings read_sensor_readings(const std::filesystem::path& file,
   return result;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

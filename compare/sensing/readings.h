@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 
 /// What sensors have read at one time.
 struct Sample {
@@ -23,11 +23,11 @@ struct SensorReadings {
   double noise_factor = 1;
 };
 
-/// Reads readings from a CSV file with a header and units (docs/sense.md): columns Bx, By, Bz, or
-/// dBx, dBy, dBz; with several sensors `sample` and `sensor`, a row for each; `azimuth`, that of
-/// the sensor's own x axis, where the background is taken off; `time` is ignored. Rows of the
-/// sample `unloaded` are the straight cilium: with more than one row of a sensor, their mean. What
-/// the earth's field and the magnet make of a reading goes off it:
+/// Reads readings from a CSV file with a header and units (docs/guide/sensing.md): columns Bx, By,
+/// Bz, or dBx, dBy, dBz; with several sensors `sample` and `sensor`, a row for each; `azimuth`,
+/// that of the sensor's own x axis, where the background is taken off; `time` is ignored. Rows of
+/// the sample `unloaded` are the straight cilium: with more than one row of a sensor, their mean.
+/// What the earth's field and the magnet make of a reading goes off it:
 ///
 ///   ΔB = (B − background(azimuth)) − (B_unloaded − background(azimuth of the unloaded)).
 ///
@@ -37,4 +37,4 @@ SensorReadings read_sensor_readings(const std::filesystem::path& file,
                                     const std::optional<std::filesystem::path>& background,
                                     std::size_t sensors);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

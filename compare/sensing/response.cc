@@ -12,7 +12,7 @@
 #include "compare/models/registry.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 namespace {
 
 constexpr std::size_t magnitude_intervals = 16;
@@ -93,35 +93,34 @@ double largest_column(const Eigen::Matrix3Xd& values) {
   return values.cols() == 0 ? 0 : values.colwise().norm().maxCoeff();
 }
 
-void require_round(const Case& problem, const std::string& mechanics) {
+void require_round(const input::Case& problem, const std::string& mechanics) {
   if (mechanics == "solid" && !problem.options.solid.mesh.empty())
     throw InputError(
         "a solid with a mesh of the user is not the same from all sides: leave out "
         "models.solid.mesh");
 }
 
-Load along_x(Load load) {
-  std::visit([](auto& l) { l.azimuth = 0; }, load);
-  return load;
+Load along_x(const Load& load) {
+  return with_azimuth(load, 0);
 }
 
 }  // namespace
 
-ModelPair parse_pair(const std::string& text) {
+models::ModelPair parse_pair(const std::string& text) {
   const std::size_t slash = text.find('/');
   if (slash == std::string::npos)
     throw InputError("a pair of models is written mechanics/field, such as elastica/volume, not `" +
                      text + "`");
-  ModelPair pair{text.substr(0, slash), text.substr(slash + 1)};
-  entry_of(mechanics_models(), pair.mechanics);
-  const auto field = entry_of(field_models(), pair.field).make(ModelOptions{});
+  models::ModelPair pair{text.substr(0, slash), text.substr(slash + 1)};
+  entry_of(models::mechanics_models(), pair.mechanics);
+  const auto field = entry_of(models::field_models(), pair.field).make(input::ModelOptions{});
   if (field->needs_body() && (pair.mechanics == "elastica" || pair.mechanics == "beam"))
     throw InputError("`" + pair.field + "` needs the body of a solid; `" + pair.mechanics +
                      "` has none");
   return pair;
 }
 
-Shapes shapes_up_to(const Case& problem, const std::string& mechanics, double largest,
+Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
                     const Progress& progress) {
   require_round(problem, mechanics);
   if (!(largest > 0) || !std::isfinite(largest))
@@ -142,7 +141,7 @@ Shapes shapes_up_to(const Case& problem, const std::string& mechanics, double la
   LoadPath loads;
   for (const auto& [magnitude, is_check] : path)
     loads.push_back(with_magnitude(along_x(problem.load_path.front()), magnitude));
-  const auto model = entry_of(mechanics_models(), mechanics).make(problem.options);
+  const auto model = entry_of(models::mechanics_models(), mechanics).make(problem.options);
   const MechanicsResult result = model->solve(problem.cilium, loads, progress);
   shapes.undeformed = result.undeformed;
   for (std::size_t i = 0; i < result.steps.size(); ++i) {
@@ -159,7 +158,7 @@ Shapes shapes_up_to(const Case& problem, const std::string& mechanics, double la
   return shapes;
 }
 
-Response::Response(const Case& problem, const std::string& field, const Shapes& shapes,
+Response::Response(const input::Case& problem, const std::string& field, const Shapes& shapes,
                    std::span<const Vector3> sensors)
     : magnitudes_{0}, undeformed_(static_cast<Eigen::Index>(3 * sensors.size())) {
   magnitudes_.insert(magnitudes_.end(), shapes.node_magnitudes.begin(),
@@ -168,7 +167,7 @@ Response::Response(const Case& problem, const std::string& field, const Shapes& 
     const bool end = k == 0 || k + 1 == magnitudes_.size();
     weights_.push_back((k % 2 == 0 ? 1.0 : -1.0) * (end ? 0.5 : 1.0));
   }
-  const auto model = entry_of(field_models(), field).make(problem.options);
+  const auto model = entry_of(models::field_models(), field).make(problem.options);
   const Field straight = model->field(problem.cilium, shapes.undeformed, sensors);
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     undeformed_.segment<3>(static_cast<Eigen::Index>(3 * s)) = straight.B.at(s);
@@ -211,6 +210,8 @@ Response::Response(const Case& problem, const std::string& field, const Shapes& 
     }
     tables_.push_back(std::move(table));
   }
+  if (!(largest_change_ > 0))
+    throw InputError("no load changes the field at the sensors: has the cilium a magnet?");
   if (!(error_ <= too_much * largest_change_))
     throw SolverError(fmt::format(
         "the response up to {:g} is too steep to be interpolated: off by {:.2g} of {:.2g} T "
@@ -311,4 +312,4 @@ Eigen::MatrixX2d Response::derivative(const Vector2& p) const {
   return result;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

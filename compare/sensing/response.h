@@ -11,12 +11,12 @@
 #include "problem/deformation.h"
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 
 using Vector2 = Eigen::Vector2d;
 
 /// The pair that a text names. Throws InputError if it is none, or the models do not go together.
-ModelPair parse_pair(const std::string& text);
+models::ModelPair parse_pair(const std::string& text);
 
 /// A round cilium's shapes under one load of growing magnitude and azimuth 0.
 struct Shapes {
@@ -31,7 +31,7 @@ struct Shapes {
 /// The shapes of the case's load up to the largest magnitude, by the mechanics model. Throws
 /// SolverError if the cilium slips off below it, or the model fails; InputError if the case's
 /// cilium is not the same from all sides (a solid's mesh of the user).
-Shapes shapes_up_to(const Case& problem, const std::string& mechanics, double largest,
+Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
                     const Progress& progress = {});
 
 /// ΔB at sensors as a function of the horizontal load vector p, |p| the magnitude (F, q or δ) and
@@ -46,7 +46,7 @@ class Response {
  public:
   /// Throws InputError and SolverError as the models do; SolverError too if the interpolation is
   /// worse than 1e-3 of the largest |ΔB|.
-  Response(const Case& problem, const std::string& field, const Shapes& shapes,
+  Response(const input::Case& problem, const std::string& field, const Shapes& shapes,
            std::span<const Vector3> sensors);
 
   std::size_t sensors() const { return tables_.size(); }
@@ -88,4 +88,4 @@ class Response {
   double largest_change_ = 0;
 };
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

@@ -4,11 +4,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-namespace ciliaval::compare {
+#include "compare/output/csv_writer.h"
+#include "compare/output/text_table.h"
+
+namespace ciliaval::compare::sensing {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -22,12 +26,6 @@ std::pair<double, double> velocities(const FlowLaw& flow, const SensedLoad& sens
           flow.velocity(sensed.magnitude() + sensed.magnitude_interval())};
 }
 
-std::string azimuth_text(const SensedLoad& sensed) {
-  if (sensed.azimuth_interval() >= std::numbers::pi) return fmt::format("{:>9} {:>7}", "-", "");
-  return fmt::format("{:>9.2f} {:>7.2f}", sensed.azimuth() / degree,
-                     sensed.azimuth_interval() / degree);
-}
-
 /// A millinewton reads better than a newton.
 std::pair<double, std::string> display_unit(const std::string& unit) {
   if (unit == "N") return {1e3, "mN"};
@@ -38,26 +36,16 @@ std::pair<double, std::string> display_unit(const std::string& unit) {
 }  // namespace
 
 std::string_view to_string(SenseStatus status) {
-  switch (status) {
-    case SenseStatus::found:
-      return "found";
-    case SenseStatus::nothing:
-      return "nothing";
-    case SenseStatus::beyond_range:
-      return "beyond range";
-    case SenseStatus::misfit:
-      return "misfit";
-    case SenseStatus::failed:
-      break;
-  }
-  return "failed";
+  constexpr std::array<std::string_view, 5> names{"found", "nothing", "beyond range", "misfit",
+                                                  "failed"};
+  return names.at(static_cast<std::size_t>(status));
 }
 
 SenseStatus status_of(const SensedLoad& sensed) {
   if (!sensed.converged) return SenseStatus::failed;
   if (sensed.beyond_range) return SenseStatus::beyond_range;
   if (sensed.misfit_probability < unlikely) return SenseStatus::misfit;
-  if (sensed.magnitude_interval() >= sensed.magnitude()) return SenseStatus::nothing;
+  if (!(sensed.magnitude_interval() < sensed.magnitude())) return SenseStatus::nothing;
   return SenseStatus::found;
 }
 
@@ -69,9 +57,10 @@ double FlowLaw::force_per_height(double velocity) const {
   return density * velocity * velocity * drag_coefficient * diameter / 2;
 }
 
-std::optional<FlowLaw> flow_law(const Case& problem) {
-  if (problem.flow_velocity.empty()) return std::nullopt;
-  return FlowLaw{problem.flow_density.front(), problem.flow_drag_coefficient.front(),
+std::optional<FlowLaw> flow_law(const input::Case& problem) {
+  if (input::stated_values(problem, "velocity").empty()) return std::nullopt;
+  return FlowLaw{input::stated_values(problem, "density").front(),
+                 input::stated_values(problem, "drag_coefficient").front(),
                  problem.cilium.diameter};
 }
 
@@ -86,24 +75,28 @@ std::string sensing_text(const Sensing& s) {
     text +=
         "There is no reading of the unloaded cilium: the model's own B is taken off instead. Add "
         "rows with the sample `unloaded`.\n";
-  text += fmt::format("  {:<16} {:>12} {:>9}  {:>9} {:>7}{}  status\n", "sample",
-                      "load (" + unit + ")", "+-", "azimuth", "+- deg",
-                      s.flow ? fmt::format("  {:>8} {:>17}", "v (m/s)", "95 %") : "");
+  output::TextRows rows{{"sample", fmt::format("load ({})", unit), "+-", "azimuth", "+- deg"}};
+  if (s.flow) rows[0].insert(rows[0].end(), {"v (m/s)", "from", "to"});
+  rows[0].emplace_back("status");
   for (const auto& [name, sensed] : s.samples) {
-    std::string velocity;
+    const bool has_azimuth = sensed.azimuth_interval() < std::numbers::pi;
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {name, fmt::format("{:.5g}", sensed.magnitude() * factor),
+           fmt::format("{:.2g}", sensed.magnitude_interval() * factor),
+           has_azimuth ? fmt::format("{:.2f}", sensed.azimuth() / degree) : "-",
+           has_azimuth ? fmt::format("{:.2f}", sensed.azimuth_interval() / degree) : ""};
     if (s.flow) {
       const auto [low, high] = velocities(*s.flow, sensed);
-      velocity = fmt::format("  {:>8.4f} {:>8.4f} {:>8.4f}", s.flow->velocity(sensed.magnitude()),
-                             low, high);
+      for (const double v : {s.flow->velocity(sensed.magnitude()), low, high})
+        row.push_back(fmt::format("{:.4f}", v));
     }
-    text += fmt::format("  {:<16} {:>12.5g} {:>9.2g}  {}{}  {}\n", name,
-                        sensed.magnitude() * factor, sensed.magnitude_interval() * factor,
-                        azimuth_text(sensed), velocity, to_string(status_of(sensed)));
+    row.emplace_back(to_string(status_of(sensed)));
   }
-  return text + "Intervals of 95 %, of the noise of reading and offset alone.\n";
+  return text + output::text_table(rows, s.flow ? "<>>>>>>><" : "<>>>><") +
+         "Intervals of 95 %, of the noise of reading and offset alone.\n";
 }
 
-std::string sensing_json(const Sensing& s, const Provenance& provenance) {
+std::string sensing_json(const Sensing& s, const output::Provenance& provenance) {
   Json json{{"schema", 1},
             {"case", s.case_name},
             {"provenance", to_json(provenance)},
@@ -137,22 +130,33 @@ std::string sensing_json(const Sensing& s, const Provenance& provenance) {
 }
 
 std::string sensing_csv(const Sensing& s) {
-  std::string text = fmt::format(
-      "sample,status,load_x [{0}],load_y [{0}],magnitude [{0}],magnitude_interval [{0}],azimuth "
-      "[rad],azimuth_interval [rad],chi_squared,misfit_probability{1}\n",
-      s.unit, s.flow ? ",velocity [m/s],velocity_low [m/s],velocity_high [m/s]" : "");
+  output::CsvWriter csv;
+  csv.add("sample");
+  csv.add("status");
+  for (const char* name : {"load_x", "load_y", "magnitude", "magnitude_interval"})
+    csv.add(fmt::format("{} [{}]", name, s.unit));
+  for (const char* name :
+       {"azimuth [rad]", "azimuth_interval [rad]", "chi_squared", "misfit_probability"})
+    csv.add(name);
+  if (s.flow)
+    for (const char* name : {"velocity [m/s]", "velocity_low [m/s]", "velocity_high [m/s]"})
+      csv.add(name);
+  csv.end_row();
   for (const auto& [name, sensed] : s.samples) {
-    text += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{}", name, to_string(status_of(sensed)),
-                        sensed.load.x(), sensed.load.y(), sensed.magnitude(),
-                        sensed.magnitude_interval(), sensed.azimuth(), sensed.azimuth_interval(),
-                        sensed.chi_squared, sensed.misfit_probability);
+    csv.add(name);
+    csv.add(to_string(status_of(sensed)));
+    for (const double value :
+         {sensed.load.x(), sensed.load.y(), sensed.magnitude(), sensed.magnitude_interval(),
+          sensed.azimuth(), sensed.azimuth_interval(), sensed.chi_squared,
+          sensed.misfit_probability})
+      csv.add(value);
     if (s.flow) {
       const auto [low, high] = velocities(*s.flow, sensed);
-      text += fmt::format(",{},{},{}", s.flow->velocity(sensed.magnitude()), low, high);
+      for (const double v : {s.flow->velocity(sensed.magnitude()), low, high}) csv.add(v);
     }
-    text += '\n';
+    csv.end_row();
   }
-  return text;
+  return csv.text();
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

@@ -10,7 +10,7 @@
 #include "compare/sensing/inversion.h"
 #include "compare/sensing/readings.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::sensing {
 
 /// What a reading tells.
 enum class SenseStatus {
@@ -32,12 +32,12 @@ struct FlowLaw {
   double force_per_height(double velocity) const;
 };
 /// That of a case whose flow is given by its velocity.
-std::optional<FlowLaw> flow_law(const Case& problem);
+std::optional<FlowLaw> flow_law(const input::Case& problem);
 
 /// A case's readings and what was made of them.
 struct Sensing {
   std::string case_name;
-  ModelPair models;
+  models::ModelPair models;
   Vector3 noise = Vector3::Zero();  ///< T
   std::string unit;                 ///< of the load's magnitude
   double largest = 0;               ///< load computed
@@ -54,8 +54,8 @@ std::string sensing_text(const Sensing& sensing);
 /// "samples": [{"sample", "status", "load": [x, y], "magnitude", "magnitude_interval", "azimuth",
 /// "azimuth_interval", "covariance", "chi_squared", "misfit_probability", "velocity",
 /// "velocity_interval": [low, high]}]}; angles in rad, half-widths of 95 %.
-std::string sensing_json(const Sensing& sensing, const Provenance& provenance);
+std::string sensing_json(const Sensing& sensing, const output::Provenance& provenance);
 /// A line for each sample, units in the header.
 std::string sensing_csv(const Sensing& sensing);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::sensing

@@ -22,8 +22,8 @@ struct CaseNumber {
   enum class Order { plain, total_length, proportion, aspect_ratio };
   Order order = Order::plain;
   std::string sets;  ///< two numbers that set the same contradict each other
-  std::function<double(const Case&)> get;
-  std::function<void(Case&, double)> set;
+  std::function<double(const input::Case&)> get;
+  std::function<void(input::Case&, double)> set;
 };
 
 /// The numbers of this case: those of its cilium and segments, of its load (set at all its steps),
@@ -32,7 +32,7 @@ struct CaseNumber {
 /// - `cilium.segment.NAME.proportion`: the segment's part of the total length, which stays, as do
 ///   the proportions of the others among themselves (the paper's L₂/L₀);
 /// - `cilium.aspect_ratio`: length over diameter, by the diameter (the paper's L₀/d).
-std::vector<CaseNumber> case_numbers(const Case& c);
+std::vector<CaseNumber> case_numbers(const input::Case& c);
 
 /// A number and the value that it is set to, SI units.
 struct Setting {
@@ -42,6 +42,6 @@ struct Setting {
 
 /// The case with the settings, whatever their order; a flow that is given by its velocity is
 /// computed anew.
-Case with_settings(Case c, const std::vector<Setting>& settings);
+input::Case with_settings(input::Case c, const std::vector<Setting>& settings);
 
 }  // namespace ciliaval::compare::study

@@ -17,7 +17,7 @@ namespace {
 
 template <class Entry>
 auto make_model(std::span<const Entry> entries, const std::string& id,
-                const ModelOptions& options) {
+                const input::ModelOptions& options) {
   const auto entry =
       std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; });
   if (entry == entries.end())
@@ -30,7 +30,7 @@ void append(std::string& message, const std::string& text) {
 }
 
 /// d|ΔB|/dF = ΔB·(dB/dF)/|ΔB|; none without both.
-std::optional<double> slope_of_norm(const FieldRun& run, const SurroundedPath& path,
+std::optional<double> slope_of_norm(const models::FieldRun& run, const budget::SurroundedPath& path,
                                     const Vector3& dB) {
   const auto slope = sensitivity(run, path, 0, 0);
   if (!slope || dB.norm() == 0) return std::nullopt;
@@ -38,12 +38,12 @@ std::optional<double> slope_of_norm(const FieldRun& run, const SurroundedPath& p
 }
 
 /// The outputs of one pair, but for the range, which is of its mechanics model alone.
-PairResult result_of(const Study& study, const MechanicsStep& step, const FieldRun& run,
-                     const SurroundedPath& path) {
+PairResult result_of(const Study& study, const MechanicsStep& step, const models::FieldRun& run,
+                     const budget::SurroundedPath& path) {
   PairResult result{step.status, step.message, {}};
   result.values.resize(study.outputs.size());
   if (step.status != Status::converged) return result;
-  const FieldStep& field = run.steps[path.step.front()].value();
+  const models::FieldStep& field = run.steps[path.step.front()].value();
   if (!field.dB.front()) {
     result.status = Status::failed;
     result.message = field.failure;
@@ -95,7 +95,7 @@ PairResult result_of(const Study& study, const MechanicsStep& step, const FieldR
 }
 
 /// The range as the mechanics model has it, into all results.
-void add_range(const Study& study, const Case& c, const MechanicsModel& model,
+void add_range(const Study& study, const input::Case& c, const MechanicsModel& model,
                const MechanicsStep& step, const Progress& progress,
                std::vector<PairResult>& results) {
   const auto output = std::find(study.outputs.begin(), study.outputs.end(), Output::range);
@@ -123,27 +123,27 @@ void add_range(const Study& study, const Case& c, const MechanicsModel& model,
 
 }  // namespace
 
-std::vector<PairResult> evaluate(const Study& study, Case c, const std::string& mechanics,
-                                 std::span<const MechanicsEntry> mechanics_models,
-                                 std::span<const FieldEntry> field_models,
+std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::string& mechanics,
+                                 std::span<const models::MechanicsEntry> mechanics_models,
+                                 std::span<const models::FieldEntry> field_models,
                                  const Progress& progress) {
-  const SurroundedPath path = surround(
+  const budget::SurroundedPath path = budget::surround(
       c.load_path, study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution));
   c.load_path = path.loads;
   const auto model = make_model(mechanics_models, mechanics, c.options);
-  const MechanicsRun run = run_mechanics(mechanics, *model, c, progress);
+  const models::MechanicsRun run = models::run_mechanics(mechanics, *model, c, progress);
   const MechanicsStep& step = run.result.steps[path.step.front()];
   std::vector<PairResult> results;
-  for (const ModelPair& pair : study.pairs) {
+  for (const models::ModelPair& pair : study.pairs) {
     if (pair.mechanics != mechanics) continue;
     if (step.status != Status::converged) {
       results.push_back(result_of(study, step, {}, path));
       continue;
     }
     const auto field = make_model(field_models, pair.field, c.options);
-    const FieldRun fields = run_field(pair.field, *field, run, c, progress);
+    const models::FieldRun fields = models::run_field(pair.field, *field, run, c, progress);
     results.push_back(result_of(study, step, fields, path));
-    results.back().uncertainty = change_uncertainty(run, fields, path.step.front(), 0);
+    results.back().uncertainty = models::change_uncertainty(run, fields, path.step.front(), 0);
   }
   add_range(study, c, *model, step, progress, results);
   return results;

@@ -25,9 +25,9 @@ struct PairResult {
 /// pairs on it: a result for each of these pairs, in their order. What a model throws is its
 /// failure. A contact that slips off has a range, but no field. Throws RankFailure,
 /// CheckpointError.
-std::vector<PairResult> evaluate(const Study& study, Case c, const std::string& mechanics,
-                                 std::span<const MechanicsEntry> mechanics_models,
-                                 std::span<const FieldEntry> field_models,
+std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::string& mechanics,
+                                 std::span<const models::MechanicsEntry> mechanics_models,
+                                 std::span<const models::FieldEntry> field_models,
                                  const Progress& progress = {});
 
 }  // namespace ciliaval::compare::study

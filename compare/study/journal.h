@@ -18,7 +18,7 @@ namespace ciliaval::compare::study {
 /// A line is handed to the system by one write(): nothing that append() has returned from is lost
 /// if the process is killed. Against a power cut the file is flushed to the disk where a second has
 /// passed since the last time, so that at most the work of a second is lost; a flush for each line
-/// would take as long as a point of the analytic models (docs/study.md).
+/// would take as long as a point of the analytic models (docs/guide/studies.md).
 class Journal {
  public:
   /// Opens the file, for this process alone, or makes it; `fresh` empties it first. Throws

@@ -51,9 +51,9 @@ Study searched(const Study& study) {
   return s;
 }
 
-std::vector<ModelPair> pairs_of(const Study& study, const std::string& mechanics) {
-  std::vector<ModelPair> pairs;
-  for (const ModelPair& pair : study.pairs)
+std::vector<models::ModelPair> pairs_of(const Study& study, const std::string& mechanics) {
+  std::vector<models::ModelPair> pairs;
+  for (const models::ModelPair& pair : study.pairs)
     if (pair.mechanics == mechanics) pairs.push_back(pair);
   return pairs;
 }
@@ -89,8 +89,9 @@ Records records_of(const Study& study, const Journal& journal) {
 /// Evaluates designs, or finds them in the journal.
 class Evaluations {
  public:
-  Evaluations(const Study& study, Journal& journal, std::span<const MechanicsEntry> mechanics,
-              std::span<const FieldEntry> fields, const Progress& progress)
+  Evaluations(const Study& study, Journal& journal,
+              std::span<const models::MechanicsEntry> mechanics,
+              std::span<const models::FieldEntry> fields, const Progress& progress)
       : study_(study),
         search_(searched(study)),
         journal_(journal),
@@ -124,7 +125,7 @@ class Evaluations {
     }
     Design design{std::move(name), std::move(values), {}, {}};
     std::map<std::string, std::size_t> next;
-    for (const ModelPair& pair : study_.pairs) {
+    for (const models::ModelPair& pair : study_.pairs) {
       const auto record = records_.find({false, design.values, pair.mechanics});
       if (std::find(mechanics.begin(), mechanics.end(), pair.mechanics) == mechanics.end())
         continue;
@@ -138,8 +139,8 @@ class Evaluations {
   const Study& study_;
   Study search_;
   Journal& journal_;
-  std::span<const MechanicsEntry> mechanics_;
-  std::span<const FieldEntry> fields_;
+  std::span<const models::MechanicsEntry> mechanics_;
+  std::span<const models::FieldEntry> fields_;
   const Progress& progress_;
   Records records_;
 };
@@ -205,13 +206,15 @@ std::vector<Constraint> constraints_of(const Study& study) {
   // The slope is that between loads somewhat lower and higher.
   constexpr double margin = 1e-3;
   if (contact_height(study.base.load_path.front()))
-    all.push_back({Output::range, true, 1 + margin + (has_slope ? 2 * sensitivity_step : 0), true});
+    all.push_back(
+        {Output::range, true, 1 + margin + (has_slope ? 2 * budget::sensitivity_step : 0), true});
   return all;
 }
 
 Optimum run_optimisation(const Study& study, Journal& journal,
-                         std::span<const MechanicsEntry> mechanics_models,
-                         std::span<const FieldEntry> field_models, const Progress& progress) {
+                         std::span<const models::MechanicsEntry> mechanics_models,
+                         std::span<const models::FieldEntry> field_models,
+                         const Progress& progress) {
   const Optimisation& o = *study.optimisation;
   Evaluations evaluations(study, journal, mechanics_models, field_models, progress);
   const std::vector<Constraint> constraints = constraints_of(study);

@@ -17,7 +17,7 @@ namespace ciliaval::compare::study {
 struct Design {
   std::string name;            ///< "start", "optimum 1", …
   std::vector<double> values;  ///< of the parameters, SI units
-  std::vector<ModelPair> models;
+  std::vector<models::ModelPair> models;
   std::vector<PairResult> pairs;  ///< for each of `models`
 };
 
@@ -49,8 +49,9 @@ std::vector<Constraint> constraints_of(const Study& study);
 /// search asks for the same sequence of designs again and finds them there. Throws FileError,
 /// RankFailure, CheckpointError.
 Optimum run_optimisation(const Study& study, Journal& journal,
-                         std::span<const MechanicsEntry> mechanics_models,
-                         std::span<const FieldEntry> field_models, const Progress& progress = {});
+                         std::span<const models::MechanicsEntry> mechanics_models,
+                         std::span<const models::FieldEntry> field_models,
+                         const Progress& progress = {});
 
 /// How many evaluations of the study the journal holds.
 std::size_t kept_evaluations(const Study& study, const Journal& journal);
@@ -61,7 +62,7 @@ std::string optimum_text(const Study& study, const Optimum& optimum);
 /// optimum.csv: a line for each design and pair, as study.csv has it.
 std::string optimum_csv(const Study& study, const Optimum& optimum);
 
-/// The object `optimum` of study.json (docs/study.md), SI units.
+/// The object `optimum` of study.json (docs/guide/studies.md), SI units.
 nlohmann::ordered_json optimum_json(const Study& study, const Optimum& optimum);
 
 }  // namespace ciliaval::compare::study

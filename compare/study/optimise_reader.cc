@@ -32,21 +32,21 @@ Quantity quantity_of(Output output, const Load& load) {
 }
 
 /// [optimise.at_least] or [optimise.at_most].
-void read_limits(Section& parent, std::string_view key, bool is_lower, Reading& reading) {
+void read_limits(input::Section& parent, std::string_view key, bool is_lower, Reading& reading) {
   static constexpr Range positive{0, 1e12, true, "magnitudes are limited, and they are positive"};
-  Section table = parent.section(key);
+  input::Section table = parent.section(key);
   if (!table.exists()) return;
   std::vector<Limit>& limits = reading.study.optimisation->limits;
   for (const Output output : all_outputs()) {
     const toml::node* node = table.find(id(output));
     if (node == nullptr || reading.numbers.empty()) continue;
     const auto value =
-        read_value(*node, id(output), quantity_of(output, reading.base.load_path.front()), positive,
-                   table.faults());
+        input::read_value(*node, id(output), quantity_of(output, reading.base.load_path.front()),
+                          positive, table.faults());
     if (!value) continue;
     for (const Limit& other : limits)
       if (other.output == output && other.value >= *value)
-        table.faults().add(place(*node),
+        table.faults().add(input::place(*node),
                            fmt::format("'{}' cannot be at least {:g} and at most {:g}", id(output),
                                        other.value, *value));
     limits.push_back({output, is_lower, *value});
@@ -55,7 +55,7 @@ void read_limits(Section& parent, std::string_view key, bool is_lower, Reading& 
 }
 
 /// Where the search starts: `start`, or the case's own value, brought within the bounds.
-void read_start(Section& table, const Case& nominal, const Parameter& parameter,
+void read_start(input::Section& table, const input::Case& nominal, const Parameter& parameter,
                 Optimisation& optimisation) {
   const double from = parameter.values.front();
   const double to = parameter.values.back();
@@ -63,19 +63,19 @@ void read_start(Section& table, const Case& nominal, const Parameter& parameter,
   if (const toml::node* node = table.find("start")) {
     const auto value = read_number(*node, "start", parameter.number, table.faults());
     if (value && (*value < from || *value > to))
-      table.faults().add(place(*node), "'start' must lie between 'from' and 'to'");
+      table.faults().add(input::place(*node), "'start' must lie between 'from' and 'to'");
     start = value.value_or(start);
   }
   optimisation.start.push_back(start);
 }
 
-void read_searched_parameter(Section& table, const Case& nominal, Reading& reading) {
-  Faults& faults = table.faults();
+void read_searched_parameter(input::Section& table, const input::Case& nominal, Reading& reading) {
+  input::Faults& faults = table.faults();
   const std::size_t before = faults.size();
   std::optional<Parameter> parameter = read_parameter_name(table, reading);
   for (const std::string_view key : {"values", "count"})
     if (const toml::node* node = table.find(key))
-      faults.add(place(*node),
+      faults.add(input::place(*node),
                  fmt::format("with [optimise] a parameter has its bounds, 'from' and 'to', and no "
                              "'{}'",
                              key));
@@ -89,7 +89,7 @@ void read_searched_parameter(Section& table, const Case& nominal, Reading& readi
                                           parameter->number.path));
   const auto ends = read_ends(table, *parameter);
   if (ends && ends->from > ends->to)
-    faults.add(place(*table.find("from")), "the bound 'from' must be below 'to'");
+    faults.add(input::place(*table.find("from")), "the bound 'from' must be below 'to'");
   if (ends && faults.size() == before) {
     parameter->values = {ends->from, ends->to};
     read_start(table, nominal, *parameter, *reading.study.optimisation);
@@ -102,35 +102,35 @@ void read_searched_parameter(Section& table, const Case& nominal, Reading& readi
 
 }  // namespace
 
-void read_optimisation(Section& table, Reading& reading) {
-  Faults& faults = table.faults();
+void read_optimisation(input::Section& table, Reading& reading) {
+  input::Faults& faults = table.faults();
   Optimisation& optimisation = reading.study.optimisation.emplace();
   // Of the resolution the smallest would be wanted, which is the largest sensitivity.
   std::vector<std::string_view> goals;
   for (const Output output : all_outputs())
     if (output != Output::resolution) goals.push_back(id(output));
   if (const toml::node* node = table.require("maximise"))
-    if (const auto goal = read_choice(*node, "maximise", goals, {}, faults))
+    if (const auto goal = input::read_choice(*node, "maximise", goals, {}, faults))
       for (const Output output : all_outputs())
         if (id(output) == *goal) optimisation.goal = output;
   if (const toml::node* node = table.find("global_evaluations"))
     optimisation.global_evaluations =
-        read_whole_number(*node, "global_evaluations", evaluations_range, faults)
+        input::read_whole_number(*node, "global_evaluations", evaluations_range, faults)
             .value_or(optimisation.global_evaluations);
   if (const toml::node* node = table.find("starts"))
-    optimisation.starts =
-        read_whole_number(*node, "starts", starts_range, faults).value_or(optimisation.starts);
+    optimisation.starts = input::read_whole_number(*node, "starts", starts_range, faults)
+                              .value_or(optimisation.starts);
   read_limits(table, "at_least", true, reading);
   read_limits(table, "at_most", false, reading);
   table.finish();
 }
 
-void read_searched_parameters(Section& root, Reading& reading) {
-  const Case nominal = with_settings(reading.base, reading.study.fixed);
+void read_searched_parameters(input::Section& root, Reading& reading) {
+  const input::Case nominal = with_settings(reading.base, reading.study.fixed);
   for_parameters(root,
                  "an optimisation searches one parameter or more: write [[parameter]] with "
                  "'path', 'from' and 'to'",
-                 [&](Section& table) { read_searched_parameter(table, nominal, reading); });
+                 [&](input::Section& table) { read_searched_parameter(table, nominal, reading); });
   if (reading.study.optimisation->parameters.size() > most_searched)
     root.faults().add(root.where(),
                       fmt::format("an optimisation searches at most {} parameters", most_searched));

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "compare/output/results.h"
+#include "compare/output/text_table.h"
 #include "compare/study/optimise.h"
 #include "compare/study/record.h"
 #include "compare/study/report.h"
@@ -65,7 +66,7 @@ std::string missed_limits(const Study& study, const PairResult& result) {
 
 std::string parameter_table(const Study& study, const Optimum& optimum) {
   const Optimisation& o = *study.optimisation;
-  std::vector<std::vector<std::string>> rows{{"", "from", "to"}};
+  output::TextRows rows{{"", "from", "to"}};
   for (const Design& design : optimum.designs) rows[0].push_back(design.name);
   for (std::size_t i = 0; i < o.parameters.size(); ++i) {
     const Parameter& p = o.parameters[i];
@@ -79,7 +80,7 @@ std::string parameter_table(const Study& study, const Optimum& optimum) {
   for (const LocalOptimum& local : optimum.search.optima)
     searches.push_back(std::to_string(local.starts));
   rows.push_back(std::move(searches));
-  return aligned(rows);
+  return output::text_table(rows);
 }
 
 /// What holds the best design where it is, and what it is worth.
@@ -114,7 +115,7 @@ std::string activity(const Study& study, const LocalOptimum& best) {
 
 std::string result_table(const Study& study, const Optimum& optimum) {
   const Output goal = study.optimisation->goal;
-  std::vector<std::vector<std::string>> rows{{"", "pair"}};
+  output::TextRows rows{{"", "pair"}};
   for (const Output output : study.outputs)
     rows[0].push_back(fmt::format("{}({})", symbol(output), unit_of(output, study).name));
   rows[0].insert(rows[0].end(), {"+-dB(uT)", fmt::format("{} of start", symbol(goal)), "limits"});
@@ -134,7 +135,7 @@ std::string result_table(const Study& study, const Optimum& optimum) {
       row.push_back(before && now && *before > 0 ? fmt::format("{:.4g}", *now / *before) : "-");
       row.push_back(missed_limits(study, result));
     }
-  return aligned(rows);
+  return output::text_table(rows);
 }
 
 /// Why a pair has no result at a design.
@@ -144,7 +145,7 @@ std::string messages(const Optimum& optimum) {
     for (std::size_t i = 0; i < design.models.size(); ++i)
       if (!design.pairs[i].message.empty())
         text += fmt::format("{}, {}: {}: {}\n", design.name, design.models[i].name(),
-                            to_string(design.pairs[i].status), design.pairs[i].message);
+                            output::to_string(design.pairs[i].status), design.pairs[i].message);
   return text.empty() ? text : "\n" + text;
 }
 
@@ -198,11 +199,12 @@ std::string optimum_text(const Study& study, const Optimum& optimum) {
 }
 
 std::string optimum_csv(const Study& study, const Optimum& optimum) {
-  std::string text = csv_header(study, study.optimisation->parameters, "design");
+  output::CsvWriter csv;
+  add_csv_header(csv, study, study.optimisation->parameters, "design");
   for (const Design& design : optimum.designs)
     for (std::size_t i = 0; i < design.models.size(); ++i)
-      text += csv_row(design.name, design.values, design.models[i], design.pairs[i]);
-  return text;
+      add_csv_row(csv, design.name, design.values, design.models[i], design.pairs[i]);
+  return csv.text();
 }
 
 Json optimum_json(const Study& study, const Optimum& optimum) {

@@ -38,17 +38,17 @@ std::vector<double> spaced(double from, double to, unsigned int count, bool loga
 }
 
 /// `from`, `to`, `count`, `spacing`.
-void read_range(Section& table, Parameter& parameter) {
-  Faults& faults = table.faults();
+void read_range(input::Section& table, Parameter& parameter) {
+  input::Faults& faults = table.faults();
   const toml::node* node = table.require("count");
-  const auto count = node != nullptr ? read_whole_number(*node, "count", count_range, faults)
+  const auto count = node != nullptr ? input::read_whole_number(*node, "count", count_range, faults)
                                      : std::optional<unsigned int>();
   const auto ends = read_ends(table, parameter);
   if (!ends || !count) return;
   parameter.values = spaced(ends->from, ends->to, *count, parameter.is_logarithmic);
   for (const double v : parameter.values)
     if (parameter.number.is_whole && v != std::floor(v)) {
-      faults.add(place(*node),
+      faults.add(input::place(*node),
                  fmt::format("'{}' is a whole number, but the range has {:g}: list its 'values'",
                              parameter.number.path, v));
       return;
@@ -56,11 +56,12 @@ void read_range(Section& table, Parameter& parameter) {
 }
 
 /// `values`.
-void read_values(const toml::node& node, Parameter& parameter, Faults& faults) {
+void read_values(const toml::node& node, Parameter& parameter, input::Faults& faults) {
   const toml::array* list = node.as_array();
   if (list == nullptr || list->empty() || list->size() > most_points) {
-    faults.add(place(node), fmt::format("'values' must be a list of 1 to {} values, found {}",
-                                        most_points, describe(node)));
+    faults.add(input::place(node),
+               fmt::format("'values' must be a list of 1 to {} values, found {}", most_points,
+                           input::describe(node)));
     return;
   }
   parameter.unit = unit_of(list->front());
@@ -69,14 +70,14 @@ void read_values(const toml::node& node, Parameter& parameter, Faults& faults) {
     if (!value) continue;
     if (std::find(parameter.values.begin(), parameter.values.end(), *value) !=
         parameter.values.end())
-      faults.add(place(element), "the value is listed twice");
+      faults.add(input::place(element), "the value is listed twice");
     parameter.values.push_back(*value);
   }
 }
 
 /// A parameter with its values.
-void read_parameter(Section& table, Reading& reading) {
-  Faults& faults = table.faults();
+void read_parameter(input::Section& table, Reading& reading) {
+  input::Faults& faults = table.faults();
   const std::size_t before = faults.size();
   std::optional<Parameter> parameter = read_parameter_name(table, reading);
   const toml::node* values = table.find("values");
@@ -87,7 +88,7 @@ void read_parameter(Section& table, Reading& reading) {
   }
   const bool has_range = table.table()->contains("from") || table.table()->contains("to");
   if (values != nullptr && has_range)
-    faults.add(place(*values), "'values' contradicts 'from' and 'to': give one of them");
+    faults.add(input::place(*values), "'values' contradicts 'from' and 'to': give one of them");
   if (values == nullptr && !has_range)
     faults.add(table.where(), "[[parameter]] needs 'values', or 'from', 'to' and 'count'");
   if (values != nullptr) {
@@ -102,28 +103,28 @@ void read_parameter(Section& table, Reading& reading) {
 
 }  // namespace
 
-const CaseNumber* find_number(const Reading& reading, const std::string& path, Place where,
-                              Faults& faults) {
+const CaseNumber* find_number(const Reading& reading, const std::string& path, input::Place where,
+                              input::Faults& faults) {
   std::vector<std::string_view> paths;
   for (const CaseNumber& number : reading.numbers) {
     if (number.path == path) return &number;
     paths.push_back(number.path);
   }
-  std::string advice = did_you_mean(path, paths);
+  std::string advice = support::did_you_mean(path, paths);
   if (advice.empty()) advice = fmt::format(" (there are {})", fmt::join(paths, ", "));
-  faults.add(where, fmt::format("the case has no number {}{}", in_quotes(path), advice));
+  faults.add(where, fmt::format("the case has no number {}{}", input::in_quotes(path), advice));
   return nullptr;
 }
 
 std::optional<double> read_number(const toml::node& node, std::string_view name,
-                                  const CaseNumber& number, Faults& faults) {
-  if (!number.is_whole) return read_value(node, name, number.quantity, number.range, faults);
-  const auto whole = read_whole_number(node, name, number.range, faults);
+                                  const CaseNumber& number, input::Faults& faults) {
+  if (!number.is_whole) return input::read_value(node, name, number.quantity, number.range, faults);
+  const auto whole = input::read_whole_number(node, name, number.range, faults);
   return whole ? std::optional<double>(*whole) : std::nullopt;
 }
 
-void check_contradiction(const Study& study, const CaseNumber& number, Place where,
-                         Faults& faults) {
+void check_contradiction(const Study& study, const CaseNumber& number, input::Place where,
+                         input::Faults& faults) {
   const auto refuse = [&](const CaseNumber& other) {
     if (other.sets == number.sets)
       faults.add(where, other.path == number.path
@@ -154,24 +155,24 @@ std::string unit_of(const toml::node& node) {
   return std::string(rest);
 }
 
-std::optional<Parameter> read_parameter_name(Section& table, Reading& reading) {
-  Faults& faults = table.faults();
+std::optional<Parameter> read_parameter_name(input::Section& table, Reading& reading) {
+  input::Faults& faults = table.faults();
   const toml::node* path_node = table.require("path");
   const toml::node* name = table.find("name");
   const std::optional<std::string> path =
-      path_node != nullptr ? read_text(*path_node, "path", faults) : std::nullopt;
+      path_node != nullptr ? input::read_text(*path_node, "path", faults) : std::nullopt;
   const CaseNumber* number =
-      path ? find_number(reading, *path, place(*path_node), faults) : nullptr;
+      path ? find_number(reading, *path, input::place(*path_node), faults) : nullptr;
   if (number == nullptr) return std::nullopt;
   Parameter parameter{*number, path->substr(path->find_last_of('.') + 1), {}, 1, {}, false};
-  check_contradiction(reading.study, *number, place(*path_node), faults);
+  check_contradiction(reading.study, *number, input::place(*path_node), faults);
   if (name != nullptr)
-    parameter.name = read_line(*name, "name", longest_name, faults).value_or(parameter.name);
+    parameter.name = input::read_line(*name, "name", longest_name, faults).value_or(parameter.name);
   return parameter;
 }
 
-std::optional<Ends> read_ends(Section& table, Parameter& parameter) {
-  Faults& faults = table.faults();
+std::optional<Ends> read_ends(input::Section& table, Parameter& parameter) {
+  input::Faults& faults = table.faults();
   const std::size_t before = faults.size();
   const auto end = [&](std::string_view key) {
     const toml::node* node = table.require(key);
@@ -183,13 +184,15 @@ std::optional<Ends> read_ends(Section& table, Parameter& parameter) {
   const auto to = end("to");
   if (const toml::node* node = table.find("spacing")) {
     constexpr std::array<std::string_view, 2> spacings{"linear", "logarithmic"};
-    parameter.is_logarithmic = read_choice(*node, "spacing", spacings, {}, faults) == spacings[1];
+    parameter.is_logarithmic =
+        input::read_choice(*node, "spacing", spacings, {}, faults) == spacings[1];
   }
   if (!from || !to || faults.size() != before) return std::nullopt;
   if (*from == *to)
-    faults.add(place(*table.find("to")), "'from' and 'to' are the same: there is nothing to vary");
+    faults.add(input::place(*table.find("to")),
+               "'from' and 'to' are the same: there is nothing to vary");
   else if (parameter.is_logarithmic && !(*from * *to > 0))
-    faults.add(place(*table.find("spacing")),
+    faults.add(input::place(*table.find("spacing")),
                "a logarithmic range has both ends of one sign, and none at zero");
   else
     return Ends{*from, *to};
@@ -198,33 +201,34 @@ std::optional<Ends> read_ends(Section& table, Parameter& parameter) {
 
 void add_parameter(Parameter parameter, std::vector<Parameter>& all) {
   if (!parameter.unit.empty())
-    parameter.unit_size = parse_quantity("1 " + parameter.unit, parameter.number.quantity);
+    parameter.unit_size = input::parse_quantity("1 " + parameter.unit, parameter.number.quantity);
   all.push_back(std::move(parameter));
 }
 
-void for_parameters(Section& root, std::string_view advice,
-                    const std::function<void(Section& table)>& read) {
-  Faults& faults = root.faults();
+void for_parameters(input::Section& root, std::string_view advice,
+                    const std::function<void(input::Section& table)>& read) {
+  input::Faults& faults = root.faults();
   const toml::node* node = root.find("parameter");
   const toml::array* list = node != nullptr ? node->as_array() : nullptr;
   if (list == nullptr || list->empty())
-    return faults.add(node != nullptr ? place(*node) : Place{}, std::string(advice));
+    return faults.add(node != nullptr ? input::place(*node) : input::Place{}, std::string(advice));
   for (const toml::node& element : *list) {
     if (!element.is_table()) {
-      faults.add(place(element),
-                 fmt::format("expected a table [[parameter]], found {}", describe(element)));
+      faults.add(input::place(element),
+                 fmt::format("expected a table [[parameter]], found {}", input::describe(element)));
       continue;
     }
-    Section table(element.as_table(), "[[parameter]]", "parameter", place(element), faults);
+    input::Section table(element.as_table(), "[[parameter]]", "parameter", input::place(element),
+                         faults);
     read(table);
   }
 }
 
-void read_parameters(Section& root, Reading& reading) {
+void read_parameters(input::Section& root, Reading& reading) {
   for_parameters(root,
                  "a study varies one parameter or more: write [[parameter]] with 'path' and "
                  "'values', or [tolerances]",
-                 [&](Section& table) { read_parameter(table, reading); });
+                 [&](input::Section& table) { read_parameter(table, reading); });
 }
 
 }  // namespace ciliaval::compare::study

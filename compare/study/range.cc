@@ -15,8 +15,7 @@ namespace {
 
 /// The limit that the step knows, if it does.
 std::optional<double> known_limit(const MechanicsStep& step) {
-  return std::holds_alternative<ProbeLoad>(step.load) ? step.slip_off_displacement
-                                                      : step.slip_off_force;
+  return step.load.is<ProbeLoad>() ? step.slip_off_displacement : step.slip_off_force;
 }
 
 MechanicsStep solve_one(const MechanicsModel& model, const Cilium& cilium, const Load& load,
@@ -31,17 +30,18 @@ double soft_magnitude(const Cilium& cilium, const Load& load) {
     E = E == 0 ? s.young_modulus : std::min(E, s.young_modulus);
   const double L = cilium.length();
   const double force = E * cilium.second_moment() / (L * L);
-  return std::holds_alternative<SectionLoad>(load) ? force : force / L;
+  return load.is<SectionLoad>() ? force : force / L;
 }
 
 }  // namespace
 
 double slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
-                const analytic::ElasticaOptions& elastica, const Progress& progress) {
+                const analytic::elastica::ElasticaOptions& elastica, const Progress& progress) {
   if (const auto limit = known_limit(step)) return *limit;
   // A model that meets its limit on the way says so: any load beyond will do, and that of the
   // elastica is near.
-  const MechanicsStep guess = solve_one(analytic::Elastica(elastica), cilium, step.load, progress);
+  const MechanicsStep guess =
+      solve_one(analytic::elastica::Elastica(elastica), cilium, step.load, progress);
   double magnitude = 1.5 * known_limit(guess).value_or(ciliaval::magnitude(step.load));
   constexpr int most_trials = 8;
   for (int i = 0; i < most_trials; ++i, magnitude *= 2) {

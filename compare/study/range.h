@@ -12,7 +12,7 @@ namespace ciliaval::compare::study {
 /// it slips off. `step` is the model's step at some magnitude. Throws SolverError if the model
 /// finds none.
 double slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
-                const analytic::ElasticaOptions& elastica, const Progress& progress = {});
+                const analytic::elastica::ElasticaOptions& elastica, const Progress& progress = {});
 
 /// The magnitude of the load at which the tip's rotation from +z is `rotation` (rad, below 90°), to
 /// 1e-6 of it, by bracketing and TOMS 748: each trial is a solution from the straight cilium.

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 Status status_of(const std::string& text) {
   for (const Status status : {Status::converged, Status::slipped_off})
-    if (to_string(status) == text) return status;
+    if (output::to_string(status) == text) return status;
   return Status::failed;
 }
 
@@ -32,7 +32,7 @@ Json to_json(const std::vector<PairResult>& results) {
   for (const PairResult& result : results) {
     Json values = Json::array();
     for (const auto& value : result.values) values.push_back(to_json(value));
-    pairs.push_back({{"status", to_string(result.status)},
+    pairs.push_back({{"status", output::to_string(result.status)},
                      {"message", result.message},
                      {"values", std::move(values)},
                      {"uncertainty", to_json(result.uncertainty)}});

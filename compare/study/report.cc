@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "compare/input/units.h"
+#include "compare/output/csv_writer.h"
 #include "compare/output/results.h"
+#include "compare/output/text_table.h"
 #include "compare/study/record.h"
 #include "compare/study/tolerances.h"
-#include "compare/input/units.h"
 
 namespace ciliaval::compare::study {
 namespace {
@@ -41,14 +43,9 @@ std::vector<std::size_t> shown_points(std::size_t count) {
   return points;
 }
 
-/// A text padded to the right end of a column; `width` counts characters of ASCII.
-std::string right(const std::string& text, std::size_t width) {
-  return std::string(text.size() < width ? width - text.size() : 0, ' ') + text;
-}
-
 std::string point_table(const StudyResult& result, std::size_t pair) {
   const Study& study = result.study;
-  std::vector<std::vector<std::string>> rows(1);
+  output::TextRows rows(1);
   for (const Parameter& p : study.parameters)
     rows[0].push_back(p.unit.empty() ? p.name : fmt::format("{}({})", p.name, p.unit));
   for (const Output output : study.outputs)
@@ -61,7 +58,7 @@ std::string point_table(const StudyResult& result, std::size_t pair) {
     for (std::size_t o = 0; o < study.outputs.size(); ++o)
       row.push_back(cell(result.points[point][pair], o, unit_of(study.outputs[o], study).size));
   }
-  return aligned(rows);
+  return output::text_table(rows);
 }
 
 /// What the outputs do along the parameter.
@@ -99,14 +96,13 @@ std::string trend_text(const StudyResult& result, std::size_t pair, std::size_t 
 std::string trends(const StudyResult& result) {
   const Study& study = result.study;
   if (study.parameters.size() > 1 && !study.is_zipped) return {};
-  std::vector<std::vector<std::string>> rows;
-  std::string text = fmt::format("\nAlong {}:\n", study.parameters.front().name);
+  output::TextRows rows;
   for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
     for (std::size_t o = 0; o < study.outputs.size(); ++o)
-      text += fmt::format("  {:<18} {:<11} {:<8} {}\n", study.pairs[pair].name(),
-                          symbol(study.outputs[o]), unit_of(study.outputs[o], study).name,
-                          trend_text(result, pair, o));
-  return text;
+      rows.push_back({study.pairs[pair].name(), std::string(symbol(study.outputs[o])),
+                      unit_of(study.outputs[o], study).name, trend_text(result, pair, o)});
+  return fmt::format("\nAlong {}:\n{}", study.parameters.front().name,
+                     output::text_table(rows, "<"));
 }
 
 /// How many points of each pair slipped off or failed, and why the first one did.
@@ -120,30 +116,20 @@ std::string exceptions(const StudyResult& result) {
       for (std::size_t point = 0; point < study.point_count(); ++point)
         if (result.points[point][pair].status == status && count++ == 0) first = point;
       if (count > 0)
-        text += fmt::format("{}: {} at {} of {} points, first at {}: {}\n",
-                            study.pairs[pair].name(), to_string(status), count, study.point_count(),
-                            study.describe(first), result.points[first][pair].message);
+        text +=
+            fmt::format("{}: {} at {} of {} points, first at {}: {}\n", study.pairs[pair].name(),
+                        output::to_string(status), count, study.point_count(),
+                        study.describe(first), result.points[first][pair].message);
     }
   return text.empty() ? text : "\n" + text;
 }
 
 }  // namespace
 
-std::string aligned(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> width(rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) text += "  " + right(row[i], width[i]);
-    text += '\n';
-  }
-  return text;
-}
-
 std::string cell(const PairResult& result, std::size_t output, double unit) {
-  if (result.values[output]) return fmt::format("{:.5g}", *result.values[output] / unit);
-  return result.status == Status::converged ? "-" : std::string(to_string(result.status));
+  if (!result.values[output] && result.status != Status::converged)
+    return std::string(output::to_string(result.status));
+  return output::number_cell(result.values[output], unit, "{:.5g}");
 }
 
 std::string_view symbol(Output output) {
@@ -195,35 +181,35 @@ std::string text(const StudyResult& result) {
   return text + trends(result) + exceptions(result);
 }
 
-std::string csv_header(const Study& study, const std::vector<Parameter>& parameters,
-                       const std::string& first) {
+void add_csv_header(output::CsvWriter& csv, const Study& study,
+                    const std::vector<Parameter>& parameters, std::string_view first) {
   std::vector<std::string> units;
-  std::vector<std::string> names{first};
-  for (const Parameter& p : parameters) {
-    names.push_back(csv_field(p.number.path));
+  for (const Parameter& p : parameters)
     if (!p.number.quantity.unit.empty())
       units.push_back(fmt::format("{} {}", p.number.path, p.number.quantity.unit));
-  }
-  names.insert(names.end(), {"pair", "status"});
-  for (const Output output : study.outputs) {
-    names.emplace_back(id(output));
+  for (const Output output : study.outputs)
     units.push_back(fmt::format("{} {}", id(output), si_unit(output, study)));
-  }
-  names.emplace_back("message");
-  return fmt::format("# units: {}\n{}\n", fmt::join(units, ", "), fmt::join(names, ","));
+  csv.comment(fmt::format("units: {}", fmt::join(units, ", ")));
+  csv.add(first);
+  for (const Parameter& p : parameters) csv.add(p.number.path);
+  csv.add("pair");
+  csv.add("status");
+  for (const Output output : study.outputs) csv.add(id(output));
+  csv.row("message");
 }
 
-std::string csv_row(const std::string& first, const std::vector<double>& values,
-                    const ModelPair& pair, const PairResult& result) {
-  std::string text = first;
-  for (const double v : values) text += fmt::format(",{}", v);
-  text += fmt::format(",{},{}", pair.name(), to_string(result.status));
-  for (const auto& value : result.values) text += value ? fmt::format(",{}", *value + 0.0) : ",";
-  return text + fmt::format(",{}\n", csv_field(result.message));
+void add_csv_row(output::CsvWriter& csv, std::string_view first, const std::vector<double>& values,
+                 const models::ModelPair& pair, const PairResult& result) {
+  csv.add(first);
+  for (const double value : values) csv.add(value);
+  csv.add(pair.name());
+  csv.add(output::to_string(result.status));
+  for (const auto& value : result.values) csv.add(value);
+  csv.row(result.message);
 }
 
 Json pair_json(const Study& study, const PairResult& result) {
-  Json json{{"status", to_string(result.status)}, {"message", result.message}};
+  Json json{{"status", output::to_string(result.status)}, {"message", result.message}};
   for (std::size_t o = 0; o < study.outputs.size(); ++o)
     json[std::string(id(study.outputs[o]))] = to_json(result.values[o]);
   json["dB_uncertainty"] = to_json(result.uncertainty);
@@ -232,15 +218,16 @@ Json pair_json(const Study& study, const PairResult& result) {
 
 std::string csv(const StudyResult& result) {
   const Study& study = result.study;
-  std::string text = csv_header(study, study.parameters, "point");
+  output::CsvWriter csv;
+  add_csv_header(csv, study, study.parameters, "point");
   for (std::size_t point = 0; point < study.point_count(); ++point)
     for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
-      text += csv_row(std::to_string(point), study.values_at(point), study.pairs[pair],
-                      result.points[point][pair]);
-  return text;
+      add_csv_row(csv, std::to_string(point), study.values_at(point), study.pairs[pair],
+                  result.points[point][pair]);
+  return csv.text();
 }
 
-std::string json(const StudyResult& result, const Provenance& provenance) {
+std::string json(const StudyResult& result, const output::Provenance& provenance) {
   const Study& study = result.study;
   Json json{{"schema", 1},
             {"study", study.name},
@@ -265,7 +252,7 @@ std::string json(const StudyResult& result, const Provenance& provenance) {
                                   {"logarithmic", p.is_logarithmic}});
   for (const Output output : study.outputs)
     json["outputs"].push_back({{"id", id(output)}, {"unit", si_unit(output, study)}});
-  for (const ModelPair& pair : study.pairs) json["pairs"].push_back(pair.name());
+  for (const models::ModelPair& pair : study.pairs) json["pairs"].push_back(pair.name());
   for (std::size_t point = 0; point < study.point_count(); ++point) {
     Json entry{{"point", point}, {"parameters", Json::object()}, {"pairs", Json::object()}};
     const std::vector<double> values = study.values_at(point);

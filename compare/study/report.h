@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/plot/gnuplot.h"
+#include "compare/output/csv_writer.h"
 #include "compare/output/provenance.h"
+#include "compare/plot/gnuplot.h"
 #include "compare/study/sweep.h"
 
 namespace ciliaval::compare::study {
@@ -26,9 +27,6 @@ std::string_view symbol(Output output);
 /// An output of a result in this unit, or what has become of it.
 std::string cell(const PairResult& result, std::size_t output, double unit);
 
-/// Rows of cells of ASCII, the columns as wide as they must be, cells at their right ends.
-std::string aligned(const std::vector<std::vector<std::string>>& rows);
-
 /// For a terminal: a table of the points, thinned to some 25 of them, then what each output does
 /// along the parameter if there is one alone: monotone, or its peak.
 std::string text(const StudyResult& result);
@@ -37,18 +35,18 @@ std::string text(const StudyResult& result);
 /// order, SI units; what is undefined is empty.
 std::string csv(const StudyResult& result);
 
-/// The comment line and the header of a CSV file of the study; `first` is its first column. Then a
-/// line of it.
-std::string csv_header(const Study& study, const std::vector<Parameter>& parameters,
-                       const std::string& first);
-std::string csv_row(const std::string& first, const std::vector<double>& values,
-                    const ModelPair& pair, const PairResult& result);
+/// The comment line and the header of a CSV file of the study; `first` is its first column.
+void add_csv_header(output::CsvWriter& csv, const Study& study,
+                    const std::vector<Parameter>& parameters, std::string_view first);
+/// A row of it.
+void add_csv_row(output::CsvWriter& csv, std::string_view first, const std::vector<double>& values,
+                 const models::ModelPair& pair, const PairResult& result);
 
 /// What a pair made of a point: {"status", "message", OUTPUT…, "dB_uncertainty"}, SI units.
 nlohmann::ordered_json pair_json(const Study& study, const PairResult& result);
 
-/// study.json (docs/study.md), SI units. Nothing in it says when or how often the program ran.
-std::string json(const StudyResult& result, const Provenance& provenance);
+/// study.json (docs/guide/studies.md), SI units. Nothing in it says when or how often the program ran.
+std::string json(const StudyResult& result, const output::Provenance& provenance);
 
 /// How an output of a pair runs along the only parameter (or those that are zipped).
 struct Trend {

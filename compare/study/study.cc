@@ -30,7 +30,7 @@ std::uint32_t checksum_of(const std::filesystem::path& file) {
 std::string numbers(const std::vector<double>& values) {
   std::vector<std::string> texts;
   texts.reserve(values.size());
-  for (const double v : values) texts.push_back(format_number(v));
+  for (const double v : values) texts.push_back(input::format_number(v));
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
@@ -99,9 +99,9 @@ std::vector<double> Study::values_at(std::size_t point) const {
   return values;
 }
 
-Case Study::case_at(std::size_t point) const {
+input::Case Study::case_at(std::size_t point) const {
   if (point >= point_count()) {
-    const Case nominal = with_settings(base, fixed);
+    const input::Case nominal = with_settings(base, fixed);
     const auto moved = moved_number(*this, point);
     return moved ? with_settings(nominal, {*moved}) : nominal;
   }
@@ -112,7 +112,7 @@ Case Study::case_at(std::size_t point) const {
   return with_settings(base, settings);
 }
 
-Case Study::design(const std::vector<double>& values) const {
+input::Case Study::design(const std::vector<double>& values) const {
   std::vector<Setting> settings = fixed;
   for (std::size_t i = 0; i < values.size(); ++i)
     settings.push_back({optimisation->parameters[i].number, values[i]});
@@ -123,7 +123,7 @@ std::string Study::describe(std::size_t point) const {
   if (point >= point_count()) {
     const auto moved = moved_number(*this, point);
     return moved ? fmt::format("{} = {}", moved->number.path,
-                               format_quantity(moved->value, moved->number.quantity))
+                               input::format_quantity(moved->value, moved->number.quantity))
                  : "nominal";
   }
   const std::vector<double> values = values_at(point);
@@ -136,7 +136,7 @@ std::string Study::describe(std::size_t point) const {
 
 std::vector<std::string> Study::mechanics() const {
   std::vector<std::string> ids;
-  for (const ModelPair& pair : pairs)
+  for (const models::ModelPair& pair : pairs)
     if (std::find(ids.begin(), ids.end(), pair.mechanics) == ids.end())
       ids.push_back(pair.mechanics);
   return ids;
@@ -153,22 +153,24 @@ std::string format_value(const Parameter& parameter, double value) {
 
 std::vector<std::string> resolved(const Study& study) {
   std::vector<std::string> lines;
-  Case base = study.base;
+  input::Case base = study.base;
   base.name = study.name;
   base.title = study.name;
-  std::istringstream text(to_toml(base));
+  std::istringstream text(input::to_toml(base));
   for (std::string line; std::getline(text, line);)
     if (!line.empty()) lines.push_back(line);
   const std::filesystem::path& mesh = base.options.solid.mesh;
   if (!mesh.empty()) lines.push_back(fmt::format("mesh file: checksum {:08x}", checksum_of(mesh)));
   for (const Setting& s : study.fixed)
-    lines.push_back(fmt::format("fixed: {} = {}", s.number.path, format_number(s.value)));
+    lines.push_back(fmt::format("fixed: {} = {}", s.number.path, input::format_number(s.value)));
   for (const Parameter& p : study.parameters)
     lines.push_back(fmt::format("parameter: {} = {}", p.number.path, numbers(p.values)));
   for (const Tolerance& t : study.tolerances)
-    lines.push_back(fmt::format("tolerance: {} = {}", t.number.path, format_number(t.deviation)));
+    lines.push_back(
+        fmt::format("tolerance: {} = {}", t.number.path, input::format_number(t.deviation)));
   lines.emplace_back(study.is_zipped ? "combine: zip" : "combine: product");
-  for (const ModelPair& pair : study.pairs) lines.push_back(fmt::format("pair: {}", pair.name()));
+  for (const models::ModelPair& pair : study.pairs)
+    lines.push_back(fmt::format("pair: {}", pair.name()));
   for (const Output output : study.outputs) lines.push_back(fmt::format("output: {}", id(output)));
   if (study.optimisation) {
     const Optimisation& o = *study.optimisation;
@@ -176,15 +178,16 @@ std::vector<std::string> resolved(const Study& study) {
                                 o.global_evaluations, o.starts));
     for (const Limit& limit : o.limits)
       lines.push_back(fmt::format("limit: {} {} {}", id(limit.output),
-                                  limit.is_lower ? ">=" : "<=", format_number(limit.value)));
+                                  limit.is_lower ? ">=" : "<=", input::format_number(limit.value)));
     for (std::size_t i = 0; i < o.parameters.size(); ++i)
       lines.push_back(fmt::format("searched: {} = {}, {}, from {}", o.parameters[i].number.path,
                                   numbers(o.parameters[i].values),
                                   o.parameters[i].is_logarithmic ? "logarithmic" : "linear",
-                                  format_number(o.start[i])));
+                                  input::format_number(o.start[i])));
   }
-  if (study.noise) lines.push_back(fmt::format("noise: {}", format_number(*study.noise)));
-  if (study.rotation) lines.push_back(fmt::format("rotation: {}", format_number(*study.rotation)));
+  if (study.noise) lines.push_back(fmt::format("noise: {}", input::format_number(*study.noise)));
+  if (study.rotation)
+    lines.push_back(fmt::format("rotation: {}", input::format_number(*study.rotation)));
   return lines;
 }
 

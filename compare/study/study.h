@@ -71,15 +71,15 @@ struct Optimisation {
   unsigned int starts = 10;  ///< of local searches, besides the start and the global search's end
 };
 
-/// A study, as its file states it (docs/study.md).
+/// A study, as its file states it (docs/guide/studies.md).
 struct Study {
   std::string name;  ///< a plain file name: the results go to DIR/name
   std::string title;
-  Case base;  ///< of one load step and one sensor, with the models of the pairs
+  input::Case base;  ///< of one load step and one sensor, with the models of the pairs
   std::vector<Setting> fixed;
   std::vector<Parameter> parameters;
   bool is_zipped = false;  ///< the parameters' values go together; else every combination
-  std::vector<ModelPair> pairs;
+  std::vector<models::ModelPair> pairs;
   std::vector<Output> outputs;
   std::vector<Tolerance> tolerances;
   std::optional<Optimisation> optimisation;  ///< in place of parameters and tolerances; the first
@@ -94,9 +94,9 @@ struct Study {
   std::size_t all_points() const;
   /// The parameters' values at a point of the sweep; of a product the last parameter runs fastest.
   std::vector<double> values_at(std::size_t point) const;
-  Case case_at(std::size_t point) const;
+  input::Case case_at(std::size_t point) const;
   /// The case with its fixed numbers and these values of what is optimised.
-  Case design(const std::vector<double>& values) const;
+  input::Case design(const std::vector<double>& values) const;
   /// "E1 = 0.1 MPa, d = 3 mm"
   std::string describe(std::size_t point) const;
   /// The mechanics models of the pairs, each once, in their order.

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Range sensor_range{0, 1e6, false, "sensors are counted from 0"};
-constexpr Range noise_range{0, 100, true, key::unit_slip};
+constexpr Range noise_range{0, 100, true, unit_slip};
 constexpr Range rotation_range{0, std::numbers::pi / 2, true,
                                "under a horizontal force the tip's rotation stays below 90 deg"};
 
@@ -46,11 +46,11 @@ void for_leaves(const toml::table& table, const std::string& prefix, const Leaf&
 }
 
 /// [fixed].
-void read_fixed(const toml::table& table, Reading& reading, Faults& faults) {
+void read_fixed(const toml::table& table, Reading& reading, input::Faults& faults) {
   for_leaves(table, "", [&](const std::string& path, const toml::key& key, const toml::node& node) {
-    const CaseNumber* number = find_number(reading, path, place(key), faults);
+    const CaseNumber* number = find_number(reading, path, input::place(key), faults);
     if (number == nullptr) return;
-    check_contradiction(reading.study, *number, place(key), faults);
+    check_contradiction(reading.study, *number, input::place(key), faults);
     if (const auto value = read_number(node, path, *number, faults))
       reading.study.fixed.push_back({*number, *value});
   });
@@ -71,37 +71,40 @@ std::optional<double> percentage(const toml::node& node) {
 }
 
 /// One standard deviation, a quantity or a percentage of the nominal value.
-void read_deviation(const toml::node& node, Tolerance& tolerance, Faults& faults) {
+void read_deviation(const toml::node& node, Tolerance& tolerance, input::Faults& faults) {
   const CaseNumber& number = tolerance.number;
   const double largest = std::max(std::abs(number.range.lower), std::abs(number.range.upper));
   const Range range{0, largest, true, "a standard deviation is positive"};
   if (const auto part = percentage(node)) {
     tolerance.deviation = std::abs(*part * tolerance.nominal);
     if (!(*part > 0 && tolerance.deviation > 0))
-      faults.add(place(node), fmt::format("'{}': a percentage is positive, and of a value that is "
-                                          "not zero",
-                                          number.path));
-  } else if (const auto value = read_value(node, number.path, number.quantity, range, faults)) {
+      faults.add(input::place(node),
+                 fmt::format("'{}': a percentage is positive, and of a value that is "
+                             "not zero",
+                             number.path));
+  } else if (const auto value =
+                 input::read_value(node, number.path, number.quantity, range, faults)) {
     tolerance.deviation = *value;
     tolerance.unit = unit_of(node);
   }
   const double reach = 2 * tolerance_step * tolerance.deviation;
   for (const double moved : {tolerance.nominal - reach, tolerance.nominal + reach})
     if (!number.range.contains(moved))
-      faults.add(place(node), fmt::format("'{}' moved by half of its tolerance is {}, but must be "
-                                          "{}",
-                                          number.path, format_quantity(moved, number.quantity),
-                                          describe(number.range, number.quantity)));
+      faults.add(input::place(node),
+                 fmt::format("'{}' moved by half of its tolerance is {}, but must be "
+                             "{}",
+                             number.path, input::format_quantity(moved, number.quantity),
+                             input::describe(number.range, number.quantity)));
 }
 
 /// [tolerances].
-void read_tolerances(const toml::table& table, Reading& reading, Faults& faults) {
-  const Case nominal = with_settings(reading.base, reading.study.fixed);
+void read_tolerances(const toml::table& table, Reading& reading, input::Faults& faults) {
+  const input::Case nominal = with_settings(reading.base, reading.study.fixed);
   for_leaves(table, "", [&](const std::string& path, const toml::key& key, const toml::node& node) {
-    const CaseNumber* number = find_number(reading, path, place(key), faults);
+    const CaseNumber* number = find_number(reading, path, input::place(key), faults);
     if (number == nullptr) return;
     if (number->is_whole)
-      return faults.add(place(key),
+      return faults.add(input::place(key),
                         fmt::format("'{}' is a whole number: it has no tolerance", path));
     Tolerance tolerance{*number, number->get(nominal), 0, {}, 1};
     const std::size_t before = faults.size();
@@ -110,7 +113,7 @@ void read_tolerances(const toml::table& table, Reading& reading, Faults& faults)
     if (tolerance.unit.empty())
       tolerance.unit = number->quantity.unit;
     else
-      tolerance.unit_size = parse_quantity("1 " + tolerance.unit, number->quantity);
+      tolerance.unit_size = input::parse_quantity("1 " + tolerance.unit, number->quantity);
     reading.study.tolerances.push_back(std::move(tolerance));
   });
 }
@@ -118,8 +121,8 @@ void read_tolerances(const toml::table& table, Reading& reading, Faults& faults)
 /// Every pair of models that can be formed.
 std::vector<std::string> all_pairs() {
   std::vector<std::string> pairs;
-  for (const std::string_view mechanics : mechanics_ids())
-    for (const std::string_view field : field_ids())
+  for (const std::string_view mechanics : input::mechanics_ids())
+    for (const std::string_view field : input::field_ids())
       if (field != "mesh" || mechanics == "solid" || mechanics == "calculix")
         pairs.push_back(fmt::format("{}/{}", mechanics, field));
   return pairs;
@@ -127,27 +130,29 @@ std::vector<std::string> all_pairs() {
 
 /// The texts of a list, each one of the choices and none twice; an empty list is a fault.
 std::vector<std::string> read_choices(const toml::node& node, std::string_view name,
-                                      std::span<const std::string_view> choices, Faults& faults) {
+                                      std::span<const std::string_view> choices,
+                                      input::Faults& faults) {
   std::vector<std::string> texts;
   const toml::array* list = node.as_array();
   if (list == nullptr || list->empty()) {
-    faults.add(place(node),
+    faults.add(input::place(node),
                fmt::format("'{}' must be a list, such as [\"{}\"], found {}", name, choices.front(),
-                           list == nullptr ? describe(node) : "an empty one"));
+                           list == nullptr ? input::describe(node) : "an empty one"));
     return texts;
   }
   for (const toml::node& element : *list) {
-    const std::optional<std::string> text = read_choice(element, name, choices, {}, faults);
+    const std::optional<std::string> text = input::read_choice(element, name, choices, {}, faults);
     if (!text) continue;
     if (std::find(texts.begin(), texts.end(), *text) != texts.end())
-      faults.add(place(element), fmt::format("'{}' lists {} twice", name, in_quotes(*text)));
+      faults.add(input::place(element),
+                 fmt::format("'{}' lists {} twice", name, input::in_quotes(*text)));
     else
       texts.push_back(*text);
   }
   return texts;
 }
 
-void read_pairs(Section& table, Study& study) {
+void read_pairs(input::Section& table, Study& study) {
   const toml::node* node = table.require("pairs");
   if (node == nullptr) return;
   const std::vector<std::string> names = all_pairs();
@@ -159,7 +164,7 @@ void read_pairs(Section& table, Study& study) {
 }
 
 /// The outputs that [study] lists, and those that the optimisation needs, in their own order.
-void read_outputs(Section& table, Study& study) {
+void read_outputs(input::Section& table, Study& study) {
   std::vector<Output> asked{Output::dB_x, Output::dB_y, Output::dB_z, Output::dB_norm};
   if (const toml::node* node = table.find("outputs")) {
     std::vector<std::string_view> choices;
@@ -179,10 +184,10 @@ void read_outputs(Section& table, Study& study) {
 }
 
 /// A quantity that goes with an output.
-std::optional<double> read_companion(Section& table, std::string_view name,
+std::optional<double> read_companion(input::Section& table, std::string_view name,
                                      const Quantity& quantity, const Range& range, bool needed,
                                      std::string_view with) {
-  Faults& faults = table.faults();
+  input::Faults& faults = table.faults();
   const toml::node* node = table.find(name);
   if (node == nullptr) {
     if (needed)
@@ -190,16 +195,17 @@ std::optional<double> read_companion(Section& table, std::string_view name,
                  fmt::format("{} needs '{}', such as \"{}\"", with, name, quantity.example));
     return std::nullopt;
   }
-  if (!needed) faults.add(place(*node), fmt::format("'{}' goes with {} only", name, with));
-  return read_value(*node, name, quantity, range, faults);
+  if (!needed) faults.add(input::place(*node), fmt::format("'{}' goes with {} only", name, with));
+  return input::read_value(*node, name, quantity, range, faults);
 }
 
 /// The sensor of the study: the one that it names, or the only one.
-void choose_sensor(Section& table, Case& base) {
-  Faults& faults = table.faults();
+void choose_sensor(input::Section& table, input::Case& base) {
+  input::Faults& faults = table.faults();
   std::size_t index = 0;
   const toml::node* node = table.find("sensor");
-  if (node != nullptr) index = read_whole_number(*node, "sensor", sensor_range, faults).value_or(0);
+  if (node != nullptr)
+    index = input::read_whole_number(*node, "sensor", sensor_range, faults).value_or(0);
   if (node == nullptr && base.sensors.size() > 1)
     faults.add(table.where(),
                fmt::format("the case has {} sensors: 'sensor' says which one, from 0",
@@ -207,41 +213,43 @@ void choose_sensor(Section& table, Case& base) {
   if (base.sensors.empty())
     faults.add(table.where(), "the case has no [sensor], so there is no field to study");
   else if (index >= base.sensors.size())
-    faults.add(place(*node), fmt::format("the case has no sensor {}: they are 0 to {}", index,
-                                         base.sensors.size() - 1));
+    faults.add(input::place(*node), fmt::format("the case has no sensor {}: they are 0 to {}",
+                                                index, base.sensors.size() - 1));
   else
     base.sensors = {base.sensors[index]};
 }
 
 /// The case that [study] names, read; throws InputError with the case file's own faults.
-bool read_base(Section& table, const fs::path& file, Case& base) {
-  Faults& faults = table.faults();
+bool read_base(input::Section& table, const fs::path& file, input::Case& base) {
+  input::Faults& faults = table.faults();
   const toml::node* node = table.require("case");
   const std::optional<std::string> name =
-      node != nullptr ? read_text(*node, "case", faults) : std::nullopt;
+      node != nullptr ? input::read_text(*node, "case", faults) : std::nullopt;
   if (!name) return false;
   const fs::path path = (file.parent_path() / *name).lexically_normal();
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
-    faults.add(place(*node), fmt::format("there is no case file '{}': a name without a leading / "
-                                         "is looked for beside the study file",
-                                         path.string()));
+    faults.add(input::place(*node),
+               fmt::format("there is no case file '{}': a name without a leading / "
+                           "is looked for beside the study file",
+                           path.string()));
     return false;
   }
-  base = read_case(path);
+  base = input::read_case(path);
   base.external.clear();
   return true;
 }
 
-void read_study_table(Section& table, Reading& reading) {
-  Faults& faults = table.faults();
+void read_study_table(input::Section& table, Reading& reading) {
+  input::Faults& faults = table.faults();
   Study& study = reading.study;
-  read_name_and_title(table, study.name, study.title);
+  input::read_name_and_title(table, study.name, study.title);
   if (const toml::node* node = table.find("combine")) {
     if (study.optimisation)
-      faults.add(place(*node), "'combine' goes with the values of parameters, not with [optimise]");
+      faults.add(input::place(*node),
+                 "'combine' goes with the values of parameters, not with [optimise]");
     constexpr std::array<std::string_view, 2> choices{"product", "zip"};
-    study.is_zipped = read_choice(*node, "combine", choices, {}, faults) == choices[1];
+    study.is_zipped = input::read_choice(*node, "combine", choices, {}, faults) == choices[1];
   }
   read_pairs(table, study);
   read_outputs(table, study);
@@ -258,42 +266,32 @@ void read_study_table(Section& table, Reading& reading) {
       "the output 'range' of a load that has no slip-off (flow, section, dead)");
 }
 
-bool is_same(const Load& a, const Load& b) {
-  const auto arclength = [](const Load& load) {
-    const auto* section = std::get_if<SectionLoad>(&load);
-    return section != nullptr ? section->arclength : 0;
-  };
-  return magnitude(a) == magnitude(b) && azimuth(a) == azimuth(b) &&
-         contact_height(a) == contact_height(b) && arclength(a) == arclength(b);
-}
-
 /// Makes one load step of the case's: they must be the same but for what the study sets.
-void reduce_to_one_step(Study& study, Place where, Faults& faults) {
-  Case& base = study.base;
+void reduce_to_one_step(Study& study, input::Place where, input::Faults& faults) {
+  input::Case& base = study.base;
   // The tolerances are those of the case with its fixed numbers alone.
-  const Case set = study.case_at(study.tolerances.empty() ? 0 : study.point_count());
-  const auto differs = [&](const Load& step) { return !is_same(step, set.load_path.front()); };
+  const input::Case set = study.case_at(study.tolerances.empty() ? 0 : study.point_count());
+  const auto differs = [&](const Load& step) { return !(step == set.load_path.front()); };
   if (std::any_of(set.load_path.begin(), set.load_path.end(), differs)) {
+    const QuantityKey& magnitude_key = base.load_path.front().type().parameters.front().key;
     faults.add(where, fmt::format("the case has {} load steps, a study's points one: say which "
                                   "load under [fixed], such as load.{} = \"{}\"",
-                                  base.load_path.size(), key::load_force.name,
-                                  key::load_force.quantity.example));
+                                  base.load_path.size(), magnitude_key.name,
+                                  magnitude_key.quantity.example));
     return;
   }
   base.load_path.resize(1);
-  for (std::vector<double>* values :
-       {&base.flow_velocity, &base.flow_density, &base.flow_drag_coefficient})
-    if (!values->empty()) values->erase(values->begin() + 1, values->end());
+  for (std::vector<double>& values : base.stated_by) values.resize(1);
 }
 
 /// Checks each point as a case file would be; the first that cannot be is a fault.
-void check_points(const Study& study, Place where, Faults& faults) {
-  const toml::table root = parse_toml(to_toml(study.base), study.name);
+void check_points(const Study& study, input::Place where, input::Faults& faults) {
+  const toml::table root = input::parse_toml(input::to_toml(study.base), study.name);
   for (std::size_t i = 0; i < study.all_points(); ++i) {
-    const Case c = study.case_at(i);
+    const input::Case c = study.case_at(i);
     std::string fault;
-    Faults of_point;
-    check_together(root, c, {true, true, true}, of_point);
+    input::Faults of_point;
+    input::check_together(root, c, {true, true, true}, of_point);
     if (!of_point.empty()) fault = of_point.first();
     try {
       require_valid(c.cilium);
@@ -308,7 +306,7 @@ void check_points(const Study& study, Place where, Faults& faults) {
 }
 
 /// What must hold among tables of which each is right by itself.
-void check_study(Study& study, Place where, Faults& faults) {
+void check_study(Study& study, input::Place where, input::Faults& faults) {
   if (study.is_zipped)
     for (const Parameter& p : study.parameters)
       if (p.values.size() != study.parameters.front().values.size()) {
@@ -333,7 +331,7 @@ void check_study(Study& study, Place where, Faults& faults) {
 }
 
 /// The same of an optimisation: the points that are checked are the corners of its bounds.
-void check_optimisation(Study& study, Place where, Faults& faults) {
+void check_optimisation(Study& study, input::Place where, input::Faults& faults) {
   Study corners = study;
   corners.parameters = study.optimisation->parameters;
   check_study(corners, where, faults);
@@ -341,8 +339,8 @@ void check_optimisation(Study& study, Place where, Faults& faults) {
 }
 
 /// [tolerances] and [[parameter]], or the parameters of [optimise].
-void read_varied(Section& root, const Section& tolerances, Reading& reading) {
-  Faults& faults = root.faults();
+void read_varied(input::Section& root, const input::Section& tolerances, Reading& reading) {
+  input::Faults& faults = root.faults();
   if (reading.study.optimisation) {
     if (tolerances.exists())
       faults.add(tolerances.where(),
@@ -358,19 +356,20 @@ void read_varied(Section& root, const Section& tolerances, Reading& reading) {
 }  // namespace
 
 Study read_study(const fs::path& file) {
-  const toml::table root_table = parse_toml(read_toml_file(file, "study"), file.string());
-  Faults faults;
-  Section root(&root_table, "the study file", "", {}, faults);
+  const toml::table root_table =
+      input::parse_toml(input::read_toml_file(file, "study"), file.string());
+  input::Faults faults;
+  input::Section root(&root_table, "the study file", "", {}, faults);
   Reading reading;
-  Section header = require_section(root, "study");
+  input::Section header = input::require_section(root, "study");
   if (header.exists() && read_base(header, file, reading.base))
     reading.numbers = case_numbers(reading.base);
-  Section optimise = root.section("optimise");
+  input::Section optimise = root.section("optimise");
   if (optimise.exists()) read_optimisation(optimise, reading);
   if (header.exists()) read_study_table(header, reading);
   header.finish();
-  const Section fixed = root.section("fixed");
-  const Section tolerances = root.section("tolerances");
+  const input::Section fixed = root.section("fixed");
+  const input::Section tolerances = root.section("tolerances");
   if (!reading.numbers.empty()) {
     // The paths of the sensor are those of the one that was chosen.
     reading.numbers = case_numbers(reading.base);
@@ -384,7 +383,7 @@ Study read_study(const fs::path& file) {
   study.base = std::move(reading.base);
   study.base.mechanics = study.mechanics();
   study.base.fields.clear();
-  for (const ModelPair& pair : study.pairs)
+  for (const models::ModelPair& pair : study.pairs)
     if (std::find(study.base.fields.begin(), study.base.fields.end(), pair.field) ==
         study.base.fields.end())
       study.base.fields.push_back(pair.field);

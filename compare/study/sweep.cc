@@ -35,7 +35,7 @@ struct Solution {
 /// use the cores themselves.
 bool runs_in_threads(const Study& study, const std::string& mechanics) {
   if (mechanics != "elastica" && mechanics != "beam") return false;
-  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const ModelPair& pair) {
+  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
     return pair.mechanics == mechanics && pair.field == "potential";
   });
 }
@@ -43,7 +43,7 @@ bool runs_in_threads(const Study& study, const std::string& mechanics) {
 std::size_t pair_count(const Study& study, const std::string& mechanics) {
   return static_cast<std::size_t>(
       std::count_if(study.pairs.begin(), study.pairs.end(),
-                    [&](const ModelPair& pair) { return pair.mechanics == mechanics; }));
+                    [&](const models::ModelPair& pair) { return pair.mechanics == mechanics; }));
 }
 
 std::string to_record(const Solution& solution, const std::vector<PairResult>& results) {
@@ -82,7 +82,7 @@ Records records_of(const Study& study, const Journal& journal) {
 std::vector<PairResult> in_order(const Study& study, std::size_t point, const Records& records) {
   std::vector<PairResult> results;
   std::map<std::string, std::size_t> next;
-  for (const ModelPair& pair : study.pairs)
+  for (const models::ModelPair& pair : study.pairs)
     results.push_back(records.at({point, pair.mechanics})[next[pair.mechanics]++]);
   return results;
 }
@@ -125,8 +125,8 @@ Extent extent(const Study& study, const Journal& journal) {
 }
 
 StudyResult run_study(const Study& study, Journal& journal,
-                      std::span<const MechanicsEntry> mechanics_models,
-                      std::span<const FieldEntry> field_models, const Progress& progress) {
+                      std::span<const models::MechanicsEntry> mechanics_models,
+                      std::span<const models::FieldEntry> field_models, const Progress& progress) {
   Records records = records_of(study, journal);
   std::vector<Solution> side_by_side;
   std::vector<Solution> one_by_one;

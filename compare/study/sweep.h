@@ -42,7 +42,8 @@ Extent extent(const Study& study, const Journal& journal);
 /// cores by itself. The numbers are the same in any order. The journal has its header. Throws
 /// FileError, RankFailure, CheckpointError.
 StudyResult run_study(const Study& study, Journal& journal,
-                      std::span<const MechanicsEntry> mechanics_models,
-                      std::span<const FieldEntry> field_models, const Progress& progress = {});
+                      std::span<const models::MechanicsEntry> mechanics_models,
+                      std::span<const models::FieldEntry> field_models,
+                      const Progress& progress = {});
 
 }  // namespace ciliaval::compare::study

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "compare/output/csv_writer.h"
 #include "compare/output/results.h"
+#include "compare/output/text_table.h"
 #include "compare/study/record.h"
 #include "compare/study/report.h"
 
@@ -15,17 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string csv_number(const std::optional<double>& value) {
-  return value ? fmt::format("{}", *value + 0.0) : std::string();
-}
-
-std::string shown(const std::optional<double>& value, double unit) {
-  return value ? fmt::format("{:.4g}", *value / unit) : "-";
-}
-
 std::string pair_table(const StudyResult& result, std::size_t pair) {
   const Study& study = result.study;
-  std::vector<std::vector<std::string>> rows{{"", "value", "sigma"}};
+  output::TextRows rows{{"", "value", "sigma"}};
   std::vector<std::string> nominal{"nominal", "", ""};
   std::vector<std::string> total{"all together", "", ""};
   for (const Tolerance& t : study.tolerances)
@@ -35,14 +29,14 @@ std::string pair_table(const StudyResult& result, std::size_t pair) {
     const OutputUnit unit = unit_of(study.outputs[o], study);
     const Propagation p = propagate(result, pair, o);
     rows[0].push_back(fmt::format("{}({})", symbol(study.outputs[o]), unit.name));
-    nominal.push_back(shown(p.nominal, unit.size));
+    nominal.push_back(output::number_cell(p.nominal, unit.size, "{:.4g}"));
     for (std::size_t i = 0; i < p.shares.size(); ++i)
-      rows[i + 1].push_back(shown(p.shares[i].spread, unit.size));
-    total.push_back(shown(p.deviation, unit.size));
+      rows[i + 1].push_back(output::number_cell(p.shares[i].spread, unit.size, "{:.4g}"));
+    total.push_back(output::number_cell(p.deviation, unit.size, "{:.4g}"));
   }
   rows.insert(rows.begin() + 1, std::move(nominal));
   rows.push_back(std::move(total));
-  return aligned(rows);
+  return output::text_table(rows);
 }
 
 }  // namespace
@@ -82,32 +76,34 @@ std::string tolerance_text(const StudyResult& result) {
     const PairResult& nominal = result.points[study.point_count()][pair];
     text += nominal.status == Status::converged
                 ? pair_table(result, pair)
-                : fmt::format("  {}: {}\n", to_string(nominal.status), nominal.message);
+                : fmt::format("  {}: {}\n", output::to_string(nominal.status), nominal.message);
   }
   return text;
 }
 
 std::string tolerance_csv(const StudyResult& result) {
   const Study& study = result.study;
-  std::string text =
-      "# units: SI, of the number (deviation), of the output (spread), of the output over the "
-      "number (slope, error)\n"
-      "pair,output,output_unit,number,number_unit,nominal,deviation,slope,error,spread\n";
+  output::CsvWriter csv;
+  csv.comment(
+      "units: SI, of the number (deviation), of the output (spread), of the output over the number "
+      "(slope, error)");
+  csv.row("pair", "output", "output_unit", "number", "number_unit", "nominal", "deviation", "slope",
+          "error", "spread");
   for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
     for (std::size_t o = 0; o < study.outputs.size(); ++o) {
       const Propagation p = propagate(result, pair, o);
-      const std::string start = fmt::format("{},{},{}", study.pairs[pair].name(),
-                                            id(study.outputs[o]), si_unit(study.outputs[o], study));
+      const std::string name = study.pairs[pair].name();
+      const std::string_view output = id(study.outputs[o]);
+      const std::string unit = si_unit(study.outputs[o], study);
       for (std::size_t i = 0; i < p.shares.size(); ++i) {
         const Tolerance& t = study.tolerances[i];
-        text += fmt::format(
-            "{},{},{},{},{},{},{},{}\n", start, csv_field(t.number.path), t.number.quantity.unit,
-            t.nominal, t.deviation, csv_number(p.shares[i].slope),
-            p.shares[i].slope ? csv_number(p.shares[i].error) : "", csv_number(p.shares[i].spread));
+        const Propagation::Share& share = p.shares[i];
+        csv.row(name, output, unit, t.number.path, t.number.quantity.unit, t.nominal, t.deviation,
+                share.slope, share.slope ? std::optional(share.error) : std::nullopt, share.spread);
       }
-      text += fmt::format("{},all,,,,,,{}\n", start, csv_number(p.deviation));
+      csv.row(name, output, unit, "all", "", "", "", "", "", p.deviation);
     }
-  return text;
+  return csv.text();
 }
 
 Json tolerance_json(const StudyResult& result) {
@@ -120,7 +116,7 @@ Json tolerance_json(const StudyResult& result) {
                                {"deviation", t.deviation}});
   for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
     Json& of_pair = json["pairs"][study.pairs[pair].name()];
-    of_pair["status"] = to_string(result.points[study.point_count()][pair].status);
+    of_pair["status"] = output::to_string(result.points[study.point_count()][pair].status);
     for (std::size_t o = 0; o < study.outputs.size(); ++o) {
       const Propagation p = propagate(result, pair, o);
       Json& entry = of_pair[std::string(id(study.outputs[o]))];

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Draws docs/mesh.png, the built-in mesh with its parameters (Debian: python3-matplotlib):
+"""Draws docs/figures/mesh.png, the built-in mesh with its parameters (Debian: python3-matplotlib):
 
     ciliaval mesh cases/paper/fig3b.toml -o mesh.msh
-    python3 docs/mesh.py mesh.msh docs/mesh.png
+    python3 docs/figures/mesh.py mesh.msh docs/figures/mesh.png
 
 Left the section, right the cut Y = 0 through the cilium, as they are in the file (Gmsh 4.1, text).
 """

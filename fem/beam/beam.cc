@@ -12,7 +12,7 @@
 #include "fem/beam/newton.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::beam {
 namespace {
 
 void require_valid(const BeamOptions& options) {
@@ -29,44 +29,45 @@ class PathSolver {
  public:
   PathSolver(Cilium cilium, BeamOptions options) : cilium_(std::move(cilium)), options_(options) {}
 
-  beam::BeamStep solve(const Load& load, const beam::PathProgress& progress) {
+  MechanicsStep solve(const Load& load, const PathProgress& progress) {
     std::optional<double> load_at;
-    if (const auto* section = std::get_if<SectionLoad>(&load)) load_at = section->arclength;
+    if (const auto section = load.as<SectionLoad>()) load_at = section->arclength;
     if (!beam_ || load_at != load_at_) {
       load_at_ = load_at;
-      beam_ = beam::cilium_beam(cilium_, options_, load_at);
+      beam_ = cilium_beam(cilium_, options_, load_at);
       state_ = beam_->system.reference_state();
       applied_ = {};
     }
-    const beam::Loads from = applied_;
-    const beam::Loads to = beam::loads(load, *beam_);
-    const beam::PathReport report = beam::advance(
-        beam_->system, state_, from, to,
-        {options_.tolerance, options_.max_iterations, options_.max_cutbacks}, {}, progress);
-    applied_ = report.converged ? to : beam::combine(1 - report.reached, from, report.reached, to);
-    beam::BeamStep step;
+    const Loads from = applied_;
+    const Loads to = loads(load, *beam_);
+    const PathReport report =
+        advance(beam_->system, state_, from, to,
+                {options_.tolerance, options_.max_iterations, options_.max_cutbacks}, {}, progress);
+    applied_ = report.converged ? to : combine(1 - report.reached, from, report.reached, to);
+    MechanicsStep step;
+    step.load = load;
     step.status = report.converged ? Status::converged : Status::failed;
     step.message = report.message;
     step.iterations = report.iterations;
     return step;
   }
 
-  const beam::CiliumBeam& beam() const { return *beam_; }
-  const beam::State& state() const { return state_; }
-  const beam::Loads& applied() const { return applied_; }
+  const CiliumBeam& beam() const { return *beam_; }
+  const State& state() const { return state_; }
+  const Loads& applied() const { return applied_; }
 
  private:
   Cilium cilium_;
   BeamOptions options_;
   std::optional<double> load_at_;
-  std::optional<beam::CiliumBeam> beam_;
-  beam::State state_;
-  beam::Loads applied_;
+  std::optional<CiliumBeam> beam_;
+  State state_;
+  Loads applied_;
 };
 
-beam::PathProgress told(const Progress& progress, std::size_t step, std::size_t steps) {
+PathProgress told(const Progress& progress, std::size_t step, std::size_t steps) {
   if (!progress) return {};
-  return [progress, step, steps](double fraction, const beam::NewtonReport& report) {
+  return [progress, step, steps](double fraction, const NewtonReport& report) {
     std::ostringstream text;
     text << "beam: step " << step + 1 << "/" << steps << ", fraction " << fraction
          << " of the increment, " << report.increments.size() << " iterations, residual "
@@ -75,33 +76,25 @@ beam::PathProgress told(const Progress& progress, std::size_t step, std::size_t 
   };
 }
 
-MechanicsStep solve_step(const Load& load, PathSolver& path, beam::ContactSolver& contact,
-                         const beam::PathProgress& progress) {
-  const auto record = [&](auto& solver, const beam::BeamStep& outcome) {
-    MechanicsStep step;
-    step.load = load;
-    step.status = outcome.status;
-    step.message = outcome.message;
-    step.slip_off_force = outcome.slip_off_force;
-    step.slip_off_displacement = outcome.slip_off_displacement;
-    step.contact_arclength = outcome.contact_arclength;
-    step.iterations = outcome.iterations;
+MechanicsStep solve_step(const Load& load, PathSolver& path, ContactSolver& contact,
+                         const PathProgress& progress) {
+  const auto finished = [&](auto& solver) {
+    MechanicsStep step = solver.solve(load, progress);
     if (step.status != Status::converged) return step;
-    const beam::System& system = solver.beam().system;
+    const System& system = solver.beam().system;
     step.unknowns = system.n_unknowns();
     const Vector3 reaction = system.reaction(system.residual(solver.state(), solver.applied()), 0);
     step.applied_force = -reaction.dot(direction(load));
-    step.deformation = Deformation{beam::centreline(system, solver.state()), nullptr};
+    step.deformation = Deformation{centreline(system, solver.state()), nullptr};
     return step;
   };
-  if (contact_height(load)) return record(contact, contact.solve(load, progress));
-  return record(path, path.solve(load, progress));
+  return contact_height(load) ? finished(contact) : finished(path);
 }
 
 std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
                                       const BeamOptions& options, const Progress& progress) {
   PathSolver path_solver(cilium, options);
-  beam::ContactSolver contact_solver(cilium, options);
+  ContactSolver contact_solver(cilium, options);
   std::vector<MechanicsStep> steps;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -136,13 +129,12 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
   ciliaval::require_valid(cilium);
   for (const Load& load : path) ciliaval::require_valid(load, cilium);
   MechanicsResult result;
-  const beam::CiliumBeam straight = beam::cilium_beam(cilium, options_);
-  result.undeformed.centreline =
-      beam::centreline(straight.system, straight.system.reference_state());
+  const CiliumBeam straight = cilium_beam(cilium, options_);
+  result.undeformed.centreline = centreline(straight.system, straight.system.reference_state());
   result.steps = solve_path(cilium, path, options_, progress);
   if (options_.tip_uncertainty && options_.degree > 1)
     estimate_tip_uncertainty(cilium, path, options_, result.steps);
   return result;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::beam

@@ -3,7 +3,7 @@
 
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::beam {
 
 struct BeamOptions {
   unsigned int degree = 6;      ///< of the interpolation of position and rotation
@@ -16,8 +16,8 @@ struct BeamOptions {
 };
 
 /// Geometrically exact (Simo–Reissner) beam: bending, torsion, shear and extension, finite 3D
-/// rotations. The discretisation and its evidence are in docs/beam.md; fem/beam/system.h is the
-/// core that takes any reference curve, section and dead load.
+/// rotations. The discretisation and its evidence are in docs/theory/beam.md; fem/beam/system.h is
+/// the core that takes any reference curve, section and dead load.
 class Beam : public MechanicsModel {
  public:
   explicit Beam(BeamOptions options = {}) : options_(options) {}
@@ -30,4 +30,4 @@ class Beam : public MechanicsModel {
   BeamOptions options_;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::beam

@@ -75,16 +75,17 @@ CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOption
 }
 
 Loads loads(const Load& load, const CiliumBeam& beam) {
-  if (std::holds_alternative<ProbeLoad>(load))
-    throw InputError("the force of a probe is a result, not a load");
+  if (load.is<ProbeLoad>()) throw InputError("the force of a probe is a result, not a load");
   const Vector3 force = magnitude(load) * direction(load);
   Loads result;
-  if (std::holds_alternative<FlowLoad>(load))
+  if (load.is<FlowLoad>())
     result.force_per_height = force;
-  else if (std::holds_alternative<DeadLoad>(load))
+  else if (load.is<DeadLoad>())
     result.force_per_length.assign(beam.system.mesh().n_elements(), force);
-  else
+  else if (load.is<ContactLoad>() || load.is<SectionLoad>())
     result.points.push_back({beam.loaded, force, Vector3::Zero()});
+  else
+    refuse_type(load, "beam");
   return result;
 }
 

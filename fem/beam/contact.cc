@@ -53,7 +53,7 @@ double magnitude_at(double shift, double a, double shift_a, double b, double shi
 std::string slipped_off(const Load& load, double force, double displacement) {
   std::ostringstream text;
   text << "the tip sinks to the contact height of " << contact_height(load).value() << " m ";
-  if (std::holds_alternative<ProbeLoad>(load))
+  if (load.is<ProbeLoad>())
     text << "at a displacement of " << displacement << " m under " << force
          << " N; no equilibrium has one of ";
   else
@@ -146,7 +146,7 @@ double ContactSolver::displacement_of(const State& state) const {
 }
 
 double ContactSolver::magnitude_of(const Loaded& trial) const {
-  return std::holds_alternative<ProbeLoad>(*last_) ? displacement_of(trial.state) : trial.force;
+  return last_->is<ProbeLoad>() ? displacement_of(trial.state) : trial.force;
 }
 
 void ContactSolver::stand_straight(const Load& load) {
@@ -160,12 +160,12 @@ void ContactSolver::stand_straight(const Load& load) {
   entry_magnitude_ = 0;
 }
 
-bool ContactSolver::find_arclength(Loaded& trial, double magnitude, BeamStep& step,
+bool ContactSolver::find_arclength(Loaded& trial, double magnitude, MechanicsStep& step,
                                    const PathProgress& progress) {
   const double height = contact_height(*last_).value();
   std::vector<Condition> conditions{at_height(beam_->loaded, height, Condition::Unknown::shift)};
   double unit = magnitude;  // the force is load_factor · unit
-  if (std::holds_alternative<ProbeLoad>(*last_)) {
+  if (last_->is<ProbeLoad>()) {
     conditions.push_back(
         {beam_->loaded, direction(*last_), magnitude, Condition::Unknown::load_factor});
     unit = trial.force > 0 ? trial.force : estimated_force(beam_->system, magnitude, height);
@@ -184,7 +184,7 @@ bool ContactSolver::find_arclength(Loaded& trial, double magnitude, BeamStep& st
   return report.converged && !below;
 }
 
-bool ContactSolver::find_force(Loaded& trial, BeamStep& step) {
+bool ContactSolver::find_force(Loaded& trial, MechanicsStep& step) {
   const std::array condition{
       at_height(beam_->loaded, contact_height(*last_).value(), Condition::Unknown::load_factor)};
   trial.state.load_factor = 1;
@@ -200,12 +200,12 @@ bool ContactSolver::find_force(Loaded& trial, BeamStep& step) {
 
 double ContactSolver::first_increment() const {
   const double height = contact_height(*last_).value();
-  if (std::holds_alternative<ProbeLoad>(*last_)) return height / 2;
+  if (last_->is<ProbeLoad>()) return height / 2;
   // sin θ = F h²/(2EI) of a uniform cilium of the softest material: twice what it bears.
   return 4 * beam_->system.force_scale() * std::pow(cilium_.length() / height, 2);
 }
 
-bool ContactSolver::go_to_end(Loaded crossing, double from, double aim, BeamStep& step) {
+bool ContactSolver::go_to_end(Loaded crossing, double from, double aim, MechanicsStep& step) {
   crossing.state.shift = host_length();
   if (!(crossing.force > 0) || !find_force(crossing, step)) return false;
   const double reached = magnitude_of(crossing);
@@ -215,7 +215,7 @@ bool ContactSolver::go_to_end(Loaded crossing, double from, double aim, BeamStep
   return true;
 }
 
-ContactSolver::Leg ContactSolver::follow(const Load& load, BeamStep& step,
+ContactSolver::Leg ContactSolver::follow(const Load& load, MechanicsStep& step,
                                          const PathProgress& progress) {
   const double L = cilium_.length();
   const double end = host_length();
@@ -223,7 +223,11 @@ ContactSolver::Leg ContactSolver::follow(const Load& load, BeamStep& step,
   double increment = std::max(first_increment(), magnitude(*last_));
   unsigned int failures = 0;
   int progressed = step.iterations;
-  while (magnitude(*last_) != target) {
+  for (int increments = 0; magnitude(*last_) != target; ++increments) {
+    if (increments == most_increments) {
+      step.message = too_many_increments(options_.max_iterations);
+      return Leg::failed;
+    }
     const double from = magnitude(*last_);
     const double aim = std::abs(target - from) <= increment
                            ? target
@@ -278,10 +282,11 @@ bool ContactSolver::goes_on(const Load& load) const {
          azimuth(*last_) == azimuth(load) && magnitude(load) >= entry_magnitude_;
 }
 
-BeamStep ContactSolver::solve(const Load& load, const PathProgress& progress) {
-  BeamStep step;
+MechanicsStep ContactSolver::solve(const Load& load, const PathProgress& progress) {
+  MechanicsStep step;
+  step.load = load;
   const double height = contact_height(load).value();
-  const bool probes = std::holds_alternative<ProbeLoad>(load);
+  const bool probes = load.is<ProbeLoad>();
   const auto is_beyond = [&](const SlipOff& limit) {
     return magnitude(load) > (probes ? limit.displacement : limit.force);
   };

@@ -9,16 +9,6 @@
 
 namespace ciliaval::fem::beam {
 
-/// What came of one load of a path, before it is turned into a MechanicsStep.
-struct BeamStep {
-  Status status = Status::failed;
-  std::string message;
-  std::optional<double> slip_off_force;         ///< N, if it slipped off
-  std::optional<double> slip_off_displacement;  ///< m, if a probe's point slipped off
-  std::optional<double> contact_arclength;      ///< m
-  int iterations = 0;
-};
-
 /// Horizontal force that stays at height h while the cilium slides under it. The point of contact
 /// is a vertex that moves along the cilium: its height is h, and its arc length s_c is the unknown
 /// that goes with that equation in Newton's method. Of a contact load the force is given; of a
@@ -32,7 +22,7 @@ class ContactSolver {
       : cilium_(std::move(cilium)), options_(options) {}
 
   /// The load is a ContactLoad or a ProbeLoad.
-  BeamStep solve(const Load& load, const PathProgress& progress);
+  MechanicsStep solve(const Load& load, const PathProgress& progress);
 
   /// The beam, its state and its loads after a converged step.
   const CiliumBeam& beam() const { return *beam_; }
@@ -55,16 +45,16 @@ class ContactSolver {
   /// The unloaded cilium with the vertex at S = h.
   void stand_straight(const Load& load);
   /// Raises or lowers the magnitude to that of `load` or to that at the segment's end.
-  Leg follow(const Load& load, BeamStep& step, const PathProgress& progress);
+  Leg follow(const Load& load, MechanicsStep& step, const PathProgress& progress);
   /// Newton's method with s_c for the unknown, and of a probe the force; false if it fails.
-  bool find_arclength(Loaded& trial, double magnitude, BeamStep& step,
+  bool find_arclength(Loaded& trial, double magnitude, MechanicsStep& step,
                       const PathProgress& progress);
   /// Newton's method with the force for the unknown and s_c given by the state's shift. The force
   /// is the first guess and the result; false if it fails.
-  bool find_force(Loaded& trial, BeamStep& step);
+  bool find_force(Loaded& trial, MechanicsStep& step);
   /// The same from a state near the end of the host to that end; false if it fails or the magnitude
   /// is not between `from` and `aim`.
-  bool go_to_end(Loaded crossing, double from, double aim, BeamStep& step);
+  bool go_to_end(Loaded crossing, double from, double aim, MechanicsStep& step);
   /// Whether the equilibrium that is there can be followed to the load.
   bool goes_on(const Load& load) const;
   /// Of the magnitude, that Newton's method may take from the straight cilium.

@@ -37,7 +37,7 @@ struct Strain {
 Strain strain(const Vector4& p, const Vector4& s, const Vector3& t);
 
 /// First and second derivatives of f = n·γ + m·κ at constant n, m. With Q = |p|²,
-/// f Q = −pᵀ L(t) R(n) p + 2 sᵀ R(m) p, and the quotient rule gives the rest (docs/beam.md).
+/// f Q = −pᵀ L(t) R(n) p + 2 sᵀ R(m) p, and the quotient rule gives the rest (docs/theory/beam.md).
 struct StressPower {
   double value;
   Vector4 p;    ///< ∂f/∂p

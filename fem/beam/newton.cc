@@ -142,6 +142,12 @@ std::string describe(const NewtonReport& report) {
   return report.reason + " (residuals " + history(report.residuals) + ")";
 }
 
+std::string too_many_increments(unsigned int max_iterations) {
+  return std::to_string(most_increments) +
+         " increments do not reach the load: a larger max_iterations (" +
+         std::to_string(max_iterations) + " now) lets them grow";
+}
+
 Condition at_height(std::size_t vertex, double height, Condition::Unknown unknown) {
   return {vertex, Vector3::UnitZ(), height, unknown};
 }
@@ -202,7 +208,7 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
   PathReport report;
   double step = 1;
   unsigned int halvings = 0;
-  while (report.reached < 1) {
+  for (int increments = 1; report.reached < 1; ++increments) {
     const double aim = std::min(1.0, report.reached + step);
     report.last = newton(system, state, combine(1 - aim, from, aim, to), options, conditions);
     report.iterations += static_cast<int>(report.last.increments.size());
@@ -211,19 +217,20 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
       report.reached = aim;
       step *= 2;
       halvings = halvings > 0 ? halvings - 1 : 0;
-      continue;
+    } else {
+      step = (aim - report.reached) / 2;
+      ++report.cutbacks;
+      ++halvings;
     }
-    ++report.cutbacks;
-    if (++halvings > options.max_cutbacks) {
-      std::ostringstream text;
-      text << "no equilibrium found at the fraction " << aim
-           << " of the load increment: " << describe(report.last)
-           << "; last converged at the fraction " << report.reached
-           << "; more cutbacks, elements or smaller load steps may help";
-      report.message = text.str();
-      return report;
-    }
-    step = (aim - report.reached) / 2;
+    const bool too_many = increments >= most_increments && report.reached < 1;
+    if (halvings <= options.max_cutbacks && !too_many) continue;
+    std::ostringstream text;
+    text << "no equilibrium found at the fraction " << aim << " of the load increment: "
+         << (too_many ? too_many_increments(options.max_iterations) : describe(report.last))
+         << "; last converged at the fraction " << report.reached
+         << "; more cutbacks, elements or smaller load steps may help";
+    report.message = text.str();
+    return report;
   }
   report.converged = true;
   return report;

@@ -19,6 +19,12 @@ struct NewtonOptions {
   std::optional<double> increment_tolerance = {};
 };
 
+/// Increments of one load, attempted or reached, after which it is given up: with few iterations
+/// and many cutbacks the increments may be ever so small, and all converge.
+inline constexpr int most_increments = 1000;
+/// Says so, and which option helps.
+std::string too_many_increments(unsigned int max_iterations);
+
 /// One more equation, n·r = value at a vertex, with one more unknown: the shift of a moving mesh
 /// (State::shift) or the factor on the point loads (State::load_factor).
 struct Condition {

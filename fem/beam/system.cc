@@ -2,50 +2,37 @@
 #include "fem/beam/system.h"
 
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_dgq.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_system.h>
-#include <deal.II/grid/tria.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "fem/beam/band_matrix.h"
 #include "fem/beam/kinematics.h"
 #include "problem/error.h"
+#include "problem/lagrange.h"
 
 namespace ciliaval::fem::beam {
 namespace {
 
 using Eigen::Index;
 
-/// Nodes of FE_Q in increasing order: its own numbering puts the two vertices first.
-std::vector<unsigned int> increasing_order(const dealii::FE_Q<1, 3>& fe) {
-  std::vector<unsigned int> order(fe.n_dofs_per_cell());
-  for (unsigned int i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&fe](unsigned int i, unsigned int j) {
-    return fe.unit_support_point(i)[0] < fe.unit_support_point(j)[0];
-  });
-  return order;
-}
-
-ReferenceElement tabulate(const dealii::FE_Q<1, 3>& fe, const dealii::QGauss<1>& gauss) {
-  const std::vector<unsigned int> order = increasing_order(fe);
+ReferenceElement tabulate(unsigned int degree) {
   ReferenceElement element;
-  const auto n_nodes = static_cast<Index>(order.size());
-  const auto n_points = static_cast<Index>(gauss.size());
-  element.values.resize(n_points, n_nodes);
-  element.derivatives.resize(n_points, n_nodes);
-  for (const unsigned int i : order) element.nodes.push_back(fe.unit_support_point(i)[0]);
-  for (unsigned int g = 0; g < gauss.size(); ++g) {
-    element.points.push_back(gauss.point(g)[0]);
-    element.weights.push_back(gauss.weight(g));
-    for (std::size_t a = 0; a < order.size(); ++a) {
-      const auto column = static_cast<Index>(a);
-      element.values(g, column) = fe.shape_value(order[a], gauss.point(g));
-      element.derivatives(g, column) = fe.shape_grad(order[a], gauss.point(g))[0];
+  const dealii::QGaussLobatto<1> lobatto(degree + 1);
+  for (const dealii::Point<1>& node : lobatto.get_points()) element.nodes.push_back(node[0]);
+  QuadratureRule gauss = gauss_legendre(degree, 0, 1);
+  element.points = std::move(gauss.nodes);
+  element.weights = std::move(gauss.weights);
+  const LagrangeBasis basis(element.nodes);
+  std::vector<double> N(degree + 1);
+  std::vector<double> D(degree + 1);
+  element.values.resize(degree, degree + 1);
+  element.derivatives.resize(degree, degree + 1);
+  for (unsigned int g = 0; g < degree; ++g) {
+    basis.values_and_derivatives(element.points[g], N, D);
+    for (unsigned int a = 0; a <= degree; ++a) {
+      element.values(g, a) = N[a];
+      element.derivatives(g, a) = D[a];
     }
   }
   return element;
@@ -98,73 +85,6 @@ Loads combine(double a, const Loads& x, double b, const Loads& y) {
   return sum;
 }
 
-struct System::DofSpace {
-  dealii::Triangulation<1, 3> triangulation;
-  dealii::FESystem<1, 3> fe;
-  dealii::DoFHandler<1, 3> dof_handler;
-  /// Global unknowns of each element in the order of ReferenceElement.
-  std::vector<std::vector<dealii::types::global_dof_index>> unknowns;
-  BandMatrix matrix;
-
-  explicit DofSpace(unsigned int degree)
-      : fe(dealii::FE_Q<1, 3>(degree), 6,
-           dealii::FE_DGQArbitraryNodes<1, 3>(dealii::QGauss<1>(degree)), 6),
-        dof_handler(triangulation) {}
-
-  /// One cell for each element, in order. Only the topology matters: the element knows its own
-  /// lengths, since vertices may move along the curve and coincide.
-  void create(std::size_t n_elements, const ReferenceElement& reference) {
-    std::vector<dealii::Point<3>> points;
-    std::vector<dealii::CellData<1>> cells(n_elements);
-    for (std::size_t i = 0; i <= n_elements; ++i)
-      points.emplace_back(0.0, 0.0, static_cast<double>(i));
-    for (std::size_t e = 0; e < n_elements; ++e)
-      cells[e].vertices = {static_cast<unsigned int>(e), static_cast<unsigned int>(e + 1)};
-    triangulation.create_triangulation(points, cells, dealii::SubCellData());
-    dof_handler.distribute_dofs(fe);
-    for (const auto& cell : dof_handler.active_cell_iterators()) number(cell, reference);
-    number_along_the_beam(reference);
-    matrix = BandMatrix(dof_handler.n_dofs(), unknowns.front().size() - 1);
-  }
-
-  template <class Cell>
-  void number(const Cell& cell, const ReferenceElement& reference) {
-    const std::size_t n_nodes = reference.n_nodes();
-    std::vector<dealii::types::global_dof_index> global(fe.n_dofs_per_cell());
-    cell->get_dof_indices(global);
-    const std::vector<unsigned int> order =
-        increasing_order(dynamic_cast<const dealii::FE_Q<1, 3>&>(fe.base_element(0)));
-    std::vector<std::size_t> position(order.size());
-    for (std::size_t a = 0; a < order.size(); ++a) position[order[a]] = a;
-    std::vector<dealii::types::global_dof_index> ordered(global.size());
-    for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i) {
-      const auto [component, index] = fe.system_to_component_index(i);
-      const std::size_t row =
-          component < 6 ? 6 * position[index] + component : 6 * (n_nodes + index) + (component - 6);
-      ordered[row] = global[i];
-    }
-    unknowns.push_back(std::move(ordered));
-  }
-
-  /// First vertex, interior nodes, Gauss points, second vertex, which is the first of the next
-  /// element: the unknowns of an element are then consecutive.
-  void number_along_the_beam(const ReferenceElement& reference) {
-    const std::size_t last_node = 6 * (reference.n_nodes() - 1);
-    const std::size_t points = 6 * reference.n_points();
-    std::vector<dealii::types::global_dof_index> numbers(dof_handler.n_dofs());
-    for (std::size_t e = 0; e < unknowns.size(); ++e)
-      for (std::size_t row = 0; row < unknowns[e].size(); ++row) {
-        std::size_t place = row;
-        if (row >= last_node) place = row < last_node + 6 ? row + points : row - 6;
-        numbers[unknowns[e][row]] =
-            static_cast<dealii::types::global_dof_index>(e * (last_node + points) + place);
-      }
-    dof_handler.renumber_dofs(numbers);
-    for (auto& element : unknowns)
-      for (auto& unknown : element) unknown = numbers[unknown];
-  }
-};
-
 System::System(ReferenceCurve curve, Mesh mesh, std::vector<Support> supports)
     : curve_(std::move(curve)), mesh_(std::move(mesh)), supports_(std::move(supports)) {
   require_valid(mesh_);
@@ -177,9 +97,8 @@ System::System(ReferenceCurve curve, Mesh mesh, std::vector<Support> supports)
   length_scale_ = mesh_.vertices.back() - mesh_.vertices.front();
   force_scale_ = 1 / (compliance * length_scale_ * length_scale_);
 
-  reference_ = tabulate(dealii::FE_Q<1, 3>(mesh_.degree), dealii::QGauss<1>(mesh_.degree));
-  space_ = std::make_unique<DofSpace>(mesh_.degree);
-  space_->create(mesh_.n_elements(), reference_);
+  reference_ = tabulate(mesh_.degree);
+  matrix_ = BandMatrix(n_unknowns(), static_cast<std::size_t>(reference_.n_unknowns()) - 1);
   supported_.assign(n_unknowns(), false);
   for (const Support& support : supports_) {
     if (support.vertex > mesh_.n_elements())
@@ -191,23 +110,12 @@ System::System(ReferenceCurve curve, Mesh mesh, std::vector<Support> supports)
   }
 }
 
-System::~System() = default;
-System::System(System&&) noexcept = default;
-System& System::operator=(System&&) noexcept = default;
-
-std::size_t System::n_unknowns() const {
-  return space_->dof_handler.n_dofs();
-}
-
-std::size_t System::node_unknown(std::size_t node, std::size_t c) const {
+std::size_t System::element_unknown(std::size_t element, Index row) const {
   const std::size_t p = mesh_.degree;
-  const std::size_t element = std::min(node / p, mesh_.n_elements() - 1);
-  return space_->unknowns[element][6 * (node - element * p) + c];
-}
-
-std::size_t System::point_unknown(std::size_t point, std::size_t c) const {
-  const std::size_t p = mesh_.degree;
-  return space_->unknowns[point / p][6 * (reference_.n_nodes() + point % p) + c];
+  const auto local = static_cast<std::size_t>(row);
+  const std::size_t nodal = 6 * (p + 1);
+  return local < nodal ? node_unknown(element * p + local / 6, local % 6)
+                       : point_unknown(element * p + (local - nodal) / 6, local % 6);
 }
 
 double System::vertex_arclength(const State& state, std::size_t i) const {
@@ -305,8 +213,7 @@ Eigen::VectorXd System::residual(const State& state, const Loads& loads) const {
     element_residual(reference_, element_data(state, loads, e), element_state(state, e), local,
                      nullptr);
     for (Index i = 0; i < local.size(); ++i)
-      residual[static_cast<Index>(space_->unknowns[e][static_cast<std::size_t>(i)])] +=
-          scales[i] * local[i];
+      residual[static_cast<Index>(element_unknown(e, i))] += scales[i] * local[i];
   }
   add_point_loads(loads, state.load_factor, residual);
   return residual;
@@ -320,10 +227,9 @@ void System::for_each_stiffness(const State& state, const Loads& loads, const Vi
   for (std::size_t e = 0; e < mesh_.n_elements(); ++e) {
     element_residual(reference_, element_data(state, loads, e), element_state(state, e), residual,
                      &local);
-    const auto& unknowns = space_->unknowns[e];
     for (Index j = 0; j < local.cols(); ++j)
       for (Index i = 0; i < local.rows(); ++i)
-        visit(unknowns[static_cast<std::size_t>(i)], unknowns[static_cast<std::size_t>(j)],
+        visit(element_unknown(e, i), element_unknown(e, j),
               scales[i] * local(i, j) * scales[j] / (force_scale_ * length_scale_));
   }
 }
@@ -346,8 +252,7 @@ Eigen::VectorXd System::shift_derivative(const State& state, const Loads& loads)
     const Eigen::VectorXd local = element_length_derivative(
         reference_, element_data(state, loads, e), element_state(state, e));
     for (Index i = 0; i < local.size(); ++i)
-      derivative[static_cast<Index>(space_->unknowns[e][static_cast<std::size_t>(i)])] +=
-          rate * scales[i] * local[i];
+      derivative[static_cast<Index>(element_unknown(e, i))] += rate * scales[i] * local[i];
   }
   return derivative;
 }
@@ -359,22 +264,21 @@ Eigen::VectorXd System::point_load_derivative(const Loads& loads) const {
 }
 
 void System::factorize(const State& state, const Loads& loads) {
-  BandMatrix& matrix = space_->matrix;
-  matrix.set_zero();
+  matrix_.set_zero();
   for_each_stiffness(state, loads, [&](std::size_t i, std::size_t j, double value) {
-    if (!supported_[i] && !supported_[j]) matrix.add(i, j, value);
+    if (!supported_[i] && !supported_[j]) matrix_.add(i, j, value);
   });
   for (std::size_t i = 0; i < n_unknowns(); ++i)
-    if (supported_[i]) matrix.add(i, i, 1);
-  if (!matrix.is_finite()) throw SolverError("the tangent of the beam is not a number");
-  if (!matrix.factorize()) throw SolverError("the tangent of the beam is singular");
+    if (supported_[i]) matrix_.add(i, i, 1);
+  if (!matrix_.is_finite()) throw SolverError("the tangent of the beam is not a number");
+  if (!matrix_.factorize()) throw SolverError("the tangent of the beam is singular");
 }
 
 Eigen::VectorXd System::solve(const Eigen::VectorXd& right_hand_side) const {
   Eigen::VectorXd solution = right_hand_side;
   for (std::size_t i = 0; i < n_unknowns(); ++i)
     if (supported_[i]) solution[static_cast<Index>(i)] = 0;
-  space_->matrix.solve(solution);
+  matrix_.solve(solution);
   return solution;
 }
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <vector>
 
+#include "fem/beam/band_matrix.h"
 #include "fem/beam/element.h"
 
 namespace ciliaval::fem::beam {
@@ -82,13 +82,10 @@ class System {
  public:
   /// Throws InputError if the mesh, the supports and the curve do not fit together.
   System(ReferenceCurve curve, Mesh mesh, std::vector<Support> supports);
-  ~System();
-  System(System&&) noexcept;
-  System& operator=(System&&) noexcept;
 
   const Mesh& mesh() const { return mesh_; }
   const ReferenceElement& reference_element() const { return reference_; }
-  std::size_t n_unknowns() const;
+  std::size_t n_unknowns() const { return 12 * mesh_.degree * mesh_.n_elements() + 6; }
   double length_scale() const { return length_scale_; }  ///< L, m
   double force_scale() const { return force_scale_; }    ///< P, N
 
@@ -124,16 +121,23 @@ class System {
   const std::vector<bool>& supported() const { return supported_; }
 
   /// Index of component c of the position (c = 0..2) or spin (3..5) of a node, of the force or
-  /// moment of a Gauss point.
-  std::size_t node_unknown(std::size_t node, std::size_t c) const;
-  std::size_t point_unknown(std::size_t point, std::size_t c) const;
+  /// moment of a Gauss point. Numbered along the beam: an element's first vertex, interior nodes
+  /// and Gauss points, then the next element's, so that the tangent is a band.
+  std::size_t node_unknown(std::size_t node, std::size_t c) const {
+    const std::size_t p = mesh_.degree;
+    return 12 * p * (node / p) + 6 * (node % p) + c;
+  }
+  std::size_t point_unknown(std::size_t point, std::size_t c) const {
+    const std::size_t p = mesh_.degree;
+    return 12 * p * (point / p) + 6 * (p + point % p) + c;
+  }
   std::size_t vertex_node(std::size_t vertex) const { return vertex * mesh_.degree; }
   /// Force (N) that the support of a vertex exerts on the beam, from the residual.
   Vector3 reaction(const Eigen::VectorXd& residual, std::size_t vertex) const;
 
  private:
-  struct DofSpace;  // deal.II: triangulation, degrees of freedom; matrix and factors
-
+  /// Global unknown of an element's row, in the order of ReferenceElement.
+  std::size_t element_unknown(std::size_t element, Eigen::Index row) const;
   ElementState element_state(const State& state, std::size_t element) const;
   /// visit(i, j, value) for each entry of the elements' dimensionless tangents.
   template <class Visit>
@@ -147,7 +151,7 @@ class System {
   double length_scale_ = 1;
   double force_scale_ = 1;
   ReferenceElement reference_;
-  std::unique_ptr<DofSpace> space_;
+  BandMatrix matrix_;
   std::vector<bool> supported_;
 };
 

@@ -20,7 +20,7 @@
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::calculix {
 namespace {
 
 using meshes::MeshNodes;
@@ -174,12 +174,12 @@ std::vector<Vector3> calculix_forces(const MeshNodes& mesh, const Cilium& cilium
                                      const Load& load) {
   std::vector<double> integrals(mesh.nodes.size());
   double force = 0;
-  if (const auto* section = std::get_if<SectionLoad>(&load)) {
+  if (const auto section = load.as<SectionLoad>()) {
     force = section->force;
     for (const MeshNodes::Cell& cell : mesh.cells)
       if (ends_at(mesh, cell, section->arclength, cilium.length()))
         add_integrals(mesh, cell, true, integrals);
-  } else if (const auto* dead = std::get_if<DeadLoad>(&load)) {
+  } else if (const auto dead = load.as<DeadLoad>()) {
     force = dead->force_per_length * cilium.length();
     for (const MeshNodes::Cell& cell : mesh.cells) add_integrals(mesh, cell, false, integrals);
   } else {
@@ -262,4 +262,4 @@ std::vector<Vector3> read_calculix(std::istream& in, const MeshNodes& mesh) {
   return displacements;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::calculix

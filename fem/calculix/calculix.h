@@ -10,7 +10,7 @@
 #include "problem/load.h"
 #include "problem/types.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::calculix {
 
 /// The nodes of CalculiX's C3D20R among the 27 of a cell, in CalculiX's order.
 extern const std::array<int, 20> calculix_nodes;
@@ -46,4 +46,4 @@ std::vector<bool> calculix_node_set(const meshes::MeshNodes& mesh);
 /// of a line, or lacks a node of the elements: CalculiX stopped, or the disk is full.
 std::vector<Vector3> read_calculix(std::istream& in, const meshes::MeshNodes& mesh);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::calculix

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/calculix/calculix_model.h"
 
+#include <unistd.h>
+
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
@@ -8,36 +11,42 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <exception>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "fem/calculix/calculix.h"
-#include "problem/support/child_process.h"
 #include "fem/parallel.h"
 #include "fem/solid/postprocessing/body.h"
 #include "fem/solid/postprocessing/centreline.h"
 #include "fem/solid/solid.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
+#include "problem/support/child_process.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::calculix {
 namespace {
+
+using namespace solid::discretisation;
+using namespace solid::loads;
+using namespace solid::material;
+using namespace solid::postprocessing;
 
 namespace fs = std::filesystem;
 
 constexpr const char* job = "cilium";  ///< name of CalculiX's files
 
-/// The lowest order seen of C3D20R's tip in the thickness of the finest layer (docs/referees.md):
-/// the estimate errs to the safe side where the mesh converges faster.
+/// The lowest order seen of C3D20R's tip in the thickness of the finest layer
+/// (docs/guide/referees.md): the estimate errs to the safe side where the mesh converges faster.
 constexpr double tip_order = 0.7;
 
 std::vector<Hyperelastic> materials(const Cilium& cilium) {
@@ -55,13 +64,13 @@ class CalculixMesh {
   const meshes::MeshNodes& nodes() const { return nodes_; }
   double finest_layer() const { return finest_layer_; }
   std::size_t unknowns() const;
-  /// Of the displacements, one for each node, or of none: the undeformed cilium. The load has the
+  /// Of the displacements, three for each node, or of none: the undeformed cilium. The load has the
   /// azimuth 0.
-  Deformation deformation(const Cilium& cilium, const std::vector<Vector3>& displacements,
+  Deformation deformation(const Cilium& cilium, const std::vector<double>& displacements,
                           const Load& load) const;
 
  private:
-  SolidState state(const std::vector<Vector3>& displacements) const;
+  SolidState state(const std::vector<double>& displacements) const;
   void add_pressure(SolidState& state) const;
 
   double finest_layer_;
@@ -69,21 +78,20 @@ class CalculixMesh {
   std::unique_ptr<dealii::MappingQCache<3>> mapping_;
   meshes::MeshNodes nodes_;
   std::unique_ptr<SolidSpace> space_;
-  std::unique_ptr<Fibres> fibres_;
+  std::unique_ptr<ExtrudedQuadrature> quadrature_;
 };
 
 CalculixMesh::CalculixMesh(const Cilium& cilium, const LoadPath& path, unsigned int level) {
-  meshes::CylinderMeshOptions mesh = level_mesh(level);
+  meshes::cylinder::CylinderMeshOptions mesh = solid::level_mesh(level);
   mesh.half = true;
   for (const Load& load : path)
-    if (const auto* section = std::get_if<SectionLoad>(&load))
-      mesh.planes.push_back(section->arclength);
+    if (const auto section = load.as<SectionLoad>()) mesh.planes.push_back(section->arclength);
   finest_layer_ = mesh.finest_layer;
-  meshes::make_cylinder(cilium, mesh, triangulation_);
-  mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
+  meshes::cylinder::make_cylinder(cilium, mesh, triangulation_);
+  mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
   nodes_ = meshes::mesh_nodes(triangulation_, *mapping_);
   space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials(cilium));
-  fibres_ = std::make_unique<Fibres>(*space_, Extent::half);
+  quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, Extent::half);
 }
 
 std::size_t CalculixMesh::unknowns() const {
@@ -92,7 +100,7 @@ std::size_t CalculixMesh::unknowns() const {
 }
 
 /// The 20-node element's displacement at the 27 nodes of the solid's, which hold it exactly.
-SolidState CalculixMesh::state(const std::vector<Vector3>& displacements) const {
+SolidState CalculixMesh::state(const std::vector<double>& displacements) const {
   SolidState result = space_->undeformed();
   if (displacements.empty()) return result;
   Eigen::Matrix<double, element_nodes, 20> interpolation;
@@ -104,8 +112,8 @@ SolidState CalculixMesh::state(const std::vector<Vector3>& displacements) const 
   for (std::size_t e = 0; e < nodes_.cells.size(); ++e) {
     Eigen::Matrix<double, 20, 3> u;
     for (std::size_t b = 0; b < calculix_nodes.size(); ++b)
-      u.row(static_cast<Eigen::Index>(b)) =
-          displacements[nodes_.cells[e].nodes[static_cast<std::size_t>(calculix_nodes[b])]];
+      u.row(static_cast<Eigen::Index>(b)) = Eigen::Map<const Vector3>(
+          &displacements[3 * nodes_.cells[e].nodes[static_cast<std::size_t>(calculix_nodes[b])]]);
     const Eigen::Matrix<double, element_nodes, 3> all = interpolation * u;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t a = 0; a < element_nodes; ++a)
@@ -145,17 +153,17 @@ void CalculixMesh::add_pressure(SolidState& state) const {
 }
 
 Deformation CalculixMesh::deformation(const Cilium& cilium,
-                                      const std::vector<Vector3>& displacements,
+                                      const std::vector<double>& displacements,
                                       const Load& load) const {
   const SolidState at = state(displacements);
   SpreadLoad spread;
   std::optional<PlaneForce> plane;
-  if (const auto* dead = std::get_if<DeadLoad>(&load))
-    spread.per_volume = displacements.empty() ? 0 : dead->force_per_length / fibres_->area();
-  if (const auto* section = std::get_if<SectionLoad>(&load); section && !displacements.empty())
+  if (const auto dead = load.as<DeadLoad>())
+    spread.per_volume = displacements.empty() ? 0 : dead->force_per_length / quadrature_->area();
+  if (const auto section = load.as<SectionLoad>(); section && !displacements.empty())
     plane = PlaneForce{section->arclength, section->force * Vector3::UnitX()};
-  return {centreline_by_statics(*space_, *fibres_, at, spread, plane),
-          std::make_shared<const SolidBody>(solid_body(*space_, *fibres_, cilium, at))};
+  return {centreline_by_statics(*space_, *quadrature_, at, spread, plane),
+          std::make_shared<const SolidBody>(solid_body(*space_, *quadrature_, cilium, at))};
 }
 
 /// The last lines of a log that say what went wrong, in one line; empty if none do.
@@ -172,7 +180,7 @@ std::string complaint(const fs::path& log) {
       error == std::string::npos ? lines.size() - std::min(lines.size(), most) : error;
   std::string text;
   for (std::size_t i = first; i < std::min(lines.size(), first + most); ++i)
-    text += (text.empty() ? "" : " ") + lines[i].substr(lines[i].find_first_not_of(" \t"));
+    text.append(text.empty() ? "" : " ").append(lines[i], lines[i].find_first_not_of(" \t"));
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
   constexpr std::size_t longest = 300;
@@ -180,33 +188,23 @@ std::string complaint(const fs::path& log) {
 }
 
 /// Throws SolverError unless the program ran to its end.
-void require_success(const ChildEnd& end, const CalculixOptions& options, const fs::path& log) {
+void require_success(const support::ChildEnd& end, const CalculixOptions& options,
+                     const fs::path& log) {
+  if (end.succeeded()) return;
   const std::string program = options.program.string();
+  if (end.how == support::ChildEnd::How::not_found && program == "ccx")
+    throw SolverError("ccx is not installed: apt-get install calculix-ccx");
   const std::string said = complaint(log);
-  const std::string last = said.empty() ? "it said nothing" : "it said: " + said;
-  switch (end.how) {
-    case ChildEnd::How::not_found:
-      throw SolverError(program == "ccx"
-                            ? "ccx is not installed: apt-get install calculix-ccx"
-                            : "there is no program `" + program +
-                                  "` (models.calculix.program); CalculiX comes with apt-get "
-                                  "install calculix-ccx");
-    case ChildEnd::How::not_started:
-      throw SolverError("`" + program + "` cannot be started: " + std::strerror(end.code));
-    case ChildEnd::How::timed_out: {
-      std::ostringstream limit;
-      limit << options.time_limit;
-      throw SolverError("`" + program + "` was ended after " + limit.str() +
-                        " s, models.calculix.time_limit: allow more, or a coarser refinement");
-    }
-    case ChildEnd::How::signalled:
-      throw SolverError("`" + program + "` was killed by the signal " + std::to_string(end.code) +
-                        " (" + strsignal(end.code) + "); " + last);
-    case ChildEnd::How::exited:
-      if (end.code != 0)
-        throw SolverError("`" + program + "` ended with the exit code " + std::to_string(end.code) +
-                          "; " + last);
-  }
+  std::string message = "`" + program + "` " + end.text();
+  if (end.how == support::ChildEnd::How::not_found)
+    message +=
+        " (models.calculix.program); CalculiX comes with apt-get install "
+        "calculix-ccx";
+  else if (end.how == support::ChildEnd::How::timed_out)
+    message += ", models.calculix.time_limit: allow more, or a coarser refinement";
+  else if (end.how != support::ChildEnd::How::not_started)
+    message += said.empty() ? "; it said nothing" : "; it said: " + said;
+  throw SolverError(message);
 }
 
 /// Sum of the iterations in CalculiX's .sta file; 0 if there is none.
@@ -226,16 +224,29 @@ int iterations(const fs::path& file) {
 
 /// What a run of CalculiX leaves.
 struct Solution {
-  std::vector<Vector3> displacements;
+  std::string failure;  ///< why there is none
   int iterations = 0;
+  std::vector<double> displacements;  ///< three for each node, m
 };
+
+/// Variables that CalculiX takes its number of threads from.
+std::map<std::string, std::string> thread_variables(unsigned int threads) {
+  std::map<std::string, std::string> variables{{"OMP_NUM_THREADS", std::to_string(threads)},
+                                               {"OMP_THREAD_LIMIT", ""},
+                                               {"NUMBER_OF_CPUS", ""}};
+  for (char** entry = environ; *entry != nullptr; ++entry)
+    if (const std::string_view variable = *entry; variable.starts_with("CCX_NPROC"))
+      variables.emplace(variable.substr(0, variable.find('=')), "");
+  return variables;
+}
 
 /// Runs CalculiX on one mesh. `label` names the folder if it is kept.
 Solution run(const CalculixMesh& mesh, const Cilium& cilium, const Load& load,
              const CalculixOptions& options, const std::string& label) {
-  const SignalPause pause;  // the folder is removed before a signal ends the program
-  const auto folder = options.keep.empty() ? std::make_unique<WorkFolder>()
-                                           : std::make_unique<WorkFolder>(options.keep / label);
+  const support::SignalPause pause;  // the folder is removed before a signal ends the program
+  const auto folder = options.keep.empty()
+                          ? std::make_unique<support::WorkFolder>()
+                          : std::make_unique<support::WorkFolder>(options.keep / label);
   const fs::path base = folder->path() / job;
   const auto file = [&](const char* extension) { return fs::path(base.string() + extension); };
   std::error_code none;
@@ -246,45 +257,48 @@ Solution run(const CalculixMesh& mesh, const Cilium& cilium, const Load& load,
   if (!input)
     throw FileError("cannot write `" + file(".inp").string() +
                     "`: is the folder writable, or the disk full?");
-  const ChildEnd end = run_child({options.program.string(),
-                                  {"-i", job},
-                                  folder->path(),
-                                  folder->path() / "ccx.log",
-                                  options.threads,
-                                  options.time_limit});
-  require_success(end, options, folder->path() / "ccx.log");
+  const fs::path log = folder->path() / "ccx.log";
+  const support::ChildEnd end = support::run_child({options.program.string(),
+                                                    {"-i", job},
+                                                    folder->path(),
+                                                    log,
+                                                    options.time_limit,
+                                                    thread_variables(options.threads)});
+  require_success(end, options, log);
   std::ifstream output(file(".dat"));
   if (!output)
     throw FileError("`" + options.program.string() +
-                    "` wrote no .dat file; it said: " + complaint(folder->path() / "ccx.log"));
-  return {read_calculix(output, mesh.nodes()), iterations(file(".sta"))};
+                    "` wrote no .dat file; it said: " + complaint(log));
+  Solution solution{{}, iterations(file(".sta")), {}};
+  for (const Vector3& u : read_calculix(output, mesh.nodes()))
+    solution.displacements.insert(solution.displacements.end(), u.begin(), u.end());
+  return solution;
 }
 
-/// What rank 0 makes of the run, as text: a letter and the message, or the numbers.
-std::string packed(const std::function<Solution()>& work) {
-  try {
-    const Solution solution = work();
-    std::string text = "s";
-    text.append(reinterpret_cast<const char*>(&solution.iterations), sizeof(int));
-    for (const Vector3& u : solution.displacements)
-      text.append(reinterpret_cast<const char*>(u.data()), 3 * sizeof(double));
-    return text;
-  } catch (const std::exception& error) {
-    return std::string("f") + error.what();
-  }
+/// Rank 0's values, on all ranks.
+template <typename Container>
+void broadcast(Container& values) {
+  namespace mpi = dealii::Utilities::MPI;
+  values.resize(mpi::broadcast(MPI_COMM_WORLD, values.size()));
+  mpi::broadcast(values.data(), values.size(), 0, MPI_COMM_WORLD);
 }
 
-/// Rank 0 runs, all have the solution, or all throw SolverError.
+/// Rank 0 runs, all ranks have the solution, or all throw SolverError.
 Solution run_on_first_rank(const std::function<Solution()>& work) {
-  const std::string text = from_first_rank([&] { return packed(work); });
-  if (text.at(0) != 's') throw SolverError(text.substr(1));
   Solution solution;
-  std::memcpy(&solution.iterations, text.data() + 1, sizeof(int));
-  constexpr std::size_t head = 1 + sizeof(int);
-  solution.displacements.resize((text.size() - head) / (3 * sizeof(double)));
-  for (std::size_t i = 0; i < solution.displacements.size(); ++i)
-    std::memcpy(solution.displacements[i].data(), text.data() + head + i * 3 * sizeof(double),
-                3 * sizeof(double));
+  if (rank() == 0) {
+    try {
+      solution = work();
+    } catch (const std::exception& error) {
+      solution.failure = error.what();
+    }
+  }
+  if (rank_count() > 1) {
+    broadcast(solution.failure);
+    broadcast(solution.displacements);
+    solution.iterations = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, solution.iterations);
+  }
+  if (!solution.failure.empty()) throw SolverError(solution.failure);
   return solution;
 }
 
@@ -292,7 +306,7 @@ void require_valid(const Cilium& cilium, const LoadPath& path) {
   ciliaval::require_valid(cilium);
   for (const Load& load : path) {
     ciliaval::require_valid(load, cilium);
-    if (!std::holds_alternative<SectionLoad>(load) && !std::holds_alternative<DeadLoad>(load))
+    if (!load.is<SectionLoad>() && !load.is<DeadLoad>())
       throw InputError("CalculiX takes the loads 'section' and 'dead', not '" +
                        std::string(type(load)) +
                        "', which follows the current height: leave out `calculix`, or state the "
@@ -305,7 +319,7 @@ Vector3 tip(const Deformation& deformation) {
 }
 
 double total_force(const Cilium& cilium, const Load& load) {
-  return magnitude(load) * (std::holds_alternative<DeadLoad>(load) ? cilium.length() : 1);
+  return magnitude(load) * (load.is<DeadLoad>() ? cilium.length() : 1);
 }
 
 /// A path of loads on two meshes.
@@ -340,8 +354,7 @@ std::optional<double> Problem::tip_uncertainty(const Load& load, const std::stri
 MechanicsStep Problem::step(const Load& asked, const std::string& label) const {
   const auto start = std::chrono::steady_clock::now();
   const double turn = azimuth(asked);
-  Load load = asked;
-  std::visit([](auto& l) { l.azimuth = 0; }, load);
+  const Load load = with_azimuth(asked, 0);
   MechanicsStep step;
   step.load = asked;
   step.unknowns = mesh.unknowns();
@@ -367,7 +380,7 @@ MechanicsStep Problem::step(const Load& asked, const std::string& label) const {
 }  // namespace
 
 Calculix::Calculix(CalculixOptions options) : options_(std::move(options)) {
-  mesh_level(options_.refinement);
+  solid::mesh_level(options_.refinement);
   if (!(options_.first_increment > 0 && options_.first_increment <= 1))
     throw InputError("CalculiX's first_increment must lie between 0 and 1");
   if (options_.threads == 0) throw InputError("CalculiX needs 1 thread or more");
@@ -381,7 +394,7 @@ Calculix::Calculix(CalculixOptions options) : options_(std::move(options)) {
 MechanicsResult Calculix::solve(const Cilium& cilium, const LoadPath& path,
                                 const Progress& progress) const {
   require_valid(cilium, path);
-  const unsigned int level = mesh_level(options_.refinement);
+  const unsigned int level = solid::mesh_level(options_.refinement);
   const CalculixMesh mesh(cilium, path, level);
   std::unique_ptr<CalculixMesh> coarser;
   if (options_.error_estimate) coarser = std::make_unique<CalculixMesh>(cilium, path, level - 1);
@@ -399,4 +412,4 @@ MechanicsResult Calculix::solve(const Cilium& cilium, const LoadPath& path,
   return result;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::calculix

@@ -5,7 +5,7 @@
 
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::calculix {
 
 struct CalculixOptions {
   unsigned int refinement = 1;    ///< that of the solid's half meshes (cylinder_mesh_options())
@@ -17,10 +17,10 @@ struct CalculixOptions {
   std::filesystem::path keep{};  ///< folder in which CalculiX's files stay; empty: they are removed
 };
 
-/// CalculiX as a referee (docs/referees.md): the same cilium, mesh and neo-Hooke solid as
-/// fem::Solid's, solved by another program with another element, C3D20R. The centreline and the
-/// body are made from its displacements by what makes the solid's; section forces are by statics
-/// and the pressure is K(J − 1) of the displacements.
+/// CalculiX as a referee (docs/guide/referees.md): the same cilium, mesh and neo-Hooke solid as
+/// fem::solid::Solid's, solved by another program with another element, C3D20R. The centreline and
+/// the body are made from its displacements by what makes the solid's; section forces are by
+/// statics and the pressure is K(J − 1) of the displacements.
 ///
 /// Each step is a run of its own from the straight cilium, in a private folder; one that fails does
 /// not touch the others. Of a step without force nothing is run. Under MPI rank 0 runs CalculiX and
@@ -40,4 +40,4 @@ class Calculix : public MechanicsModel {
   CalculixOptions options_;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::calculix

@@ -20,7 +20,7 @@
 #include "problem/error.h"
 #include "problem/field_model.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 constexpr unsigned int degree = 2;          ///< of the solution that B is taken from
@@ -270,7 +270,8 @@ void Adaptive::update_induced() {
   std::array<double, 12> values{};
   std::copy_n(sum.dipole.data(), 3, values.begin());
   std::copy_n(sum.moments.data(), 9, values.begin() + 3);
-  sum_over_ranks(values);
+  const dealii::ArrayView<double> view(values.data(), values.size());
+  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view), MPI_COMM_WORLD, view);
   std::copy_n(values.begin(), 3, sum.dipole.data());
   std::copy_n(values.begin() + 3, 9, sum.moments.data());
   induced_change_ = (sum.dipole - induced_.dipole).norm();
@@ -386,7 +387,7 @@ std::vector<Vector3> Adaptive::kinks() const {
   }
   load.compress(dealii::VectorOperation::add);
   PotentialVector w = space.vector();
-  if (load.l2_norm() > 0) fem::solve(low_->matrix, low_->multigrid, load, dual_tolerance, w);
+  if (load.l2_norm() > 0) potential::solve(low_->matrix, low_->multigrid, load, dual_tolerance, w);
   PotentialVector complete = space.vector();
   space.add_free_values(w, complete);
   space.complete(complete);
@@ -416,7 +417,7 @@ void Adaptive::set_indicators() {
   const SensorFunctional functional(space, layout_.balls);
   for (const std::vector<Vector3>& direction : dual_directions()) {
     PotentialVector z = space.vector();
-    fem::solve(low_->matrix, low_->multigrid, functional.load(direction), dual_tolerance, z);
+    potential::solve(low_->matrix, low_->multigrid, functional.load(direction), dual_tolerance, z);
     z.update_ghost_values();
     for (int c = 0; c < cells; ++c) {
       space.read_free(c, z, u);
@@ -492,4 +493,4 @@ PotentialResult solve_potential(const PotentialProblem& problem, const Potential
   }
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -11,7 +11,7 @@
 #include "fem/potential/magnet.h"
 #include "problem/field_mesh.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// What is to be solved for: −∇·(μ₀μ_r ∇ψ) + ∇·B_r = 0 in all of space, B = −μ₀μ_r∇ψ + B_r.
 struct PotentialProblem {
@@ -43,8 +43,8 @@ struct PotentialCycle {
   double seconds = 0;
 
   /// Estimate of the error of each component of B: the norm of difference + 2 kinks
-  /// (docs/potential.md), shared out between the components so that none that happens to be small
-  /// is trusted; and the truncation.
+  /// (docs/theory/potential.md), shared out between the components so that none that happens to be
+  /// small is trusted; and the truncation.
   Vector3 estimate(std::size_t point) const;
 };
 
@@ -61,4 +61,4 @@ struct PotentialResult {
 PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control,
                                 const std::function<void(const std::string&)>& progress = {});
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -10,7 +10,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 /// Thinner slices of a block are not cut off.
@@ -124,4 +124,4 @@ void BlockCut::add_crossings(const Line& line, const PlaneGrid& planes,
   }
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -8,7 +8,7 @@
 #include "fem/potential/magnet.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// The planes x_i = origin_i + k·spacing, i = 1, 2, 3, for all integers k.
 struct PlaneGrid {
@@ -56,4 +56,4 @@ class BlockCut {
   Shape upper_;                  ///< at 1
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/potential/cut_cells.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "fem/parallel.h"
 #include "fem/potential/block_cut.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 LagrangeBasis gauss_points(std::size_t n) {
@@ -141,8 +142,8 @@ void CutCells::add(const Magnet& magnet, double relative_permeability, const Sam
         add_permeability(place.cell, place.unit, relative_permeability - 1, point.volume);
     }
   }
-  sum_over_ranks(std::span(&outside, 1));
-  if (outside != 0) throw InputError("the magnet reaches beyond the octree of the potential");
+  if (dealii::Utilities::MPI::sum(outside, MPI_COMM_WORLD) != 0)
+    throw InputError("the magnet reaches beyond the octree of the potential");
 }
 
 void CutCells::add(const PermeableBox& plate) {
@@ -263,4 +264,4 @@ void CutCells::for_each_permeable_point(
   }
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

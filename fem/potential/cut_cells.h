@@ -8,10 +8,9 @@
 
 #include "fem/potential/magnet.h"
 #include "fem/potential/octree.h"
-#include "fem/potential/plate.h"
 #include "fem/potential/space.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// How densely the magnet is sampled.
 struct Sampling {
@@ -77,4 +76,4 @@ class CutCells {
   std::size_t samples_ = 0;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/potential/functional.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <cmath>
 #include <numbers>
 #include <span>
 #include <utility>
 
-#include "fem/parallel.h"
-
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 /// ∫ k y₁² dv over a ball of radius 1, k = (1 − r²)⁴: 4π/3 ∫ r⁴ (1 − r²)⁴ dr = 4π/3 · 128/15015.
@@ -70,7 +70,7 @@ std::vector<Vector3> SensorFunctional::gradients(const PotentialVector& complete
     });
     sums.insert(sums.end(), gradient.begin(), gradient.end());
   }
-  sum_over_ranks(sums);
+  dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, sums);
   std::vector<Vector3> result;
   for (std::size_t s = 0; s < balls_.size(); ++s)
     result.emplace_back(sums[3 * s], sums[3 * s + 1], sums[3 * s + 2]);
@@ -87,4 +87,4 @@ PotentialVector SensorFunctional::load(const std::vector<Vector3>& directions) c
   return result;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -5,7 +5,7 @@
 
 #include "fem/potential/space.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// A ball of vacuum around a sensor.
 struct SensorBall {
@@ -37,4 +37,4 @@ class SensorFunctional {
   std::vector<SensorBall> balls_;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

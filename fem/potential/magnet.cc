@@ -13,7 +13,7 @@
 #include "problem/error.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 /// The rotation R of F = R·U.
@@ -246,4 +246,4 @@ double Magnet::distance(const Vector3& point, double resolution) const {
   return nearest;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

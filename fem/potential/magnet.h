@@ -10,7 +10,13 @@
 #include "problem/cilium.h"
 #include "problem/deformation.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
+
+/// A permeable body: a box with its own relative permeability.
+struct PermeableBox {
+  Eigen::AlignedBox3d box;           ///< m
+  double relative_permeability = 1;  ///< μ_r > 0
+};
 
 /// How the reference magnetisation M enters the current configuration: `F`, m = F·M/J, an ideal
 /// hard magnet; `R`, m = R·M with the rotation R of F = R·U (solid) or m = M d₃ (rod).
@@ -85,4 +91,4 @@ class Magnet {
 /// The two halves of a block, cut across the coordinate.
 std::array<Magnet::Block, 2> halves(const Magnet::Block& block, Eigen::Index coordinate);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

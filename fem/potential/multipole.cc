@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 void Multipole::add(const Vector3& position, const Vector3& moment) {
   dipole += moment;
@@ -23,4 +23,4 @@ double dipole_potential(const Vector3& moment, const Vector3& position) {
   return moment.dot(position) / (4 * std::numbers::pi * std::pow(position.norm(), 3));
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -3,7 +3,7 @@
 
 #include "problem/types.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// Dipole and quadrupole of a distribution of moments about a centre:
 ///
@@ -24,4 +24,4 @@ struct Multipole {
 /// ψ of a single dipole at the origin, A.
 double dipole_potential(const Vector3& moment, const Vector3& position);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -12,7 +12,7 @@
 #include "fem/parallel.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 constexpr int finest_level = 19;  ///< three indices of 19 bits and the level fill a key
@@ -105,8 +105,7 @@ bool Octree::refine(const std::function<bool(const Cube&)>& cut) {
     flags.push_back(cut(leaf));
     if (flags.back()) any = 1;
   }
-  sum_over_ranks(std::span(&any, 1));
-  if (any == 0) return false;
+  if (dealii::Utilities::MPI::sum(any, MPI_COMM_WORLD) == 0) return false;
   refine(flags);
   return true;
 }
@@ -127,8 +126,7 @@ void Octree::refine_largest(const std::vector<double>& indicators, double fracti
     double sum = 0;
     for (const double value : indicators)
       if (value > threshold) sum += value;
-    sum_over_ranks(std::span(&sum, 1));
-    return sum;
+    return dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
   };
   const double total = sum_above(0);
   // The largest threshold that leaves the fraction above it, by bisection of its logarithm.
@@ -199,4 +197,4 @@ void Octree::for_each_in(const Eigen::AlignedBox3d& box,
   });
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -11,7 +11,7 @@
 
 #include "problem/types.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// An axis-aligned cube.
 struct Cube {
@@ -88,4 +88,4 @@ class Octree {
   std::unordered_map<Key, int> directory_;  ///< every leaf: its index in cells(), or other_rank
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -14,7 +14,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 /// Leaves that share one product with the unit cube's matrix.
@@ -198,4 +198,4 @@ unsigned int solve(const PotentialOperator& A, const PotentialMultigrid& precond
   return control.last_step();
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

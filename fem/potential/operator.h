@@ -14,7 +14,7 @@
 #include "fem/potential/cut_cells.h"
 #include "fem/potential/space.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// a(ψ, φ) = ∫ μ_r ∇ψ·∇φ of the free nodes, without a matrix: every leaf is a cube, so that its
 /// matrix in vacuum is its edge times that of the unit cube; leaves that a permeable body meets
@@ -92,4 +92,4 @@ class PotentialMultigrid {
 unsigned int solve(const PotentialOperator& A, const PotentialMultigrid& preconditioner,
                    const PotentialVector& b, double tolerance, PotentialVector& x);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -5,7 +5,7 @@
 
 #include "fem/potential/adaptive.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 Potential::Potential(PotentialOptions options) : options_(std::move(options)) {}
 
@@ -24,4 +24,4 @@ Field Potential::field(const Cilium& cilium, const Deformation& deformation,
   return {std::move(result.B), std::move(result.uncertainty), std::move(result.mesh)};
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

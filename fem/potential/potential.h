@@ -4,10 +4,9 @@
 #include <vector>
 
 #include "fem/potential/magnet.h"
-#include "fem/potential/plate.h"
 #include "problem/field_model.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 struct PotentialOptions {
   /// μ_r of the magnetised segments: about 1.05 for composites with NdFeB; 1 is what the dipole
@@ -20,12 +19,12 @@ struct PotentialOptions {
 };
 
 /// The field of the deformed magnet, with its recoil permeability, and of permeable plates, by a
-/// scalar potential in all of space (docs/potential.md): finite elements on an octree that is
-/// refined for B at the sensors. Takes the deformation of any mechanics model. Field::uncertainty
-/// is an estimate, not a bound. field() is collective; it starts MPI. Throws InputError if a sensor
-/// lies in the magnet or a plate or too close to them, a plate meets the magnet or another plate,
-/// a permeability is not positive; SolverError if the tolerance is not reached with the unknowns
-/// allowed.
+/// scalar potential in all of space (docs/theory/potential.md): finite elements on an octree that
+/// is refined for B at the sensors. Takes the deformation of any mechanics model.
+/// Field::uncertainty is an estimate, not a bound. field() is collective; it starts MPI. Throws
+/// InputError if a sensor lies in the magnet or a plate or too close to them, a plate meets the
+/// magnet or another plate, a permeability is not positive; SolverError if the tolerance is not
+/// reached with the unknowns allowed.
 class Potential : public FieldModel {
  public:
   explicit Potential(PotentialOptions options = {});
@@ -38,4 +37,4 @@ class Potential : public FieldModel {
   PotentialOptions options_;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

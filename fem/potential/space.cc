@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 LagrangeBasis gauss_lobatto(unsigned int degree) {
@@ -256,4 +256,4 @@ void PotentialSpace::complete(PotentialVector& v) const {
   v.update_ghost_values();
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

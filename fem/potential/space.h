@@ -15,7 +15,7 @@
 #include "fem/potential/octree.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 
 /// A vector of nodal values over all ranks.
 using PotentialVector = dealii::LinearAlgebra::distributed::Vector<double>;
@@ -112,4 +112,4 @@ Eigen::MatrixXd interpolation(const LagrangeBasis& from, const LagrangeBasis& to
 /// ∫ ∇φ_i·∇φ_j on the unit cube.
 Eigen::MatrixXd unit_stiffness(const LagrangeBasis& basis);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

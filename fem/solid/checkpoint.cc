@@ -10,7 +10,9 @@
 #include "fem/solid/archive.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace discretisation;
+using namespace equilibrium;
 namespace {
 
 std::string number(double value) {
@@ -23,12 +25,12 @@ std::string describe(const Load& load) {
   std::string text = std::string(type(load)) + ", " + number(magnitude(load)) + " " +
                      std::string(magnitude_unit(load));
   if (const auto height = contact_height(load)) text += ", height " + number(*height) + " m";
-  if (const auto* section = std::get_if<SectionLoad>(&load))
+  if (const auto section = load.as<SectionLoad>())
     text += ", arclength " + number(section->arclength) + " m";
   return text + ", azimuth " + number(azimuth(load)) + " rad";
 }
 
-std::string describe(const meshes::CylinderMeshOptions& mesh) {
+std::string describe(const meshes::cylinder::CylinderMeshOptions& mesh) {
   std::string text = std::to_string(mesh.square_cells) + " cells and " +
                      std::to_string(mesh.rings) + " rings with ratio " + number(mesh.ring_ratio) +
                      ", layers from " + number(mesh.finest_layer) + " to " +
@@ -61,7 +63,7 @@ void deserialize_file(const std::filesystem::path& path, const std::string& byte
 }  // namespace
 
 Facts solid_facts(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
-                  std::span<const meshes::CylinderMeshOptions> meshes) {
+                  std::span<const meshes::cylinder::CylinderMeshOptions> meshes) {
   Facts facts{{"diameter", number(cilium.diameter) + " m"},
               {"number of segments", std::to_string(cilium.segments.size())}};
   for (const auto& [name, length, young_modulus, poisson_ratio, magnetization] : cilium.segments) {
@@ -120,8 +122,8 @@ std::string difference(const Facts& saved, const Facts& asked) {
   return found > 3 ? text + "; and " + std::to_string(found - 3) + " more" : text;
 }
 
-SolidCheckpoint::SolidCheckpoint(Checkpoint files, Facts facts)
-    : files_(std::move(files)), facts_(std::move(facts)) {}
+SolidCheckpoint::SolidCheckpoint(Checkpoint files, Facts facts, MPI_Comm communicator)
+    : files_(std::move(files)), facts_(std::move(facts)), communicator_(communicator) {}
 
 std::filesystem::path SolidCheckpoint::step_file(std::size_t step) const {
   char text[32];
@@ -165,7 +167,7 @@ std::size_t SolidCheckpoint::verify() const {
 std::vector<std::optional<LoadPathState>> SolidCheckpoint::read() {
   std::vector<std::optional<LoadPathState>> levels;
   if (files_.path.empty()) return levels;
-  const std::string content = from_first_rank([this] { return verified_content(); });
+  const std::string content = from_first_rank(communicator_, [this] { return verified_content(); });
   if (content.empty()) return levels;
   Facts facts;
   deserialize_file(files_.path, content, facts, steps_, checksums_, levels);
@@ -174,8 +176,9 @@ std::vector<std::optional<LoadPathState>> SolidCheckpoint::read() {
 }
 
 SolidState SolidCheckpoint::finished_state(std::size_t step) const {
-  const std::string content = from_first_rank(
-      [&] { return read_checkpoint_file(step_file(step), files_.program).value_or(""); });
+  const std::string content = from_first_rank(communicator_, [&] {
+    return read_checkpoint_file(step_file(step), files_.program).value_or("");
+  });
   if (checksum(content) != checksums_.at(step))
     throw CheckpointError(refusal(step_file(step), "it was changed while it was read"));
   SolidState state;
@@ -187,7 +190,7 @@ void SolidCheckpoint::add(const MechanicsStep& step, const SolidState* state) {
   if (files_.path.empty()) return;
   const std::string content = state != nullptr ? serialized(*state) : "";
   if (state != nullptr)
-    from_first_rank([&] {
+    from_first_rank(communicator_, [&] {
       write_checkpoint_file(step_file(steps_.size()), files_.program, content);
       return std::string();
     });
@@ -198,7 +201,7 @@ void SolidCheckpoint::add(const MechanicsStep& step, const SolidState* state) {
 
 void SolidCheckpoint::save(std::span<const LoadPathState* const> levels) {
   if (files_.path.empty()) return;
-  from_first_rank([&] {
+  from_first_rank(communicator_, [&] {
     std::vector<std::optional<LoadPathState>> states;
     for (const LoadPathState* level : levels)
       states.push_back(level != nullptr ? std::optional(*level) : std::nullopt);
@@ -213,4 +216,4 @@ std::optional<std::filesystem::path> SolidCheckpoint::file() const {
   return saved_ ? std::optional(files_.path) : std::nullopt;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

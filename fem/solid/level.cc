@@ -7,17 +7,23 @@
 #include <vector>
 
 #include "fem/beam/beam.h"
+#include "fem/solid/equilibrium/initial_guess.h"
 #include "fem/solid/postprocessing/body.h"
 #include "fem/solid/postprocessing/centreline.h"
-#include "fem/solid/equilibrium/initial_guess.h"
 #include "meshes/gmsh/gmsh_mesh.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace loads;
+using namespace equilibrium;
+using namespace postprocessing;
 namespace {
 
 /// Observed order of the tip in the thickness of the finest layer, to which rings and growth are
-/// tied (docs/solid.md): the singularities at the clamped rim and at the interfaces' rims govern.
+/// tied (docs/theory/solid.md): the singularities at the clamped rim and at the interfaces' rims
+/// govern.
 constexpr double tip_order = 1.5;
 
 /// Corrections of two loads are extrapolated to so many times their distance.
@@ -64,6 +70,14 @@ std::vector<Correction> corrections(const Load& load, std::span<const Equilibriu
   return {{std::clamp(F / F1, -farthest_extrapolation, farthest_extrapolation), behind[0]}};
 }
 
+/// The pairs that two levels go on from, the last one first; at most two.
+std::vector<EquilibriumPair> pairs(const LoadPathState* own, const LoadPathState* coarse) {
+  if (own == nullptr || coarse == nullptr) return {};
+  std::vector<EquilibriumPair> result{{&own->current, &coarse->current}};
+  if (own->previous && coarse->previous) result.push_back({&*own->previous, &*coarse->previous});
+  return result;
+}
+
 /// A clamped base; on the plane of symmetry, where there is one, no displacement across it.
 std::vector<DirichletCondition> supports(Extent extent) {
   std::vector<DirichletCondition> conditions{{.boundary = meshes::base_id}};
@@ -74,67 +88,45 @@ std::vector<DirichletCondition> supports(Extent extent) {
 
 }  // namespace
 
-std::vector<EquilibriumPair> pairs(const LoadPathState* own, const LoadPathState* coarse) {
-  if (own == nullptr || coarse == nullptr) return {};
-  std::vector<EquilibriumPair> result{{&own->current, &coarse->current}};
-  if (own->previous && coarse->previous) result.push_back({&*own->previous, &*coarse->previous});
-  return result;
-}
-
-Level::Level(const Cilium& cilium, const meshes::CylinderMeshOptions& mesh,
+Level::Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser)
     : cilium_(cilium), options_(options), finest_layer_(mesh.finest_layer), coarser_(coarser) {
-  meshes::make_cylinder(cilium, mesh, triangulation_);
-  mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
+  meshes::cylinder::make_cylinder(cilium, mesh, triangulation_);
+  mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
   discretise(mesh.half ? Extent::half : Extent::whole, materials);
 }
 
 Level::Level(const Cilium& cilium, const meshes::MeshFile& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options)
     : cilium_(cilium), options_(options) {
-  mapping_ = meshes::read_gmsh(mesh, cilium, triangulation_).mapping;
+  mapping_ = meshes::gmsh::read_gmsh(mesh, cilium, triangulation_).mapping;
   discretise(Extent::whole, materials);
 }
 
 void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
   space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
-  fibres_ = std::make_unique<Fibres>(*space_, extent);
+  quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, extent);
 }
 
 Newton& Level::newton() {
   if (!newton_)
     newton_ = std::make_unique<Newton>(
-        *space_, increment_constraints(*space_, supports(fibres_->extent())), options_.solver);
+        *space_, increment_constraints(*space_, supports(quadrature_->extent())), options_.solver,
+        options_.communicator);
   return *newton_;
 }
 
 void Level::start_from_rest(const Load& first) {
   if (solver_) return;
   solver_ = std::make_unique<LoadPathSolver>(
-      *space_, *fibres_, [this]() -> Newton& { return newton(); }, first, options_.path,
-      [this](const Load& target, const Progress& report) { return first_guess(target, report); });
+      *space_, *quadrature_, [this]() -> Newton& { return newton(); }, first, options_.path,
+      [this](const Load& target, const Progress& report) { return initial_guess(target, report); });
 }
 
 LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
                                const std::function<void()>& on_equilibrium) {
   start_from_rest(load);
   return solver_->advance(load, progress, on_equilibrium);
-}
-
-std::optional<Equilibrium> Level::solve(const Load& load, Guess guess, int& iterations,
-                                        const Progress& progress) {
-  start_from_rest(load);
-  return solver_->solve(load, std::move(guess), iterations, progress);
-}
-
-void Level::go_to(Equilibrium equilibrium) {
-  start_from_rest(equilibrium.load);
-  solver_->go_to(std::move(equilibrium));
-}
-
-void Level::set_out(const Load& load) {
-  start_from_rest(load);
-  solver_->set_out(load);
 }
 
 void Level::restore(std::optional<LoadPathState> state) {
@@ -151,7 +143,7 @@ void Level::restore(std::optional<LoadPathState> state) {
   solver_->restore(std::move(*state));
 }
 
-Guess Level::first_guess(const Load& load, const Progress& progress) const {
+Guess Level::initial_guess(const Load& load, const Progress& progress) const {
   if (coarser_ == nullptr) return guess(load);
   const std::optional<LoadPathState> before =
       coarser_->state() != nullptr ? std::optional(*coarser_->state()) : std::nullopt;
@@ -176,9 +168,9 @@ Guess Level::guess(const Load& load, const Equilibrium& coarse,
     result.applied_force +=
         factor * (equilibria.own->applied_force - equilibria.coarse->applied_force);
   }
-  result.state = transferred(*coarser_->space_, *coarser_->fibres_, difference, *space_);
+  result.state = interpolated(*coarser_->space_, *coarser_->quadrature_, difference, *space_);
   for (const auto& [factor, equilibria] : known) add(*result.state, factor, equilibria.own->state);
-  prescribe(*space_, supports(fibres_->extent()), *result.state);
+  prescribe(*space_, supports(quadrature_->extent()), *result.state);
   return result;
 }
 
@@ -186,26 +178,27 @@ Guess Level::guess(const Load& load) const {
   if (!options_.beam_guess) return {};
   // Any beam is some percent off the solid; fig3b's tip is 5e-12 of its deflection off the
   // default's.
-  const BeamOptions rough{.degree = 4, .tolerance = 1e-6, .tip_uncertainty = false};
-  const MechanicsResult beam = Beam(rough).solve(cilium_, {load});
-  const MechanicsStep& step = beam.steps.front();
+  const beam::BeamOptions rough{.degree = 4, .tolerance = 1e-6, .tip_uncertainty = false};
+  const MechanicsResult solved = beam::Beam(rough).solve(cilium_, {load});
+  const MechanicsStep& step = solved.steps.front();
   if (!step.deformation) return {};
-  Guess result{lifted(step.deformation->centreline, cilium_, *space_), step.applied_force};
-  prescribe(*space_, supports(fibres_->extent()), *result.state);
+  Guess result{rod_guess(step.deformation->centreline, cilium_, *space_), step.applied_force};
+  prescribe(*space_, supports(quadrature_->extent()), *result.state);
   return result;
 }
 
 Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
                                double azimuth) const {
-  return turned({centreline(*space_, *fibres_, state, load),
-                 std::make_shared<const SolidBody>(solid_body(*space_, *fibres_, cilium_, state))},
-                azimuth);
+  return turned(
+      {centreline(*space_, *quadrature_, state, load),
+       std::make_shared<const SolidBody>(solid_body(*space_, *quadrature_, cilium_, state))},
+      azimuth);
 }
 
 Deformation Level::deformation(const Equilibrium& equilibrium, double azimuth) const {
   return deformation(equilibrium.state,
                      spread_load(acting(equilibrium.load, equilibrium.applied_force),
-                                 fibres_->area(), options_.path.kernel_width),
+                                 quadrature_->area(), options_.path.kernel_width),
                      azimuth);
 }
 
@@ -218,7 +211,7 @@ Deformation Level::undeformed(double azimuth) const {
 }
 
 Vector3 Level::tip() const {
-  return tip_position(*space_, *fibres_, solver().current().state);
+  return tip_position(*space_, *quadrature_, solver().current().state);
 }
 
 std::optional<double> Level::tip_uncertainty() const {
@@ -229,4 +222,4 @@ std::optional<double> Level::tip_uncertainty() const {
   return (tip() - coarser_->tip()).norm() / (ratio - 1);
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

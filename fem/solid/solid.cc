@@ -21,7 +21,8 @@
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
 namespace {
 
 /// Meshes from coarse to fine. From one to the next the layers at the clamped end and at the
@@ -43,7 +44,7 @@ constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 1.0, 0.32,
 /// The level of each refinement.
 constexpr std::array<unsigned int, 4> refinement_levels{1, 3, 4, 5};
 
-Hyperelastic material(const Segment& segment, const SolidOptions& options) {
+Hyperelastic law_of(const Segment& segment, const SolidOptions& options) {
   const double mu = segment.shear_modulus();
   const double K = segment.bulk_modulus();
   switch (options.material) {
@@ -58,7 +59,7 @@ Hyperelastic material(const Segment& segment, const SolidOptions& options) {
 
 std::vector<Hyperelastic> materials(const Cilium& cilium, const SolidOptions& options) {
   std::vector<Hyperelastic> result;
-  for (const Segment& segment : cilium.segments) result.push_back(material(segment, options));
+  for (const Segment& segment : cilium.segments) result.push_back(law_of(segment, options));
   return result;
 }
 
@@ -89,24 +90,25 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
 
 /// The mesh of a level for a load path, with a plane at each loaded section; half of it if the
 /// options say so.
-meshes::CylinderMeshOptions path_mesh(unsigned int index, const SolidOptions& options,
-                                      const LoadPath& path) {
-  meshes::CylinderMeshOptions mesh = level_mesh(index);
+meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidOptions& options,
+                                                const LoadPath& path) {
+  meshes::cylinder::CylinderMeshOptions mesh = level_mesh(index);
   mesh.half = options.symmetry;
   for (const Load& load : path)
-    if (const auto* section = std::get_if<SectionLoad>(&load))
-      mesh.planes.push_back(section->arclength);
+    if (const auto section = load.as<SectionLoad>()) mesh.planes.push_back(section->arclength);
   return mesh;
 }
 
 /// The meshes from the coarsest to that of the refinement asked for; a user's mesh alone.
 std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const LoadPath& path,
-                                                const SolidOptions& options) {
+                                                const SolidOptions& options,
+                                                MPI_Comm communicator) {
   const LevelOptions level_options{
       {{options.tolerance, options.max_iterations, least_force(cilium)},
        options.max_cutbacks,
        options.kernel_width},
       options.solver,
+      communicator,
       options.initial_guess == InitialGuess::beam};
   std::vector<std::unique_ptr<Level>> levels;
   if (!options.mesh.empty()) {
@@ -123,7 +125,7 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
 }
 
 Facts facts(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
-  std::vector<meshes::CylinderMeshOptions> meshes;
+  std::vector<meshes::cylinder::CylinderMeshOptions> meshes;
   if (options.mesh.empty())
     for (unsigned int i = 0; i <= mesh_level(options.refinement); ++i)
       meshes.push_back(path_mesh(i, options, path));
@@ -140,9 +142,9 @@ unsigned int mesh_level(unsigned int refinement) {
   return refinement_levels[refinement];
 }
 
-meshes::CylinderMeshOptions level_mesh(unsigned int number) {
+meshes::cylinder::CylinderMeshOptions level_mesh(unsigned int number) {
   const MeshLevel& level = mesh_levels.at(number);
-  meshes::CylinderMeshOptions mesh;
+  meshes::cylinder::CylinderMeshOptions mesh;
   mesh.square_cells = level.square_cells;
   mesh.rings = level.rings;
   mesh.ring_ratio = level.ring_ratio;
@@ -152,16 +154,17 @@ meshes::CylinderMeshOptions level_mesh(unsigned int number) {
   return mesh;
 }
 
-meshes::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
+meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(unsigned int refinement) {
   return level_mesh(mesh_level(refinement));
 }
 
-meshes::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
-                                                  const LoadPath& path) {
+meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& options,
+                                                            const LoadPath& path) {
   return path_mesh(mesh_level(options.refinement), options, path);
 }
 
-Solid::Solid(SolidOptions options) : options_(std::move(options)) {
+Solid::Solid(SolidOptions options, MPI_Comm communicator)
+    : options_(std::move(options)), communicator_(communicator) {
   cylinder_mesh_options(options_.refinement);
   if (!(std::isfinite(options_.kernel_width) && options_.kernel_width > 0))
     throw InputError("the solid's kernel_width must be finite and positive");
@@ -187,7 +190,7 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
 std::optional<std::size_t> Solid::finished_steps(const Cilium& cilium, const LoadPath& path,
                                                  const Checkpoint& checkpoint) const {
   require_valid(cilium, path, options_);
-  return SolidCheckpoint(checkpoint, facts(cilium, path, options_)).verify();
+  return SolidCheckpoint(checkpoint, facts(cilium, path, options_), communicator_).verify();
 }
 
 MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
@@ -207,9 +210,10 @@ MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
 
 MechanicsResult Solid::follow(const Cilium& cilium, const LoadPath& path,
                               const Checkpoint& checkpoint, const Progress& progress) const {
-  PathRun run(make_levels(cilium, path, options_), path, options_, progress);
-  SolidCheckpoint saved(checkpoint, facts(cilium, path, options_));
+  start_mpi();
+  PathRun run(make_levels(cilium, path, options_, communicator_), path, options_, progress);
+  SolidCheckpoint saved(checkpoint, facts(cilium, path, options_), communicator_);
   return run.follow(saved);
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

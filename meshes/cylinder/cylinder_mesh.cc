@@ -13,7 +13,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::cylinder {
 namespace {
 
 using dealii::Point;
@@ -218,4 +218,4 @@ std::unique_ptr<dealii::MappingQCache<3>> cylinder_mapping(const Triangulation<3
   return mapping;
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::cylinder

@@ -7,15 +7,10 @@
 #include <memory>
 #include <vector>
 
+#include "meshes/boundary_ids.h"
 #include "problem/cilium.h"
 
-namespace ciliaval::meshes {
-
-/// Boundary ids of the cylinder.
-inline constexpr dealii::types::boundary_id base_id = 0;      ///< Z = 0
-inline constexpr dealii::types::boundary_id mantle_id = 1;    ///< X² + Y² = R²
-inline constexpr dealii::types::boundary_id tip_id = 2;       ///< Z = L
-inline constexpr dealii::types::boundary_id symmetry_id = 3;  ///< Y = 0 of the half cylinder
+namespace ciliaval::meshes::cylinder {
 
 /// How finely the cylinder is meshed. Lengths are in diameters, so that one set of options suits
 /// every cilium.
@@ -58,4 +53,4 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
 std::unique_ptr<dealii::MappingQCache<3>> cylinder_mapping(
     const dealii::Triangulation<3>& triangulation, unsigned int degree = 2);
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::cylinder

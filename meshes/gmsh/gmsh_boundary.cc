@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "meshes/cylinder/cylinder_mesh.h"
+#include "meshes/boundary_ids.h"
 #include "meshes/gmsh/gmsh_mesh.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 /// A face of the boundary: a quadrilateral of the base or the tip, or an edge of the mantle in a
@@ -120,4 +120,4 @@ void check_boundaries(UserMesh& mesh, const Extrusion& extrusion, const Section&
                                            : "add the missing surfaces"));
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 using dealii::Point;
@@ -358,4 +358,4 @@ Extrusion find_extrusion(UserMesh& mesh) {
   return extrusion;
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -11,7 +11,7 @@
 
 #include "meshes/gmsh/gmsh_names.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 
 /// A mesh taken apart into its section and its layers: every cell is a quadrilateral of the section
 /// between two neighbouring planes Z = const. A vertex is a column (a point of the section) in a
@@ -50,4 +50,4 @@ inline Extrusion::Edge edge(std::size_t a, std::size_t b) {
 /// physical volume does not span its segment.
 Extrusion find_extrusion(UserMesh& mesh);
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

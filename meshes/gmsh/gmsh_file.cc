@@ -6,24 +6,25 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 #include <unordered_map>
 
+#include "meshes/gmsh/gmsh_process.h"
 #include "problem/error.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::mutex& session_mutex() {
-  static std::mutex mutex;
-  return mutex;
-}
 
 /// Gmsh would run a file that is not a mesh as a script, so that only what begins and ends as a
 /// mesh comes before it.
@@ -63,17 +64,6 @@ void require_mesh_file(const fs::path& path) {
         name));
 }
 
-/// Calls Gmsh; its errors are strings.
-template <typename Call>
-void read(const fs::path& path, const Call& call) {
-  try {
-    call();
-  } catch (const std::string& text) {
-    throw FileError(fmt::format("{}: Gmsh cannot read the mesh file: {}; write or copy it again",
-                                path.string(), text));
-  }
-}
-
 /// Gmsh's table of an element type.
 struct ElementProperties {
   std::string name;
@@ -84,8 +74,8 @@ struct ElementProperties {
 
   explicit ElementProperties(int type) {
     int primary_nodes = 0;
-    gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, coordinates,
-                                            primary_nodes);
+    ::gmsh::model::mesh::getElementProperties(type, name, dimension, order, nodes, coordinates,
+                                              primary_nodes);
   }
 };
 
@@ -94,7 +84,7 @@ using Indices = std::unordered_map<std::size_t, std::size_t>;
 Indices read_nodes(GmshFile& file) {
   std::vector<double> coordinates;
   std::vector<double> parameters;
-  gmsh::model::mesh::getNodes(file.node_tags, coordinates, parameters);
+  ::gmsh::model::mesh::getNodes(file.node_tags, coordinates, parameters);
   Indices index;
   for (std::size_t i = 0; i < file.node_tags.size(); ++i) {
     file.nodes.emplace_back(coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]);
@@ -104,13 +94,13 @@ Indices read_nodes(GmshFile& file) {
 }
 
 void read_groups(GmshFile& file) {
-  gmsh::vectorpair groups;
-  gmsh::model::getPhysicalGroups(groups);
+  ::gmsh::vectorpair groups;
+  ::gmsh::model::getPhysicalGroups(groups);
   for (const auto& [dimension, tag] : groups) {
     if (dimension < 2) continue;
     GmshGroup group{dimension, tag, {}, {}};
-    gmsh::model::getPhysicalName(dimension, tag, group.name);
-    gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, group.entities);
+    ::gmsh::model::getPhysicalName(dimension, tag, group.name);
+    ::gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, group.entities);
     file.groups.push_back(std::move(group));
   }
 }
@@ -129,7 +119,7 @@ std::vector<Block> read_blocks(int dimension, const std::vector<int>& entities) 
     std::vector<int> types;
     std::vector<std::vector<std::size_t>> tags;
     std::vector<std::vector<std::size_t>> nodes;
-    gmsh::model::mesh::getElements(types, tags, nodes, dimension, entity);
+    ::gmsh::model::mesh::getElements(types, tags, nodes, dimension, entity);
     for (std::size_t i = 0; i < types.size(); ++i)
       blocks.push_back({types[i], entity, std::move(tags[i]), std::move(nodes[i])});
   }
@@ -140,8 +130,8 @@ std::vector<Block> read_blocks(int dimension, const std::vector<int>& entities) 
 std::vector<int> entities_of(int dimension, const GmshFile& file) {
   std::vector<int> entities;
   if (dimension == 3) {
-    gmsh::vectorpair all;
-    gmsh::model::getEntities(all, dimension);
+    ::gmsh::vectorpair all;
+    ::gmsh::model::getEntities(all, dimension);
     for (const auto& [unused, tag] : all) entities.push_back(tag);
   } else {
     for (const GmshGroup& group : file.groups)
@@ -193,24 +183,11 @@ std::vector<GmshElement> read_elements(const fs::path& path, int dimension,
 
 }  // namespace
 
-GmshSession::GmshSession() : lock_(session_mutex()) {
-  gmsh::initialize(0, nullptr, false);
-  gmsh::option::setNumber("General.Terminal", 0);
-}
-
-GmshSession::~GmshSession() {
-  try {
-    gmsh::finalize();
-  } catch (...) {  // nothing is left to be done
-    return;
-  }
-}
-
 GmshElementType gmsh_element_type(int dimension, bool quadratic) {
   const int order = quadratic ? 2 : 1;
   GmshElementType result;
   result.type =
-      gmsh::model::mesh::getElementType(dimension == 3 ? "Hexahedron" : "Quadrangle", order);
+      ::gmsh::model::mesh::getElementType(dimension == 3 ? "Hexahedron" : "Quadrangle", order);
   const ElementProperties properties(result.type);
   for (int a = 0; a < properties.nodes; ++a) {
     long lexicographic = 0;
@@ -227,17 +204,22 @@ GmshElementType gmsh_element_type(int dimension, bool quadratic) {
 
 GmshFile read_gmsh_file(const fs::path& path) {
   require_mesh_file(path);
-  const GmshSession session;
-  GmshFile file;
-  read(path, [&] {
-    gmsh::open(path.string());
-    const Indices index = read_nodes(file);
-    read_groups(file);
-    file.hexahedra = read_elements(
-        path, 3, {gmsh_element_type(3, false), gmsh_element_type(3, true)}, index, file);
-    file.quadrilaterals = read_elements(
-        path, 2, {gmsh_element_type(2, false), gmsh_element_type(2, true)}, index, file);
+  const std::string text = in_gmsh_process(path, "read the mesh file", [&] {
+    ::gmsh::open(path.string());
+    GmshFile read;
+    const Indices index = read_nodes(read);
+    read_groups(read);
+    read.hexahedra = read_elements(
+        path, 3, {gmsh_element_type(3, false), gmsh_element_type(3, true)}, index, read);
+    read.quadrilaterals = read_elements(
+        path, 2, {gmsh_element_type(2, false), gmsh_element_type(2, true)}, index, read);
+    std::ostringstream packed;
+    boost::archive::binary_oarchive(packed) << read;
+    return packed.str();
   });
+  GmshFile file;
+  std::istringstream packed(text);
+  boost::archive::binary_iarchive(packed) >> file;
   if (file.hexahedra.empty())
     throw InputError(fmt::format(
         "{}: the mesh has no hexahedra: mesh the volumes (`gmsh -3`), and put them into physical "
@@ -246,4 +228,4 @@ GmshFile read_gmsh_file(const fs::path& path) {
   return file;
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -5,11 +5,10 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <mutex>
 #include <string>
 #include <vector>
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 
 /// A hexahedron or quadrilateral of a Gmsh file.
 struct GmshElement {
@@ -17,6 +16,11 @@ struct GmshElement {
   int entity = 0;                  ///< the volume or surface that it belongs to
   std::vector<std::size_t> nodes;  ///< indices of its 2ᵈ or 3ᵈ nodes, lexicographic: first local
                                    ///< coordinate fastest
+
+  template <typename Archive>
+  void serialize(Archive& archive, unsigned int /*version*/) {
+    archive& tag& entity& nodes;
+  }
 };
 
 /// A physical group: entities under a name.
@@ -25,6 +29,11 @@ struct GmshGroup {
   int tag = 0;
   std::string name;  ///< may be empty
   std::vector<int> entities;
+
+  template <typename Archive>
+  void serialize(Archive& archive, unsigned int /*version*/) {
+    archive& dimension& tag& name& entities;
+  }
 };
 
 /// What CiliaVal uses of a Gmsh file.
@@ -35,25 +44,17 @@ struct GmshFile {
   std::vector<GmshElement> hexahedra;
   std::vector<GmshElement> quadrilaterals;  ///< those of the physical surfaces
   std::vector<GmshGroup> groups;            ///< of dimension 2 and 3
+
+  template <typename Archive>
+  void serialize(Archive& archive, unsigned int /*version*/) {
+    archive& node_tags& nodes& quadratic& hexahedra& quadrilaterals& groups;
+  }
 };
 
 /// Reads a `.msh` file of format 2 or 4, text or binary, by the Gmsh library. Throws FileError if
-/// the file is missing, truncated or not of Gmsh; InputError if a volume has anything but hexahedra
-/// of 8 or of 27 nodes, if the two are mixed, or if a physical surface has triangles.
+/// the file is missing, truncated, damaged or not of Gmsh; InputError if a volume has anything but
+/// hexahedra of 8 or of 27 nodes, if the two are mixed, or if a physical surface has triangles.
 GmshFile read_gmsh_file(const std::filesystem::path& path);
-
-/// The Gmsh library, whose state is global: one at a time uses it, silently and without the user's
-/// configuration. It costs some 10 ms.
-class GmshSession {
- public:
-  GmshSession();
-  ~GmshSession();
-  GmshSession(const GmshSession&) = delete;
-  GmshSession& operator=(const GmshSession&) = delete;
-
- private:
-  std::unique_lock<std::mutex> lock_;
-};
 
 /// Gmsh's number of the element with 3ᵈ (`quadratic`) or 2ᵈ nodes, and for each of its nodes in
 /// Gmsh's order the lexicographic index.
@@ -62,8 +63,8 @@ struct GmshElementType {
   std::vector<std::size_t> lexicographic;
 };
 
-/// That of the hexahedron (dimension 3) or quadrilateral (2), from Gmsh's own table. A GmshSession
-/// must be open.
+/// That of the hexahedron (dimension 3) or quadrilateral (2), from Gmsh's own table, inside
+/// in_gmsh_process().
 GmshElementType gmsh_element_type(int dimension, bool quadratic);
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

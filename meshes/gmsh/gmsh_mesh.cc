@@ -10,7 +10,7 @@
 #include "meshes/gmsh/gmsh_boundary.h"
 #include "problem/error.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 using dealii::Point;
@@ -99,4 +99,4 @@ GmshMesh read_gmsh(const MeshFile& source, const Cilium& cilium, Triangulation<3
   return {mapping(extrusion, section, quads, triangulation), std::move(mesh.remarks)};
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -11,7 +11,7 @@
 #include "meshes/mesh_file.h"
 #include "problem/cilium.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 
 /// "base", "mantle", "tip" by boundary id: the names of the physical surfaces.
 const std::vector<std::string>& boundary_names();
@@ -22,16 +22,16 @@ struct GmshMesh {
   std::vector<std::string> remarks;  ///< what is odd or poor but can be used, a sentence each
 };
 
-/// Reads a Gmsh mesh of the cilium (docs/meshes.md): hexahedra extruded along Z from Z = 0 to L, a
-/// physical volume for each segment, of its name, and the physical surfaces `base`, `mantle` and
-/// `tip`. Ids and vertical mesh lines are as of make_cylinder(), the cells in the order of the
-/// file's; ones that are turned, upside down or mirrored are renumbered. Nodes within 1e-5 d of an
-/// exact extrusion and of the segments' ends are moved there. Second-order nodes are honoured; the
-/// mantle of a first-order mesh becomes a cylinder whose section has the area πR². The
-/// triangulation must be empty, and outlive the mapping. Throws FileError if the file cannot be
+/// Reads a Gmsh mesh of the cilium (docs/guide/meshes.md): hexahedra extruded along Z from Z = 0 to
+/// L, a physical volume for each segment, of its name, and the physical surfaces `base`, `mantle`
+/// and `tip`. Ids and vertical mesh lines are as of cylinder::make_cylinder(), the cells in the
+/// order of the file's; ones that are turned, upside down or mirrored are renumbered. Nodes within
+/// 1e-5 d of an exact extrusion and of the segments' ends are moved there. Second-order nodes are
+/// honoured; the mantle of a first-order mesh becomes a cylinder whose section has the area πR².
+/// The triangulation must be empty, and outlive the mapping. Throws FileError if the file cannot be
 /// read as a mesh, and InputError with the place, the reason and what to do if the mesh does not
 /// suit the cilium.
 GmshMesh read_gmsh(const MeshFile& source, const Cilium& cilium,
                    dealii::Triangulation<3>& triangulation);
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

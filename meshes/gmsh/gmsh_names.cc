@@ -11,12 +11,12 @@
 #include "problem/error.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& names) {
   const std::vector<std::string_view> candidates(names.begin(), names.end());
-  return ciliaval::did_you_mean(name, candidates);
+  return support::did_you_mean(name, candidates);
 }
 
 std::vector<std::string> segment_names(const Cilium& cilium) {
@@ -106,7 +106,8 @@ void find_segments(UserMesh& mesh) {
       mesh.fail(fmt::format("physical volume {} has no name; it must have that of a segment: '{}'",
                             group.tag, fmt::join(names, "', '")));
     mesh.fail(fmt::format("the physical volume '{}' is no segment of the cilium, which has '{}'{}",
-                          group.name, fmt::join(names, "', '"), did_you_mean(group.name, names)));
+                          group.name, fmt::join(names, "', '"),
+                          did_you_mean(group.name, names)));
   };
   const auto several = [&](int entity, std::size_t a, std::size_t b) {
     mesh.fail(
@@ -144,4 +145,4 @@ std::map<int, unsigned int> find_boundaries(UserMesh& mesh) {
   return {entities.begin(), entities.end()};
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -10,7 +10,7 @@
 #include "meshes/mesh_file.h"
 #include "problem/cilium.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 
 /// A user's mesh on its way into a triangulation, and the words for its faults. Lengths in messages
 /// are in the file's unit, so that they can be found in Gmsh.
@@ -40,8 +40,8 @@ struct UserMesh {
 void find_segments(UserMesh& mesh);
 
 /// The physical surfaces `base`, `mantle` and `tip`: the boundary id of each of their entities (see
-/// cylinder_mesh.h). Throws InputError if one is missing, or if an entity is in two of them.
+/// boundary_ids.h). Throws InputError if one is missing, or if an entity is in two of them.
 /// Surfaces of other names get a remark.
 std::map<int, unsigned int> find_boundaries(UserMesh& mesh);
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 using dealii::Point;
@@ -360,4 +360,4 @@ Section make_section(UserMesh& mesh, Extrusion& extrusion) {
   return section;
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

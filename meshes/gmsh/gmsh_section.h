@@ -5,7 +5,7 @@
 
 #include "meshes/gmsh/gmsh_extrusion.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 
 /// The curved section of an extruded mesh: nine nodes on each quadrilateral.
 struct Section {
@@ -33,4 +33,4 @@ double scaled_jacobian(const std::array<dealii::Point<2>, 9>& nodes);
 inline constexpr double least_scaled_jacobian = 0.1;  ///< less is an error
 inline constexpr double poor_scaled_jacobian = 0.3;   ///< less is a remark
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -11,9 +11,10 @@
 
 #include "meshes/gmsh/gmsh_file.h"
 #include "meshes/gmsh/gmsh_mesh.h"
+#include "meshes/gmsh/gmsh_process.h"
 #include "problem/error.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 /// Nodes of an element in Gmsh's order.
@@ -45,7 +46,7 @@ void add_nodes(const MeshNodes& mesh, const GmshFormat& format) {
     tags.push_back(i + 1);
     for (unsigned int c = 0; c < 3; ++c) coordinates.push_back(mesh.nodes[i][c] / format.unit);
   }
-  gmsh::model::mesh::addNodes(3, 1, tags, coordinates);
+  ::gmsh::model::mesh::addNodes(3, 1, tags, coordinates);
 }
 
 /// One discrete entity and one physical group of a name, with the elements of an id.
@@ -54,20 +55,20 @@ void add_named(int dimension, unsigned int id, const std::string& name, const Gm
   const int tag = static_cast<int>(id) + 1;
   std::vector<std::size_t> elements(nodes.size() / type.lexicographic.size());
   for (std::size_t& element : elements) element = next_element++;
-  gmsh::model::mesh::addElementsByType(tag, type.type, elements, nodes);
-  gmsh::model::addPhysicalGroup(dimension, {tag}, tag);
-  gmsh::model::setPhysicalName(dimension, tag, name);
+  ::gmsh::model::mesh::addElementsByType(tag, type.type, elements, nodes);
+  ::gmsh::model::addPhysicalGroup(dimension, {tag}, tag);
+  ::gmsh::model::setPhysicalName(dimension, tag, name);
 }
 
 void build_model(const MeshNodes& mesh, const std::vector<std::string>& segments,
                  const GmshFormat& format) {
-  gmsh::model::add("cilium");
+  ::gmsh::model::add("cilium");
   const GmshElementType cell_type = gmsh_element_type(3, format.quadratic);
   const GmshElementType face_type = gmsh_element_type(2, format.quadratic);
   for (std::size_t i = 0; i < segments.size(); ++i)
-    gmsh::model::addDiscreteEntity(3, static_cast<int>(i) + 1);
+    ::gmsh::model::addDiscreteEntity(3, static_cast<int>(i) + 1);
   for (std::size_t i = 0; i < boundary_names().size(); ++i)
-    gmsh::model::addDiscreteEntity(2, static_cast<int>(i) + 1);
+    ::gmsh::model::addDiscreteEntity(2, static_cast<int>(i) + 1);
   add_nodes(mesh, format);
 
   std::vector<std::vector<std::size_t>> cells(segments.size());
@@ -112,16 +113,14 @@ void write_gmsh(const MeshNodes& mesh, const Cilium& cilium, const std::filesyst
           fmt::format("a boundary face has the id {}, which has no name", face.boundary));
   std::vector<std::string> segments;
   for (const Segment& segment : cilium.segments) segments.push_back(segment.name);
-  const GmshSession session;
-  try {
+  in_gmsh_process(path, "write the mesh", [&] {
     build_model(mesh, segments, format);
-    gmsh::option::setNumber("Mesh.MshFileVersion", format.version);
-    gmsh::option::setNumber("Mesh.Binary", format.binary ? 1 : 0);
-    gmsh::write(path.string());
-  } catch (const std::string& text) {
-    throw FileError(fmt::format("{}: Gmsh cannot write the mesh: {}", path.string(), text));
-  }
+    ::gmsh::option::setNumber("Mesh.MshFileVersion", format.version);
+    ::gmsh::option::setNumber("Mesh.Binary", format.binary ? 1 : 0);
+    ::gmsh::write(path.string());
+    return std::string();
+  });
   require_complete(path);
 }
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

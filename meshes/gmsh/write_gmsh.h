@@ -6,7 +6,7 @@
 #include "meshes/mesh_nodes.h"
 #include "problem/cilium.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 
 struct GmshFormat {
   double version = 4.1;   ///< or 2.2
@@ -21,4 +21,4 @@ struct GmshFormat {
 void write_gmsh(const MeshNodes& mesh, const Cilium& cilium, const std::filesystem::path& path,
                 const GmshFormat& format = {});
 
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -1,28 +1,38 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "problem/support/child_process.h"
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <boost/process/args.hpp>
+#include <boost/process/child.hpp>
+#include <boost/process/env.hpp>
+#include <boost/process/environment.hpp>
+#include <boost/process/exe.hpp>
+#include <boost/process/extend.hpp>
+#include <boost/process/group.hpp>
+#include <boost/process/io.hpp>
+#include <boost/process/search_path.hpp>
+#include <boost/process/start_dir.hpp>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <string_view>
+#include <sstream>
 #include <system_error>
 #include <thread>
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::support {
 namespace {
 
 namespace fs = std::filesystem;
+namespace bp = boost::process;
 
 constexpr std::array<int, 3> kept_back{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t signal_that_came = 0;
@@ -33,58 +43,29 @@ void remember(int number) {
   signal_that_came = number;
 }
 
-/// This program's environment with the child's number of threads.
-std::vector<std::string> environment(unsigned int threads) {
-  constexpr std::array<std::string_view, 4> thread_counts{
-      "OMP_NUM_THREADS=", "NUMBER_OF_CPUS=", "CCX_NPROC", "OMP_THREAD_LIMIT="};
-  std::vector<std::string> result;
-  for (char** entry = environ; *entry != nullptr; ++entry)
-    if (std::none_of(thread_counts.begin(), thread_counts.end(), [&](std::string_view name) {
-          return std::string_view(*entry).starts_with(name);
-        }))
-      result.emplace_back(*entry);
-  result.push_back("OMP_NUM_THREADS=" + std::to_string(threads));
-  return result;
-}
-
-std::vector<char*> pointers(std::vector<std::string>& texts) {
-  std::vector<char*> result;
-  result.reserve(texts.size() + 1);
-  for (std::string& text : texts) result.push_back(text.data());
-  result.push_back(nullptr);
-  return result;
-}
-
-/// Starts the child; errno of the failure, or 0.
-int spawn(const ChildCommand& command, pid_t& child) {
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawnattr_init(&attributes);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, command.log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, S_IRUSR | S_IWUSR);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  posix_spawn_file_actions_addchdir_np(&actions, command.folder.c_str());
-  // A group of its own, so that its children can be killed with it; signals as at the start of a
-  // program.
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  sigset_t defaults;
-  sigemptyset(&defaults);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaddset(&defaults, number);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  std::vector<std::string> words = command.arguments;
-  words.insert(words.begin(), command.program);
-  std::vector<std::string> variables = environment(command.threads);
-  const int error = posix_spawnp(&child, command.program.c_str(), &actions, &attributes,
-                                 pointers(words).data(), pointers(variables).data());
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
-  return error;
-}
-
 }  // namespace
+
+std::string ChildEnd::text() const {
+  std::ostringstream text;
+  switch (how) {
+    case How::exited:
+      text << "ended with the exit code " << code;
+      break;
+    case How::signalled:
+      text << "was killed by the signal " << code << " (" << strsignal(code) << ")";
+      break;
+    case How::timed_out:
+      text << "did not end by itself and was killed after " << std::round(10 * seconds) / 10
+           << " s";
+      break;
+    case How::not_found:
+      text << "is not there";
+      break;
+    case How::not_started:
+      text << "cannot be started: " << std::strerror(code);
+  }
+  return text.str();
+}
 
 ChildEnd run_child(const ChildCommand& command) {
   using namespace std::chrono_literals;
@@ -93,20 +74,41 @@ ChildEnd run_child(const ChildCommand& command) {
   const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  pid_t child = 0;
-  if (const int error = spawn(command, child); error != 0)
-    return {error == ENOENT ? ChildEnd::How::not_found : ChildEnd::How::not_started, error, 0};
-  int status = 0;
-  for (auto nap = 1ms; waitpid(child, &status, WNOHANG) == 0; nap = std::min(2 * nap, 20ms)) {
-    const bool late = elapsed() > command.time_limit;
-    if (late || SignalPause::interrupted()) {
-      kill(-child, SIGKILL);
-      waitpid(child, &status, 0);
-      return {ChildEnd::How::timed_out, 0, elapsed()};
+  const std::string program = command.program.find('/') == std::string::npos
+                                  ? bp::search_path(command.program).string()
+                                  : command.program;
+  if (program.empty() || !fs::exists(program)) return {ChildEnd::How::not_found, ENOENT, 0};
+  bp::environment variables = boost::this_process::environment();
+  for (const auto& [name, value] : command.variables)
+    if (value.empty())
+      variables.erase(name);
+    else
+      variables[name] = value;
+  // Signals as at the start of a program.
+  const auto default_signals = [](auto&) {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(number, SIG_DFL);
+  };
+  std::error_code error;
+  fs::remove(command.log, error);  // Boost.Process would write over its beginning
+  bp::group group;                 // so that its children can be killed with it
+  bp::child child(bp::exe = program, bp::args = command.arguments, variables,
+                  bp::start_dir = command.folder.string(),
+                  bp::std_in<bp::null, (bp::std_out & bp::std_err)> command.log.string(),
+                  bp::extend::on_exec_setup = default_signals, group, error);
+  if (error) return {ChildEnd::How::not_started, error.value(), 0};
+  bool killed = false;
+  for (auto nap = 1ms; child.running(error); nap = std::min(2 * nap, 20ms)) {
+    if (elapsed() > command.time_limit || SignalPause::interrupted()) {
+      killed = true;
+      group.terminate(error);
+      child.wait(error);
+      break;
     }
     std::this_thread::sleep_for(nap);
   }
-  kill(-child, SIGKILL);  // what it may have left behind
+  if (killed) return {ChildEnd::How::timed_out, 0, elapsed()};
+  group.terminate(error);  // processes that it may have left behind
+  const int status = child.native_exit_code();
   const bool exited = WIFEXITED(status);
   return {exited ? ChildEnd::How::exited : ChildEnd::How::signalled,
           exited ? WEXITSTATUS(status) : WTERMSIG(status), elapsed()};
@@ -138,7 +140,7 @@ bool SignalPause::interrupted() {
 WorkFolder::WorkFolder() : removed_(true) {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error);
-  std::string name = (parent / "ciliaval-ccx-XXXXXX").string();
+  std::string name = (parent / "ciliaval-XXXXXX").string();
   if (error || mkdtemp(name.data()) == nullptr)
     throw FileError(
         "cannot make a temporary folder: " + (error ? error.message() : std::strerror(errno)) +
@@ -157,4 +159,4 @@ WorkFolder::~WorkFolder() {
   if (removed_) fs::remove_all(path_, error);
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::support

@@ -2,19 +2,20 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
-namespace ciliaval::fem {
+namespace ciliaval::support {
 
 /// A program to run in a folder, without a shell and without input.
 struct ChildCommand {
   std::string program;  ///< a name that is looked for in PATH, or a path with a slash
   std::vector<std::string> arguments;
-  std::filesystem::path folder;  ///< where it works
-  std::filesystem::path log;     ///< takes what it prints; replaced
-  unsigned int threads = 1;      ///< OMP_NUM_THREADS; what overrides it in CalculiX is taken away
-  double time_limit = 3600;      ///< s, of wall time; then it and its children are killed
+  std::filesystem::path folder;                  ///< where it works
+  std::filesystem::path log;                     ///< takes its stdout and stderr; replaced
+  double time_limit = 3600;                      ///< s of wall time
+  std::map<std::string, std::string> variables;  ///< set in its environment; empty: taken away
 };
 
 /// How a program ended.
@@ -23,16 +24,19 @@ struct ChildEnd {
   How how = How::not_started;
   int code = 0;        ///< exit code, number of the signal, or errno of the start
   double seconds = 0;  ///< wall time
+
+  bool succeeded() const { return how == How::exited && code == 0; }
+  /// "ended with the exit code 3": what follows the program's name in a message.
+  std::string text() const;
 };
 
-/// Runs the program to its end, in a process group of its own. If this program is told to end
-/// meanwhile (SIGINT, SIGTERM, SIGHUP), the child is killed first; the signal takes effect where
-/// the innermost SignalPause ends, or here if there is none.
+/// Runs the program to its end, in a process group of its own, and kills the group at the time
+/// limit. If this program is told to end meanwhile (SIGINT, SIGTERM, SIGHUP), the group is killed
+/// first; the signal takes effect where the innermost SignalPause ends, or here without one.
 ChildEnd run_child(const ChildCommand& command);
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP are kept back, so that what must be tidied up before
-/// the program ends is: at its end they take effect. A signal that is ignored stays so. Not for
-/// several threads at a time.
+/// While it lives, SIGINT, SIGTERM and SIGHUP wait, so that files can be tidied up before the
+/// program ends: at its end they take effect. An ignored signal stays so. For one thread at a time.
 class SignalPause {
  public:
   SignalPause();
@@ -44,8 +48,8 @@ class SignalPause {
   static bool interrupted();
 };
 
-/// A folder of its own name, for its owner alone, removed with all that is in it at the end; or one
-/// that stays. Throws FileError if it cannot be made.
+/// A folder of its own name, for its owner alone, removed with its content at the end; or one that
+/// stays. Throws FileError if it cannot be made.
 class WorkFolder {
  public:
   WorkFolder();                                            ///< among the temporary files (TMPDIR)
@@ -61,4 +65,4 @@ class WorkFolder {
   bool removed_ = false;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::support

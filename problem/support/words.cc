@@ -2,10 +2,11 @@
 #include "problem/support/words.h"
 
 #include <algorithm>
+#include <boost/locale/utf.hpp>
 #include <cctype>
 #include <vector>
 
-namespace ciliaval {
+namespace ciliaval::support {
 namespace {
 
 char lower(char c) {
@@ -64,4 +65,28 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
   return best.empty() ? std::string() : "; did you mean '" + std::string(best) + "'?";
 }
 
-}  // namespace ciliaval
+std::string printable(std::string_view text, std::string_view allowed) {
+  using Utf8 = boost::locale::utf::utf_traits<char>;
+  std::string result;
+  const char* const end = text.data() + text.size();
+  for (const char* at = text.data(); at != end;) {
+    const char* next = at;
+    const auto point = Utf8::decode(next, end);
+    const bool is_text = boost::locale::utf::is_valid_codepoint(point);
+    if (!is_text) next = at + 1;
+    const bool is_control = point < 0x20 || (point >= 0x7F && point < 0xA0);
+    if (is_text && (!is_control || allowed.find(*at) != std::string_view::npos)) {
+      result.append(at, next);
+    } else {
+      constexpr std::string_view digits = "0123456789ABCDEF";
+      for (; at != next; ++at) {
+        const auto byte = static_cast<unsigned char>(*at);
+        result += {'\\', 'x', digits[byte / 16], digits[byte % 16]};
+      }
+    }
+    at = next;
+  }
+  return result;
+}
+
+}  // namespace ciliaval::support

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace ciliaval {
+namespace ciliaval::support {
 
 /// Whether two words are the same but for the case of ASCII letters.
 bool equal_but_case(std::string_view a, std::string_view b);
@@ -19,4 +19,8 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 /// "; did you mean 'x'?" for the nearest candidate; empty if none is near.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
 
-}  // namespace ciliaval
+/// The text for a terminal or a table: control characters but those of `allowed`, which a terminal
+/// would obey, and bytes that are no UTF-8 as `\\x1B`.
+std::string printable(std::string_view text, std::string_view allowed = "\n\t");
+
+}  // namespace ciliaval::support

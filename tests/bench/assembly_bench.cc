@@ -22,15 +22,17 @@
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "tests/bench/paper_cilium.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
 namespace {
 
 /// The coarse mesh (refinement 0), bent into an arc of 1 rad, clamped, with its matrix.
 class BentCilium {
  public:
   explicit BentCilium(const Hyperelastic& material) {
-    meshes::make_cylinder(paper_cilium(), cylinder_mesh_options(0), triangulation_);
-    mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
+    meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(0), triangulation_);
+    mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
     const std::vector<Hyperelastic> materials(2, material);
     space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
     state_ = space_->undeformed();
@@ -132,10 +134,13 @@ void stiffness(benchmark::State& run, const Hyperelastic& material) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid
 
 int main(int argc, char** argv) {
   using namespace ciliaval::fem;
+  using namespace ciliaval::fem::solid;
+  using namespace ciliaval::fem::solid::material;
+  using namespace ciliaval::fem::solid::solvers;
   dealii::MultithreadInfo::set_thread_limit(1);
   const std::vector<std::pair<std::string, Hyperelastic>> materials{
       {"neo-hooke", Hyperelastic::neo_hooke(1e5, 5e6)},

@@ -29,6 +29,8 @@
 namespace ciliaval::fem {
 namespace {
 
+using namespace calculix;
+
 namespace fs = std::filesystem;
 
 constexpr double force = 2e-3;       // N
@@ -66,13 +68,13 @@ double deflection(const Centreline& line) {
 }
 
 Run solid_run(unsigned int refinement) {
-  SolidOptions options;
+  solid::SolidOptions options;
   options.refinement = refinement;
   rusage before{};
   rusage after{};
   getrusage(RUSAGE_SELF, &before);
   const Stopwatch watch;
-  const MechanicsResult result = Solid(options).solve(paper_cilium(), {load});
+  const MechanicsResult result = solid::Solid(options).solve(paper_cilium(), {load});
   getrusage(RUSAGE_SELF, &after);
   const MechanicsStep& step = result.steps.front();
   if (!step.deformation) throw SolverError(step.message);
@@ -96,12 +98,12 @@ double tip_deflection(const meshes::MeshNodes& mesh, const std::vector<Vector3>&
 
 std::optional<Run> calculix_run(const fs::path& folder, unsigned int refinement,
                                 double first_increment) {
-  meshes::CylinderMeshOptions options = cylinder_mesh_options(refinement);
+  meshes::cylinder::CylinderMeshOptions options = solid::cylinder_mesh_options(refinement);
   options.half = true;
   options.planes = {arclength};
   dealii::Triangulation<3> triangulation;
-  meshes::make_cylinder(paper_cilium(), options, triangulation);
-  const auto mapping = meshes::cylinder_mapping(triangulation);
+  meshes::cylinder::make_cylinder(paper_cilium(), options, triangulation);
+  const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
   const meshes::MeshNodes mesh = meshes::mesh_nodes(triangulation, *mapping);
   {
     std::ofstream input(folder / "cilium.inp");

@@ -11,11 +11,11 @@
 
 #include "compare/input/case.h"
 #include "compare/models/errors.h"
+#include "compare/models/registry.h"
+#include "compare/models/run.h"
 #include "compare/output/field_grid.h"
 #include "compare/output/provenance.h"
-#include "compare/models/registry.h"
 #include "compare/output/results.h"
-#include "compare/models/run.h"
 #include "compare/output/vtk/output.h"
 
 namespace ciliaval::compare {
@@ -38,18 +38,20 @@ void whole_case(benchmark::State& state, const std::string& name, const Change& 
   const fs::path folder =
       fs::temp_directory_path() / ("ciliaval-bench-" + std::to_string(getpid()));
   for (auto _ : state) {
-    Case problem = read_case(shipped(name));
+    input::Case problem = input::read_case(shipped(name));
     if (!change.mechanics.empty()) problem.mechanics = change.mechanics;
     problem.options.solid.refinement = change.refinement;
     if (change.last)
       problem.load_path.erase(problem.load_path.begin(),
                               problem.load_path.end() - static_cast<std::ptrdiff_t>(*change.last));
     fs::create_directories(folder);
-    const CaseResult result = run(problem, mechanics_models(), field_models());
-    if (!all_solved(result)) state.SkipWithError("a model failed");
-    const Provenance origin = provenance("bench_case");
-    write_results(result, compare_models(result), origin, folder);
-    vtk::write_vtk(result, field_grid(result, field_models()), origin, folder / "vtk");
+    const models::CaseResult result =
+        models::run(problem, models::mechanics_models(), models::field_models());
+    if (!models::all_solved(result)) state.SkipWithError("a model failed");
+    const output::Provenance origin = output::provenance("bench_case");
+    output::write_results(result, models::compare_models(result), origin, folder);
+    output::vtk::write_vtk(result, output::field_grid(result, models::field_models()), origin,
+                           folder / "vtk");
     state.counters["steps"] = static_cast<double>(problem.load_path.size());
   }
   fs::remove_all(folder);

@@ -26,16 +26,20 @@
 
 #include "fem/beam/beam.h"
 #include "fem/parallel.h"
-#include "fem/solid/solvers/direct_solver.h"
-#include "fem/solid/material/hyperelastic.h"
-#include "fem/solid/solid.h"
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/equilibrium/initial_guess.h"
+#include "fem/solid/material/hyperelastic.h"
+#include "fem/solid/solid.h"
+#include "fem/solid/solvers/direct_solver.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 #include "tests/bench/paper_cilium.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace solvers;
+using namespace equilibrium;
 namespace {
 
 using dealii::Vector;
@@ -87,7 +91,8 @@ double processor_seconds() {
 
 class Study {
  public:
-  Study(const Element& element, double poisson_ratio, const meshes::CylinderMeshOptions& mesh)
+  Study(const Element& element, double poisson_ratio,
+        const meshes::cylinder::CylinderMeshOptions& mesh)
       : kind_(element),
         cilium_(paper_cilium(poisson_ratio)),
         element_(dealii::FE_Q<3>(static_cast<unsigned int>(element.degree)), 3),
@@ -95,8 +100,9 @@ class Study {
     for (const Segment& segment : cilium_.segments)
       materials_.push_back(
           Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
-    meshes::make_cylinder(cilium_, mesh, triangulation_);
-    mapping_ = meshes::cylinder_mapping(triangulation_, static_cast<unsigned int>(element.degree));
+    meshes::cylinder::make_cylinder(cilium_, mesh, triangulation_);
+    mapping_ = meshes::cylinder::cylinder_mapping(triangulation_,
+                                                  static_cast<unsigned int>(element.degree));
     dof_handler_.reinit(triangulation_);
     dof_handler_.distribute_dofs(element_);
     const dealii::Functions::ZeroFunction<3> zero(3);
@@ -114,8 +120,8 @@ class Study {
     forces_ *= load.force / 2;  // on the half
   }
 
-  /// The whole load at once from the lifted beam; if that fails, in more and more equal steps from
-  /// the straight cilium. The iterations and seconds are those of the attempt that succeeds.
+  /// The whole load at once from the rod_guess beam; if that fails, in more and more equal steps
+  /// from the straight cilium. The iterations and seconds are those of the attempt that succeeds.
   Outcome solve(int max_steps) {
     Outcome outcome;
     for (const int steps : {1, 8, 32}) {
@@ -127,7 +133,7 @@ class Study {
       if (steps > 1) displacement_ = 0;
       if (steps > 1)
         for (CellPressure& pressure : pressures_) pressure.coefficients.setZero();
-      DirectSolver solver(sparsity_, DirectSolver::Kind::general, {0, matrix_.m()});
+      DirectSolver solver(sparsity_, DirectSolver::Kind::general, {0, matrix_.m()}, MPI_COMM_SELF);
       for (int step = 1; step <= steps && outcome.trouble.empty(); ++step)
         newton(solver, static_cast<double>(step) / steps, outcome);
       outcome.seconds = processor_seconds() - start;
@@ -186,11 +192,11 @@ class Study {
     return result;
   }
 
-  /// Displacement and pressure of the rod, lifted as the solid's first guess.
+  /// Displacement and pressure of the rod, rod_guess as the solid's first guess.
   void start_from_beam() {
-    const MechanicsResult beam = Beam().solve(cilium_, {load});
+    const MechanicsResult beam = fem::beam::Beam().solve(cilium_, {load});
     const SolidSpace space(triangulation_, *quadratic_mapping(), materials_);
-    SolidState state = lifted(beam.steps.front().deformation->centreline, cilium_, space);
+    SolidState state = rod_guess(beam.steps.front().deformation->centreline, cilium_, space);
     displacement_.reinit(dof_handler_.n_dofs());
     dealii::FETools::interpolate(space.dof_handler(), state.displacement, dof_handler_,
                                  displacement_);
@@ -230,7 +236,7 @@ class Study {
   const dealii::Mapping<3>* quadratic_mapping() {
     if (kind_.degree == element_degree) return mapping_.get();
     if (!quadratic_mapping_)
-      quadratic_mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
+      quadratic_mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
     return quadratic_mapping_.get();
   }
 
@@ -354,8 +360,8 @@ class Study {
   std::vector<CellPressure> pressures_;
 };
 
-meshes::CylinderMeshOptions mesh(const Element& element, unsigned int level) {
-  meshes::CylinderMeshOptions options = level_mesh(level);
+meshes::cylinder::CylinderMeshOptions mesh(const Element& element, unsigned int level) {
+  meshes::cylinder::CylinderMeshOptions options = level_mesh(level);
   options.half = true;
   options.planes = {load.arclength};
   // Quadratic cells have the exact area with their nodes slightly outside R, cubic ones on it.
@@ -398,7 +404,7 @@ void study(double poisson_ratio, unsigned int finest, const std::string& only) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid
 
 int main(int argc, char** argv) {
   using namespace ciliaval;
@@ -410,7 +416,7 @@ int main(int argc, char** argv) {
     const std::vector<double> ratios =
         finest == 0 ? std::vector<double>{0.49} : std::vector<double>{0.3, 0.49, 0.499, 0.4999};
     for (const double poisson_ratio : ratios)
-      fem::study(poisson_ratio, finest, argc > 2 ? argv[2] : "");
+      fem::solid::study(poisson_ratio, finest, argc > 2 ? argv[2] : "");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "element_study: %s\n", error.what());
     return 1;

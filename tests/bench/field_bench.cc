@@ -14,16 +14,15 @@
 #include <string>
 #include <vector>
 
-#include "analytic/design_field.h"
 #include "analytic/elastica/elastica.h"
-#include "analytic/sources/elliptic.h"
 #include "analytic/rod/field_models.h"
+#include "analytic/sources/elliptic.h"
 #include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::analytic {
 namespace {
 
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 
 Cilium magnetic_cilium() {
   Cilium cilium = paper_cilium();
@@ -38,7 +37,7 @@ Load paper_load(double force = 4e-3) {
 
 const Deformation& bent() {
   static const Deformation deformation =
-      *Elastica().solve(magnetic_cilium(), {paper_load()}).steps.front().deformation;
+      *elastica::Elastica().solve(magnetic_cilium(), {paper_load()}).steps.front().deformation;
   return deformation;
 }
 
@@ -71,7 +70,7 @@ void bulirsch(benchmark::State& run) {
   std::size_t i = 0;
   for (auto _ : run) {
     const double gamma = kc[(7 * i) % 64];
-    benchmark::DoNotOptimize(bulirsch_cel(kc[i % 64], gamma * gamma, 1, gamma));
+    benchmark::DoNotOptimize(sources::bulirsch_cel(kc[i % 64], gamma * gamma, 1, gamma));
     ++i;
   }
 }
@@ -114,10 +113,10 @@ void field_on_grid(benchmark::State& run, const FieldModel& model) {
   count_points(run, points.size());
 }
 
-void elastica(benchmark::State& run) {
+void elastica_solve(benchmark::State& run) {
   const Cilium cilium = magnetic_cilium();
   const LoadPath path{paper_load()};
-  const Elastica model;
+  const elastica::Elastica model;
   for (auto _ : run) benchmark::DoNotOptimize(model.solve(cilium, path).steps.data());
 }
 
@@ -133,29 +132,11 @@ class Designs {
   double force_ = 1e-3;
 };
 
-void design(benchmark::State& run) {
-  const std::vector<Vector3> points = sensor_points(1);
-  const Cilium cilium = magnetic_cilium();
-  Designs designs;
-  for (auto _ : run)
-    benchmark::DoNotOptimize(design_field(cilium, designs.next(), points).field.B.data());
-}
-
-void design_flow(benchmark::State& run) {
-  const std::vector<Vector3> points = sensor_points(1);
-  const Cilium cilium = magnetic_cilium();
-  double q = 0.05;
-  for (auto _ : run) {
-    q = q < 0.2 ? q * 1.01 : 0.05;
-    benchmark::DoNotOptimize(design_field(cilium, FlowLoad{q, 0.5}, points).field.B.data());
-  }
-}
-
 void design_by_the_models(benchmark::State& run) {
   const std::vector<Vector3> points = sensor_points(1);
   const Cilium cilium = magnetic_cilium();
-  const Elastica mechanics;
-  const VolumeField volume;
+  const elastica::Elastica mechanics;
+  const rod::VolumeField volume;
   Designs designs;
   for (auto _ : run) {
     const MechanicsResult result = mechanics.solve(cilium, {designs.next()});
@@ -171,9 +152,9 @@ int main(int argc, char** argv) {
   using namespace ciliaval::analytic;
   benchmark::RegisterBenchmark("elliptic/cel", bulirsch);
   benchmark::RegisterBenchmark("elliptic/boost_third_kind", boost_third_kind);
-  const LineField line;
-  const VolumeField wedge;
-  const VolumeField stacked({VolumeOptions::Slices::stacked});
+  const rod::LineField line;
+  const rod::VolumeField wedge;
+  const rod::VolumeField stacked({rod::VolumeOptions::Slices::stacked});
   for (const auto& [name, model] : std::vector<std::pair<std::string, const ciliaval::FieldModel*>>{
            {"line", &line}, {"wedge", &wedge}, {"stacked", &stacked}})
     benchmark::RegisterBenchmark(
@@ -194,13 +175,13 @@ int main(int argc, char** argv) {
   };
   for (const unsigned int n : {25U, 50U, 100U, 200U, 400U, 800U, 1600U})
     register_sum("uniform/line/n:" + std::to_string(n),
-                 LineField({.method = Method::uniform, .elements = n}), 10000);
+                 rod::LineField({.method = rod::Method::uniform, .elements = n}), 10000);
   for (const unsigned int n : {20U, 40U, 80U})
-    register_sum(
-        "uniform/stacked/n:" + std::to_string(n),
-        VolumeField(
-            {.slices = VolumeOptions::Slices::stacked, .method = Method::uniform, .elements = n}),
-        10);
+    register_sum("uniform/stacked/n:" + std::to_string(n),
+                 rod::VolumeField({.slices = rod::VolumeOptions::Slices::stacked,
+                                   .method = rod::Method::uniform,
+                                   .elements = n}),
+                 10);
   benchmark::RegisterBenchmark("grid/wedge",
                                [&](benchmark::State& run) { field_on_grid(run, wedge); })
       ->ArgNames({"points", "cores"})
@@ -208,9 +189,7 @@ int main(int argc, char** argv) {
       ->Args({128, 2})
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();
-  benchmark::RegisterBenchmark("elastica", elastica);
-  benchmark::RegisterBenchmark("design/contact", design);
-  benchmark::RegisterBenchmark("design/flow", design_flow);
+  benchmark::RegisterBenchmark("elastica", elastica_solve);
   benchmark::RegisterBenchmark("design/by_the_models", design_by_the_models);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

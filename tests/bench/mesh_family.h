@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "fem/solid/discretisation/assembly.h"
-#include "fem/solid/fibres.h"
-#include "fem/solid/solvers/linear_solver.h"
 #include "fem/solid/equilibrium/load_path.h"
+#include "fem/solid/loads/height_loads.h"
+#include "fem/solid/solvers/linear_solver.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "tests/bench/paper_cilium.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
 
 /// Whole meshes of the paper's cilium, from 20,000 to 1,000,000 unknowns, with cells of nearly the
 /// same shape.
@@ -38,35 +38,37 @@ inline const std::vector<Mesh> mesh_family{{4, 1, 1, 0.11, 0.4},
 class Discretised {
  public:
   explicit Discretised(const Mesh& mesh) {
-    meshes::CylinderMeshOptions options;
+    meshes::cylinder::CylinderMeshOptions options;
     options.square_cells = mesh.square_cells;
     options.rings = mesh.rings;
     options.ring_ratio = mesh.ring_ratio;
     options.finest_layer = mesh.finest_layer;
     options.coarsest_layer = mesh.coarsest_layer;
     options.growth = 0.3;
-    meshes::make_cylinder(paper_cilium(), options, triangulation_);
-    mapping_ = meshes::cylinder_mapping(triangulation_, element_degree);
-    std::vector<Hyperelastic> materials;
+    meshes::cylinder::make_cylinder(paper_cilium(), options, triangulation_);
+    mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, discretisation::element_degree);
+    std::vector<material::Hyperelastic> materials;
     for (const Segment& segment : paper_cilium().segments)
-      materials.push_back(Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
-    space = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
-    const std::vector<DirichletCondition> clamped{{.boundary = meshes::base_id}};
+      materials.push_back(
+          material::Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
+    space = std::make_unique<discretisation::SolidSpace>(triangulation_, *mapping_, materials);
+    const std::vector<discretisation::DirichletCondition> clamped{{.boundary = meshes::base_id}};
     constraints = increment_constraints(*space, clamped);
     dealii::DynamicSparsityPattern dynamic(space->unknowns());
     dealii::DoFTools::make_sparsity_pattern(space->dof_handler(), dynamic, constraints, true);
     pattern.copy_from(dynamic);
     matrix.reinit(pattern);
-    const SolidState state = space->undeformed();
+    const discretisation::SolidState state = space->undeformed();
     add_stiffness(*space, state, *internal_forces(*space, state), constraints, matrix);
     forces.reinit(space->unknowns());
-    const Fibres fibres(*space);
-    external_forces(*space, fibres, ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = 0.5},
-                    0.5e-3)(state.displacement, forces, constraints, &matrix);
+    const discretisation::ExtrudedQuadrature quadrature(*space);
+    loads::external_forces(*space, quadrature,
+                           ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = 0.5},
+                           0.5e-3)(state.displacement, forces, constraints, &matrix);
     constraints.set_zero(forces);
   }
 
-  std::unique_ptr<SolidSpace> space;
+  std::unique_ptr<discretisation::SolidSpace> space;
   dealii::AffineConstraints<double> constraints;
   dealii::SparsityPattern pattern;
   dealii::SparseMatrix<double> matrix;
@@ -84,4 +86,4 @@ inline double gigabytes() {
   return static_cast<double>(usage.ru_maxrss) * 1024 / 1e9;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -9,12 +9,13 @@
 
 #include "tests/bench/mesh_family.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace solvers;
 namespace {
 
 void solve(benchmark::State& run, SolverKind kind) {
   const Discretised problem(mesh_family.at(static_cast<std::size_t>(run.range(0))));
-  LinearSolver solver(*problem.space, problem.constraints, problem.pattern, kind);
+  LinearSolver solver(*problem.space, problem.constraints, problem.pattern, kind, MPI_COMM_SELF);
   dealii::Vector<double> solution;
   int iterations = 0;
   for ([[maybe_unused]] auto _ : run) {
@@ -30,10 +31,13 @@ void solve(benchmark::State& run, SolverKind kind) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid
 
 int main(int argc, char** argv) {
   using namespace ciliaval::fem;
+  using namespace ciliaval::fem::solid;
+  using namespace ciliaval::fem::solid::material;
+  using namespace ciliaval::fem::solid::solvers;
   start_mpi();
   dealii::MultithreadInfo::set_thread_limit(1);
   for (const auto& [name, kind] :

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A user's program: the tip of the paper's cilium under 1 mN by the elastica and by the beam FEM.
-#include <analytic/elastica.h>
+#include <analytic/elastica/elastica.h>
 #include <fem/beam/beam.h>
 
 #include <cstdio>
@@ -9,8 +9,8 @@ int main() {
   const ciliaval::Cilium cilium{3e-3,
                                 {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
   const ciliaval::LoadPath path{ciliaval::ContactLoad{1e-3, 16e-3, 0.0}};
-  const auto elastica = ciliaval::analytic::Elastica().solve(cilium, path);
-  const auto beam = ciliaval::fem::Beam().solve(cilium, path);
+  const auto elastica = ciliaval::analytic::elastica::Elastica().solve(cilium, path);
+  const auto beam = ciliaval::fem::beam::Beam().solve(cilium, path);
   const double tip_elastica =
       elastica.steps[0].deformation->centreline.at(cilium.length()).position.x();
   const double tip_beam = beam.steps[0].deformation->centreline.at(cilium.length()).position.x();

@@ -19,7 +19,7 @@ TEST(Load, PointsAlongItsAzimuth) {
 
 TEST(Load, InterpolatesEveryParameter) {
   const Load load = interpolate(ContactLoad{0, 10e-3, 0.2}, ContactLoad{4e-3, 14e-3, 0.6}, 0.25);
-  const auto& contact = std::get<ContactLoad>(load);
+  const auto contact = *load.as<ContactLoad>();
   EXPECT_DOUBLE_EQ(contact.force, 1e-3);
   EXPECT_DOUBLE_EQ(contact.height, 11e-3);
   EXPECT_DOUBLE_EQ(contact.azimuth, 0.3);
@@ -28,7 +28,7 @@ TEST(Load, InterpolatesEveryParameter) {
 
 TEST(Load, ChangesItsMagnitudeAlone) {
   const Load load = with_magnitude(SectionLoad{1e-3, 5e-3, 0.4}, 7e-3);
-  const auto& section = std::get<SectionLoad>(load);
+  const auto section = *load.as<SectionLoad>();
   EXPECT_EQ(magnitude(load), 7e-3);
   EXPECT_EQ(section.arclength, 5e-3);
   EXPECT_EQ(section.azimuth, 0.4);
@@ -38,11 +38,11 @@ TEST(Load, AProbeHasItsDisplacementForMagnitude) {
   const Load load = with_magnitude(ProbeLoad{1e-3, 16e-3, 0.4}, 3e-3);
   EXPECT_EQ(type(load), "probe");
   EXPECT_EQ(magnitude(load), 3e-3);
-  EXPECT_EQ(std::get<ProbeLoad>(load).displacement, 3e-3);
+  EXPECT_EQ(load.as<ProbeLoad>()->displacement, 3e-3);
   EXPECT_EQ(contact_height(load), 16e-3);
   const Load half = interpolate(ProbeLoad{0, 10e-3, 0.2}, ProbeLoad{4e-3, 14e-3, 0.6}, 0.5);
-  EXPECT_DOUBLE_EQ(std::get<ProbeLoad>(half).displacement, 2e-3);
-  EXPECT_DOUBLE_EQ(std::get<ProbeLoad>(half).height, 12e-3);
+  EXPECT_DOUBLE_EQ(half.as<ProbeLoad>()->displacement, 2e-3);
+  EXPECT_DOUBLE_EQ(half.as<ProbeLoad>()->height, 12e-3);
   EXPECT_DOUBLE_EQ(azimuth(half), 0.4);
 }
 

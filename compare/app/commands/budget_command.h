@@ -8,7 +8,7 @@
 
 #include "compare/app/commands/commands.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 struct BudgetOptions {
   std::vector<std::string> without;  ///< models left out, "sensitivity"
@@ -25,4 +25,4 @@ struct BudgetOptions {
 /// judged. Throws InputError, FileError.
 ExitCode budget_case(const std::filesystem::path& file, const BudgetOptions& options);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

@@ -8,7 +8,7 @@
 
 #include "compare/app/commands/commands.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 struct CheckOptions {
   bool quick = false;   ///< without the models that take more than a moment
@@ -26,4 +26,4 @@ struct CheckOptions {
 /// InputError, before anything runs, if a case or a baseline cannot be used; FileError.
 ExitCode check_cases(std::vector<std::filesystem::path> files, const CheckOptions& options);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

@@ -6,7 +6,7 @@
 
 #include "compare/app/commands/commands.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 struct ClaimsOptions {
   bool quick = false;  ///< without the 3D solid
@@ -15,8 +15,8 @@ struct ClaimsOptions {
 };
 
 /// `ciliaval claims`: the paper's quantitative statements, each with what the models find, to
-/// stdout (docs/paper.md). Throws InputError if the shipped cases are not found, SolverError,
-/// FileError.
+/// stdout (docs/evidence/paper.md). Throws InputError if the shipped cases are not found,
+/// SolverError, FileError.
 ExitCode print_claims(const ClaimsOptions& options);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

@@ -8,73 +8,77 @@
 #include <optional>
 #include <system_error>
 
-#include "compare/input/case.h"
 #include "compare/app/case_files.h"
-#include "compare/output/checkpoint_folder.h"
-#include "compare/models/errors.h"
-#include "compare/output/field_grid.h"
 #include "compare/app/commands/mesh_command.h"
+#include "compare/app/terminal.h"
+#include "compare/input/case.h"
+#include "compare/models/errors.h"
+#include "compare/models/registry.h"
+#include "compare/models/run.h"
+#include "compare/output/checkpoint_folder.h"
+#include "compare/output/field_grid.h"
+#include "compare/output/output_file.h"
 #include "compare/output/output_folder.h"
 #include "compare/output/provenance.h"
-#include "compare/models/registry.h"
-#include "compare/report/report.h"
 #include "compare/output/results.h"
-#include "compare/models/run.h"
+#include "compare/output/table.h"
+#include "compare/output/vtk/output.h"
+#include "compare/report/report.h"
 #include "compare/sensing/bench.h"
 #include "compare/study/study.h"
-#include "compare/output/table.h"
-#include "compare/app/terminal.h"
-#include "compare/output/vtk/output.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// A case of `ciliaval run` and what it may write to.
 struct Prepared {
-  Case problem;
-  OutputFolder folder;
-  std::optional<CheckpointFolder> checkpoints;  ///< if a model of the case keeps one
+  input::Case problem;
+  output::OutputFolder folder;
+  std::optional<output::CheckpointFolder> checkpoints;  ///< if a model of the case keeps one
 };
 
-Checkpoint checkpoint(const fs::path& directory, const Case& problem) {
-  return {checkpoint_path(directory, problem.name), version_line()};
+Checkpoint checkpoint(const fs::path& directory, const input::Case& problem) {
+  return {output::checkpoint_path(directory, problem.name), version_line()};
 }
 
 /// Makes the folders. Says what the case goes on from, or deletes it if options.fresh.
-Prepared prepare(const Case& problem, const RunOptions& options) {
-  Prepared result{problem, OutputFolder(options.directory, problem.name), std::nullopt};
-  if (kept_checkpoints(problem, mechanics_models(), {}).empty()) return result;
+Prepared prepare(const fs::path& file, const input::Case& problem, const RunOptions& options) {
+  Prepared result{problem,
+                  output::OutputFolder(options.directory, problem.name, input_files(file, problem)),
+                  std::nullopt};
+  if (models::kept_checkpoints(problem, models::mechanics_models(), {}).empty()) return result;
   result.checkpoints.emplace(options.directory, problem.name);
   if (options.fresh) result.checkpoints->clear();
   const Checkpoint saved = checkpoint(options.directory, problem);
   const std::size_t steps = problem.load_path.size();
-  for (const Kept& kept : kept_checkpoints(problem, mechanics_models(), saved))
+  for (const models::Kept& kept :
+       models::kept_checkpoints(problem, models::mechanics_models(), saved))
     if (fs::exists(saved.path / kept.model))
-      fmt::print(stderr, "ciliaval: case \"{}\": {} {}, as `{}` says; --fresh starts anew\n",
-                 problem.name, kept.model,
-                 kept.finished_steps < steps
-                     ? fmt::format("goes on at step {}/{}", kept.finished_steps + 1, steps)
-                     : fmt::format("has solved all {} steps", steps),
-                 (saved.path / kept.model).string());
+      warn(fmt::format("case \"{}\": {} {}, as `{}` says; --fresh starts anew", problem.name,
+                       kept.model,
+                       kept.finished_steps < steps
+                           ? fmt::format("goes on at step {}/{}", kept.finished_steps + 1, steps)
+                           : fmt::format("has solved all {} steps", steps),
+                       (saved.path / kept.model).string()));
   return result;
 }
 
 /// Deletes the checkpoints, unless a model that keeps one has failed: says how to go on from there.
-void end_checkpoints(CheckpointFolder& folder, const CaseResult& result) {
+void end_checkpoints(output::CheckpointFolder& folder, const models::CaseResult& result) {
   bool needed = false;
-  for (const MechanicsRun& run : result.mechanics) {
+  for (const models::MechanicsRun& run : result.mechanics) {
     const fs::path file = folder.path() / run.model;
-    if (!fs::exists(file) || all_solved(run)) continue;
+    if (!fs::exists(file) || models::all_solved(run)) continue;
     needed = true;
-    fmt::print(stderr,
-               "ciliaval: case \"{0}\": the last state of {1} that converged is kept in `{2}`: run "
-               "the case again, with a larger models.{1}.max_iterations or max_cutbacks, to go on "
-               "from there, or with --fresh\n",
-               result.problem.name, run.model, file.string());
+    warn(fmt::format(
+        "case \"{0}\": the last state of {1} that converged is kept in `{2}`: run the case again, "
+        "with a larger models.{1}.max_iterations or max_cutbacks, to go on from there, or with "
+        "--fresh",
+        result.problem.name, run.model, file.string()));
   }
   if (!needed) folder.clear();
 }
@@ -83,49 +87,50 @@ void end_checkpoints(CheckpointFolder& folder, const CaseResult& result) {
 /// the results are as good without them.
 void write_case_report(const fs::path& folder) {
   report::Figures figures;
-  write_text(folder / "report.html", report::case_page(folder, figures));
+  output::write_file(folder / "report.html", report::case_page(folder, figures));
   if (!figures.failure().empty())
-    fmt::print(stderr, "ciliaval: report.html is without its figures: {}\n", figures.failure());
+    warn(fmt::format("report.html is without its figures: {}", figures.failure()));
 }
 
 ExitCode run_one(Prepared& prepared, const RunOptions& options) {
   ProgressLine line;
   const Progress progress = line.callback();
-  const Case& problem = prepared.problem;
-  OutputFolder& folder = prepared.folder;
-  const CaseResult result = run(problem, mechanics_models(), field_models(), progress,
-                                checkpoint(options.directory, problem));
-  const std::vector<Comparison> comparisons = compare_models(result);
-  const auto grid = field_grid(result, field_models(), progress);
-  const Provenance origin = provenance(options.command);
-  write_text(folder.path() / "case.toml", to_toml(problem));
-  write_results(result, comparisons, origin, folder.path());
-  fem::with_threads_of_all_ranks([&] {
-    tbb::parallel_invoke([&] { vtk::write_vtk(result, grid, origin, folder.path() / "vtk"); },
-                         [&] { write_case_report(folder.path()); });
-  });
+  const input::Case& problem = prepared.problem;
+  output::OutputFolder& folder = prepared.folder;
+  const models::CaseResult result =
+      models::run(problem, models::mechanics_models(), models::field_models(), progress,
+                  checkpoint(options.directory, problem));
+  const std::vector<models::Comparison> comparisons = models::compare_models(result);
+  const auto grid = output::field_grid(result, models::field_models(), progress);
+  const output::Provenance origin = output::provenance(options.command);
+  output::write_file(folder.path() / "case.toml", input::to_toml(problem));
+  output::write_results(result, comparisons, origin, folder.path());
+  tbb::parallel_invoke([&] { output::vtk::write_vtk(result, grid, origin, folder.path() / "vtk"); },
+                       [&] { write_case_report(folder.path()); });
   folder.commit();
-  print(table(result, comparisons));
+  line.clear();
+  print(output::table(result, comparisons));
   if (prepared.checkpoints) end_checkpoints(*prepared.checkpoints, result);
-  return all_solved(result) ? ExitCode::pass : ExitCode::solver;
+  return models::all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
 
 /// The part of the ranks beyond the first in a case: the solid and the potential, which share their
 /// work with them, and CalculiX, whose result they are given. For the potential each rank has the
 /// rods' deformations from its own solution, which is the same on all.
-void take_part(Case problem, const RunOptions& options) {
+void take_part(input::Case problem, const RunOptions& options) {
   std::erase_if(problem.fields, [](const std::string& id) { return id != "potential"; });
   if (problem.fields.empty())
     std::erase_if(problem.mechanics,
                   [](const std::string& id) { return id != "solid" && id != "calculix"; });
-  run(problem, mechanics_models(), field_models(), {}, checkpoint(options.directory, problem));
+  models::run(problem, models::mechanics_models(), models::field_models(), {},
+              checkpoint(options.directory, problem));
 }
 
 std::string title_of(const fs::path& file) {
   try {
     if (is_study_file(file)) return study::read_study(file).title;
-    if (is_bench_file(file)) return read_bench(file).title;
-    return read_case(file).title;
+    if (is_bench_file(file)) return sensing::read_bench(file).title;
+    return input::read_case(file).title;
   } catch (const Error&) {
     return "(cannot be read: see `ciliaval validate`)";
   }
@@ -152,14 +157,15 @@ std::string list_of_cases() {
 }  // namespace
 
 ExitCode run_cases(const std::vector<fs::path>& files, const RunOptions& options) {
-  const std::vector<Case> cases = read_cases(files);
+  const std::vector<input::Case> cases = read_cases(files);
   if (fem::rank() > 0) {
-    for (const Case& problem : cases) take_part(problem, options);
+    for (const input::Case& problem : cases) take_part(problem, options);
     return ExitCode::pass;  // rank 0 knows
   }
   std::vector<Prepared> prepared;
   prepared.reserve(cases.size());
-  for (const Case& problem : cases) prepared.push_back(prepare(problem, options));
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    prepared.push_back(prepare(files[i], cases[i], options));
   ExitCode code = ExitCode::pass;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
     const ExitCode one = run_one(prepared[i], options);
@@ -174,7 +180,7 @@ void validate_cases(const std::vector<fs::path>& all_files) {
   std::vector<fs::path> files;
   for (const fs::path& file : all_files) {
     if (is_bench_file(file)) {
-      const Bench bench = read_bench(file);
+      const sensing::Bench bench = sensing::read_bench(file);
       print(fmt::format("{}: the test bench is valid: {} loads at {} azimuths, {} draws\n",
                         file.string(), bench.problem.load_path.size(), bench.azimuths,
                         bench.draws));
@@ -191,7 +197,7 @@ void validate_cases(const std::vector<fs::path>& all_files) {
     print(fmt::format("{}: study \"{}\" is valid: {}, {} pairs of models\n", file.string(),
                       study.name, what, study.pairs.size()));
   }
-  const std::vector<Case> cases = read_cases(files);
+  const std::vector<input::Case> cases = read_cases(files);
   for (std::size_t i = 0; i < cases.size(); ++i)
     print(
         fmt::format("{}: case \"{}\" is valid: {} load steps, {} sensors, mechanics {}, fields "
@@ -202,18 +208,20 @@ void validate_cases(const std::vector<fs::path>& all_files) {
 
 void write_mesh(const fs::path& file, const fs::path& output,
                 std::optional<unsigned int> refinement, const std::string& command) {
-  print(write_case_mesh(read_case(file), output, refinement, command));
+  const input::Case problem = input::read_case(file);
+  output::check_outputs({output}, input_files(file, problem));
+  print(write_case_mesh(problem, output, refinement, command));
 }
 
 void list() {
   std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
-  for (const MechanicsEntry& entry : mechanics_models())
+  for (const models::MechanicsEntry& entry : models::mechanics_models())
     text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
   text += fmt::format(
       "  {:<10} {}\n", "(external)",
-      "[[models.external]]: centrelines and readings from CSV files (docs/referees.md)");
+      "[[models.external]]: centrelines and readings from CSV files (docs/guide/referees.md)");
   text += "\nField models\n";
-  for (const FieldEntry& entry : field_models())
+  for (const models::FieldEntry& entry : models::field_models())
     text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
   text +=
       "\nLoads\n"
@@ -227,8 +235,8 @@ void list() {
 }
 
 std::string version_line() {
-  const Provenance origin = provenance("");
+  const output::Provenance origin = output::provenance("");
   return fmt::format("ciliaval {} (git {})", origin.version, origin.git);
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 /// What the program returns.
 enum class ExitCode {
@@ -45,4 +45,4 @@ void list();
 /// "ciliaval 0.1.0 (git …)"
 std::string version_line();
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

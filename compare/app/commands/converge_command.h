@@ -6,7 +6,7 @@
 
 #include "compare/app/commands/commands.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 struct ConvergeOptions {
   unsigned int levels = 3;
@@ -23,4 +23,4 @@ struct ConvergeOptions {
 /// that can be refined. Throws InputError, FileError.
 ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions& options);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

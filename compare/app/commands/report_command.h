@@ -7,7 +7,7 @@
 
 #include "compare/app/commands/commands.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 struct ReportOptions {
   std::optional<std::filesystem::path> output;  ///< else report.html in the folder
@@ -20,4 +20,4 @@ struct ReportOptions {
 /// Throws InputError, FileError.
 ExitCode write_report(const std::filesystem::path& folder, const ReportOptions& options);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compare/app/commands/commands.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 struct SenseOptions {
   std::optional<std::filesystem::path> background;
@@ -18,6 +19,7 @@ struct SenseOptions {
   std::optional<std::filesystem::path> csv;
   std::optional<std::filesystem::path> plot;  ///< of a bench, an SVG file
   std::string command;                        ///< the command line, for the provenance
+  std::vector<std::string> given;             ///< names of the options on the command line
 };
 
 /// `ciliaval sense`: readings of a case, or without a file of readings a test bench. Throws
@@ -26,14 +28,14 @@ ExitCode sense(const std::filesystem::path& file, const std::filesystem::path& r
                const SenseOptions& options);
 
 /// `ciliaval sense CASE READINGS`: the load and its direction, with confidence intervals, from each
-/// reading of the case's sensors (compare/sense/readings.h), to stdout. Returns `solver` if the
+/// reading of the case's sensors (compare/sensing/readings.h), to stdout. Returns `solver` if the
 /// least squares fails at a reading, `undecided` if no reading gives a load. Throws InputError,
 /// SolverError, FileError.
 ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem::path& readings,
                         const SenseOptions& options);
 
-/// `ciliaval sense NAME.sense.toml`: simulates the test bench (compare/sense/bench.h), to stdout.
+/// `ciliaval sense NAME.sense.toml`: simulates the test bench (compare/sensing/bench.h), to stdout.
 /// Throws InputError, SolverError, FileError.
 ExitCode sense_bench(const std::filesystem::path& file, const SenseOptions& options);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

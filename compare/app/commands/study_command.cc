@@ -6,26 +6,26 @@
 #include <algorithm>
 #include <system_error>
 
-#include "compare/output/provenance.h"
+#include "compare/app/case_files.h"
+#include "compare/app/terminal.h"
 #include "compare/models/registry.h"
-#include "compare/output/results.h"
+#include "compare/output/output_file.h"
+#include "compare/output/provenance.h"
 #include "compare/study/report.h"
 #include "compare/study/sweep.h"
 #include "compare/study/tolerances.h"
-#include "compare/app/terminal.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr const char* journal_name = "points.journal";
 
-/// DIRECTORY/NAME, made if it is not there. Throws FileError if something else lies there.
-fs::path make_folder(const fs::path& directory, const std::string& name) {
-  fs::path folder = directory / name;
+/// Makes the study's folder if it is not there. Throws FileError if something else lies there.
+void make_folder(const fs::path& folder) {
   try {
     fs::create_directories(folder);
     if (!fs::exists(folder / journal_name) && !fs::is_empty(folder))
@@ -39,7 +39,6 @@ fs::path make_folder(const fs::path& directory, const std::string& name) {
                     "-o DIR",
                     folder.string(), error.code().message()));
   }
-  return folder;
 }
 
 /// Says what the study goes on from. Throws FileError if the journal is another's.
@@ -75,9 +74,10 @@ study::StudyResult solve(const study::Study& study, study::Journal& journal) {
   if (study.optimisation)
     return {study,
             {},
-            study::run_optimisation(study, journal, mechanics_models(), field_models(),
-                                    line.callback())};
-  return study::run_study(study, journal, mechanics_models(), field_models(), line.callback());
+            study::run_optimisation(study, journal, models::mechanics_models(),
+                                    models::field_models(), line.callback())};
+  return study::run_study(study, journal, models::mechanics_models(), models::field_models(),
+                          line.callback());
 }
 
 ExitCode exit_code(const study::StudyResult& result) {
@@ -102,18 +102,22 @@ ExitCode run_study(const fs::path& file, const StudyOptions& options) {
         "`ciliaval study` runs on one rank, its points on all cores: start it without "
         "mpirun");
   const study::Study study = study::read_study(file);
-  const fs::path folder = make_folder(options.directory, study.name);
+  const fs::path folder = options.directory / study.name;
+  std::vector<fs::path> inputs = input_files(file, study.base);
+  inputs.push_back(folder / journal_name);
+  output::check_outputs({options.json}, inputs);
+  make_folder(folder);
   study::Journal journal(folder / journal_name, options.fresh);
   open_journal(study, folder, journal);
   const study::StudyResult result = solve(study, journal);
-  const std::string json = study::json(result, provenance(options.command));
-  if (!study.parameters.empty()) replace_text(folder / "study.csv", study::csv(result));
+  const std::string json = study::json(result, output::provenance(options.command));
+  if (!study.parameters.empty()) output::write_file(folder / "study.csv", study::csv(result));
   if (!study.tolerances.empty())
-    replace_text(folder / "tolerances.csv", study::tolerance_csv(result));
+    output::write_file(folder / "tolerances.csv", study::tolerance_csv(result));
   if (result.optimum)
-    replace_text(folder / "optimum.csv", study::optimum_csv(study, *result.optimum));
-  replace_text(folder / "study.json", json);
-  if (options.json) replace_text(*options.json, json);
+    output::write_file(folder / "optimum.csv", study::optimum_csv(study, *result.optimum));
+  output::write_file(folder / "study.json", json);
+  if (options.json) output::write_file(*options.json, json);
   print(study::text(result) + study::tolerance_text(result) +
         (result.optimum ? study::optimum_text(study, *result.optimum) : "") +
         fmt::format("\nResults: {}\n", folder.string()));
@@ -122,4 +126,4 @@ ExitCode run_study(const fs::path& file, const StudyOptions& options) {
   return exit_code(result);
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

@@ -7,7 +7,7 @@
 
 #include "compare/app/commands/commands.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::app::commands {
 
 struct StudyOptions {
   std::filesystem::path directory = "results";
@@ -17,10 +17,10 @@ struct StudyOptions {
 };
 
 /// `ciliaval study`: computes the outputs of each pair of models at each point of a parameter study
-/// (docs/study.md), from where an earlier call was stopped; prints tables, writes
+/// (docs/guide/studies.md), from where an earlier call was stopped; prints tables, writes
 /// DIRECTORY/NAME/study.csv, study.json and a plot for each output, the plots last: without
 /// gnuplot, everything else is there. Returns `solver` if every point failed. Throws InputError,
 /// FileError.
 ExitCode run_study(const std::filesystem::path& file, const StudyOptions& options);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::app::commands

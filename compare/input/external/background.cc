@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input::external {
 namespace {
 
 using Kind = CsvColumn::Kind;
@@ -61,6 +61,16 @@ void require_field_or_change(const CsvTable& table, std::size_t field, std::size
                "the undeformed cilium");
 }
 
+void require_field_range(const CsvTable& table, std::size_t first, Faults& faults) {
+  constexpr double largest = 100;  // T: more than any magnet makes
+  for (std::size_t i = 0; i < table.rows.size(); ++i)
+    if (const double read = row_vector(table, first, i).cwiseAbs().maxCoeff(); read > largest)
+      faults.add(table.rows[i],
+                 fmt::format("a field of {:.3g} T was read; fields up to {:g} T are taken: is the "
+                             "unit in the header right?",
+                             read, largest));
+}
+
 double apart(double a, double b) {
   return std::abs(std::remainder(a - b, turn));
 }
@@ -74,6 +84,7 @@ Background::Background(std::string_view text, std::size_t sensors, Faults& fault
                                           {"sensor", Kind::word, quantity::number, false}}};
   const CsvTable table = read_csv(text, columns, {}, faults);
   if (!faults.empty()) return;
+  require_field_range(table, 1, faults);
   const bool for_all = !table.has(4);
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const auto sensor = sensor_of(table, 4, i, sensors, faults);
@@ -114,4 +125,4 @@ std::optional<Vector3> Background::at(double azimuth, std::size_t sensor) const 
   return (1 - t) * last.B + t * next.B;
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input::external

@@ -9,7 +9,7 @@
 #include "problem/types.h"
 
 /// What the CSV files of readings have in common.
-namespace ciliaval::compare {
+namespace ciliaval::compare::input::external {
 
 /// Rows of Bx, By, Bz in columns first … first + 2.
 Vector3 row_vector(const CsvTable& table, std::size_t first, std::size_t row);
@@ -29,6 +29,9 @@ std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns);
 /// on (ΔB), and no others of the six.
 void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
                              Faults& faults);
+
+/// Adds a fault for each row with a component beyond ±100 T in the three columns from `first` on.
+void require_field_range(const CsvTable& table, std::size_t first, Faults& faults);
 
 /// Distance of two azimuths on the circle, rad.
 double apart(double a, double b);
@@ -53,4 +56,4 @@ class Background {
   std::vector<std::vector<Row>> rows_;  ///< of each sensor, by azimuth
 };
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input::external

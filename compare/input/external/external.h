@@ -9,7 +9,7 @@
 #include "problem/centreline.h"
 #include "problem/types.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input::external {
 
 /// Readings at one time: a vector for each sensor, T; none where it is not known.
 struct ExternalReading {
@@ -18,7 +18,7 @@ struct ExternalReading {
 };
 
 /// What another program or a test bench found out about the cilium of the case, as the tables
-/// [[models.external]] and the CSV files that they name state it (docs/referees.md).
+/// [[models.external]] and the CSV files that they name state it (docs/guide/referees.md).
 struct ExternalModel {
   std::string name;                                     ///< a plain file name, not that of a model
   std::vector<std::filesystem::path> centreline_files;  ///< one for each load step, or none
@@ -33,4 +33,4 @@ struct ExternalModel {
   std::vector<ExternalReading> readings;      ///< one for each load step, or none
 };
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input::external

@@ -9,13 +9,13 @@
 #include <numbers>
 #include <utility>
 
-#include "compare/input/external/background.h"
 #include "compare/input/csv.h"
+#include "compare/input/external/background.h"
 #include "problem/curvature.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input::external {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,7 +87,7 @@ void check_points(const Points& points, const CsvTable& table, double L, Faults&
 std::vector<std::size_t> kinks(const std::vector<double>& S, const Cilium& cilium,
                                const Load& load) {
   std::vector<double> places = cilium.interfaces();
-  if (const auto* section = std::get_if<SectionLoad>(&load)) places.push_back(section->arclength);
+  if (const auto section = load.as<SectionLoad>()) places.push_back(section->arclength);
   std::vector<std::size_t> result{0, S.size() - 1};
   for (const double place : places)
     for (std::size_t i = 0; i < S.size(); ++i)
@@ -372,4 +372,4 @@ void read_external_files(ExternalModel& model, const Cilium& cilium, const LoadP
   if (!messages.empty()) throw InputError(messages);
 }
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input::external

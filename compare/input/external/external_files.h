@@ -7,10 +7,10 @@
 #include "problem/cilium.h"
 #include "problem/load.h"
 
-namespace ciliaval::compare {
+namespace ciliaval::compare::input::external {
 
 /// Reads the files that the model names, which are as many centrelines as load steps or none, for
-/// this cilium, path and number of sensors (docs/referees.md): fills in centrelines, remarks,
+/// this cilium, path and number of sensors (docs/guide/referees.md): fills in centrelines, remarks,
 /// undeformed and readings.
 ///
 /// Centrelines are interpolated by cubic polynomials between the points; without a column S it is
@@ -22,4 +22,4 @@ namespace ciliaval::compare {
 void read_external_files(ExternalModel& model, const Cilium& cilium, const LoadPath& path,
                          std::size_t sensors);
 
-}  // namespace ciliaval::compare
+}  // namespace ciliaval::compare::input::external

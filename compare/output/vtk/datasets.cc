@@ -22,7 +22,7 @@
 
 #include "compare/output/results.h"
 
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 namespace {
 
 /// A named array that grows tuple by tuple; its unit goes to the data set's field data.
@@ -77,7 +77,7 @@ vtkNew<vtkUnsignedCharArray> mask(const std::string& name) {
 }
 
 /// A field (T) and its mask: 0 where there is no value, which is then written as zero.
-void attach_masked(vtkDataSet& data, const std::string& name, const AtSensors& values) {
+void attach_masked(vtkDataSet& data, const std::string& name, const models::AtSensors& values) {
   Column column(name, 3, "T");
   const vtkNew<vtkUnsignedCharArray> valid = mask("valid_" + name);
   for (const std::optional<Vector3>& value : values) {
@@ -298,7 +298,7 @@ vtkSmartPointer<vtkPolyData> rod_polyline(const Cilium& cilium, const Centreline
 }
 
 vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& centreline,
-                                     analytic::PushForward push_forward) {
+                                     analytic::sources::PushForward push_forward) {
   constexpr int slices = 64;
   const std::vector<double> ends = cilium.interfaces();
   std::vector<Vector3> positions;
@@ -311,7 +311,7 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
       const double S = ends[i] + k * dS;
       const CentrelinePoint middle = centreline.at(S + dS / 2);
       positions.push_back(middle.position);
-      const Vector3 axis = push_forward == analytic::PushForward::F
+      const Vector3 axis = push_forward == analytic::sources::PushForward::F
                                ? Vector3(centreline.at(S + dS).position - centreline.at(S).position)
                                : Vector3(middle.normal() * dS);
       moment.add(Vector3(cilium.area() * M * axis));
@@ -322,9 +322,9 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
   return data;
 }
 
-vtkSmartPointer<vtkPolyData> sensors(const CaseResult& result, std::size_t step) {
+vtkSmartPointer<vtkPolyData> sensors(const models::CaseResult& result, std::size_t step) {
   auto data = vertices(result.problem.sensors);
-  for (const FieldRun& run : result.fields) {
+  for (const models::FieldRun& run : result.fields) {
     if (!run.steps[step] || !run.steps[step]->any()) continue;
     const std::string pair = run.mechanics + "_" + run.field;
     attach_masked(*data, "B_" + pair, run.steps[step]->B);
@@ -347,4 +347,4 @@ vtkSmartPointer<vtkImageData> field_image(const FieldGrid& grid, const FieldGrid
   return image;
 }
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

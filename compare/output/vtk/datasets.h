@@ -8,12 +8,12 @@
 
 #include <cstddef>
 
-#include "compare/output/field_grid.h"
 #include "compare/models/run.h"
+#include "compare/output/field_grid.h"
 
 /// Results as VTK data sets, SI units, all floating-point arrays Float64. Every data set carries
 /// the units of its arrays in the field data `units` ("displacement: m").
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 
 /// The body on its undeformed mesh: triquadratic hexahedra on 27 points each of its own, so that
 /// fields may jump between cells. Point data `displacement` x − X (Warp By Vector), `J`,
@@ -29,11 +29,11 @@ vtkSmartPointer<vtkPolyData> rod_polyline(const Cilium& cilium, const Centreline
 /// The line model's dipoles: each magnetic segment in 64 slices of equal arc length, each a vertex
 /// at its middle with `moment` A·M·Δr (push-forward F) or A·M·d₃ ΔS (R), A·m².
 vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& centreline,
-                                     analytic::PushForward push_forward);
+                                     analytic::sources::PushForward push_forward);
 
 /// The sensors as vertices with `B` and `dB` of every pair of models at a step, named
 /// `B_elastica_line`, and a mask `valid_B_elastica_line` that is 0 where there is no value.
-vtkSmartPointer<vtkPolyData> sensors(const CaseResult& result, std::size_t step);
+vtkSmartPointer<vtkPolyData> sensors(const models::CaseResult& result, std::size_t step);
 
 /// A scalar potential on its octree: triquadratic hexahedra on 27 points each of its own, so that
 /// the fields may jump between leaves. Point data `psi`, `H` = −∇ψ and `B` = μ₀(μ_r H + m) with the
@@ -43,4 +43,4 @@ vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh);
 /// B on a grid, with the mask `valid`.
 vtkSmartPointer<vtkImageData> field_image(const FieldGrid& grid, const FieldGrid::Step& step);
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

@@ -17,10 +17,11 @@
 #include <algorithm>
 #include <functional>
 
+#include "compare/output/output_file.h"
 #include "compare/output/results.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 namespace {
 
 vtkSmartPointer<vtkXMLWriter> writer_for(const vtkDataSet& data) {
@@ -99,10 +100,10 @@ void write_series(const std::filesystem::path& folder, const std::string& series
       entries += fmt::format("    <DataSet timestep=\"{}\" file=\"{}\"/>\n", times[i], file);
   }
   if (entries.empty()) return;
-  write_text(folder / (series + ".pvd"),
+  write_file(folder / (series + ".pvd"),
              "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n"
              "  <Collection>\n" +
                  entries + "  </Collection>\n</VTKFile>\n");
 }
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

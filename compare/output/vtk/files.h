@@ -10,7 +10,7 @@
 
 class vtkDataSet;
 
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 
 /// `.vtu`, `.vtp` or `.vti` without the dot: the XML format of this kind of data set.
 std::string extension(const vtkDataSet& data);
@@ -38,4 +38,4 @@ void write_series(const std::filesystem::path& folder, const std::string& series
 /// The paraview.simple script that opens every series beside it.
 extern const char* const open_script;
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

@@ -17,7 +17,7 @@
 
 #include "meshes/gmsh/gmsh_mesh.h"
 
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 namespace {
 
 /// The lexicographic number of each of a cell's n points in VTK's order.
@@ -79,9 +79,9 @@ vtkSmartPointer<vtkUnstructuredGrid> mesh_grid(const meshes::MeshNodes& mesh,
   std::vector<std::string> names;
   for (const Segment& segment : cilium.segments) names.push_back(segment.name);
   add_names(*grid, "materials", names);
-  add_names(*grid, "boundaries", meshes::boundary_names());
+  add_names(*grid, "boundaries", meshes::gmsh::boundary_names());
   add_names(*grid, "units", {"points: m"});
   return grid;
 }
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

@@ -7,7 +7,7 @@
 #include "meshes/mesh_nodes.h"
 #include "problem/cilium.h"
 
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 
 /// A mesh as it is computed on: triquadratic hexahedra and, for the boundary, biquadratic
 /// quadrilaterals (threshold by `BoundaryIDs`). Cell data: `MaterialIDs`, the index of the segment,
@@ -15,4 +15,4 @@ namespace ciliaval::compare::vtk {
 /// the names by id. In metres.
 vtkSmartPointer<vtkUnstructuredGrid> mesh_grid(const meshes::MeshNodes& mesh, const Cilium& cilium);
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

@@ -17,12 +17,13 @@
 #include <system_error>
 #include <vector>
 
+#include "compare/output/output_file.h"
 #include "compare/output/results.h"
 #include "compare/output/vtk/datasets.h"
 #include "compare/output/vtk/files.h"
 #include "problem/error.h"
 
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 namespace {
 
 /// The files of a folder, each part of a series. Several threads may add files.
@@ -47,7 +48,7 @@ class Output {
   void finish() const {
     for (const auto& [series, kind] : series_)
       write_series(folder_, series, kind, series_times(path_));
-    write_text(folder_ / "open.py", open_script);
+    write_file(folder_ / "open.py", open_script);
   }
 
  private:
@@ -59,8 +60,8 @@ class Output {
 };
 
 /// Whether any pair of models has B at any sensor.
-bool any_field(const CaseResult& result, std::size_t step) {
-  return std::any_of(result.fields.begin(), result.fields.end(), [&](const FieldRun& run) {
+bool any_field(const models::CaseResult& result, std::size_t step) {
+  return std::any_of(result.fields.begin(), result.fields.end(), [&](const models::FieldRun& run) {
     return run.steps[step] && run.steps[step]->any();
   });
 }
@@ -75,9 +76,9 @@ void write_in_order(const std::vector<std::function<void()>>& files) {
 
 }  // namespace
 
-void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
+void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>& grid,
                const Provenance& provenance, const std::filesystem::path& folder) {
-  const Case& problem = result.problem;
+  const input::Case& problem = result.problem;
   Output output(folder, provenance, problem.load_path);
   std::vector<std::function<void()>> files;
   // `make` gives the data set, or none.
@@ -88,7 +89,7 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
   };
   const std::size_t steps = problem.load_path.size();
   for (std::size_t step = 0; step < steps; ++step)
-    for (const MechanicsRun& run : result.mechanics) {
+    for (const models::MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
       if (deformation && deformation->body)
         add("body_" + run.model, step, [&body = *deformation->body] { return solid_grid(body); });
@@ -100,13 +101,13 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
             const auto B = grid->sample(step);
             return B ? field_image(*grid, *B) : nullptr;
           });
-    for (const FieldRun& run : result.fields)
+    for (const models::FieldRun& run : result.fields)
       if (run.steps[step] && run.steps[step]->mesh)
         add("field_" + run.mechanics + "_" + run.field, step,
             [&mesh = *run.steps[step]->mesh] { return octree_grid(mesh); });
   }
   for (std::size_t step = 0; step < steps; ++step) {
-    for (const MechanicsRun& run : result.mechanics) {
+    for (const models::MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
       if (!deformation) continue;
       add("centreline_" + run.model, step, [&problem, &centreline = deformation->centreline] {
@@ -122,4 +123,4 @@ void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
   output.finish();
 }
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

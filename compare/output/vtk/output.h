@@ -4,16 +4,16 @@
 #include <filesystem>
 #include <optional>
 
+#include "compare/models/run.h"
 #include "compare/output/field_grid.h"
 #include "compare/output/provenance.h"
-#include "compare/models/run.h"
 
-namespace ciliaval::compare::vtk {
+namespace ciliaval::compare::output::vtk {
 
 /// Writes all that can be drawn into a folder, which it makes: for each converged step the bodies,
 /// centrelines and dipoles of every mechanics model, the sensors and the field on the grid; one
 /// `.pvd` for each series; `open.py`, which opens them in ParaView. Throws FileError.
-void write_vtk(const CaseResult& result, const std::optional<FieldGrid>& grid,
+void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>& grid,
                const Provenance& provenance, const std::filesystem::path& folder);
 
-}  // namespace ciliaval::compare::vtk
+}  // namespace ciliaval::compare::output::vtk

@@ -11,7 +11,8 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::discretisation {
+using namespace material;
 namespace {
 
 using ElementVector = Eigen::Matrix<double, element_dofs, 1>;
@@ -45,7 +46,7 @@ Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(
     const SolidElement& element, const dealii::Vector<double>& displacement) {
   const NodalVectors u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, 3, 3 * element_points> F;
-  // Eigen's blocked product, meant for large matrices, takes a fifth more of internal_forces().
+  // Eigen's blocked product is meant for large matrices and slower here.
   F = u.transpose().lazyProduct(gradients(element));
   for (Eigen::Index q = 0; q < element_points; ++q) F.middleCols<3>(3 * q) += Matrix3::Identity();
   return F;
@@ -225,4 +226,4 @@ void project_pressure(const SolidSpace& space, SolidState& state) {
   }
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::discretisation

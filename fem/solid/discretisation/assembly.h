@@ -13,7 +13,7 @@
 
 #include "fem/solid/discretisation/space.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::discretisation {
 
 /// The pressure equation of one element at a state: with R_p = ∫ ψ (J − 1 − p/K) dV,
 /// G = ∂R_p/∂u = ∫ ψ ⊗ (J F⁻ᵀ : ∇N) dV and C = ∫ ψψᵀ/K dV, a Newton step Δu of the displacement
@@ -27,8 +27,8 @@ struct PressureEquation {
 /// Internal forces of a state. Rows of constrained degrees of freedom are kept: they are the
 /// reactions.
 struct InternalForces {
-  dealii::Vector<double> forces;  ///< ∫ P : ∇N dV, N
-  dealii::Vector<double> condensed;  ///< forces + Gᵀ C⁻¹ R_p: what remains when p is eliminated, N
+  dealii::Vector<double> forces;     ///< ∫ P : ∇N dV, N
+  dealii::Vector<double> condensed;  ///< forces + Gᵀ C⁻¹ R_p: with p eliminated, N
   std::vector<PressureEquation> pressure;
 };
 
@@ -60,4 +60,4 @@ void advance(const SolidSpace& space, const InternalForces& internal,
 /// linear functions. Makes a state from a displacement alone.
 void project_pressure(const SolidSpace& space, SolidState& state);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::discretisation

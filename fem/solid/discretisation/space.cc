@@ -16,7 +16,8 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::discretisation {
+using namespace material;
 namespace {
 
 using dealii::types::global_dof_index;
@@ -172,4 +173,4 @@ void prescribe(const SolidSpace& space, std::span<const DirichletCondition> cond
       state.displacement[dof] = factor * value;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::discretisation

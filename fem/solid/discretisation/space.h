@@ -18,7 +18,7 @@
 #include "fem/solid/material/hyperelastic.h"
 #include "problem/types.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::discretisation {
 
 /// The element: displacement in Q2, pressure discontinuous and linear in X on each cell (Q2–P1,
 /// which satisfies the inf–sup condition). The pressure lives in the element alone and is
@@ -36,7 +36,7 @@ using PressureMatrix = Eigen::Matrix<double, element_pressures, element_pressure
 struct SolidElement {
   dealii::Triangulation<3>::active_cell_iterator cell;
   std::array<dealii::types::global_dof_index, element_dofs> dofs;
-  Hyperelastic material;
+  material::Hyperelastic material;
   Eigen::Matrix<double, element_nodes, 3> nodes;  ///< X of the nodes, m: row a
   Vector3 centre;                                 ///< origin of the pressure's linear basis, m
   double size = 1;                                ///< its unit of length, m
@@ -62,7 +62,7 @@ class SolidSpace {
  public:
   /// `materials[i]` is that of the cells with material id i. Throws InputError if one is missing.
   SolidSpace(const dealii::Triangulation<3>& triangulation, const dealii::Mapping<3>& mapping,
-             std::span<const Hyperelastic> materials);
+             std::span<const material::Hyperelastic> materials);
 
   const dealii::DoFHandler<3>& dof_handler() const { return dof_handler_; }
   const dealii::Mapping<3>& mapping() const { return mapping_; }
@@ -78,7 +78,7 @@ class SolidSpace {
   SolidState undeformed() const;
 
  private:
-  void initialize(SolidElement& element, std::span<const Hyperelastic> materials) const;
+  void initialize(SolidElement& element, std::span<const material::Hyperelastic> materials) const;
 
   const dealii::Mapping<3>& mapping_;
   dealii::FE_Q<3> scalar_element_;
@@ -108,4 +108,4 @@ dealii::AffineConstraints<double> increment_constraints(
 void prescribe(const SolidSpace& space, std::span<const DirichletCondition> conditions,
                SolidState& state, double factor = 1);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::discretisation

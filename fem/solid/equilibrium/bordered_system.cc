@@ -5,9 +5,9 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::equilibrium {
 
-void Border::prepare(const dealii::Vector<double>& u, const Solve& solve) {
+void BorderedSystem::prepare(const dealii::Vector<double>& u, const Solve& solve) {
   gradient_.reinit(u.size());
   force_.condition(u, &gradient_);
   constraints_.set_zero(gradient_);
@@ -22,10 +22,11 @@ void Border::prepare(const dealii::Vector<double>& u, const Solve& solve) {
     throw SolverError("the displacement does not depend on the force that is sought");
 }
 
-double Border::complete(const dealii::Vector<double>& u, dealii::Vector<double>& increment) const {
+double BorderedSystem::complete(const dealii::Vector<double>& u,
+                                dealii::Vector<double>& increment) const {
   const double amplitude = -(gap(u) + gradient_ * increment) / pivot_;
   increment.add(amplitude, response_);
   return amplitude;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

@@ -8,23 +8,23 @@
 
 #include "fem/solid/equilibrium/newton.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::equilibrium {
 
-/// The border of a tangent K by a force F f(u) of unknown amplitude F and its condition g(u) = 0:
+/// The tangent K bordered by a force F f(u) of unknown amplitude F and its condition g(u) = 0:
 ///
 ///   [ K      −f ] [Δu]   [ r]
 ///   [ ∂g/∂u   0 ] [ΔF] = [−g],   r = F f − internal,
 ///
 /// solved by block elimination with the factorisation of K: b = K⁻¹ f once for each tangent, and
 /// for each right-hand side a = K⁻¹ r, ΔF = −(g + ∂g/∂u·a)/(∂g/∂u·b), Δu = a + ΔF b.
-class Border {
+class BorderedSystem {
  public:
   /// x = K⁻¹ rhs, the constrained components of both zero.
   using Solve =
       std::function<void(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution)>;
 
-  /// The force must outlive the border.
-  Border(UnknownForce& force, const dealii::AffineConstraints<double>& constraints)
+  /// The force must outlive the system.
+  BorderedSystem(loads::UnknownForce& force, const dealii::AffineConstraints<double>& constraints)
       : force_(force), constraints_(constraints) {}
 
   /// Takes the tangent at the displacement u, whose inverse is `solve`. Throws SolverError if the
@@ -39,11 +39,11 @@ class Border {
   void advance(double amplitude_increment) { force_.amplitude += amplitude_increment; }
 
  private:
-  UnknownForce& force_;
+  loads::UnknownForce& force_;
   const dealii::AffineConstraints<double>& constraints_;
   dealii::Vector<double> gradient_;  ///< ∂g/∂u
   dealii::Vector<double> response_;  ///< b
   double pivot_ = 0;                 ///< ∂g/∂u·b
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

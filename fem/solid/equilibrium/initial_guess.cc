@@ -12,7 +12,8 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::equilibrium {
+using namespace discretisation;
 namespace {
 
 using PlaneNodes = Eigen::Matrix<double, 2, 9>;
@@ -43,10 +44,10 @@ struct SectionPoint {
 /// Finds points in the elements of an extruded mesh: the layer by Z, the cell by (X, Y).
 class Locator {
  public:
-  Locator(const SolidSpace& space, const Fibres& fibres) {
-    for (std::size_t e = 0; e < fibres.cells().size(); ++e) {
-      Layer& layer = layers_[fibres.cells()[e].bottom];
-      layer.top = fibres.cells()[e].top;
+  Locator(const SolidSpace& space, const ExtrudedQuadrature& quadrature) {
+    for (std::size_t e = 0; e < quadrature.cells().size(); ++e) {
+      Layer& layer = layers_[quadrature.cells()[e].bottom];
+      layer.top = quadrature.cells()[e].top;
       layer.elements.push_back(e);
       layer.sections.emplace_back(space.elements()[e].nodes.topLeftCorner<9, 2>().transpose());
     }
@@ -137,7 +138,7 @@ SolidState filled(const SolidSpace& space, const Displacement& displacement,
   return state;
 }
 
-/// The section of a rod at S, and what uniaxial stress makes of it.
+/// The section of a rod at S, deformed by uniaxial stress.
 struct RodSection {
   CentrelinePoint point;
   Eigen::Vector2d curvature;  ///< about d₁, d₂, 1/m
@@ -163,9 +164,9 @@ struct RodSection {
 
 }  // namespace
 
-SolidState transferred(const SolidSpace& from, const Fibres& fibres, const SolidState& state,
-                       const SolidSpace& to) {
-  const Locator locator(from, fibres);
+SolidState interpolated(const SolidSpace& from, const ExtrudedQuadrature& quadrature,
+                        const SolidState& state, const SolidSpace& to) {
+  const Locator locator(from, quadrature);
   const auto displacement = [&](const Vector3& X, std::size_t) -> Vector3 {
     const auto [e, local] = locator.find(X);
     const auto u = nodal_displacements(from.elements()[e], state.displacement);
@@ -183,7 +184,7 @@ SolidState transferred(const SolidSpace& from, const Fibres& fibres, const Solid
   return filled(to, displacement, pressure);
 }
 
-SolidState lifted(const Centreline& rod, const Cilium& cilium, const SolidSpace& to) {
+SolidState rod_guess(const Centreline& rod, const Cilium& cilium, const SolidSpace& to) {
   std::map<double, RodSection> sections;  // one for each height of nodes or Gauss points
   const auto section = [&](double Z) -> const RodSection& {
     return sections.try_emplace(Z, rod, Z).first->second;
@@ -201,4 +202,4 @@ SolidState lifted(const Centreline& rod, const Cilium& cilium, const SolidSpace&
   return filled(to, displacement, pressure);
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

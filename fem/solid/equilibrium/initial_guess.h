@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include "fem/solid/fibres.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/loads/height_loads.h"
 #include "problem/centreline.h"
 #include "problem/cilium.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::equilibrium {
 
-/// First guesses of a state of the extruded solid: what Newton's method starts from.
+/// Initial guesses of Newton's method for a state of the extruded solid.
 
 /// The state of one mesh as a state of another of the same cilium: displacements interpolated at
 /// the nodes, pressures projected in each element. Where the sections differ at the mantle, the
 /// coarse cells' polynomials are continued. Throws InputError if a node lies outside `from`'s
 /// layers or far outside its section.
-SolidState transferred(const SolidSpace& from, const Fibres& fibres, const SolidState& state,
-                       const SolidSpace& to);
+discretisation::SolidState interpolated(const discretisation::SolidSpace& from,
+                                        const discretisation::ExtrudedQuadrature& quadrature,
+                                        const discretisation::SolidState& state,
+                                        const discretisation::SolidSpace& to);
 
 /// A rod's state as a state of the solid. Sections stay plane but contract as in the bending of a
 /// bar (Love, Mathematical Theory of Elasticity, art. 88): with κ_a, a = 1, 2, the material
@@ -25,8 +27,9 @@ SolidState transferred(const SolidSpace& from, const Fibres& fibres, const Solid
 ///   a₁ = ν [κ₂ (X² − Y²)/2 − κ₁ XY],   a₂ = ν [κ₂ XY + κ₁ (X² − Y²)/2]   (less ν (|r′| − 1) (X,
 ///   Y)), p = E ε/3,
 ///
-/// which is what uniaxial stress along the fibres makes of a section. The contraction fades out
+/// as uniaxial stress along the axis deforms a section. The contraction fades out
 /// within half a radius of the clamped base. The base itself stays where it is.
-SolidState lifted(const Centreline& rod, const Cilium& cilium, const SolidSpace& to);
+discretisation::SolidState rod_guess(const Centreline& rod, const Cilium& cilium,
+                                     const discretisation::SolidSpace& to);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

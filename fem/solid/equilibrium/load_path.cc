@@ -8,9 +8,11 @@
 #include <variant>
 
 #include "fem/solid/loads/dead_forces.h"
-#include "fem/solid/probe.h"
+#include "fem/solid/loads/probe.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::equilibrium {
+using namespace discretisation;
+using namespace loads;
 namespace {
 
 /// What is left of a step that failed.
@@ -42,48 +44,9 @@ std::string with_unit(const Load& load) {
 bool same_place(const Load& a, const Load& b) {
   if (type(a) != type(b) || azimuth(a) != azimuth(b)) return false;
   if (contact_height(a)) return contact_height(a) == contact_height(b);
-  if (const auto* section = std::get_if<SectionLoad>(&a))
-    return section->arclength == std::get<SectionLoad>(b).arclength;
+  if (const auto section = a.as<SectionLoad>())
+    return section->arclength == b.as<SectionLoad>()->arclength;
   return true;
-}
-
-Load acting(const Load& load, double applied_force) {
-  if (const auto* probe = std::get_if<ProbeLoad>(&load))
-    return ContactLoad{applied_force, probe->height, probe->azimuth};
-  return load;
-}
-
-SpreadLoad spread_load(const Load& load, double area, double kernel_width) {
-  SpreadLoad result;
-  result.direction = direction(load);
-  if (const auto* contact = std::get_if<ContactLoad>(&load))
-    result.per_height = contact_density(contact->force, area, contact->height, kernel_width);
-  if (const auto* flow = std::get_if<FlowLoad>(&load))
-    result.per_height = flow_density(flow->force_per_height, area);
-  if (const auto* dead = std::get_if<DeadLoad>(&load))
-    result.per_volume = dead->force_per_length / area;
-  return result;
-}
-
-ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, const Load& load,
-                               double kernel_width) {
-  const SpreadLoad spread = spread_load(load, fibres.area(), kernel_width);
-  if (const auto* section = std::get_if<SectionLoad>(&load))
-    return dead_forces(
-        section_force(space, fibres, section->force, section->arclength, spread.direction));
-  if (!spread.per_height) {
-    const auto b = [&spread](const Vector3&) -> Vector3 {
-      return spread.per_volume * spread.direction;
-    };
-    return dead_forces(body_force(space, b));
-  }
-  return [&space, &fibres, spread](const dealii::Vector<double>& displacement,
-                                   dealii::Vector<double>& forces,
-                                   const dealii::AffineConstraints<double>& constraints,
-                                   dealii::SparseMatrix<double>* matrix) {
-    add_fibre_forces(space, fibres, *spread.per_height, spread.direction, displacement, forces,
-                     constraints, matrix);
-  };
 }
 
 struct LoadPathSolver::Attempt {
@@ -94,13 +57,14 @@ struct LoadPathSolver::Attempt {
   Equilibrium equilibrium;
 };
 
-LoadPathSolver::LoadPathSolver(const SolidSpace& space, const Fibres& fibres, NewtonSource newton,
-                               const Load& first, LoadPathOptions options, FirstGuess first_guess)
+LoadPathSolver::LoadPathSolver(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                               NewtonSource newton, const Load& first, LoadPathOptions options,
+                               InitialGuessSource initial_guess)
     : space_(space),
-      fibres_(fibres),
+      quadrature_(quadrature),
       newton_(std::move(newton)),
       options_(options),
-      first_guess_(std::move(first_guess)),
+      initial_guess_(std::move(initial_guess)),
       now_{{with_magnitude(first, 0), space.undeformed(), 0}, {}, {}, {}} {}
 
 void LoadPathSolver::restart(const Load& load) {
@@ -147,15 +111,15 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   };
   NewtonResult result;
   double contact_force = 0;
-  if (const auto* probe = std::get_if<ProbeLoad>(&load)) {
-    UnknownForce force = probe_force(space_, fibres_, *probe, options_.kernel_width,
+  if (const auto probe = load.as<ProbeLoad>()) {
+    UnknownForce force = probe_force(space_, quadrature_, *probe, options_.kernel_width,
                                      attempt.equilibrium.applied_force);
     result = newton_().solve(force, state, options_.newton, report);
     contact_force = force.amplitude;
   } else {
-    result = newton_().solve(external_forces(space_, fibres_, load, options_.kernel_width), state,
-                             options_.newton, report);
-    if (const auto* contact = std::get_if<ContactLoad>(&load)) contact_force = contact->force;
+    result = newton_().solve(external_forces(space_, quadrature_, load, options_.kernel_width),
+                             state, options_.newton, report);
+    if (const auto contact = load.as<ContactLoad>()) contact_force = contact->force;
   }
   iterations += result.iterations();
   attempt.overshot = result.overshot;
@@ -165,31 +129,14 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
     return attempt;
   }
   attempt.equilibrium.applied_force =
-      whole_force(fibres_, resultant(space_, result.external)).dot(direction(load));
+      whole_force(quadrature_, resultant(space_, result.external)).dot(direction(load));
   attempt.applied = !contact_height(load) || attempt.equilibrium.applied_force >=
                                                  contact_force * (1 - options_.force_shortfall);
   return attempt;
 }
 
-std::optional<Equilibrium> LoadPathSolver::solve(const Load& load, Guess guess, int& iterations,
-                                                 const Progress& progress) {
-  if (!guess.state) return std::nullopt;
-  Attempt result =
-      attempt_from({load, std::move(*guess.state), guess.applied_force}, iterations, progress);
-  if (!result.converged || !result.applied) return std::nullopt;
-  return std::move(result.equilibrium);
-}
-
-void LoadPathSolver::go_to(Equilibrium equilibrium) {
-  if (!same_place(now_.current.load, equilibrium.load)) restart(equilibrium.load);
-  now_.ramp.reset();
-  if (magnitude(now_.current.load) != magnitude(equilibrium.load))
-    now_.previous = std::move(now_.current);
-  now_.current = std::move(equilibrium);
-}
-
 Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) const {
-  return first_guess_ ? first_guess_(load, progress) : Guess{};
+  return initial_guess_ ? initial_guess_(load, progress) : Guess{};
 }
 
 std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const Load& load) const {
@@ -217,15 +164,11 @@ bool LoadPathSolver::cut(Ramp& ramp, bool overshot) const {
   return ramp.step >= std::pow(cut_factor, options_.max_cutbacks + ramp.overshoots);
 }
 
-void LoadPathSolver::set_out(const Load& target) {
+LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
+                                        const std::function<void()>& on_equilibrium) {
   if (!same_place(now_.current.load, target)) restart(target);
   if (!now_.ramp || magnitude(now_.ramp->target) != magnitude(target))
     now_.ramp = Ramp{now_.current.load, target};
-}
-
-LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
-                                        const std::function<void()>& on_equilibrium) {
-  set_out(target);
   const auto finish = [this](LoadPathOutcome outcome) {
     outcome.iterations = now_.ramp->iterations;
     now_.ramp.reset();
@@ -311,7 +254,7 @@ LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
     fraction *= cut_factor;
   }
   const Load& borne = now_.current.load;
-  const bool probe = std::holds_alternative<ProbeLoad>(borne);
+  const bool probe = borne.is<ProbeLoad>();
   LoadPathOutcome outcome;
   outcome.status = Status::slipped_off;
   outcome.slip_off_force = probe ? now_.current.applied_force : magnitude(borne);
@@ -328,4 +271,4 @@ LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
   return outcome;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

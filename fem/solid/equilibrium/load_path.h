@@ -6,23 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "fem/solid/fibres.h"
-#include "fem/solid/equilibrium/newton.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/equilibrium/newton.h"
+#include "fem/solid/loads/height_loads.h"
 #include "problem/load.h"
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::fem {
-
-/// The load as far as it is spread over the solid (all but a section load); e in any case.
-SpreadLoad spread_load(const Load& load, double area, double kernel_width);
-
-/// The load's nodal forces as a function of the displacement (docs/solid.md).
-ExternalForces external_forces(const SolidSpace& space, const Fibres& fibres, const Load& load,
-                               double kernel_width);
-
-/// The contact force of a probe, N; any other load as it is.
-Load acting(const Load& load, double applied_force);
+namespace ciliaval::fem::solid::equilibrium {
 
 /// Whether two loads differ in nothing but their magnitude.
 bool same_place(const Load& a, const Load& b);
@@ -30,19 +20,19 @@ bool same_place(const Load& a, const Load& b);
 /// The solid in equilibrium with a load.
 struct Equilibrium {
   Load load;
-  SolidState state;
+  discretisation::SolidState state;
   double applied_force = 0;  ///< on the whole body along e, N
 };
 
 /// What a cheaper model knows about a load: a state near the equilibrium, or the magnitude below
 /// the load's with which it slipped off. Empty if it knows neither.
 struct Guess {
-  std::optional<SolidState> state;
+  std::optional<discretisation::SolidState> state;
   double applied_force = 0;          ///< with the state, N
   std::optional<double> slip_off{};  ///< N, or m of a probe
   bool lost = false;  ///< it failed, and costs more than it gives on the rest of the way
 };
-using FirstGuess = std::function<Guess(const Load&, const Progress&)>;
+using InitialGuessSource = std::function<Guess(const Load&, const Progress&)>;
 /// The solver, made when it is first asked for.
 using NewtonSource = std::function<Newton&()>;
 
@@ -71,7 +61,7 @@ struct Ramp {
   unsigned int cuts = 0;        ///< in a row
   unsigned int overshoots = 0;  ///< cuts of steps that turned the material inside out at once
   int iterations = 0;           ///< of Newton's method, so far
-  bool unguided = false;        ///< the first guess is lost
+  bool unguided = false;        ///< the initial guess is lost
 };
 
 /// All that the following of a load path goes on from.
@@ -83,34 +73,26 @@ struct LoadPathState {
   std::optional<Ramp> ramp;  ///< while a load is on its way
 };
 
-/// Follows a load path from equilibrium to equilibrium. A load is tried from the first guess, where
-/// there is one; else, or if Newton's method fails, a load at the place (height, section) of the
-/// last one is reached from it, at once from a linear extrapolation of the last two equilibria or
-/// in steps that are cut to a quarter where they fail and doubled after each success;
-/// steps that overshoot at once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new
-/// place it starts from the straight solid: on the way from one place to another the cilium might
-/// slip off under loads that nobody asked for.
+/// Follows a load path from equilibrium to equilibrium. A load is tried from the initial guess,
+/// where there is one; else, or if Newton's method fails, a load at the place (height, section) of
+/// the last one is reached from it, at once from a linear extrapolation of the last two equilibria
+/// or in steps that are cut to a quarter where they fail and doubled after each success; steps that
+/// overshoot at once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new place it
+/// starts from the straight solid: on the way from one place to another the cilium might slip off
+/// under loads that nobody asked for.
 class LoadPathSolver {
  public:
-  /// Starts from the straight solid under no load of the path's type. The space and fibres must
-  /// outlive it.
-  LoadPathSolver(const SolidSpace& space, const Fibres& fibres, NewtonSource newton,
-                 const Load& first, LoadPathOptions options, FirstGuess first_guess = {});
+  /// Starts from the straight solid under no load of the path's type. The space and the quadrature
+  /// must outlive it.
+  LoadPathSolver(const discretisation::SolidSpace& space,
+                 const discretisation::ExtrudedQuadrature& quadrature, NewtonSource newton,
+                 const Load& first, LoadPathOptions options, InitialGuessSource initial_guess = {});
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
   /// a load fully applied. Calls `on_equilibrium` after each one on the way: from the state()
   /// that is there at that time, the same advance() finds the same bits.
   LoadPathOutcome advance(const Load& target, const Progress& progress = {},
                           const std::function<void()>& on_equilibrium = {});
-
-  /// The equilibrium that Newton's method finds from this guess alone; none where it finds none, or
-  /// one in which the load is not applied in full. state() stays.
-  std::optional<Equilibrium> solve(const Load& load, Guess guess, int& iterations,
-                                   const Progress& progress);
-  /// Goes on from an equilibrium as if advance() had found it; it replaces one under an equal load.
-  void go_to(Equilibrium equilibrium);
-  /// Begins the way to the next load, which advance() goes.
-  void set_out(const Load& target);
 
   const Equilibrium& current() const { return now_.current; }
   const LoadPathState& state() const { return now_; }
@@ -135,12 +117,12 @@ class LoadPathSolver {
   LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
   void restart(const Load& load);
 
-  const SolidSpace& space_;
-  const Fibres& fibres_;
+  const discretisation::SolidSpace& space_;
+  const discretisation::ExtrudedQuadrature& quadrature_;
   NewtonSource newton_;
   LoadPathOptions options_;
-  FirstGuess first_guess_;
+  InitialGuessSource initial_guess_;
   LoadPathState now_;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

@@ -14,7 +14,10 @@
 #include "fem/solid/equilibrium/bordered_system.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::equilibrium {
+using namespace discretisation;
+using namespace loads;
+using namespace solvers;
 namespace {
 
 using dealii::Vector;
@@ -27,7 +30,7 @@ constexpr double divergence = 1e12;
 /// at some 1e-9 of the load with ν = 0.49, but at 1.5e-6 with ν = 0.4999.
 constexpr double rounding_level = 1e-4;
 
-/// What is left at the free degrees of freedom, and the scale that it is measured by.
+/// The residual at the free degrees of freedom, relative to the force scale.
 double relative_residual(const InternalForces& internal, const Vector<double>& external,
                          const dealii::AffineConstraints<double>& constraints,
                          const NewtonOptions& options, Vector<double>& residual,
@@ -80,28 +83,37 @@ constexpr double step_reduction = 1e-6;
 constexpr double estimate_reduction = 1e-3;
 /// Part of the last increment below which the next one is taken as the last tangent gives it.
 constexpr double chord_reduction = 1e-2;
-/// It is tried from larger residuals than the rounding level on, up to this one, where the last
-/// increment was so much smaller than the one before: with quadratic convergence each ratio is the
-/// square of the one before. From a beam's guess, which is far in stiff directions, it would fail.
+/// Residual up to which the last tangent is tried after increments that shrink fast: with quadratic
+/// convergence each ratio of increments is the square of its predecessor. From a beam's guess,
+/// which is far off in stiff directions, the last tangent would fail.
 constexpr double chord_residual = 1e-2;
 constexpr double fast_reduction = 0.1;
 
-bool converges_fast(double residual, const std::vector<double>& increments) {
+/// Whether the increment alone decides on convergence.
+bool is_small(double residual, const NewtonOptions& options) {
+  return residual <= std::max(options.tolerance, rounding_level);
+}
+
+/// Whether an increment by the last tangent is worth its solution.
+bool may_use_last_tangent(const NewtonResult& result, const NewtonOptions& options) {
+  const double residual = result.residuals.back();
+  const std::vector<double>& increments = result.increments;
   const std::size_t n = increments.size();
-  return residual <= chord_residual && n > 1 &&
-         increments[n - 1] <= fast_reduction * increments[n - 2];
+  if (n == 0) return false;
+  return is_small(residual, options) || (residual <= chord_residual && n > 1 &&
+                                         increments[n - 1] <= fast_reduction * increments[n - 2]);
 }
 
 }  // namespace
 
 Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints,
-               SolverKind solver)
+               SolverKind solver, MPI_Comm communicator)
     : space_(space),
       constraints_(std::move(constraints)),
       size_(dealii::GridTools::diameter(space.dof_handler().get_triangulation())) {
   sparsity_.copy_from(coupled_nodes(space));
   matrix_.reinit(sparsity_);
-  solver_ = std::make_unique<LinearSolver>(space, constraints_, sparsity_, solver);
+  solver_ = std::make_unique<LinearSolver>(space, constraints_, sparsity_, solver, communicator);
   for (std::size_t e = 0; e < space.elements().size(); ++e) {
     const auto& dofs = space.elements()[e].dofs;
     if (std::any_of(dofs.begin(), dofs.end(),
@@ -117,45 +129,59 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
 
 NewtonResult Newton::solve(UnknownForce& force, SolidState& state, const NewtonOptions& options,
                            const NewtonProgress& progress) {
-  Border border(force, constraints_);
+  BorderedSystem bordered(force, constraints_);
   const auto external = [&force](const auto& u, auto& forces, const auto& constraints,
                                  auto* matrix) {
     force.forces(force.amplitude)(u, forces, constraints, matrix);
   };
-  return iterate(external, &border, state, options, progress);
+  return iterate(external, &bordered, state, options, progress);
 }
 
 Newton::Step Newton::last_tangents_step(const SolidState& state, const Vector<double>& residual,
-                                        Border* border) {
+                                        BorderedSystem* bordered) {
   Step step;
   step.linear_iterations = solver_->solve(residual, step.increment, estimate_reduction);
-  if (border != nullptr) step.amplitude = border->complete(state.displacement, step.increment);
+  if (bordered != nullptr) step.amplitude = bordered->complete(state.displacement, step.increment);
   constraints_.distribute(step.increment);
   return step;
 }
 
-Newton::Step Newton::own_tangents_step(const ExternalForces& external, const SolidState& state,
-                                       const InternalForces& internal,
-                                       const Vector<double>& residual, bool first, Border* border) {
+Newton::Use Newton::use_of(const Step& step, const SolidState& state, const NewtonResult& result,
+                           const NewtonOptions& options) const {
+  const double scale = std::max(state.displacement.linfty_norm(), 1e-6 * size_);
+  if (is_small(result.residuals.back(), options) && step.size() <= options.tolerance * scale)
+    return Use::last_increment;
+  if (result.iterations() < static_cast<int>(options.max_iterations) &&
+      step.size() <= chord_reduction * result.increments.back())
+    return Use::increment;
+  return Use::none;
+}
+
+void Newton::assemble_tangent(const ExternalForces& external, const SolidState& state,
+                              const InternalForces& internal) {
   matrix_ = 0;
   add_stiffness(space_, state, internal, constraints_, matrix_, cells_);
   Vector<double> unused(space_.unknowns());
   external(state.displacement, unused, constraints_, &matrix_);
-  solver_->prepare(matrix_, !first);
+}
+
+Newton::Step Newton::own_tangents_step(const SolidState& state, const Vector<double>& residual,
+                                       BorderedSystem* bordered) {
   Step step;
   step.linear_iterations = solver_->solve(residual, step.increment, step_reduction);
-  if (border != nullptr) {
-    border->prepare(state.displacement, [this](const auto& rhs, auto& solution) {
+  if (bordered != nullptr) {
+    bordered->prepare(state.displacement, [this](const auto& rhs, auto& solution) {
       solver_->solve(rhs, solution, step_reduction);
     });
-    step.amplitude = border->complete(state.displacement, step.increment);
+    step.amplitude = bordered->complete(state.displacement, step.increment);
   }
   constraints_.distribute(step.increment);
   return step;
 }
 
-NewtonResult Newton::iterate(const ExternalForces& external, Border* border, SolidState& state,
-                             const NewtonOptions& options, const NewtonProgress& progress) {
+NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bordered,
+                             SolidState& state, const NewtonOptions& options,
+                             const NewtonProgress& progress) {
   NewtonResult result;
   Vector<double> residual;
   const auto fail = [&result](const std::string& reason) {
@@ -173,29 +199,31 @@ NewtonResult Newton::iterate(const ExternalForces& external, Border* border, Sol
     result.residuals.push_back(norm);
     if (progress) progress(iteration, norm);
     if (!std::isfinite(norm) || norm > divergence) return fail("the residual grows without bound");
-    const bool may_go_on = iteration < static_cast<int>(options.max_iterations);
     try {
       Step step;
-      bool enough = false;  // the last tangent's step is the last one, or much smaller than that
-      const bool is_small = norm <= std::max(options.tolerance, rounding_level);
-      if (iteration > 0 && (is_small || converges_fast(norm, result.increments))) {
-        step = last_tangents_step(state, residual, border);
-        const double scale = std::max(state.displacement.linfty_norm(), 1e-6 * size_);
-        result.converged = is_small && step.size() <= options.tolerance * scale;
-        enough = result.converged ||
-                 (may_go_on && step.size() <= chord_reduction * result.increments.back());
+      Use use = Use::none;
+      if (may_use_last_tangent(result, options)) {
+        step = last_tangents_step(state, residual, bordered);
+        use = use_of(step, state, result, options);
       }
-      if (!enough && norm == 0 && (border == nullptr || border->gap(state.displacement) == 0)) {
-        result.converged = true;
-        return result;
+      if (use == Use::none) {
+        if (norm == 0 && (bordered == nullptr || bordered->gap(state.displacement) == 0)) {
+          result.converged = true;
+          return result;
+        }
+        if (iteration == static_cast<int>(options.max_iterations))
+          return fail("no convergence in " + std::to_string(iteration) + " iterations");
+        assemble_tangent(external, state, *internal);
+        if (iteration == 0)
+          solver_->prepare(matrix_);
+        else
+          solver_->prepare_near_last(matrix_);
+        step = own_tangents_step(state, residual, bordered);
       }
-      if (!enough && !may_go_on)
-        return fail("no convergence in " + std::to_string(iteration) + " iterations");
-      if (!enough)
-        step = own_tangents_step(external, state, *internal, residual, iteration == 0, border);
-      if (border != nullptr) border->advance(step.amplitude);
+      if (bordered != nullptr) bordered->advance(step.amplitude);
       advance(space_, *internal, step.increment, state);
-      if (result.converged) {
+      if (use == Use::last_increment) {
+        result.converged = true;
         result.external = 0;
         external(state.displacement, result.external, constraints_, nullptr);
         return result;
@@ -208,4 +236,4 @@ NewtonResult Newton::iterate(const ExternalForces& external, Border* border, Sol
   }
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

@@ -12,27 +12,13 @@
 #include <vector>
 
 #include "fem/solid/discretisation/assembly.h"
-#include "fem/solid/solvers/linear_solver.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/loads/external_forces.h"
+#include "fem/solid/solvers/linear_solver.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::equilibrium {
 
-/// External forces f(u): adds them to `forces` and, where `matrix` is not null, −∂f/∂u to it.
-using ExternalForces = std::function<void(
-    const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-    const dealii::AffineConstraints<double>& constraints, dealii::SparseMatrix<double>* matrix)>;
-
-/// A force F f(u) whose amplitude F is one more unknown, and the condition g(u) = 0 that determines
-/// it.
-struct UnknownForce {
-  std::function<ExternalForces(double amplitude)> forces;
-  /// g; adds ∂g/∂u to `gradient` where that is not null.
-  std::function<double(const dealii::Vector<double>& u, dealii::Vector<double>* gradient)>
-      condition;
-  double amplitude = 0;  ///< F: the guess, and the result
-};
-
-class Border;
+class BorderedSystem;
 
 struct NewtonOptions {
   double tolerance = 1e-9;  ///< of the remaining increment, relative to the displacement,
@@ -67,24 +53,25 @@ using NewtonProgress = std::function<void(int, double)>;
 /// tolerance, or below 1e-4, where rounding errors may keep it, the increment that the last
 /// tangent gives for it estimates the error of the displacement that is left; when that is below
 /// the tolerance, it is added, and the state has converged. An increment of the last tangent that
-/// is a hundredth of the one before is taken in place of one of a new tangent. It is tried at
+/// is a hundredth of the increment before it replaces that of a new tangent. It is tried at
 /// residuals below the same bound, and below 1e-2 where the last increment was at most a tenth of
-/// the one before.
+/// its predecessor.
 class Newton {
  public:
-  Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints,
-         SolverKind solver = SolverKind::automatic);
+  Newton(const discretisation::SolidSpace& space, dealii::AffineConstraints<double> constraints,
+         solvers::SolverKind solver, MPI_Comm communicator);
   Newton(const Newton&) = delete;
   Newton& operator=(const Newton&) = delete;
 
   /// Solves from the given state, which must satisfy the Dirichlet conditions; it holds the last
   /// iterate at the end, converged or not.
-  NewtonResult solve(const ExternalForces& external, SolidState& state,
+  NewtonResult solve(const loads::ExternalForces& external, discretisation::SolidState& state,
                      const NewtonOptions& options, const NewtonProgress& progress = {});
 
-  /// Solves for the amplitude of the force too, by the bordered tangent (fem/solid/border.h).
-  NewtonResult solve(UnknownForce& force, SolidState& state, const NewtonOptions& options,
-                     const NewtonProgress& progress = {});
+  /// Solves for the amplitude of the force too, by the bordered tangent
+  /// (fem/solid/equilibrium/bordered_system.h).
+  NewtonResult solve(loads::UnknownForce& force, discretisation::SolidState& state,
+                     const NewtonOptions& options, const NewtonProgress& progress = {});
 
  private:
   struct Step {
@@ -93,21 +80,29 @@ class Newton {
     int linear_iterations = 0;
     double size() const { return increment.linfty_norm(); }
   };
-  Step last_tangents_step(const SolidState& state, const dealii::Vector<double>& residual,
-                          Border* border);
-  Step own_tangents_step(const ExternalForces& external, const SolidState& state,
-                         const InternalForces& internal, const dealii::Vector<double>& residual,
-                         bool first, Border* border);
-  NewtonResult iterate(const ExternalForces& external, Border* border, SolidState& state,
-                       const NewtonOptions& options, const NewtonProgress& progress);
+  /// The increment by the solver's last tangent, and its use.
+  Step last_tangents_step(const discretisation::SolidState& state,
+                          const dealii::Vector<double>& residual, BorderedSystem* bordered);
+  enum class Use { last_increment, increment, none };
+  Use use_of(const Step& step, const discretisation::SolidState& state, const NewtonResult& result,
+             const NewtonOptions& options) const;
+  void assemble_tangent(const loads::ExternalForces& external,
+                        const discretisation::SolidState& state,
+                        const discretisation::InternalForces& internal);
+  /// The increment by the tangent at the state, which the solver has.
+  Step own_tangents_step(const discretisation::SolidState& state,
+                         const dealii::Vector<double>& residual, BorderedSystem* bordered);
+  NewtonResult iterate(const loads::ExternalForces& external, BorderedSystem* bordered,
+                       discretisation::SolidState& state, const NewtonOptions& options,
+                       const NewtonProgress& progress);
 
-  const SolidSpace& space_;
+  const discretisation::SolidSpace& space_;
   dealii::AffineConstraints<double> constraints_;
   dealii::SparsityPattern sparsity_;
   dealii::SparseMatrix<double> matrix_;
-  std::unique_ptr<LinearSolver> solver_;
-  std::vector<std::size_t> cells_;  ///< those that this rank assembles
+  std::unique_ptr<solvers::LinearSolver> solver_;
+  std::vector<std::size_t> cells_;  ///< the cells that this rank assembles
   double size_;                     ///< diameter of the body, m
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::equilibrium

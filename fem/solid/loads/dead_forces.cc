@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::loads {
+using namespace discretisation;
 namespace {
 
 Vector3 vector(const dealii::Tensor<1, 3>& t) {
@@ -86,4 +87,4 @@ Vector3 resultant(const SolidSpace& space, const dealii::Vector<double>& forces)
   return sum;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::loads

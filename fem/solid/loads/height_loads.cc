@@ -1,42 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/solid/fibres.h"
+#include "fem/solid/loads/height_loads.h"
 
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/lac/full_matrix.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "problem/error.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::loads {
+using namespace discretisation;
 namespace {
-
-/// Of the nine plane polynomials, from what is given of those in ξ and in η.
-Eigen::Matrix<double, 9, 1> product(const Eigen::Vector3d& of_xi, const Eigen::Vector3d& of_eta) {
-  return (of_xi * of_eta.transpose()).reshaped<Eigen::ColMajor>();
-}
-
-Eigen::Matrix<double, 9, 1> plane_values(double xi, double eta) {
-  return product(quadratic_basis(xi), quadratic_basis(eta));
-}
-
-/// The third local coordinate must run along Z: each triple of nodes above one another.
-void require_straight(const SolidElement& element, const FibreCell& cell) {
-  for (Eigen::Index a = 0; a < element_nodes; ++a) {
-    const Eigen::Index plane = a / 9;
-    const double Z = cell.bottom + 0.5 * static_cast<double>(plane) * (cell.top - cell.bottom);
-    const Vector3 offset = (element.nodes.row(a) - element.nodes.row(9 + a % 9)).transpose();
-    if (!(std::hypot(offset.x(), offset.y(), element.nodes(a, 2) - Z) <= 1e-9 * element.size) ||
-        !(cell.top > cell.bottom))
-      throw InputError(
-          "the loads of the solid need a mesh extruded along z: a cell's third local coordinate "
-          "is not parallel to z");
-  }
-}
 
 /// Roots in (0, 1) of the quadratic polynomial with the values z at 0, ½, 1, less `level`.
 void append_roots(const Eigen::Vector3d& z, double level, std::vector<double>& roots) {
@@ -50,7 +26,7 @@ void append_roots(const Eigen::Vector3d& z, double level, std::vector<double>& r
     if (root > 0 && root < 1) roots.push_back(root);
 }
 
-/// Calls integrate(ζ, weight) for a Gauss rule on each part of the fibre, from ≤ ζ ≤ to, inside the
+/// Calls integrate(ζ, weight) for a Gauss rule on each part of the line, from ≤ ζ ≤ to, inside the
 /// support.
 template <typename Integrate>
 void integrate_along(const Eigen::Vector3d& z, const HeightDensity& density,
@@ -79,20 +55,21 @@ void integrate_along(const Eigen::Vector3d& z, const HeightDensity& density,
 }
 
 /// Forces f_a (per e) and derivatives ∂f_a/∂u_z,b of one cell.
-struct FibreShare {
+struct HeightForceShare {
   Eigen::Matrix<double, element_nodes, 1> force;
   Eigen::Matrix<double, element_nodes, element_nodes> derivative;
 };
 
-FibreShare fibre_share(const Fibres& fibres, const FibreCell& cell,
-                       const Eigen::Matrix<double, 9, 3>& u_z, const HeightDensity& density,
-                       const QuadratureRule& rule, bool with_derivative) {
-  FibreShare share;
+HeightForceShare height_force_share(const ExtrudedQuadrature& quadrature, const ExtrudedCell& cell,
+                                    const Eigen::Matrix<double, 9, 3>& u_z,
+                                    const HeightDensity& density, const QuadratureRule& rule,
+                                    bool with_derivative) {
+  HeightForceShare share;
   share.force.setZero();
   share.derivative.setZero();
   const Eigen::Vector3d Z(cell.bottom, (cell.bottom + cell.top) / 2, cell.top);
   for (int q = 0; q < section_points; ++q) {
-    const auto s = fibres.section_values().col(q);
+    const auto s = quadrature.section_values().col(q);
     const Eigen::Vector3d z = Z + u_z.transpose() * s;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Matrix3 derivative = Matrix3::Zero();
@@ -125,7 +102,7 @@ Eigen::Matrix<double, 9, 3> vertical_displacements(const SolidElement& element,
   return u_z.reshaped<Eigen::ColMajor>(9, 3);
 }
 
-void subtract_derivative(const SolidElement& element, const FibreShare& share,
+void subtract_derivative(const SolidElement& element, const HeightForceShare& share,
                          const Vector3& direction,
                          const dealii::AffineConstraints<double>& constraints,
                          dealii::SparseMatrix<double>& matrix) {
@@ -144,53 +121,6 @@ void subtract_derivative(const SolidElement& element, const FibreShare& share,
 }
 
 }  // namespace
-
-Eigen::Vector3d quadratic_basis(double zeta) {
-  return {(1 - zeta) * (1 - 2 * zeta), 4 * zeta * (1 - zeta), zeta * (2 * zeta - 1)};
-}
-
-Eigen::Vector3d quadratic_derivative(double zeta) {
-  return {4 * zeta - 3, 4 - 8 * zeta, 4 * zeta - 1};
-}
-
-Fibres::Fibres(const SolidSpace& space, Extent extent) : extent_(extent) {
-  const dealii::QGauss<2> section(section_points_1d);
-  std::array<Eigen::Matrix<double, 9, section_points>, 2> derivatives;  // by ξ and η
-  for (int q = 0; q < section_points; ++q) {
-    const dealii::Point<2>& x = section.point(static_cast<unsigned int>(q));
-    values_.col(q) = plane_values(x[0], x[1]);
-    derivatives[0].col(q) = product(quadratic_derivative(x[0]), quadratic_basis(x[1]));
-    derivatives[1].col(q) = product(quadratic_basis(x[0]), quadratic_derivative(x[1]));
-    points_.row(q) << x[0], x[1];
-  }
-  double volume = 0;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const SolidElement& element : space.elements()) {
-    FibreCell cell;
-    cell.bottom = element.cell->vertex(0)[2];
-    cell.top = element.cell->vertex(4)[2];
-    require_straight(element, cell);
-    const Eigen::Matrix<double, 9, 2> XY = element.nodes.block<9, 2>(9, 0);
-    for (unsigned int q = 0; q < section_points; ++q) {
-      const Eigen::Vector2d at = XY.transpose() * values_.col(q);
-      const Eigen::Vector2d by_xi = XY.transpose() * derivatives[0].col(q);
-      const Eigen::Vector2d by_eta = XY.transpose() * derivatives[1].col(q);
-      cell.area[q] = section.weight(q) * (by_xi[0] * by_eta[1] - by_eta[0] * by_xi[1]);
-      cell.X[q] = at[0];
-      cell.Y[q] = at[1];
-      volume += cell.area[q] * (cell.top - cell.bottom);
-    }
-    lowest = std::min(lowest, cell.bottom);
-    height_ = std::max(height_, cell.top);
-    cells_.push_back(cell);
-  }
-  area_ = volume / (height_ - lowest) * (extent == Extent::half ? 2 : 1);
-}
-
-Vector3 whole_force(const Fibres& fibres, const Vector3& force_on_mesh) {
-  if (fibres.extent() == Extent::whole) return force_on_mesh;
-  return {2 * force_on_mesh.x(), 0, 2 * force_on_mesh.z()};
-}
 
 HeightDensity contact_density(double force, double area, double height, double half_width) {
   const double w = half_width;
@@ -239,17 +169,17 @@ std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,
   return part;
 }
 
-void add_fibre_forces(const SolidSpace& space, const Fibres& fibres, const HeightDensity& density,
-                      const Vector3& direction, const dealii::Vector<double>& displacement,
-                      dealii::Vector<double>& forces,
-                      const dealii::AffineConstraints<double>& constraints,
-                      dealii::SparseMatrix<double>* matrix) {
+void add_height_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                       const HeightDensity& density, const Vector3& direction,
+                       const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+                       const dealii::AffineConstraints<double>& constraints,
+                       dealii::SparseMatrix<double>* matrix) {
   const QuadratureRule rule = gauss_legendre(density.support ? 10 : 3, 0, 1);
   for (std::size_t e = 0; e < space.elements().size(); ++e) {
     const SolidElement& element = space.elements()[e];
-    const FibreShare share =
-        fibre_share(fibres, fibres.cells()[e], vertical_displacements(element, displacement),
-                    density, rule, matrix != nullptr);
+    const HeightForceShare share = height_force_share(quadrature, quadrature.cells()[e],
+                                                      vertical_displacements(element, displacement),
+                                                      density, rule, matrix != nullptr);
     if (share.force.isZero(0)) continue;
     for (std::size_t c = 0; c < 2; ++c)
       for (std::size_t a = 0; a < element_nodes; ++a)
@@ -259,13 +189,13 @@ void add_fibre_forces(const SolidSpace& space, const Fibres& fibres, const Heigh
   }
 }
 
-dealii::Vector<double> section_force(const SolidSpace& space, const Fibres& fibres, double force,
-                                     double arclength, const Vector3& direction) {
+dealii::Vector<double> section_force(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                                     double force, double arclength, const Vector3& direction) {
   dealii::Vector<double> forces(space.unknowns());
   double area = 0;
   for (std::size_t e = 0; e < space.elements().size(); ++e) {
-    const FibreCell& cell = fibres.cells()[e];
-    if (std::abs(cell.top - arclength) > 2e-9 * fibres.height()) continue;
+    const ExtrudedCell& cell = quadrature.cells()[e];
+    if (std::abs(cell.top - arclength) > 2e-9 * quadrature.height()) continue;
     const auto& dofs = space.elements()[e].dofs;
     for (int q = 0; q < section_points; ++q) {
       const double dA = cell.area[static_cast<std::size_t>(q)];
@@ -273,14 +203,14 @@ dealii::Vector<double> section_force(const SolidSpace& space, const Fibres& fibr
       for (std::size_t c = 0; c < 2; ++c)
         for (std::size_t a = 0; a < 9; ++a)
           forces[dofs[c * element_nodes + 18 + a]] +=
-              force / fibres.area() * dA * direction[static_cast<Eigen::Index>(c)] *
-              fibres.section_values()(static_cast<Eigen::Index>(a), q);
+              force / quadrature.area() * dA * direction[static_cast<Eigen::Index>(c)] *
+              quadrature.section_values()(static_cast<Eigen::Index>(a), q);
     }
   }
-  if (fibres.extent() == Extent::half) area *= 2;
-  if (std::abs(area - fibres.area()) > 1e-9 * fibres.area())
+  if (quadrature.extent() == Extent::half) area *= 2;
+  if (std::abs(area - quadrature.area()) > 1e-9 * quadrature.area())
     throw InputError("the solid's mesh has no plane at the loaded section");
   return forces;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::loads

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/solid/probe.h"
+#include "fem/solid/loads/probe.h"
 
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "fem/solid/equilibrium/load_path.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::loads {
+using namespace discretisation;
 namespace {
 
-/// ∫ k z_ζ dζ and ∫ k z_ζ (u·e) dζ of fibres, weighted with their areas, and their derivatives by
-/// the element's nodal displacements along e and z.
+/// ∫ k z_ζ dζ and ∫ k z_ζ (u·e) dζ along extrusion lines, weighted with their areas, and their
+/// derivatives by the element's nodal displacements along e and z.
 struct KernelMeans {
   double weight = 0;        ///< D
   double displacement = 0;  ///< N
@@ -25,13 +25,13 @@ struct KernelMeans {
 };
 
 /// The share of one cell.
-KernelMeans kernel_means(const Fibres& fibres, const FibreCell& cell, const HeightDensity& kernel,
-                         const Eigen::Matrix<double, 9, 3>& u_along,
+KernelMeans kernel_means(const ExtrudedQuadrature& quadrature, const ExtrudedCell& cell,
+                         const HeightDensity& kernel, const Eigen::Matrix<double, 9, 3>& u_along,
                          const Eigen::Matrix<double, 9, 3>& u_z) {
   KernelMeans means;
   const Eigen::Vector3d Z(cell.bottom, (cell.bottom + cell.top) / 2, cell.top);
   for (int q = 0; q < section_points; ++q) {
-    const auto s = fibres.section_values().col(q);
+    const auto s = quadrature.section_values().col(q);
     const double area = cell.area[static_cast<std::size_t>(q)];
     const Eigen::Vector3d z = Z + u_z.transpose() * s;
     const Eigen::Vector3d along = u_along.transpose() * s;
@@ -62,8 +62,9 @@ KernelMeans kernel_means(const Fibres& fibres, const FibreCell& cell, const Heig
 
 }  // namespace
 
-double mean_displacement(const SolidSpace& space, const Fibres& fibres, const HeightDensity& kernel,
-                         const Vector3& direction, const dealii::Vector<double>& displacement,
+double mean_displacement(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                         const HeightDensity& kernel, const Vector3& direction,
+                         const dealii::Vector<double>& displacement,
                          dealii::Vector<double>* gradient) {
   double weight = 0;
   double moment = 0;
@@ -73,8 +74,8 @@ double mean_displacement(const SolidSpace& space, const Fibres& fibres, const He
     const Eigen::Matrix<double, element_nodes, 1> along = u * direction;
     const Eigen::Matrix<double, element_nodes, 1> u_z = u.col(2);
     const KernelMeans share =
-        kernel_means(fibres, fibres.cells()[e], kernel, along.reshaped<Eigen::ColMajor>(9, 3),
-                     u_z.reshaped<Eigen::ColMajor>(9, 3));
+        kernel_means(quadrature, quadrature.cells()[e], kernel,
+                     along.reshaped<Eigen::ColMajor>(9, 3), u_z.reshaped<Eigen::ColMajor>(9, 3));
     if (share.weight == 0) continue;
     weight += share.weight;
     moment += share.displacement;
@@ -98,19 +99,19 @@ double mean_displacement(const SolidSpace& space, const Fibres& fibres, const He
   return mean;
 }
 
-UnknownForce probe_force(const SolidSpace& space, const Fibres& fibres, const ProbeLoad& load,
-                         double kernel_width, double force) {
-  const auto forces = [&space, &fibres, load, kernel_width](double amplitude) {
-    return external_forces(space, fibres, ContactLoad{amplitude, load.height, load.azimuth},
+UnknownForce probe_force(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                         const ProbeLoad& load, double kernel_width, double force) {
+  const auto forces = [&space, &quadrature, load, kernel_width](double amplitude) {
+    return external_forces(space, quadrature, ContactLoad{amplitude, load.height, load.azimuth},
                            kernel_width);
   };
   const HeightDensity kernel = contact_density(1, 1, load.height, kernel_width);
-  const auto condition = [&space, &fibres, kernel, load](const dealii::Vector<double>& u,
-                                                         dealii::Vector<double>* gradient) {
-    return mean_displacement(space, fibres, kernel, direction(load), u, gradient) -
+  const auto condition = [&space, &quadrature, kernel, load](const dealii::Vector<double>& u,
+                                                             dealii::Vector<double>* gradient) {
+    return mean_displacement(space, quadrature, kernel, direction(load), u, gradient) -
            load.displacement;
   };
   return {forces, condition, force};
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::loads

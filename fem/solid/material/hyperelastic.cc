@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::material {
 namespace {
 
 /// What stress and tangent share.
@@ -122,4 +122,4 @@ StressTangent stress_tangent(const Hyperelastic& material, const Matrix3& F, dou
   return A;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::material

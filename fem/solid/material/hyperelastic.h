@@ -5,7 +5,7 @@
 
 #include "problem/types.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::material {
 
 /// Nearly incompressible hyperelastic solid with the pressure-like unknown p beside the deformation
 /// gradient F (perturbed Lagrangian form; Bonet & Wood, Nonlinear Continuum Mechanics for Finite
@@ -66,4 +66,4 @@ Matrix3 cauchy_stress(const Hyperelastic& material, const Matrix3& F, double p);
 ///   + p J [ H⊗H − H_iL H_kJ ].
 StressTangent stress_tangent(const Hyperelastic& material, const Matrix3& F, double p);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::material

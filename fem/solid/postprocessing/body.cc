@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::postprocessing {
+using namespace discretisation;
 namespace {
 
 /// Nodes along an edge of an element.
@@ -15,7 +16,7 @@ constexpr std::size_t edge_nodes = element_degree + 1;
 
 using NodalVectors = Eigen::Matrix<double, element_nodes, 3>;
 
-/// ∂v/∂ξ at a node of what has the values v at the nodes: column j is the derivative by ξ_j, to
+/// ∂v/∂ξ at a node, from the nodal values v: column j is the derivative by ξ_j, to
 /// which only the three nodes of a line contribute.
 Matrix3 local_gradient(const NodalVectors& v, Eigen::Index node) {
   Matrix3 result;
@@ -113,25 +114,25 @@ void add_mirror_image(SolidBody& body) {
 
 }  // namespace
 
-SolidBody solid_body(const SolidSpace& space, const Fibres& fibres, const Cilium& cilium,
-                     const SolidState& state) {
+SolidBody solid_body(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                     const Cilium& cilium, const SolidState& state) {
   SolidBody body{LagrangeBasis({0, 0.5, 1}), {}, {}};
   const std::vector<double> interfaces = cilium.interfaces();
-  const double tolerance = 1e-9 * fibres.height();
+  const double tolerance = 1e-9 * quadrature.height();
   for (std::size_t e = 0; e < space.elements().size(); ++e) {
     const SolidElement& element = space.elements()[e];
     body.cells.push_back(patch(cilium, element, state.pressure[e], state.displacement));
     const SolidCell& cell = body.cells.back();
     const double inside = cell.magnetization.z();
-    if (fibres.cells()[e].bottom < tolerance && inside != 0)
+    if (quadrature.cells()[e].bottom < tolerance && inside != 0)
       body.charged_faces.push_back(face(cell, false, inside));
-    if (std::abs(fibres.cells()[e].top - interfaces[cell.segment + 1]) > tolerance) continue;
+    if (std::abs(quadrature.cells()[e].top - interfaces[cell.segment + 1]) > tolerance) continue;
     const bool last = cell.segment + 1 == cilium.segments.size();
     const double outside = last ? 0.0 : cilium.segments[cell.segment + 1].magnetization;
     if (inside != outside) body.charged_faces.push_back(face(cell, true, inside - outside));
   }
-  if (fibres.extent() == Extent::half) add_mirror_image(body);
+  if (quadrature.extent() == Extent::half) add_mirror_image(body);
   return body;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::postprocessing

@@ -13,7 +13,9 @@
 #include "problem/curvature.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::postprocessing {
+using namespace discretisation;
+using namespace loads;
 namespace {
 
 constexpr std::size_t stations = 4;
@@ -36,8 +38,8 @@ struct Wrench {
   }
 };
 
-/// A fibre of a cell, deformed.
-struct DeformedFibre {
+/// An extrusion line of a cell, deformed.
+struct DeformedLine {
   Matrix3 x;  ///< at ζ = 0, ½, 1: columns
   double area = 0;
   Eigen::Vector2d XY = Eigen::Vector2d::Zero();
@@ -47,8 +49,8 @@ struct DeformedFibre {
 struct Layer {
   double bottom = 0;
   double top = 0;
-  std::vector<std::size_t> cells;     ///< indices of the elements
-  std::vector<DeformedFibre> fibres;  ///< of all of them
+  std::vector<std::size_t> cells;   ///< indices of the elements
+  std::vector<DeformedLine> lines;  ///< of all of them
 };
 
 /// Section integrals in one plane, and the load between it and the top of its layer.
@@ -71,7 +73,7 @@ struct Station {
 /// What the centreline is made from.
 struct Extraction {
   const SolidSpace& space;
-  const Fibres& fibres;
+  const ExtrudedQuadrature& quadrature;
   const SolidState& state;
   const SpreadLoad& load;
 
@@ -87,28 +89,28 @@ struct Extraction {
 };
 
 void Extraction::add_cell(Layer& layer, std::size_t index) const {
-  const FibreCell& cell = fibres.cells()[index];
+  const ExtrudedCell& cell = quadrature.cells()[index];
   layer.bottom = cell.bottom;
   layer.top = cell.top;
   layer.cells.push_back(index);
   const auto u = nodal_displacements(space.elements()[index], state.displacement);
   for (std::size_t i = 0; i < section_points; ++i) {
-    DeformedFibre fibre;
-    fibre.area = cell.area[i];
-    fibre.XY = Eigen::Vector2d(cell.X[i], cell.Y[i]);
+    DeformedLine line;
+    line.area = cell.area[i];
+    line.XY = Eigen::Vector2d(cell.X[i], cell.Y[i]);
     for (int k = 0; k < 3; ++k)
-      fibre.x.col(k) =
+      line.x.col(k) =
           Vector3(cell.X[i], cell.Y[i], cell.bottom + 0.5 * k * (cell.top - cell.bottom)) +
           u.middleRows<9>(Eigen::Index{9} * k).transpose() *
-              fibres.section_values().col(static_cast<Eigen::Index>(i));
-    layer.fibres.push_back(fibre);
+              quadrature.section_values().col(static_cast<Eigen::Index>(i));
+    layer.lines.push_back(line);
   }
 }
 
 std::vector<Layer> Extraction::layers() const {
   std::map<double, Layer> by_bottom;
   for (std::size_t e = 0; e < space.elements().size(); ++e)
-    add_cell(by_bottom[fibres.cells()[e].bottom], e);
+    add_cell(by_bottom[quadrature.cells()[e].bottom], e);
   std::vector<Layer> result;
   result.reserve(by_bottom.size());
   for (auto& [bottom, layer] : by_bottom) result.push_back(std::move(layer));
@@ -116,7 +118,7 @@ std::vector<Layer> Extraction::layers() const {
 }
 
 Layer Extraction::uppermost_layer() const {
-  const auto& cells = fibres.cells();
+  const auto& cells = quadrature.cells();
   const auto highest = std::max_element(
       cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.bottom < b.bottom; });
   Layer layer;
@@ -128,7 +130,7 @@ Layer Extraction::uppermost_layer() const {
 Station Extraction::station(const Layer& layer, double zeta) const {
   Station result;
   const Eigen::Vector3d basis = quadratic_basis(zeta);
-  for (const auto& [x, dA, XY] : layer.fibres) {
+  for (const auto& [x, dA, XY] : layer.lines) {
     const Vector3 here = x * basis;
     result.area += dA;
     result.XY += dA * XY;
@@ -139,7 +141,7 @@ Station Extraction::station(const Layer& layer, double zeta) const {
                      result.load.add(x * quadratic_basis(at), dA * force * load.direction);
                    });
   }
-  if (fibres.extent() == Extent::half) result.add_mirror_image();
+  if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
 
@@ -155,24 +157,24 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
     for (Eigen::Index a = 18; a < element_nodes; ++a)
       result.add((element.nodes.row(a) + u.row(a)).transpose(), f.row(a).transpose());
   }
-  for (const auto& [x, dA, XY] : layer.fibres)
+  for (const auto& [x, dA, XY] : layer.lines)
     integrate_load(load, x.row(2).transpose(), layer.top - layer.bottom, 0, 1,
                    [&, &x = x, &dA = dA](double at, double force) {
                      result.add(x.col(2), -dA * force * quadratic_basis(at)[2] * load.direction);
                    });
-  if (fibres.extent() == Extent::half) result.add_mirror_image();
+  if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
 
-/// ζ of the ends of the layer's pieces. The part where a contact kernel meets a fibre is divided
+/// ζ of the ends of the layer's pieces. The part where a contact kernel meets a line is divided
 /// into pieces of at most half its height; below and above it n is constant.
 std::vector<double> Extraction::breaks(const Layer& layer) const {
   std::vector<double> result{0, 1};
   if (!load.per_height || !load.per_height->support) return result;
   double low = 1;
   double high = 0;
-  for (const DeformedFibre& fibre : layer.fibres) {
-    const auto part = loaded_part(fibre.x.row(2).transpose(), *load.per_height);
+  for (const DeformedLine& line : layer.lines) {
+    const auto part = loaded_part(line.x.row(2).transpose(), *load.per_height);
     if (!part) continue;
     low = std::min(low, (*part)[0]);
     high = std::max(high, (*part)[1]);
@@ -211,7 +213,7 @@ Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const 
   return piece;
 }
 
-/// The centreline, given what acts on the upper plane of each layer.
+/// The centreline, given force and moment on the upper plane of each layer.
 Centreline centreline(const Extraction& extraction, const std::vector<Layer>& layers,
                       const std::vector<Wrench>& tops) {
   std::vector<Centreline::Piece> pieces;
@@ -241,9 +243,9 @@ Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B) {
   return Quaternion(rotation).normalized();
 }
 
-Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
-                      const SpreadLoad& load) {
-  const Extraction extraction{space, fibres, state, load};
+Centreline centreline(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                      const SolidState& state, const SpreadLoad& load) {
+  const Extraction extraction{space, quadrature, state, load};
   const std::vector<Layer> layers = extraction.layers();
   std::vector<Wrench> tops;
   tops.reserve(layers.size());
@@ -251,22 +253,23 @@ Centreline centreline(const SolidSpace& space, const Fibres& fibres, const Solid
   return centreline(extraction, layers, tops);
 }
 
-Vector3 tip_position(const SolidSpace& space, const Fibres& fibres, const SolidState& state) {
+Vector3 tip_position(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                     const SolidState& state) {
   const SpreadLoad none;
-  const Extraction extraction{space, fibres, state, none};
+  const Extraction extraction{space, quadrature, state, none};
   const Station tip = extraction.station(extraction.uppermost_layer(), 1);
   return tip.x / tip.area;
 }
 
-Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
+Centreline centreline_by_statics(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                                  const SolidState& state, const SpreadLoad& load,
                                  const std::optional<PlaneForce>& plane) {
-  const Extraction extraction{space, fibres, state, load};
+  const Extraction extraction{space, quadrature, state, load};
   const std::vector<Layer> layers = extraction.layers();
   std::vector<Wrench> tops(layers.size());
   Wrench above;
   for (std::size_t i = layers.size(); i-- > 0;) {
-    if (plane && std::abs(layers[i].top - plane->arclength) <= 1e-9 * fibres.height()) {
+    if (plane && std::abs(layers[i].top - plane->arclength) <= 1e-9 * quadrature.height()) {
       const Station station = extraction.station(layers[i], 1);
       above.add(station.x / station.area, plane->force);
     }
@@ -278,4 +281,4 @@ Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
   return centreline(extraction, layers, tops);
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::postprocessing

@@ -3,11 +3,11 @@
 
 #include <optional>
 
-#include "fem/solid/fibres.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/loads/height_loads.h"
 #include "problem/centreline.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::postprocessing {
 
 /// Centreline of an extruded solid: one piece or more for each layer of cells, four Gauss–Lobatto
 /// stations on each. At a station,
@@ -19,19 +19,22 @@ namespace ciliaval::fem {
 ///   κ = 2 vec(q′ q̄), q the quaternion of Λ, by its interpolation on the layer,
 ///   n, m = force and moment about r that the part above exerts on the part below.
 ///
-/// At the upper plane of a layer n and m are those of the internal nodal forces of its own cells,
-/// less their share of the spread load; below it the load between is added, integrated along the
-/// fibres. So n and m balance the load to the solver's tolerance on every mesh, next to a clamped
-/// edge too, where stresses would not. r is the element's own quadratic, so that it is exact and
-/// continuous from layer to layer. Where a contact kernel lies in a layer, the layer is divided:
-/// one piece below it, pieces of at most half its height inside, one above. Of a half body the
-/// image in y = 0 is added to all integrals. `load` is the load of the state; the default is none,
-/// or a section load. Throws SolverError if det F ≤ 0 in the state.
-Centreline centreline(const SolidSpace& space, const Fibres& fibres, const SolidState& state,
-                      const SpreadLoad& load = {});
+/// At the upper plane of a layer n and m are made of the internal nodal forces of its own cells,
+/// less their share of the spread load; below it the load between is added, integrated along Z. So
+/// n and m balance the load to the solver's tolerance on every mesh, next to a clamped edge too,
+/// where stresses would not. r is the element's own quadratic, so that it is exact and continuous
+/// from layer to layer. Where a contact kernel lies in a layer, the layer is divided: one piece
+/// below it, pieces of at most half its height inside, one above. Of a half body the image in y = 0
+/// is added to all integrals. `load` is the load of the state; the default is none, or a section
+/// load. Throws SolverError if det F ≤ 0 in the state.
+Centreline centreline(const discretisation::SolidSpace& space,
+                      const discretisation::ExtrudedQuadrature& quadrature,
+                      const discretisation::SolidState& state, const loads::SpreadLoad& load = {});
 
 /// r of the section Z = L.
-Vector3 tip_position(const SolidSpace& space, const Fibres& fibres, const SolidState& state);
+Vector3 tip_position(const discretisation::SolidSpace& space,
+                     const discretisation::ExtrudedQuadrature& quadrature,
+                     const discretisation::SolidState& state);
 
 /// A dead force on the plane Z = arclength of the whole body, spread evenly over it.
 struct PlaneForce {
@@ -42,12 +45,14 @@ struct PlaneForce {
 /// The same centreline where the displacement alone is known, not the stress that goes with it
 /// (another program's solution): n and m are by statics the loads above the section, on the
 /// deformed body. `state.pressure` is not used.
-Centreline centreline_by_statics(const SolidSpace& space, const Fibres& fibres,
-                                 const SolidState& state, const SpreadLoad& load,
+Centreline centreline_by_statics(const discretisation::SolidSpace& space,
+                                 const discretisation::ExtrudedQuadrature& quadrature,
+                                 const discretisation::SolidState& state,
+                                 const loads::SpreadLoad& load,
                                  const std::optional<PlaneForce>& plane = std::nullopt);
 
 /// The rotation that fits the columns b₁, b₂ of a section best (see centreline()). Throws
 /// SolverError if they are parallel or not finite.
 Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B);
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::postprocessing

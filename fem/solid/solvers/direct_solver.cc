@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solvers/direct_solver.h"
 
+#include <deal.II/base/mpi.h>
 #include <dmumps_c.h>
 #include <metis.h>
-#include <mpi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::solvers {
 namespace {
 
 using dealii::SparsityPattern;
@@ -30,7 +30,7 @@ constexpr int singular = -10;
 constexpr int integer_workspace_too_small = -8;
 constexpr int not_enough_memory = -13;
 
-/// Memory beyond MUMPS's estimate, %, for pivoting: at first, and the most that is tried.
+/// Memory beyond MUMPS's estimate, %, for pivoting: first value and largest one.
 constexpr int first_margin = 60;
 constexpr int largest_margin = 1000;
 
@@ -64,9 +64,9 @@ struct DirectSolver::Mumps {
   DMUMPS_STRUC_C data{};
   std::vector<MUMPS_INT> rows;
   std::vector<MUMPS_INT> columns;
-  std::vector<double> values;  ///< of the symmetric part
+  std::vector<double> values;
   std::vector<MUMPS_INT> order;
-  const bool alone = rank_count() == 1;
+  const bool alone;
 
   /// An option by its number in the users' guide.
   MUMPS_INT& option(std::size_t number) { return data.icntl[number - 1]; }
@@ -78,19 +78,18 @@ struct DirectSolver::Mumps {
     return data.infog[0];
   }
 
-  explicit Mumps(Kind kind) {
+  Mumps(Kind kind, MPI_Comm communicator) : alone(rank_count(communicator) == 1) {
     data.par = 1;
     data.sym = kind == Kind::symmetric_part ? 2 : 0;
-    data.comm_fortran = fortran_communicator();
+    data.comm_fortran = MPI_Comm_c2f(communicator);
     check(run(start));
     for (const std::size_t output : {1, 2, 3}) option(output) = -1;
     option(4) = 0;
     option(6) = 0;  // no columns permuted to large diagonals: a stiffness matrix has them
-    option(8) = 0;  // no scaling: it costs a fifth of the factorisation
-    // Each rank gives its entries; one alone hands them over as a whole, in 4 % less time.
+    option(8) = 0;  // no scaling: it costs time and gains nothing here
+    // Each rank gives its own entries; one rank alone gives them as a whole, which is faster.
     option(18) = alone ? 0 : 3;
-    // The pattern is analysed node by node, in a third less time and, with PORD on one rank, the
-    // same operations to 3 %.
+    // The pattern is analysed node by node, which is faster and keeps the number of operations.
     option(15) = -static_cast<MUMPS_INT>(node_unknowns);
     option(14) = first_margin;
   }
@@ -114,10 +113,11 @@ struct DirectSolver::Mumps {
   }
 };
 
-DirectSolver::DirectSolver(const SparsityPattern& pattern, Kind kind, RowRange rows)
-    : kind_(kind), rows_(rows) {
+DirectSolver::DirectSolver(const SparsityPattern& pattern, Kind kind, RowRange rows,
+                           MPI_Comm communicator)
+    : kind_(kind), rows_(rows), communicator_(communicator) {
   start_mpi();
-  mumps_ = std::make_unique<Mumps>(kind);
+  mumps_ = std::make_unique<Mumps>(kind, communicator);
   analyse(pattern);
 }
 
@@ -138,14 +138,15 @@ void DirectSolver::analyse(const SparsityPattern& pattern) {
       m.rows[k] = symmetric ? std::min(i, j) : i;
       m.columns[k] = symmetric ? std::max(i, j) : j;
     }
-  if (symmetric) m.values.resize(entries);
+  m.values.resize(entries);
   m.data.n = static_cast<MUMPS_INT>(pattern.n_rows());
   m.data.nnz = m.data.nnz_loc = static_cast<MUMPS_INT8>(entries);
   m.data.irn = m.data.irn_loc = m.rows.data();
   m.data.jcn = m.data.jcn_loc = m.columns.data();
+  m.data.a = m.data.a_loc = m.values.data();
   // MUMPS's own choice, PORD, has fewer operations, but two ranks gain little with it
-  // (docs/solid.md).
-  if (rank_count() > 1 && rank() == 0) {
+  // (docs/theory/solid.md).
+  if (!m.alone && rank(communicator_) == 0) {
     m.order = nested_dissection(pattern);
     if (!m.order.empty()) m.option(7) = 1;
     m.data.perm_in = m.order.data();
@@ -155,21 +156,11 @@ void DirectSolver::analyse(const SparsityPattern& pattern) {
 
 void DirectSolver::factorize(const dealii::SparseMatrix<double>& matrix) {
   Mumps& m = *mumps_;
-  if (kind_ == Kind::symmetric_part) {
-    std::size_t k = 0;
-    for (Row row = rows_.begin; row < rows_.end; ++row)
-      for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
-        m.values[k++] = entry->column() == row ? entry->value() : entry->value() / 2;
-    m.data.a_loc = m.values.data();
-  } else if (rows_.begin < rows_.end) {
-    // deal.II stores the entries of a square matrix one after the other, row by row as its
-    // iterators find them, each row from its diagonal on. MUMPS only reads them, and only here:
-    // when it solves the matrix may be another one already, so no refinement (ICNTL(10),
-    // ICNTL(11)).
-    m.data.a_loc =
-        &const_cast<dealii::SparseMatrix<double>&>(matrix).diag_element(rows_.begin);  // NOLINT
-  }
-  m.data.a = m.data.a_loc;
+  const double off_diagonal = kind_ == Kind::symmetric_part ? 0.5 : 1;
+  std::size_t k = 0;
+  for (Row row = rows_.begin; row < rows_.end; ++row)
+    for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
+      m.values[k++] = entry->column() == row ? entry->value() : off_diagonal * entry->value();
   int code = m.run(factorize_matrix);
   while ((code == main_workspace_too_small || code == integer_workspace_too_small) &&
          m.option(14) < largest_margin) {
@@ -183,14 +174,14 @@ void DirectSolver::solve(const dealii::Vector<double>& rhs,
                          dealii::Vector<double>& solution) const {
   Mumps& m = *mumps_;
   solution = rhs;
-  if (rank() == 0) {
+  if (rank(communicator_) == 0) {
     m.data.rhs = solution.begin();
     m.data.nrhs = 1;
     m.data.lrhs = m.data.n;
   }
   m.check(m.run(solve_system));
-  spread_from_first_rank({solution.begin(), solution.size()});
+  dealii::Utilities::MPI::broadcast(solution.begin(), solution.size(), 0, communicator_);
   if (!std::isfinite(solution.l2_norm())) throw SolverError("the stiffness matrix is singular");
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::solvers

@@ -9,11 +9,11 @@
 
 #include "fem/parallel.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::solvers {
 
-/// Sparse LU, or LDLᵀ of the symmetric part, by MUMPS, on all ranks. The symbolic factorisation is
-/// made once. Vectors are whole on every rank. All functions are collective, and throw SolverError
-/// on all ranks or on none.
+/// Sparse LU, or LDLᵀ of the symmetric part, by MUMPS, on all ranks of the communicator. The
+/// symbolic factorisation is made once. Vectors are whole on every rank. All functions are
+/// collective, and throw SolverError on all ranks or on none.
 class DirectSolver {
  public:
   enum class Kind {
@@ -23,7 +23,8 @@ class DirectSolver {
   /// The matrix is the sum over the ranks of the rows `rows` of their matrices, all with this
   /// pattern, which must be symmetric and couple whole nodes (node_unknowns). Starts MPI if need
   /// be.
-  DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, RowRange rows);
+  DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, RowRange rows,
+               MPI_Comm communicator);
   ~DirectSolver();
   DirectSolver(const DirectSolver&) = delete;
   DirectSolver& operator=(const DirectSolver&) = delete;
@@ -40,7 +41,8 @@ class DirectSolver {
 
   Kind kind_;
   RowRange rows_;
+  MPI_Comm communicator_;
   std::unique_ptr<Mumps> mumps_;
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::solvers

@@ -11,7 +11,8 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::solvers {
+using namespace discretisation;
 namespace {
 
 constexpr unsigned int max_iterations = 300;
@@ -22,12 +23,13 @@ constexpr unsigned int max_with_old_factors = 20;
 /// The matrix on one rank, its own rows on several.
 struct Product {
   const dealii::SparseMatrix<double>& matrix;
-  const OwnRows<double>& own;
+  const BlockCsr<double>& own;
+  bool several_ranks;
   void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const {
-    if (rank_count() == 1)
-      matrix.vmult(y, x);
-    else
+    if (several_ranks)
       own.vmult(y, x);
+    else
+      matrix.vmult(y, x);
   }
 };
 
@@ -47,20 +49,33 @@ SolverKind chosen(SolverKind kind, dealii::types::global_dof_index unknowns) {
 
 LinearSolver::LinearSolver(const SolidSpace& space,
                            const dealii::AffineConstraints<double>& constraints,
-                           const dealii::SparsityPattern& pattern, SolverKind kind)
-    : rows_((start_mpi(), own_range(space.unknowns()))), own_(rows_) {
+                           const dealii::SparsityPattern& pattern, SolverKind kind,
+                           MPI_Comm communicator)
+    : communicator_(communicator),
+      rows_(own_range(communicator, space.unknowns())),
+      own_(rows_, communicator) {
   if (chosen(kind, space.unknowns()) == SolverKind::iterative)
-    multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_);
+    multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_, communicator);
   else
-    direct_ = std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general, rows_);
+    direct_ =
+        std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general, rows_, communicator);
 }
 
-void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix, bool near_last) {
-  const bool first = matrix_ == nullptr;
+void LinearSolver::take(const dealii::SparseMatrix<double>& matrix) {
   matrix_ = &matrix;
   current_ = false;
-  if (rank_count() > 1) own_.update(matrix);
-  if (first || !near_last) update();
+  if (rank_count(communicator_) > 1) own_.update(matrix);
+}
+
+void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix) {
+  take(matrix);
+  update();
+}
+
+void LinearSolver::prepare_near_last(const dealii::SparseMatrix<double>& matrix) {
+  const bool is_first = matrix_ == nullptr;
+  take(matrix);
+  if (is_first) update();
 }
 
 void LinearSolver::update() {
@@ -81,7 +96,7 @@ std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
   using Solver = dealii::SolverFGMRES<Vector>;
   dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
   Solver solver(control, Solver::AdditionalData(restart));
-  const Product matrix{*matrix_, own_};
+  const Product matrix{*matrix_, own_, rank_count(communicator_) > 1};
   solution.reinit(rhs.size());
   try {
     if (multigrid_)
@@ -117,4 +132,4 @@ int LinearSolver::solve(const dealii::Vector<double>& rhs, dealii::Vector<double
   return *iterations;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::solvers

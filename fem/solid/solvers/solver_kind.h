@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid::solvers {
 
 /// How the solid's linear systems are solved: by sparse LU, by GMRES with multigrid, or by whatever
 /// is faster for their size (direct_unknowns in linear_solver.h).
 enum class SolverKind { automatic, direct, iterative };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid::solvers

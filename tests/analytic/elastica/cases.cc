@@ -42,14 +42,15 @@ double bending_stiffness(const Cilium& cilium, std::size_t segment) {
   return cilium.segments[segment].young_modulus * cilium.second_moment();
 }
 
-ElasticaOptions height_form() {
-  ElasticaOptions options;
-  options.form = ElasticaOptions::Form::height;
+elastica::ElasticaOptions height_form() {
+  elastica::ElasticaOptions options;
+  options.form = elastica::ElasticaOptions::Form::height;
   return options;
 }
 
-MechanicsStep solve(const Cilium& cilium, const Load& load, const ElasticaOptions& options) {
-  MechanicsStep step = Elastica(options).solve(cilium, {load}).steps.at(0);
+MechanicsStep solve(const Cilium& cilium, const Load& load,
+                    const elastica::ElasticaOptions& options) {
+  MechanicsStep step = elastica::Elastica(options).solve(cilium, {load}).steps.at(0);
   EXPECT_EQ(step.status, Status::converged) << step.message;
   if (!step.deformation) throw std::runtime_error("no deformation: " + step.message);
   return step;

@@ -23,10 +23,11 @@ Cilium uniform_cilium();
 /// EI of a segment, N·m².
 double bending_stiffness(const Cilium& cilium, std::size_t segment = 0);
 
-ElasticaOptions height_form();
+elastica::ElasticaOptions height_form();
 
 /// The one step of a load that must converge; a test failure otherwise.
-MechanicsStep solve(const Cilium& cilium, const Load& load, const ElasticaOptions& options = {});
+MechanicsStep solve(const Cilium& cilium, const Load& load,
+                    const elastica::ElasticaOptions& options = {});
 
 /// A point in the plane of bending.
 struct PlanarPoint {

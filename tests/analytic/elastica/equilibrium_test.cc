@@ -37,16 +37,16 @@ struct Balance {
 Balance balance(const Centreline& centreline, const Load& load, double S) {
   const double length = centreline.length();
   const double z = centreline.at(S).position.z();
-  if (const auto* contact = std::get_if<ContactLoad>(&load)) {
+  if (const auto contact = load.as<ContactLoad>()) {
     if (z > contact->height) return {};
     return {contact->force, contact->force * (contact->height - z)};
   }
-  if (const auto* section = std::get_if<SectionLoad>(&load)) {
+  if (const auto section = load.as<SectionLoad>()) {
     if (S > section->arclength) return {};
     return {section->force, section->force * (centreline.at(section->arclength).position.z() - z)};
   }
   // Distributed: the forces dH = q dz or q dS above S, with the arm z(σ) − z(S).
-  const bool flow = std::holds_alternative<FlowLoad>(load);
+  const bool flow = load.is<FlowLoad>();
   const auto density = [&](const CentrelinePoint& p) {
     return magnitude(load) * (flow ? p.normal().z() : 1.0);
   };
@@ -86,7 +86,7 @@ TEST_P(ElasticaEquilibrium, HoldsAtEveryPointOfTheReturnedShape) {
   const MechanicsStep step = solve(cilium, given);
   const Centreline& centreline = step.deformation->centreline;
   Load load = given;
-  if (const auto* probe = std::get_if<ProbeLoad>(&given))
+  if (const auto probe = given.as<ProbeLoad>())
     load = ContactLoad{step.applied_force, probe->height, probe->azimuth};
   const Vector3 e = direction(load);
   const Vector3 axis = Vector3::UnitZ().cross(e);

@@ -169,7 +169,7 @@ TEST(ElasticaExtremes, LooserToleranceIsMet) {
   const FlowLoad load{1, 0};
   const PlanarPoint exact = planar_point(solve(cilium, load), cilium.length());
   for (const double tolerance : {1e-4, 1e-6, 1e-9}) {
-    ElasticaOptions options;
+    elastica::ElasticaOptions options;
     options.tolerance = tolerance;
     const MechanicsStep step = solve(cilium, load, options);
     const PlanarPoint tip = planar_point(step, cilium.length());

@@ -65,7 +65,7 @@ TEST(ElasticaForms, AgreeUpTo89Point9Degrees) {
 }
 
 TEST(ElasticaForms, HeightFormRefusesLoadsWhoseMomentItDoesNotKnow) {
-  const Elastica height(height_form());
+  const elastica::Elastica height(height_form());
   for (const Load& load : {Load(SectionLoad{1e-3, 16e-3, 0}), Load(DeadLoad{0.1, 0})}) {
     try {
       height.solve(paper_cilium(), {load});

@@ -32,9 +32,9 @@ double euler_bernoulli_deflection(const Cilium& cilium, const Load& load) {
   double w = 0;
   for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
     double integral = 0;
-    if (const auto* contact = std::get_if<ContactLoad>(&load))
+    if (const auto contact = load.as<ContactLoad>())
       integral = point_force_integral(ends[i], ends[i + 1], contact->height, length);
-    else if (const auto* section = std::get_if<SectionLoad>(&load))
+    else if (const auto section = load.as<SectionLoad>())
       integral = point_force_integral(ends[i], ends[i + 1], section->arclength, length);
     else
       integral = distributed_integral(ends[i], ends[i + 1], length);

@@ -68,8 +68,8 @@ TEST(ElasticaProbe, SmallDisplacementsTakeTheForceOfLinearTheory) {
 // Claim: contact and probe are each other's inverse, in both forms, and so is each form's contact
 // that of the other's probe.
 TEST(ElasticaProbe, GivesTheContactForceBack) {
-  for (const ElasticaOptions& contact_form : {ElasticaOptions{}, height_form()})
-    for (const ElasticaOptions& probe_form : {ElasticaOptions{}, height_form()})
+  for (const elastica::ElasticaOptions& contact_form : {elastica::ElasticaOptions{}, height_form()})
+    for (const elastica::ElasticaOptions& probe_form : {elastica::ElasticaOptions{}, height_form()})
       for (const Cilium& cilium : {paper_cilium(), three_segments()})
         for (const double height : {2e-3, 10e-3, 16e-3}) {
           const double limit = *solve(cilium, ContactLoad{0, height, 0}).slip_off_force;
@@ -141,11 +141,11 @@ TEST(ElasticaProbe, BeyondTheSlipOffIsAStatusAndThePathGoesOn) {
   const Cilium cilium = paper_cilium();
   const double height = 16e-3;
   const double limit = *solve(cilium, ProbeLoad{0, height, 0}).slip_off_displacement;
-  for (const ElasticaOptions& options : {ElasticaOptions{}, height_form()}) {
+  for (const elastica::ElasticaOptions& options : {elastica::ElasticaOptions{}, height_form()}) {
     const LoadPath path{ProbeLoad{(1 - 1e-9) * limit, height, 0},
                         ProbeLoad{(1 + 1e-9) * limit, height, 0}, ProbeLoad{1, height, 0},
                         ProbeLoad{4e-3, height, 0}};
-    const MechanicsResult result = Elastica(options).solve(cilium, path);
+    const MechanicsResult result = elastica::Elastica(options).solve(cilium, path);
     EXPECT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
     EXPECT_EQ(result.steps[3].status, Status::converged) << result.steps[3].message;
     for (const std::size_t i : {1, 2}) {
@@ -165,7 +165,8 @@ TEST(ElasticaProbe, BeyondTheSlipOffIsAStatusAndThePathGoesOn) {
 TEST(ElasticaProbe, HeightFormFailsWhereTheForceDoesNotTellTheDisplacement) {
   const ProbeLoad load{15e-3, 1e-3, 0};
   EXPECT_EQ(solve(uniform_cilium(), load).status, Status::converged);
-  const MechanicsStep step = Elastica(height_form()).solve(uniform_cilium(), {load}).steps.at(0);
+  const MechanicsStep step =
+      elastica::Elastica(height_form()).solve(uniform_cilium(), {load}).steps.at(0);
   EXPECT_EQ(step.status, Status::failed);
   EXPECT_NE(step.message.find("arclength"), std::string::npos) << step.message;
 }

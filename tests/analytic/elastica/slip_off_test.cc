@@ -48,7 +48,7 @@ TEST(ElasticaSlipOff, OfOneMaterialFollowsLegendresIntegrals) {
 TEST(ElasticaSlipOff, SeparatesEquilibriumFromNone) {
   const Cilium cilium = paper_cilium();
   const double height = 16e-3;
-  for (const ElasticaOptions& options : {ElasticaOptions{}, height_form()}) {
+  for (const elastica::ElasticaOptions& options : {elastica::ElasticaOptions{}, height_form()}) {
     const double limit = *solve(cilium, ContactLoad{0, height, 0}, options).slip_off_force;
     double above = 1;
     for (const double part : {0.99, 0.9999, 1 - 1e-9}) {
@@ -61,7 +61,7 @@ TEST(ElasticaSlipOff, SeparatesEquilibriumFromNone) {
     }
     EXPECT_LT(above, 1e-9 * height);
     const auto result =
-        Elastica(options).solve(cilium, {ContactLoad{(1 + 1e-9) * limit, height, 0}});
+        elastica::Elastica(options).solve(cilium, {ContactLoad{(1 + 1e-9) * limit, height, 0}});
     EXPECT_EQ(result.steps[0].status, Status::slipped_off);
   }
 }
@@ -84,7 +84,7 @@ TEST(ElasticaSlipOff, IsReportedAndThePathGoesOn) {
   const LoadPath path{ContactLoad{4e-3, 16e-3, 0}, ContactLoad{6e-3, 16e-3, 0},
                       ContactLoad{1.0, 16e-3, 0}, ContactLoad{2e-3, 16e-3, 0},
                       ContactLoad{6e-3, 10e-3, 0}};
-  const MechanicsResult result = Elastica().solve(cilium, path);
+  const MechanicsResult result = elastica::Elastica().solve(cilium, path);
   ASSERT_EQ(result.steps.size(), path.size());
   const Status expected[] = {Status::converged, Status::slipped_off, Status::slipped_off,
                              Status::converged, Status::converged};

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/sources/dipole.h"
 #include "analytic/rod/field_models.h"
+#include "analytic/sources/dipole.h"
 #include "bent_rods.h"
 #include "derby_olbert.h"
 #include "problem/lagrange.h"
@@ -30,7 +30,7 @@ using oracle::paper_cilium;
 using oracle::record;
 using oracle::relative_difference;
 using oracle::sampled;
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 
 const std::vector<Vector3> sensors = {
     oracle::paper_sensor, {4e-3, -3e-3, 1e-3}, {-6e-3, 2e-3, 9e-3}, {2e-3, 7e-3, 14e-3}};
@@ -51,9 +51,10 @@ const std::vector<std::pair<std::string, oracle::Shape>> shapes = {{"arc", arc(6
 // quadrature's tolerance is 1e-11.
 TEST(BentRod, TwoDiscsAreTheFieldOfItsTrueVolume) {
   for (const auto& [name, shape] : shapes) {
-    const double error = largest_difference(VolumeField({Slices::wedge, Method::closed_form}),
-                                            VolumeField({Slices::wedge, Method::quadrature, 1e-11}),
-                                            paper_cilium(), sampled(paper_cilium(), shape));
+    const double error =
+        largest_difference(rod::VolumeField({Slices::wedge, rod::Method::closed_form}),
+                           rod::VolumeField({Slices::wedge, rod::Method::quadrature, 1e-11}),
+                           paper_cilium(), sampled(paper_cilium(), shape));
     record("two discs against wedge quadrature, " + name, error);
     EXPECT_LT(error, 2e-11) << name;
   }
@@ -63,8 +64,8 @@ TEST(BentRod, TwoDiscsAreTheFieldOfItsTrueVolume) {
 TEST(BentRod, StackedLoopsAreTheFieldOfItsFlatSlices) {
   for (const auto& [name, shape] : shapes) {
     const double error =
-        largest_difference(VolumeField({Slices::stacked, Method::closed_form, 1e-11}),
-                           VolumeField({Slices::stacked, Method::quadrature, 1e-11}),
+        largest_difference(rod::VolumeField({Slices::stacked, rod::Method::closed_form, 1e-11}),
+                           rod::VolumeField({Slices::stacked, rod::Method::quadrature, 1e-11}),
                            paper_cilium(), sampled(paper_cilium(), shape));
     record("stacked loops against stacked quadrature, " + name, error);
     EXPECT_LT(error, 2e-11) << name;
@@ -97,10 +98,12 @@ TEST(BentRod, ClosedFormsKeepTheirDigitsFarAway) {
             std::max(error, relative_difference(flux_density(closed, cilium, deformation, x),
                                                 flux_density(quadrature, cilium, deformation, x)));
       };
-      compare(LineField(), LineField({PushForward::F, Method::quadrature, 1e-12}));
-      compare(VolumeField(), VolumeField({Slices::wedge, Method::quadrature, 1e-12}));
-      compare(VolumeField({Slices::stacked, Method::closed_form, 1e-12}),
-              VolumeField({Slices::stacked, Method::quadrature, 1e-12}));
+      compare(rod::LineField(),
+              rod::LineField({sources::PushForward::F, rod::Method::quadrature, 1e-12}));
+      compare(rod::VolumeField(),
+              rod::VolumeField({Slices::wedge, rod::Method::quadrature, 1e-12}));
+      compare(rod::VolumeField({Slices::stacked, rod::Method::closed_form, 1e-12}),
+              rod::VolumeField({Slices::stacked, rod::Method::quadrature, 1e-12}));
     }
     record("closed forms against quadratures, 30 and 300 radii, " + name, error);
     EXPECT_LT(error, 1e-12) << name;
@@ -140,7 +143,7 @@ TEST(BentRod, TwoDiscsKeepTheirDigitsWhereverAPointIsPut) {
     for (const auto& [end, sigma] : {std::pair(3e-3, -M), std::pair(20e-3, M)})
       exact += oracle::charged_disc(sigma, shape(end).position, shape(end).normal(), R, x);
     if (S) exact += vacuum_permeability * M * shape(*S).normal();
-    const Field field = VolumeField().field(cilium, deformation, std::span(&x, 1));
+    const Field field = rod::VolumeField().field(cilium, deformation, std::span(&x, 1));
     const double difference = (field.B.front() - exact).norm();
     error = std::max(error, difference / exact.norm());
     EXPECT_LE(difference, field.uncertainty.front().norm()) << x.transpose();
@@ -165,11 +168,13 @@ TEST(BentRod, UncertaintyBoundsTheErrorAndKeepsTheDefaultTolerance) {
             << name;
         EXPECT_LE(bound, 1e-10 * exact.B.front().norm()) << name;
       };
-      check(LineField(), LineField({PushForward::F, Method::quadrature, 1e-13}));
-      check(LineField({PushForward::R}), LineField({PushForward::R, Method::quadrature, 1e-13}));
-      check(VolumeField(), VolumeField({Slices::wedge, Method::quadrature, 1e-12}));
-      check(VolumeField({Slices::stacked}),
-            VolumeField({Slices::stacked, Method::quadrature, 1e-12}));
+      check(rod::LineField(),
+            rod::LineField({sources::PushForward::F, rod::Method::quadrature, 1e-13}));
+      check(rod::LineField({sources::PushForward::R}),
+            rod::LineField({sources::PushForward::R, rod::Method::quadrature, 1e-13}));
+      check(rod::VolumeField(), rod::VolumeField({Slices::wedge, rod::Method::quadrature, 1e-12}));
+      check(rod::VolumeField({Slices::stacked}),
+            rod::VolumeField({Slices::stacked, rod::Method::quadrature, 1e-12}));
     }
   }
 }
@@ -177,9 +182,10 @@ TEST(BentRod, UncertaintyBoundsTheErrorAndKeepsTheDefaultTolerance) {
 // Oracle: the quadrature of the dipoles M πR² dr. Measured 6e-15, its tolerance being 1e-12.
 TEST(BentRod, TwoPolesAreTheFieldOfItsLineOfDipoles) {
   for (const auto& [name, shape] : shapes) {
-    const double error = largest_difference(LineField({PushForward::F, Method::closed_form}),
-                                            LineField({PushForward::F, Method::quadrature, 1e-12}),
-                                            paper_cilium(), sampled(paper_cilium(), shape));
+    const double error = largest_difference(
+        rod::LineField({sources::PushForward::F, rod::Method::closed_form}),
+        rod::LineField({sources::PushForward::F, rod::Method::quadrature, 1e-12}), paper_cilium(),
+        sampled(paper_cilium(), shape));
     record("two poles against line quadrature, " + name, error);
     EXPECT_LT(error, 2e-12) << name;
   }
@@ -197,14 +203,17 @@ TEST(BentRod, LineOfSectionNormalsIsItsPlainIntegral) {
     for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
       const CentrelinePoint point = shape(rule.nodes[i]);
       const double strength = rule.weights[i] * 75e3 * std::numbers::pi * 1.5e-3 * 1.5e-3;
-      B += dipole_field(strength * (point.rotation * Vector3::UnitZ()), x - point.position);
+      B +=
+          sources::dipole_field(strength * (point.rotation * Vector3::UnitZ()), x - point.position);
     }
     const Deformation deformation = sampled(cilium, shape);
-    const Vector3 value = flux_density(LineField({PushForward::R}), cilium, deformation, x);
+    const Vector3 value =
+        flux_density(rod::LineField({sources::PushForward::R}), cilium, deformation, x);
     error = std::max(error, relative_difference(value, B));
     to_F = std::max(
         to_F,
-        relative_difference(flux_density(LineField({PushForward::F}), cilium, deformation, x), B));
+        relative_difference(
+            flux_density(rod::LineField({sources::PushForward::F}), cilium, deformation, x), B));
   }
   record("line R against a plain integral, contorted rod", error);
   EXPECT_LT(error, 1e-12);
@@ -214,11 +223,12 @@ TEST(BentRod, LineOfSectionNormalsIsItsPlainIntegral) {
 TEST(BentRod, PushForwardsAgreeWithoutShearAndStretch) {
   const Cilium cilium = paper_cilium();
   const Deformation deformation = sampled(cilium, arc(60, 0.5));
-  EXPECT_LT(largest_difference(LineField({PushForward::R, Method::closed_form, 1e-12}),
-                               LineField({PushForward::F}), cilium, deformation),
-            1e-12);
-  EXPECT_LT(largest_difference(DipoleField({PushForward::R}), DipoleField({PushForward::F}), cilium,
-                               deformation),
+  EXPECT_LT(
+      largest_difference(rod::LineField({sources::PushForward::R, rod::Method::closed_form, 1e-12}),
+                         rod::LineField({sources::PushForward::F}), cilium, deformation),
+      1e-12);
+  EXPECT_LT(largest_difference(rod::DipoleField({sources::PushForward::R}),
+                               rod::DipoleField({sources::PushForward::F}), cilium, deformation),
             1e-12);
 }
 
@@ -239,13 +249,13 @@ TEST(BentRod, DipoleIsItsTotalMomentAtItsCentroid) {
   const double strength = 75e3 * std::numbers::pi * 1.5e-3 * 1.5e-3;
   const Deformation deformation = sampled(cilium, shape);
   for (const Vector3& x : sensors) {
-    EXPECT_LT(relative_difference(flux_density(DipoleField(), cilium, deformation, x),
-                                  dipole_field(strength * tangents, x - centroid)),
+    EXPECT_LT(relative_difference(flux_density(rod::DipoleField(), cilium, deformation, x),
+                                  sources::dipole_field(strength * tangents, x - centroid)),
               1e-13);
-    EXPECT_LT(
-        relative_difference(flux_density(DipoleField({PushForward::R}), cilium, deformation, x),
-                            dipole_field(strength * normals, x - centroid)),
-        1e-13);
+    EXPECT_LT(relative_difference(
+                  flux_density(rod::DipoleField({sources::PushForward::R}), cilium, deformation, x),
+                  sources::dipole_field(strength * normals, x - centroid)),
+              1e-13);
   }
 }
 
@@ -267,7 +277,7 @@ TEST(BentRod, WedgeAndStackDifferByTheFirstMomentOfTheJacobian) {
       const Vector3 d3 = point.rotation * Vector3::UnitZ();
       const Vector3 c = d3.cross(point.curvature);
       const auto b = [&](double s) {
-        return dipole_field(d3, x - point.position - s * c.normalized());
+        return sources::dipole_field(d3, x - point.position - s * c.normalized());
       };
       const Vector3 slope = (8 * (b(h) - b(-h)) - (b(2 * h) - b(-2 * h))) / (12 * h);
       expected +=
@@ -275,8 +285,8 @@ TEST(BentRod, WedgeAndStackDifferByTheFirstMomentOfTheJacobian) {
     }
     const Deformation deformation = sampled(cilium, shape);
     const Vector3 difference =
-        flux_density(VolumeField({Slices::wedge}), cilium, deformation, x) -
-        flux_density(VolumeField({Slices::stacked, Method::closed_form, 1e-13}), cilium,
+        flux_density(rod::VolumeField({Slices::wedge}), cilium, deformation, x) -
+        flux_density(rod::VolumeField({Slices::stacked, rod::Method::closed_form, 1e-13}), cilium,
                      deformation, x);
     rest.push_back(relative_difference(difference, expected));
   }
@@ -288,7 +298,7 @@ TEST(BentRod, WedgeAndStackDifferByTheFirstMomentOfTheJacobian) {
 // On the paper's cilium the Jacobian is worth some tenths of a percent.
 TEST(BentRod, JacobianMattersLittleOnThePapersCilium) {
   const double difference =
-      largest_difference(VolumeField({Slices::stacked}), VolumeField({Slices::wedge}),
+      largest_difference(rod::VolumeField({Slices::stacked}), rod::VolumeField({Slices::wedge}),
                          paper_cilium(), sampled(paper_cilium(), arc(60, 0.5)));
   record("stacked against wedge, arc of 69°", difference);
   EXPECT_GT(difference, 1e-3);
@@ -301,13 +311,13 @@ TEST(BentRod, EveryModelTendsToItsDipoleFarAway) {
   const Cilium cilium = paper_cilium();
   const Deformation deformation = sampled(cilium, contorted());
   const Vector3 direction = Vector3(0.6, -0.3, 0.5).normalized();
-  const DipoleField dipole_F({PushForward::F});
-  const DipoleField dipole_R({PushForward::R});
-  const std::vector<std::pair<std::shared_ptr<FieldModel>, const DipoleField*>> models = {
-      {std::make_shared<LineField>(LineOptions{PushForward::F}), &dipole_F},
-      {std::make_shared<LineField>(LineOptions{PushForward::R}), &dipole_R},
-      {std::make_shared<VolumeField>(VolumeOptions{Slices::wedge}), &dipole_F},
-      {std::make_shared<VolumeField>(VolumeOptions{Slices::stacked}), &dipole_R}};
+  const rod::DipoleField dipole_F({sources::PushForward::F});
+  const rod::DipoleField dipole_R({sources::PushForward::R});
+  const std::vector<std::pair<std::shared_ptr<FieldModel>, const rod::DipoleField*>> models = {
+      {std::make_shared<rod::LineField>(rod::LineOptions{sources::PushForward::F}), &dipole_F},
+      {std::make_shared<rod::LineField>(rod::LineOptions{sources::PushForward::R}), &dipole_R},
+      {std::make_shared<rod::VolumeField>(rod::VolumeOptions{Slices::wedge}), &dipole_F},
+      {std::make_shared<rod::VolumeField>(rod::VolumeOptions{Slices::stacked}), &dipole_R}};
   for (const auto& [model, dipole] : models) {
     double previous = 0;
     for (const double distance : {1.0, 2.0, 4.0}) {

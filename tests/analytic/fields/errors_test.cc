@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
 #include "bent_rods.h"
 #include "cylinder_body.h"
@@ -15,7 +16,7 @@ namespace {
 
 using oracle::flux_density;
 using oracle::paper_cilium;
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 
 /// The text of the error of kind E that the field at x throws; empty if there is none.
 template <class E>
@@ -39,61 +40,67 @@ TEST(FieldErrors, PointOnTheRimIsAnInputError) {
       const Vector3 rim =
           end.position + 1.5e-3 * (end.rotation * Vector3(std::cos(phi), std::sin(phi), 0));
       for (const Slices slices : {Slices::wedge, Slices::stacked})
-        for (const Method method : {Method::closed_form, Method::quadrature})
-          EXPECT_NE(error_of<InputError>(VolumeField({slices, method}), bent(), rim).find("rim"),
-                    std::string::npos);
+        for (const rod::Method method : {rod::Method::closed_form, rod::Method::quadrature})
+          EXPECT_NE(
+              error_of<InputError>(rod::VolumeField({slices, method}), bent(), rim).find("rim"),
+              std::string::npos);
       // A nanometre away there is a field, of which rounding leaves less than the default 1e-10.
       const Vector3 near_rim = rim + 1e-9 * end.normal();
-      EXPECT_NO_THROW(flux_density(VolumeField({Slices::wedge, Method::closed_form, 1e-6}),
-                                   paper_cilium(), bent(), near_rim));
-      EXPECT_NE(error_of<SolverError>(VolumeField(), bent(), near_rim).find("larger tolerance"),
-                std::string::npos);
+      EXPECT_NO_THROW(
+          flux_density(rod::VolumeField({Slices::wedge, rod::Method::closed_form, 1e-6}),
+                       paper_cilium(), bent(), near_rim));
+      EXPECT_NE(
+          error_of<SolverError>(rod::VolumeField(), bent(), near_rim).find("larger tolerance"),
+          std::string::npos);
     }
   }
 }
 
 TEST(FieldErrors, PointOnAPoleOrADipoleIsAnInputError) {
   const Vector3 pole = bent().centreline.at(20e-3).position;
-  EXPECT_NE(error_of<InputError>(LineField(), bent(), pole).find("pole"), std::string::npos);
+  EXPECT_NE(error_of<InputError>(rod::LineField(), bent(), pole).find("pole"), std::string::npos);
   const Vector3 middle(0, 0, 11.5e-3);
-  EXPECT_NE(
-      error_of<InputError>(DipoleField(), oracle::straight(paper_cilium()), middle).find("dipole"),
-      std::string::npos);
+  EXPECT_NE(error_of<InputError>(rod::DipoleField(), oracle::straight(paper_cilium()), middle)
+                .find("dipole"),
+            std::string::npos);
 }
 
 TEST(FieldErrors, PointThatIsNotFiniteIsAnInputError) {
   const Vector3 nowhere(0, std::numeric_limits<double>::quiet_NaN(), 0);
-  EXPECT_THROW(flux_density(DipoleField(), paper_cilium(), bent(), nowhere), InputError);
-  EXPECT_THROW(flux_density(LineField(), paper_cilium(), bent(), nowhere), InputError);
-  EXPECT_THROW(flux_density(VolumeField(), paper_cilium(), bent(), nowhere), InputError);
+  EXPECT_THROW(flux_density(rod::DipoleField(), paper_cilium(), bent(), nowhere), InputError);
+  EXPECT_THROW(flux_density(rod::LineField(), paper_cilium(), bent(), nowhere), InputError);
+  EXPECT_THROW(flux_density(rod::VolumeField(), paper_cilium(), bent(), nowhere), InputError);
 }
 
 TEST(FieldErrors, MissingBodyIsAnInputError) {
-  EXPECT_NE(error_of<InputError>(MeshField(), bent(), oracle::paper_sensor).find("body"),
+  EXPECT_NE(error_of<InputError>(body::MeshField(), bent(), oracle::paper_sensor).find("body"),
             std::string::npos);
 }
 
 TEST(FieldErrors, CentrelineOfAnotherCiliumIsAnInputError) {
   Cilium shorter = paper_cilium();
   shorter.segments.back().length = 10e-3;
-  EXPECT_THROW(flux_density(VolumeField(), shorter, bent(), oracle::paper_sensor), InputError);
-  EXPECT_THROW(flux_density(LineField(), paper_cilium(), {}, oracle::paper_sensor), InputError);
+  EXPECT_THROW(flux_density(rod::VolumeField(), shorter, bent(), oracle::paper_sensor), InputError);
+  EXPECT_THROW(flux_density(rod::LineField(), paper_cilium(), {}, oracle::paper_sensor),
+               InputError);
 }
 
 TEST(FieldErrors, ToleranceBelowRoundingIsASolverError) {
   const Vector3 x = oracle::paper_sensor;
-  EXPECT_THROW(flux_density(LineField({PushForward::F, Method::quadrature, 1e-18}), paper_cilium(),
-                            bent(), x),
-               SolverError);
-  EXPECT_THROW(flux_density(VolumeField({Slices::stacked, Method::closed_form, 1e-18}),
+  EXPECT_THROW(
+      flux_density(rod::LineField({sources::PushForward::F, rod::Method::quadrature, 1e-18}),
+                   paper_cilium(), bent(), x),
+      SolverError);
+  EXPECT_THROW(flux_density(rod::VolumeField({Slices::stacked, rod::Method::closed_form, 1e-18}),
                             paper_cilium(), bent(), x),
                SolverError);
-  EXPECT_THROW(flux_density(VolumeField({Slices::wedge, Method::quadrature, 1e-18}), paper_cilium(),
-                            bent(), x),
+  EXPECT_THROW(flux_density(rod::VolumeField({Slices::wedge, rod::Method::quadrature, 1e-18}),
+                            paper_cilium(), bent(), x),
                SolverError);
   const Deformation body = oracle::deformation_of({.degree = 2, .layers = 1}, oracle::identity);
-  EXPECT_THROW(flux_density(MeshField({PushForward::F, 1e-18}), paper_cilium(), body, x),
-               SolverError);
+  EXPECT_THROW(
+      flux_density(body::MeshField({sources::PushForward::F, 1e-18}), paper_cilium(), body, x),
+      SolverError);
 }
 
 TEST(FieldErrors, QuadratureInsideOrOnTheMagnetIsASolverError) {
@@ -101,15 +108,15 @@ TEST(FieldErrors, QuadratureInsideOrOnTheMagnetIsASolverError) {
   const Vector3 n = section.rotation * Vector3::UnitX();
   for (const double r : {0.0, 1e-3, 1.5e-3, 1.5001e-3})
     for (const Slices slices : {Slices::wedge, Slices::stacked})
-      EXPECT_NE(error_of<SolverError>(VolumeField({slices, Method::quadrature}), bent(),
+      EXPECT_NE(error_of<SolverError>(rod::VolumeField({slices, rod::Method::quadrature}), bent(),
                                       section.position + r * n)
                     .find("too near"),
                 std::string::npos)
           << r;
-  EXPECT_THROW(flux_density(LineField({PushForward::F, Method::quadrature}), paper_cilium(), bent(),
-                            section.position),
+  EXPECT_THROW(flux_density(rod::LineField({sources::PushForward::F, rod::Method::quadrature}),
+                            paper_cilium(), bent(), section.position),
                SolverError);
-  EXPECT_THROW(flux_density(VolumeField({Slices::stacked}), paper_cilium(), bent(),
+  EXPECT_THROW(flux_density(rod::VolumeField({Slices::stacked}), paper_cilium(), bent(),
                             section.position + 1.5e-3 * n),
                SolverError);
 }
@@ -118,21 +125,23 @@ TEST(FieldErrors, QuadratureInsideOrOnTheMagnetIsASolverError) {
 TEST(FieldErrors, StackedSlicesRefuseAnAccuracyThatRoundingTakesAway) {
   const CentrelinePoint section = oracle::arc(60, 0.5)(9e-3);
   const Vector3 x = section.position + (1.5e-3 + 1e-9) * (section.rotation * Vector3::UnitX());
-  EXPECT_NE(error_of<SolverError>(VolumeField({Slices::stacked}), bent(), x).find("1e-10 of |B|"),
-            std::string::npos);
-  EXPECT_NO_THROW(flux_density(VolumeField({Slices::stacked, Method::closed_form, 1e-5}),
+  EXPECT_NE(
+      error_of<SolverError>(rod::VolumeField({Slices::stacked}), bent(), x).find("1e-10 of |B|"),
+      std::string::npos);
+  EXPECT_NO_THROW(flux_density(rod::VolumeField({Slices::stacked, rod::Method::closed_form, 1e-5}),
                                paper_cilium(), bent(), x));
 }
 
 TEST(FieldErrors, RodBentMoreSharplyThanItsRadiusIsASolverError) {
   const Deformation coil = oracle::sampled(paper_cilium(), oracle::arc(700, 0));
-  EXPECT_NE(error_of<SolverError>(VolumeField(), coil, oracle::paper_sensor).find("sharply"),
+  EXPECT_NE(error_of<SolverError>(rod::VolumeField(), coil, oracle::paper_sensor).find("sharply"),
             std::string::npos);
 }
 
 TEST(FieldErrors, RotatedMomentsHaveNoFieldInsideTheMagnet) {
   const Deformation body = oracle::deformation_of({.degree = 3}, oracle::identity);
-  EXPECT_NE(error_of<SolverError>(MeshField({PushForward::R}), body, {0.4e-3, 0.2e-3, 9e-3})
+  EXPECT_NE(error_of<SolverError>(body::MeshField({sources::PushForward::R}), body,
+                                  {0.4e-3, 0.2e-3, 9e-3})
                 .find("not available"),
             std::string::npos);
 }
@@ -141,13 +150,14 @@ TEST(FieldErrors, CellTurnedInsideOutIsASolverError) {
   const Deformation body = oracle::deformation_of(
       {.degree = 2, .layers = 1}, [](const Vector3& X) { return Vector3(-X.x(), X.y(), X.z()); });
   EXPECT_NE(
-      error_of<SolverError>(MeshField({PushForward::R}), body, oracle::paper_sensor).find("det F"),
+      error_of<SolverError>(body::MeshField({sources::PushForward::R}), body, oracle::paper_sensor)
+          .find("det F"),
       std::string::npos);
 }
 
 TEST(FieldErrors, PointOnAChargedFaceOfTheMeshIsASolverError) {
   const Deformation body = oracle::deformation_of({.degree = 2, .layers = 1}, oracle::identity);
-  EXPECT_THROW(flux_density(MeshField(), paper_cilium(), body, {0.2e-3, 0.3e-3, 20e-3}),
+  EXPECT_THROW(flux_density(body::MeshField(), paper_cilium(), body, {0.2e-3, 0.3e-3, 20e-3}),
                SolverError);
 }
 

@@ -19,26 +19,27 @@ using oracle::paper_cilium;
 using oracle::record;
 using oracle::relative_difference;
 using oracle::sampled;
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 
 using NamedModel = std::pair<std::string, std::shared_ptr<FieldModel>>;
 
 std::vector<NamedModel> rod_models() {
-  const auto volume = [](Slices slices, Method method) {
-    return std::make_shared<VolumeField>(VolumeOptions{slices, method, 1e-11});
+  const auto volume = [](Slices slices, rod::Method method) {
+    return std::make_shared<rod::VolumeField>(rod::VolumeOptions{slices, method, 1e-11});
   };
-  const auto line = [](PushForward push_forward, Method method) {
-    return std::make_shared<LineField>(LineOptions{push_forward, method, 1e-12});
+  const auto line = [](sources::PushForward push_forward, rod::Method method) {
+    return std::make_shared<rod::LineField>(rod::LineOptions{push_forward, method, 1e-12});
   };
-  return {{"dipole F", std::make_shared<DipoleField>(DipoleOptions{PushForward::F})},
-          {"dipole R", std::make_shared<DipoleField>(DipoleOptions{PushForward::R})},
-          {"line F", line(PushForward::F, Method::closed_form)},
-          {"line F quadrature", line(PushForward::F, Method::quadrature)},
-          {"line R", line(PushForward::R, Method::quadrature)},
-          {"wedge", volume(Slices::wedge, Method::closed_form)},
-          {"wedge quadrature", volume(Slices::wedge, Method::quadrature)},
-          {"stacked", volume(Slices::stacked, Method::closed_form)},
-          {"stacked quadrature", volume(Slices::stacked, Method::quadrature)}};
+  return {
+      {"dipole F", std::make_shared<rod::DipoleField>(rod::DipoleOptions{sources::PushForward::F})},
+      {"dipole R", std::make_shared<rod::DipoleField>(rod::DipoleOptions{sources::PushForward::R})},
+      {"line F", line(sources::PushForward::F, rod::Method::closed_form)},
+      {"line F quadrature", line(sources::PushForward::F, rod::Method::quadrature)},
+      {"line R", line(sources::PushForward::R, rod::Method::quadrature)},
+      {"wedge", volume(Slices::wedge, rod::Method::closed_form)},
+      {"wedge quadrature", volume(Slices::wedge, rod::Method::quadrature)},
+      {"stacked", volume(Slices::stacked, rod::Method::closed_form)},
+      {"stacked quadrature", volume(Slices::stacked, rod::Method::quadrature)}};
 }
 
 // Oracle: the laws know no direction in space. Measured 2e-15, of rounding alone.
@@ -56,7 +57,7 @@ TEST(Invariance, RotatingRodAndPointRotatesTheField) {
       error = std::max(error, relative_difference(value, expected));
     }
   }
-  const VolumeField wedge;
+  const rod::VolumeField wedge;
   const CentrelinePoint section = contorted()(8e-3);
   const Vector3 inside = section.position + section.rotation * Vector3(1e-3, -0.5e-3, 0);
   error = std::max(
@@ -129,7 +130,7 @@ TEST(Linearity, FieldOnAnInterfaceIsThatOfItsTwoSides) {
   for (const double r : {0.0, 0.4e-3, 1.2e-3}) {
     const Vector3 x = cut.position + cut.rotation * Vector3(r, 0.3e-3, 0);
     const auto normal_field = [&](double height) {
-      return flux_density(VolumeField(), cilium, deformation, x + height * cut.normal())
+      return flux_density(rod::VolumeField(), cilium, deformation, x + height * cut.normal())
           .dot(cut.normal());
     };
     EXPECT_NEAR(normal_field(0), normal_field(1e-11), 1e-8);

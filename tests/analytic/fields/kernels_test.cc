@@ -10,11 +10,11 @@
 #include <numbers>
 #include <vector>
 
+#include "analytic/sources/adaptive_order.h"
 #include "analytic/sources/charged_disc.h"
 #include "analytic/sources/current_loop.h"
 #include "analytic/sources/dipole.h"
 #include "analytic/sources/elliptic.h"
-#include "analytic/sources/adaptive_order.h"
 #include "bent_rods.h"
 #include "derby_olbert.h"
 #include "problem/field_model.h"
@@ -38,10 +38,10 @@ TEST(EllipticIntegrals, BulirschAgreesWithLegendresThreeKinds) {
     const auto compare = [&](double value, const Real& exact) {
       error = std::max(error, std::abs(static_cast<double>(value / exact - 1)));
     };
-    compare(bulirsch_cel(kc, 1, 1, 1), K);
-    compare(bulirsch_cel(kc, 1, 1, kc * kc), E);
+    compare(sources::bulirsch_cel(kc, 1, 1, 1), K);
+    compare(sources::bulirsch_cel(kc, 1, 1, kc * kc), E);
     for (const double p : {1e-8, 1e-3, 0.3, 0.999, 2.0, 50.0})
-      compare(bulirsch_cel(kc, p, 1, 1), boost::math::ellint_3(k, 1 - Real(p)));
+      compare(sources::bulirsch_cel(kc, p, 1, 1), boost::math::ellint_3(k, 1 - Real(p)));
   }
   record("cel against Boost.Math, relative", error);
   EXPECT_LT(error, 2e-15);
@@ -55,7 +55,8 @@ TEST(EllipticIntegrals, KeepAllDigitsAsTheModulusVanishes) {
     const Real m = 1 - Real(kc) * kc;
     const Real K = boost::math::ellint_1(Real(sqrt(m)));
     const Real E = boost::math::ellint_2(Real(sqrt(m)));
-    const CompleteElliptic<double> value = complete_elliptic<double>(kc, static_cast<double>(m));
+    const sources::CompleteElliptic<double> value =
+        sources::complete_elliptic<double>(kc, static_cast<double>(m));
     for (const Real& ratio : {Real(value.K / K), Real(value.E / E), Real(value.D / ((K - E) / m)),
                               Real(value.C / (((2 - m) * K - 2 * E) / (m * m)))})
       error = std::max(error, std::abs(static_cast<double>(ratio - 1)));
@@ -65,7 +66,7 @@ TEST(EllipticIntegrals, KeepAllDigitsAsTheModulusVanishes) {
 }
 
 TEST(EllipticIntegrals, AreThoseOfTheCircleForAVanishingModulus) {
-  const CompleteElliptic<double> value = complete_elliptic<double>(1, 0);
+  const sources::CompleteElliptic<double> value = sources::complete_elliptic<double>(1, 0);
   EXPECT_DOUBLE_EQ(value.K, std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(value.E, std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(value.D, std::numbers::pi / 4);
@@ -89,7 +90,7 @@ TEST(ChargedDisc, IsTheFieldOfItsCharge) {
           H += radial.weights[i] * r / (2 * azimuths) * a / std::pow(a.norm(), 3);
         }
       }
-      const MeridianVector value = charged_disc_field(rho, zeta);
+      const sources::MeridianVector value = sources::charged_disc_field(rho, zeta);
       error = std::max(error, (Vector3(value.radial, 0, value.axial) - H).norm() / H.norm());
     }
   }
@@ -100,11 +101,12 @@ TEST(ChargedDisc, IsTheFieldOfItsCharge) {
 // Oracle: Gauss. The normal component jumps by the charge across the disc and not beside it.
 TEST(ChargedDisc, JumpsByItsChargeAndOnlyOnTheDisc) {
   for (const double rho : {0.0, 0.3, 0.99}) {
-    EXPECT_DOUBLE_EQ(charged_disc_field(rho, 0.0).axial, 0.5);
-    EXPECT_DOUBLE_EQ(charged_disc_field(rho, -0.0).axial, -0.5);
-    EXPECT_NEAR(charged_disc_field(rho, 1e-12).axial, 0.5, 1e-9);
+    EXPECT_DOUBLE_EQ(sources::charged_disc_field(rho, 0.0).axial, 0.5);
+    EXPECT_DOUBLE_EQ(sources::charged_disc_field(rho, -0.0).axial, -0.5);
+    EXPECT_NEAR(sources::charged_disc_field(rho, 1e-12).axial, 0.5, 1e-9);
   }
-  for (const double rho : {1.01, 2.0, 5.0}) EXPECT_EQ(charged_disc_field(rho, 0.0).axial, 0);
+  for (const double rho : {1.01, 2.0, 5.0})
+    EXPECT_EQ(sources::charged_disc_field(rho, 0.0).axial, 0);
 }
 
 // The two branches of H_ζ meet at three radii. Measured 9e-15; margin 6: the closed form
@@ -114,11 +116,11 @@ TEST(ChargedDisc, SeriesMeetsTheClosedFormAtThreeRadii) {
   for (int i = 0; i <= 20; ++i) {
     const double angle = std::numbers::pi / 2 * i / 20;
     const auto at = [&](double a) {
-      return charged_disc_field(a * std::sin(angle), a * std::cos(angle));
+      return sources::charged_disc_field(a * std::sin(angle), a * std::cos(angle));
     };
     // H ~ a⁻²: from one point to the other it changes by 4e-15.
-    const MeridianVector inner = at(3 * (1 - 1e-15));
-    const MeridianVector outer = at(3 * (1 + 1e-15));
+    const sources::MeridianVector inner = at(3 * (1 - 1e-15));
+    const sources::MeridianVector outer = at(3 * (1 + 1e-15));
     error = std::max(error,
                      std::abs(inner.axial - outer.axial) / std::hypot(inner.axial, inner.radial));
   }
@@ -140,7 +142,7 @@ TEST(CurrentLoop, IsBiotAndSavartsIntegral) {
         const Eigen::Matrix<long double, 3, 1> tangent(-std::sin(phi), std::cos(phi), 0);
         H += tangent.cross(a) / (2 * n * std::pow(a.norm(), 3.0L));
       }
-      const MeridianVector value = current_loop_field(rho, zeta);
+      const sources::MeridianVector value = sources::current_loop_field(rho, zeta);
       const Vector3 exact = H.cast<double>();
       error =
           std::max(error, (Vector3(value.radial, 0, value.axial) - exact).norm() / exact.norm());
@@ -168,7 +170,7 @@ TEST(CurrentLoop, KeepsTheDigitsOfTheAxialFieldNextToTheLoop) {
       const Real parts = (abs(Real(1 - Real(rho) * rho)) + z2) / d2 * E + K;
       const Real axial = K + (1 - Real(rho) * rho - z2) / d2 * E;
       const Real scale = 2 * pi * sqrt(s2);
-      const Real value = Real(current_loop_field(rho, zeta).axial) * scale;
+      const Real value = Real(sources::current_loop_field(rho, zeta).axial) * scale;
       error = std::max(error, static_cast<double>(Real(abs(Real(value - axial)) / parts)));
     }
   record("loop's axial field next to it, over its parts", error);
@@ -177,7 +179,7 @@ TEST(CurrentLoop, KeepsTheDigitsOfTheAxialFieldNextToTheLoop) {
 
 // Oracle: integrals whose rules of order n are off by 2⁻ⁿ and 2⁻²ⁿ. For 1e-6 of their sum the last
 // orders but one must be 24 and 12, and the estimate is what the last raisings changed.
-TEST(OrderRaising, RaisesEachPartAloneAndReturnsItsLastChanges) {
+TEST(AdaptiveOrder, RaisesEachPartAloneAndReturnsItsLastChanges) {
   std::vector<std::size_t> highest(2, 0);
   const auto contribution = [&](const std::size_t& part, std::size_t order) {
     highest[part] = std::max(highest[part], order);
@@ -185,8 +187,8 @@ TEST(OrderRaising, RaisesEachPartAloneAndReturnsItsLastChanges) {
     return Vector3((1 + error) * Vector3::UnitX());
   };
   const Vector3 x(0, 0, 0);
-  const FieldValue value =
-      raise_orders(std::vector<std::size_t>{0, 1}, contribution, {1e-6, 54, "test integral", x});
+  const sources::FieldValue value = sources::integrate_adaptively(
+      std::vector<std::size_t>{0, 1}, contribution, {1e-6, 54, "test integral", x});
   EXPECT_EQ(highest, (std::vector<std::size_t>{36, 16}));
   const double change =
       std::pow(2.0, -24) - std::pow(2.0, -36) + std::pow(2.0, -24) - std::pow(2.0, -32);
@@ -199,8 +201,9 @@ TEST(Dipole, IsTwoPolesThatMoveTogether) {
   const Vector3 axis(0.3, -0.5, 0.8);
   const Vector3 a(1.0, 2.0, -0.7);
   const double h = 1e-4;
-  const Vector3 poles = (pole_field(1, a - h / 2 * axis) - pole_field(1, a + h / 2 * axis)) / h;
-  EXPECT_LT(oracle::relative_difference(poles, dipole_field(axis, a)), 1e-8);
+  const Vector3 poles =
+      (sources::pole_field(1, a - h / 2 * axis) - sources::pole_field(1, a + h / 2 * axis)) / h;
+  EXPECT_LT(oracle::relative_difference(poles, sources::dipole_field(axis, a)), 1e-8);
 }
 
 }  // namespace

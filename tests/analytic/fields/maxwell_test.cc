@@ -23,7 +23,7 @@ using oracle::flux_density;
 using oracle::paper_cilium;
 using oracle::record;
 using oracle::sampled;
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 using VectorField = std::function<Vector3(const Vector3&)>;
 
 /// ∂B_i/∂x_j
@@ -50,10 +50,12 @@ VectorField field_of(const FieldModel& model, const oracle::Shape& shape) {
 // Measured 6e-10 of |∇B|, the error of the differences; margin 15.
 TEST(Maxwell, FieldOutsideHasNeitherDivergenceNorCurl) {
   const std::vector<std::shared_ptr<FieldModel>> models = {
-      std::make_shared<DipoleField>(), std::make_shared<LineField>(),
-      std::make_shared<LineField>(LineOptions{PushForward::R, Method::quadrature, 1e-12}),
-      std::make_shared<VolumeField>(),
-      std::make_shared<VolumeField>(VolumeOptions{Slices::stacked, Method::closed_form, 1e-11})};
+      std::make_shared<rod::DipoleField>(), std::make_shared<rod::LineField>(),
+      std::make_shared<rod::LineField>(
+          rod::LineOptions{sources::PushForward::R, rod::Method::quadrature, 1e-12}),
+      std::make_shared<rod::VolumeField>(),
+      std::make_shared<rod::VolumeField>(
+          rod::VolumeOptions{Slices::stacked, rod::Method::closed_form, 1e-11})};
   double error = 0;
   for (const auto& model : models) {
     const VectorField B = field_of(*model, contorted());
@@ -71,7 +73,7 @@ TEST(Maxwell, FieldOutsideHasNeitherDivergenceNorCurl) {
 // other m would leave μ₀∇·m, of the order μ₀Mκ = 6 T/m.
 // Measured 6e-12 T/m.
 TEST(Maxwell, FieldOfTheWedgeInsideHasNoDivergence) {
-  const VolumeField model;
+  const rod::VolumeField model;
   const VectorField B = field_of(model, contorted());
   const CentrelinePoint section = contorted()(11e-3);
   double error = 0;
@@ -88,7 +90,7 @@ TEST(Maxwell, MagneticFieldInsideTheArcHasNoCurl) {
   const double curvature = 60;
   const Vector3 centre(1 / curvature, 0, 0);
   for (const Slices slices : {Slices::wedge, Slices::stacked}) {
-    const VolumeField model({slices, Method::closed_form, 1e-12});
+    const rod::VolumeField model({slices, rod::Method::closed_form, 1e-12});
     const VectorField B = field_of(model, arc(curvature, 0));
     const VectorField H = [&](const Vector3& x) {
       const Vector3 arm = x - centre;  // in the plane of the arc, the tangent is ŷ × arm
@@ -108,7 +110,7 @@ TEST(Maxwell, MagneticFieldInsideTheArcHasNoCurl) {
 }
 
 TEST(Maxwell, OnlyTheTangentialFieldJumpsAcrossTheMantle) {
-  const VolumeField model;
+  const rod::VolumeField model;
   const VectorField B = field_of(model, arc(60, 0.5));
   const CentrelinePoint section = arc(60, 0.5)(9e-3);
   for (const double phi : {0.0, 1.0, 2.5, 4.0}) {
@@ -122,7 +124,7 @@ TEST(Maxwell, OnlyTheTangentialFieldJumpsAcrossTheMantle) {
 
 TEST(Maxwell, OnlyTheTangentialFieldJumpsAcrossTheEndFaces) {
   // Under shear m is not normal to the end face, so the tangential B does jump there.
-  const VolumeField model;
+  const rod::VolumeField model;
   const VectorField B = field_of(model, contorted());
   for (const double S : {3e-3, 20e-3}) {
     const CentrelinePoint end = contorted()(S);
@@ -169,7 +171,7 @@ double flux_around_the_upper_half(const VectorField& B, const CentrelinePoint& s
 
 // Measured 7e-16 of μ₀MπR², which is what would be left if μ₀m were missing; margin 100.
 TEST(Maxwell, NoFluxLeavesAClosedSurfaceThroughTheMagnet) {
-  const VolumeField model;
+  const rod::VolumeField model;
   const double magnet_flux =
       vacuum_permeability * 75e3 * std::numbers::pi * 1.5e-3 * 1.5e-3;  // μ₀MπR²
   for (const oracle::Shape& shape : {arc(60, 0.5), contorted()}) {

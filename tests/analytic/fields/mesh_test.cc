@@ -9,8 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/sources/dipole.h"
+#include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
+#include "analytic/sources/dipole.h"
 #include "bent_rods.h"
 #include "cylinder_body.h"
 #include "derby_olbert.h"
@@ -27,8 +28,8 @@ using oracle::paper_cilium;
 using oracle::record;
 using oracle::relative_difference;
 
-const MeshField mesh_F({PushForward::F, 1e-10});
-const MeshField mesh_R({PushForward::R, 1e-8});
+const body::MeshField mesh_F({sources::PushForward::F, 1e-10});
+const body::MeshField mesh_R({sources::PushForward::R, 1e-8});
 const std::vector<Vector3> outside = {
     oracle::paper_sensor, {0.4e-3, 0.3e-3, 2.5e-3}, {3e-3, -2e-3, 10e-3}};
 
@@ -112,14 +113,16 @@ TEST(MeshField, RotatedMomentsConvergeAtTheOrderOfTheGeometry) {
 TEST(MeshField, HoldsAMicrometreOffItsSurface) {
   struct Push {
     std::string name;
-    MeshField model;
+    body::MeshField model;
     CylinderBody cylinder;
     double tolerance;
   };
   for (const Push& push :
-       {Push{"F", MeshField({PushForward::F, 1e-8}), {.degree = 8}, 1e-8},
-        Push{
-            "R", MeshField({PushForward::R, 1e-6}), {.degree = 4, .cuts = 2, .layers = 2}, 1e-6}}) {
+       {Push{"F", body::MeshField({sources::PushForward::F, 1e-8}), {.degree = 8}, 1e-8},
+        Push{"R",
+             body::MeshField({sources::PushForward::R, 1e-6}),
+             {.degree = 4, .cuts = 2, .layers = 2},
+             1e-6}}) {
     const Deformation body = deformation_of(push.cylinder, identity);
     for (const auto& [where, x] :
          std::vector<std::pair<std::string, Vector3>>{{"below", {0.4e-3, 0.3e-3, 3e-3 - 1e-6}},
@@ -142,10 +145,11 @@ TEST(MeshField, UncertaintyBoundsTheErrorOfItsVolumeQuadrature) {
   const Deformation body = deformation_of(cylinder, identity);
   for (const double height : {1e-4, 1e-3, 1e-2, 1e-1}) {
     const Vector3 x(0.3e-3, -0.8e-3, 20e-3 + height);
-    const Vector3 exact = flux_density(MeshField({PushForward::R, 1e-10}), paper_cilium(), body, x);
+    const Vector3 exact =
+        flux_density(body::MeshField({sources::PushForward::R, 1e-10}), paper_cilium(), body, x);
     for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
-      const Field field =
-          MeshField({PushForward::R, tolerance}).field(paper_cilium(), body, std::span(&x, 1));
+      const Field field = body::MeshField({sources::PushForward::R, tolerance})
+                              .field(paper_cilium(), body, std::span(&x, 1));
       EXPECT_LE((field.B.front() - exact).norm(),
                 field.uncertainty.front().norm() + 1e-10 * exact.norm());
       EXPECT_LE(field.uncertainty.front().norm(), tolerance * exact.norm());
@@ -203,9 +207,9 @@ TEST(MeshField, OfABentRodIsTheFieldOfItsTwoDiscs) {
       points.push_back(rod_map(shape)(Vector3(0.7e-3, -0.9e-3, S)));
     double error = 0;
     for (const Vector3& x : points)
-      error =
-          std::max(error, relative_difference(flux_density(mesh_F, paper_cilium(), body, x),
-                                              flux_density(VolumeField(), paper_cilium(), rod, x)));
+      error = std::max(
+          error, relative_difference(flux_density(mesh_F, paper_cilium(), body, x),
+                                     flux_density(rod::VolumeField(), paper_cilium(), rod, x)));
     record("mesh F of degree 8 against the rod's two discs", error);
     EXPECT_LT(error, 1e-9);
   }
@@ -239,7 +243,7 @@ Vector3 field_of_uniform_moment(const Vector3& moment, const Matrix3& F, const V
         const Vector3 X(r * std::cos(phi), r * std::sin(phi), axial.nodes[k]);
         const double dV =
             radial.weights[i] * axial.weights[k] * r * 2 * std::numbers::pi / azimuths;
-        B += dipole_field(dV * moment, x - F * X);
+        B += sources::dipole_field(dV * moment, x - F * X);
       }
     }
   }
@@ -285,9 +289,10 @@ TEST(MeshField, UncertaintyBoundsTheErrorOfItsQuadrature) {
   const Deformation body = deformation_of(cylinder, identity);
   for (const double height : {1e-5, 1e-4, 1e-3, 1e-2, 1e-1}) {
     const Vector3 x(0.3e-3, -0.8e-3, 20e-3 + height);
-    const Field field =
-        MeshField({PushForward::F, 1e-5}).field(paper_cilium(), body, std::span(&x, 1));
-    const Vector3 exact = flux_density(MeshField({PushForward::F, 1e-12}), paper_cilium(), body, x);
+    const Field field = body::MeshField({sources::PushForward::F, 1e-5})
+                            .field(paper_cilium(), body, std::span(&x, 1));
+    const Vector3 exact =
+        flux_density(body::MeshField({sources::PushForward::F, 1e-12}), paper_cilium(), body, x);
     EXPECT_LE((field.B.front() - exact).norm(),
               field.uncertainty.front().norm() + 1e-12 * exact.norm());
     EXPECT_LE(field.uncertainty.front().norm(), 1e-5 * exact.norm());

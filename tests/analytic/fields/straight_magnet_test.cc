@@ -19,7 +19,7 @@ using oracle::flux_density;
 using oracle::paper_cilium;
 using oracle::paper_sensor;
 using oracle::record;
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 
 struct Region {
   std::string name;
@@ -62,9 +62,9 @@ std::vector<Region> regions() {
   return list;
 }
 
-double largest_error(const Region& region, const VolumeOptions& options) {
+double largest_error(const Region& region, const rod::VolumeOptions& options) {
   const Cilium cilium = paper_cilium();
-  const VolumeField model(options);
+  const rod::VolumeField model(options);
   double error = 0;
   for (const Vector3& point : region.points) {
     const Vector3 x = 1e-3 * point;
@@ -82,7 +82,7 @@ bool is_far(const Region& region) {
 // Measured 2e-15 up to 30 radii, 1.2e-14 at 300 (of the sum of two opposite fields): margin 5, 8.
 TEST(StraightMagnet, TwoDiscsAreDerbyAndOlbertsCylinderEverywhere) {
   for (const Region& region : regions()) {
-    const double error = largest_error(region, {Slices::wedge, Method::closed_form});
+    const double error = largest_error(region, {Slices::wedge, rod::Method::closed_form});
     record("two discs " + region.name, error);
     EXPECT_LT(error, is_far(region) ? 1e-13 : 1e-14) << region.name;
   }
@@ -100,7 +100,8 @@ double stacked_tolerance(const Region& region) {
 TEST(StraightMagnet, StackedLoopsAreDerbyAndOlbertsCylinderEverywhere) {
   for (const Region& region : regions()) {
     const double tolerance = stacked_tolerance(region);
-    const double error = largest_error(region, {Slices::stacked, Method::closed_form, tolerance});
+    const double error =
+        largest_error(region, {Slices::stacked, rod::Method::closed_form, tolerance});
     record("stacked loops " + region.name, error);
     const bool grazing = region.name.starts_with("a nanometre");
     EXPECT_LT(error, grazing ? 1e-9 : 1e-12) << region.name;
@@ -110,19 +111,19 @@ TEST(StraightMagnet, StackedLoopsAreDerbyAndOlbertsCylinderEverywhere) {
 // The relative accuracy asked, 1e-10 if nothing is said, is kept, and the estimate that comes with
 // the field lies between the true error and the tolerance.
 TEST(StraightMagnet, EveryToleranceAskedIsKeptAndItsEstimateBoundsTheError) {
-  EXPECT_EQ(VolumeOptions{}.tolerance, 1e-10);
-  EXPECT_EQ(LineOptions{}.tolerance, 1e-10);
+  EXPECT_EQ(rod::VolumeOptions{}.tolerance, 1e-10);
+  EXPECT_EQ(rod::LineOptions{}.tolerance, 1e-10);
   const Cilium cilium = paper_cilium();
   for (const Region& region : regions()) {
     const bool outside = region.name == "near" || region.name == "30 radii away" || is_far(region);
     for (const double tolerance : {1e-3, 1e-5, 1e-6, 1e-8, 1e-10, 1e-11})
       for (const Slices slices : {Slices::wedge, Slices::stacked})
-        for (const Method method : {Method::closed_form, Method::quadrature}) {
-          if (method == Method::quadrature && (!outside || tolerance < 1e-10)) continue;
+        for (const rod::Method method : {rod::Method::closed_form, rod::Method::quadrature}) {
+          if (method == rod::Method::quadrature && (!outside || tolerance < 1e-10)) continue;
           if (slices == Slices::stacked && tolerance < stacked_tolerance(region)) continue;
           for (const Vector3& point : region.points) {
             const Vector3 x = 1e-3 * point;
-            const Field field = VolumeField({slices, method, tolerance})
+            const Field field = rod::VolumeField({slices, method, tolerance})
                                     .field(cilium, oracle::straight(cilium), std::span(&x, 1));
             const Vector3 exact = oracle::derby_olbert(75e3, 1.5e-3, 3e-3, 20e-3, x);
             const double error = (field.B.front() - exact).norm();
@@ -144,7 +145,7 @@ TEST(StraightMagnet, VolumeQuadratureIsDerbyAndOlbertsCylinderOutside) {
         region.name.starts_with("in the plane"))
       continue;
     for (const Slices slices : {Slices::wedge, Slices::stacked}) {
-      const double error = largest_error(region, {slices, Method::quadrature, 1e-11});
+      const double error = largest_error(region, {slices, rod::Method::quadrature, 1e-11});
       record(
           std::string(slices == Slices::wedge ? "wedge" : "stacked") + " quadrature " + region.name,
           error);
@@ -155,7 +156,7 @@ TEST(StraightMagnet, VolumeQuadratureIsDerbyAndOlbertsCylinderOutside) {
 
 TEST(StraightMagnet, VolumeQuadratureConvergesATenthOfARadiusFromTheMantle) {
   const Region region{"", {polar(1.65, 0.4, 12), polar(1.65, 2, 19)}};
-  const double error = largest_error(region, {Slices::wedge, Method::quadrature, 1e-10});
+  const double error = largest_error(region, {Slices::wedge, rod::Method::quadrature, 1e-10});
   record("wedge quadrature a tenth of a radius from the mantle", error);
   EXPECT_LT(error, 1e-10);
 }
@@ -167,7 +168,7 @@ TEST(StraightMagnet, UncertaintyBoundsTheError) {
     for (const Slices slices : {Slices::wedge, Slices::stacked}) {
       for (const Vector3& point : region.points) {
         const Vector3 x = 1e-3 * point;
-        const Field field = VolumeField({slices, Method::closed_form, 1e-6})
+        const Field field = rod::VolumeField({slices, rod::Method::closed_form, 1e-6})
                                 .field(cilium, oracle::straight(cilium), std::span(&x, 1));
         const Vector3 exact = oracle::derby_olbert(75e3, 1.5e-3, 3e-3, 20e-3, x);
         const double bound = field.uncertainty.front().norm() + 1e-14 * exact.norm();
@@ -185,9 +186,10 @@ TEST(StraightMagnet, DipoleAndLineAreItsLeadingTerms) {
   const Deformation shape = oracle::straight(cilium);
   const Vector3 x(0.3, -0.2, 0.4);
   const Vector3 exact = oracle::derby_olbert(75e3, 1.5e-3, 3e-3, 20e-3, x);
-  EXPECT_LT(oracle::relative_difference(flux_density(DipoleField(), cilium, shape, x), exact),
+  EXPECT_LT(oracle::relative_difference(flux_density(rod::DipoleField(), cilium, shape, x), exact),
             1e-3);
-  EXPECT_LT(oracle::relative_difference(flux_density(LineField(), cilium, shape, x), exact), 2e-5);
+  EXPECT_LT(oracle::relative_difference(flux_density(rod::LineField(), cilium, shape, x), exact),
+            2e-5);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
 #include "analytic/sources/field_points.h"
 #include "bent_rods.h"
@@ -20,7 +21,7 @@ namespace ciliaval::analytic {
 namespace {
 
 using oracle::paper_cilium;
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 
 /// Points on a sphere around the magnet.
 std::vector<Vector3> around(std::size_t n) {
@@ -46,12 +47,15 @@ TEST(Threads, GiveEachPointTheFieldItHasAlone) {
     std::size_t points;
   };
   const std::vector<Named> models = {
-      {"line", std::make_shared<LineField>(), rod, 9000},
-      {"dipole", std::make_shared<DipoleField>(), rod, 9000},
-      {"wedge", std::make_shared<VolumeField>(), rod, 3000},
-      {"stacked", std::make_shared<VolumeField>(VolumeOptions{Slices::stacked}), rod, 500},
-      {"mesh F", std::make_shared<MeshField>(), body, 50},
-      {"mesh R", std::make_shared<MeshField>(MeshOptions{PushForward::R, 1e-5}), body, 20}};
+      {"line", std::make_shared<rod::LineField>(), rod, 9000},
+      {"dipole", std::make_shared<rod::DipoleField>(), rod, 9000},
+      {"wedge", std::make_shared<rod::VolumeField>(), rod, 3000},
+      {"stacked", std::make_shared<rod::VolumeField>(rod::VolumeOptions{Slices::stacked}), rod,
+       500},
+      {"mesh F", std::make_shared<body::MeshField>(), body, 50},
+      {"mesh R",
+       std::make_shared<body::MeshField>(body::MeshOptions{sources::PushForward::R, 1e-5}), body,
+       20}};
   for (const Named& named : models) {
     const std::vector<Vector3> points = around(named.points);
     const Field together = named.model->field(paper_cilium(), named.deformation, points);
@@ -76,7 +80,7 @@ TEST(Threads, ReportTheFirstPointThatFails) {
   points[4000] = Vector3::Constant(std::nan(""));
   for (int i = 0; i < 20; ++i) {
     try {
-      VolumeField().field(paper_cilium(), rod, points);
+      rod::VolumeField().field(paper_cilium(), rod, points);
       FAIL() << "no error";
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("rim"), std::string::npos) << error.what();

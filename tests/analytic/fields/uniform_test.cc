@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/sources/dipole.h"
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
+#include "analytic/sources/dipole.h"
 #include "bent_rods.h"
 #include "problem/error.h"
 
@@ -25,7 +25,7 @@ using oracle::paper_cilium;
 using oracle::paper_sensor;
 using oracle::record;
 using oracle::relative_difference;
-using Slices = VolumeOptions::Slices;
+using Slices = rod::VolumeOptions::Slices;
 
 constexpr double curvature = 60;
 constexpr double azimuth = 0.5;
@@ -34,12 +34,12 @@ Deformation bent() {
   return oracle::sampled(paper_cilium(), oracle::arc(curvature, azimuth));
 }
 
-LineField line_sum(unsigned int n) {
-  return LineField({.method = Method::uniform, .elements = n});
+rod::LineField line_sum(unsigned int n) {
+  return rod::LineField({.method = rod::Method::uniform, .elements = n});
 }
 
-VolumeField volume_sum(Slices slices, unsigned int n) {
-  return VolumeField({.slices = slices, .method = Method::uniform, .elements = n});
+rod::VolumeField volume_sum(Slices slices, unsigned int n) {
+  return rod::VolumeField({.slices = slices, .method = rod::Method::uniform, .elements = n});
 }
 
 /// Eq. 5 summed over n slices of equal dz of the arc, on which S = arcsin(κz)/κ and dS = dz/cosθ;
@@ -60,7 +60,7 @@ Vector3 plain_sum(int n, int rings, bool jacobian, const Vector3& x) {
     const Vector3 r((1 - std::cos(theta)) / curvature * e + z * Vector3::UnitZ());
     const double dS = dz / std::cos(theta);
     if (rings == 0) {
-      B += dipole_field(75e3 * std::numbers::pi * R * R * dS * t, x - r);
+      B += sources::dipole_field(75e3 * std::numbers::pi * R * R * dS * t, x - r);
       continue;
     }
     for (int j = 0; j < rings; ++j)
@@ -71,7 +71,7 @@ Vector3 plain_sum(int n, int rings, bool jacobian, const Vector3& x) {
         const double dA = radius * R / rings * 2 * std::numbers::pi / rings;
         const double J = jacobian ? 1 - curvature * radius * std::cos(phi) : 1;
         const Vector3 y = r + radius * (std::cos(phi) * u + std::sin(phi) * v);
-        B += dipole_field(75e3 * J * dA * dS * t, x - y);
+        B += sources::dipole_field(75e3 * J * dA * dS * t, x - y);
       }
   }
   return B;
@@ -95,14 +95,14 @@ TEST(PapersSums, AreThePlainSumsOverSlicesOfEqualHeight) {
 
 /// The paper's cilium under the paper's load of 4 mN at 16 mm.
 Deformation papers_deformation() {
-  return *Elastica()
+  return *elastica::Elastica()
               .solve(paper_cilium(), {ContactLoad{4e-3, 16e-3, std::numbers::pi / 6}})
               .steps.front()
               .deformation;
 }
 
 // Oracle: the closed forms. The midpoint rule is of second order. The figures are those of the
-// table in docs/fields.md.
+// table in docs/evidence/fields.md.
 TEST(PapersSums, ConvergeToTheClosedFormsAtSecondOrder) {
   const Deformation deformation = papers_deformation();
   const auto converge = [&](const std::string& name, auto sum, const FieldModel& closed,
@@ -121,27 +121,29 @@ TEST(PapersSums, ConvergeToTheClosedFormsAtSecondOrder) {
       previous = error;
     }
   };
-  converge("line", line_sum, LineField(), {25, 50, 100, 200, 400, 800, 1600});
+  converge("line", line_sum, rod::LineField(), {25, 50, 100, 200, 400, 800, 1600});
   converge("stacked", [](unsigned int n) { return volume_sum(Slices::stacked, n); },
-           VolumeField({Slices::stacked}), {20, 40, 80});
-  converge("wedge", [](unsigned int n) { return volume_sum(Slices::wedge, n); }, VolumeField(),
+           rod::VolumeField({Slices::stacked}), {20, 40, 80});
+  converge("wedge", [](unsigned int n) { return volume_sum(Slices::wedge, n); }, rod::VolumeField(),
            {20, 40, 80});
 }
 
 TEST(PapersSums, TakeEitherPushForward) {
   const Deformation deformation = oracle::sampled(paper_cilium(), oracle::contorted());
-  for (const PushForward push_forward : {PushForward::F, PushForward::R}) {
+  for (const sources::PushForward push_forward :
+       {sources::PushForward::F, sources::PushForward::R}) {
     const Vector3 exact =
-        flux_density(LineField({push_forward}), paper_cilium(), deformation, paper_sensor);
-    const Vector3 sum = flux_density(LineField({push_forward, Method::uniform, 1e-10, 4000}),
-                                     paper_cilium(), deformation, paper_sensor);
+        flux_density(rod::LineField({push_forward}), paper_cilium(), deformation, paper_sensor);
+    const Vector3 sum =
+        flux_density(rod::LineField({push_forward, rod::Method::uniform, 1e-10, 4000}),
+                     paper_cilium(), deformation, paper_sensor);
     EXPECT_LT(relative_difference(sum, exact), 1e-6);
   }
 }
 
 TEST(PapersSums, HaveAnEstimateForASingleDipoleToo) {
   const Field field = line_sum(1).field(paper_cilium(), bent(), std::span(&paper_sensor, 1));
-  const Vector3 exact = flux_density(LineField(), paper_cilium(), bent(), paper_sensor);
+  const Vector3 exact = flux_density(rod::LineField(), paper_cilium(), bent(), paper_sensor);
   EXPECT_LE((field.B.front() - exact).norm(), 3 * field.uncertainty.front().norm());
   EXPECT_GT(field.uncertainty.front().norm(), 0);
 }

@@ -23,48 +23,50 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Claims, AFindingHoldsFailsOrIsUndecidedWithinItsUncertainty) {
-  EXPECT_EQ(in_range("a", 1, 2, "", 0.5, 2.5).holds, true);
-  EXPECT_EQ(in_range("a", 1, 2, "", 1.5, 2.5).holds, false);
-  EXPECT_EQ(in_range("a", 1, 2, "", 0.95, 2.5, 0.1).holds, std::nullopt);
-  EXPECT_EQ(in_range("a", 1, 2, "", 1.05, 2.5, 0.1).holds, std::nullopt);
-  EXPECT_EQ(in_range("a", 1, 2, "", 1.2, 2.5, 0.1).holds, false);
-  EXPECT_EQ(in_range("a", std::nan(""), 2, "", 0, 3).holds, false);
+  EXPECT_EQ(claims::in_range("a", 1, 2, "", 0.5, 2.5).holds, true);
+  EXPECT_EQ(claims::in_range("a", 1, 2, "", 1.5, 2.5).holds, false);
+  EXPECT_EQ(claims::in_range("a", 1, 2, "", 0.95, 2.5, 0.1).holds, std::nullopt);
+  EXPECT_EQ(claims::in_range("a", 1, 2, "", 1.05, 2.5, 0.1).holds, std::nullopt);
+  EXPECT_EQ(claims::in_range("a", 1, 2, "", 1.2, 2.5, 0.1).holds, false);
+  EXPECT_EQ(claims::in_range("a", std::nan(""), 2, "", 0, 3).holds, false);
 }
 
 TEST(Claims, TheVerdictIsThatOfTheFindings) {
-  const Finding yes = judged("a", 1, 1, "", true);
-  const Finding no = judged("b", 1, 1, "", false);
-  const Finding open = in_range("c", 1, 1, "", 1.05, 2, 0.1);
-  const auto verdict = [](std::vector<Finding> findings) {
-    return Claim{"1", "s", std::move(findings), ""}.verdict();
+  const claims::Finding yes = claims::judged("a", 1, 1, "", true);
+  const claims::Finding no = claims::judged("b", 1, 1, "", false);
+  const claims::Finding open = claims::in_range("c", 1, 1, "", 1.05, 2, 0.1);
+  const auto verdict = [](std::vector<claims::Finding> findings) {
+    return claims::Claim{"1", "s", std::move(findings), ""}.verdict();
   };
-  EXPECT_EQ(verdict({yes, yes}), ClaimVerdict::reproduced);
-  EXPECT_EQ(verdict({yes, open}), ClaimVerdict::reproduced);
-  EXPECT_EQ(verdict({no, open}), ClaimVerdict::not_reproduced);
-  EXPECT_EQ(verdict({yes, no}), ClaimVerdict::depends_on_the_model);
-  EXPECT_EQ(verdict({open}), ClaimVerdict::not_checkable);
-  EXPECT_EQ(verdict({}), ClaimVerdict::not_checkable);
+  EXPECT_EQ(verdict({yes, yes}), claims::ClaimVerdict::reproduced);
+  EXPECT_EQ(verdict({yes, open}), claims::ClaimVerdict::reproduced);
+  EXPECT_EQ(verdict({no, open}), claims::ClaimVerdict::not_reproduced);
+  EXPECT_EQ(verdict({yes, no}), claims::ClaimVerdict::depends_on_the_model);
+  EXPECT_EQ(verdict({open}), claims::ClaimVerdict::not_checkable);
+  EXPECT_EQ(verdict({}), claims::ClaimVerdict::not_checkable);
 }
 
 // Oracle: the closed forms of the same integrals; and of a straight cilium, where cos θ = 1, the
 // equations as printed are right.
 TEST(Misprints, TheEquationsAsMeantAreTheModels) {
-  const Case problem = test::paper_case({3e-3});
-  const MechanicsResult elastica = analytic::Elastica().solve(problem.cilium, problem.load_path);
+  const input::Case problem = test::paper_case({3e-3});
+  const MechanicsResult elastica =
+      analytic::elastica::Elastica().solve(problem.cilium, problem.load_path);
   const Vector3 x = problem.sensors.front();
   const Deformation& bent = *elastica.steps.front().deformation;
-  const PrintedFields fields = printed_fields(problem.cilium, bent.centreline, x);
+  const claims::PrintedFields fields = claims::printed_fields(problem.cilium, bent.centreline, x);
   const auto model = [&](const FieldModel& field) {
     return field.field(problem.cilium, bent, problem.sensors).B.front();
   };
-  const Vector3 line = model(analytic::LineField());
+  const Vector3 line = model(analytic::rod::LineField());
   const Vector3 volume =
-      model(analytic::VolumeField({.slices = analytic::VolumeOptions::Slices::stacked}));
+      model(analytic::rod::VolumeField({.slices = analytic::rod::VolumeOptions::Slices::stacked}));
   EXPECT_LT((fields.line - line).norm(), 1e-8 * line.norm());
   EXPECT_LT((fields.volume - volume).norm(), 1e-6 * volume.norm());
   EXPECT_EQ(fields.line_printed.x(), fields.line.x());
   EXPECT_GT(std::abs(fields.line_printed.z() / fields.line.z()), 1.001);
-  const PrintedFields straight = printed_fields(problem.cilium, elastica.undeformed.centreline, x);
+  const claims::PrintedFields straight =
+      claims::printed_fields(problem.cilium, elastica.undeformed.centreline, x);
   EXPECT_EQ(straight.line_printed, straight.line);
   EXPECT_EQ(straight.volume_printed, straight.volume);
 }
@@ -112,14 +114,14 @@ TEST(Claims, TheIntervalsOfACoarseBeamHoldTheFineBeams) {
       std::filesystem::path(CILIAVAL_SOURCE_DIR) / "cases/paper/fig3d.toml";
   std::ofstream(folder.path() / "fig3d.toml")
       << test::read_text(shipped) << "\n[models.beam]\ndegree = 2\n";
-  const std::vector<Claim> coarse = model_claims(folder.path(), false, {});
-  const std::vector<Claim> fine = model_claims(shipped.parent_path(), false, {});
+  const std::vector<claims::Claim> coarse = claims::model_claims(folder.path(), false, {});
+  const std::vector<claims::Claim> fine = claims::model_claims(shipped.parent_path(), false, {});
   ASSERT_EQ(coarse.size(), fine.size());
   int compared = 0;
   for (std::size_t i = 0; i < fine.size(); ++i)
     for (std::size_t j = 0; j < fine[i].findings.size(); ++j) {
-      const Finding& a = coarse[i].findings[j];
-      const Finding& b = fine[i].findings[j];
+      const claims::Finding& a = coarse[i].findings[j];
+      const claims::Finding& b = fine[i].findings[j];
       ASSERT_EQ(a.models, b.models);
       if (a.models.find("beam") == std::string::npos || a.unit == "s") continue;
       ++compared;

@@ -298,6 +298,8 @@ const BadCase contradictions[]{
     {"MeshWithoutSolid", ", \"solid\"]", "]", "32:39", "add 'solid' to 'mechanics'"},
     {"TooLongTogether", "length = \"3 mm\"", "length = \"100 m\"", "8:1",
      "the segments are 100.017 m long together"},
+    {"TooSlender", "diameter = \"3 mm\"", "diameter = \"3 nm\"", "6:12",
+     "the cilium is 6.66667e+06 diameters long"},
 };
 
 /// The load of good_case, lines 22 to 24, which each row replaces by a probe's.

@@ -97,7 +97,7 @@ class CaseFiles : public testing::Test {
   /// What read_case() says of a file, or "" if it reads it.
   static std::string fault_of(const std::filesystem::path& file) {
     try {
-      read_case(file);
+      input::read_case(file);
     } catch (const InputError& error) {
       return error.what();
     }

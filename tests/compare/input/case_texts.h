@@ -69,7 +69,7 @@ inline std::vector<std::string> lines(const std::string& text) {
 /// What is said of a bad case file; empty if it is read. Any other exception is let through.
 inline std::string faults_of(std::string_view text) {
   try {
-    read_case(text, "bad.toml");
+    input::read_case(text, "bad.toml");
   } catch (const InputError& error) {
     return error.what();
   }

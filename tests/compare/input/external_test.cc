@@ -65,10 +65,10 @@ class External : public testing::Test {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  Case read(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
+  input::Case read(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
     std::string text = head + keys;
     text.replace(text.find("AZIMUTH"), 7, azimuth);
-    return read_case(text, (folder_ / "case.toml").string());
+    return input::read_case(text, (folder_ / "case.toml").string());
   }
   /// The faults, without the folder's name.
   std::string faults(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
@@ -113,11 +113,11 @@ TEST_F(External, ReadsUnitsAsTheHeaderStatesThem) {
         "0.02,-0.0003,6000,0.236\n0.03,-0.0004,9900,0.393700787401575\n");
   write("b.csv", straight);
   write("r.csv", readings);
-  const Case c = read(
+  const input::Case c = read(
       "centrelines = [\"a.csv\", \"b.csv\"]\nreadings = \"r.csv\"\n"
       "tip_uncertainty = \"5 um\"\nfield_uncertainty = \"1 milligauss\"\n");
   ASSERT_EQ(c.external.size(), 1U);
-  const ExternalModel& model = c.external[0];
+  const input::external::ExternalModel& model = c.external[0];
   ASSERT_EQ(model.centrelines.size(), 2U);
   const Centreline& line = model.centrelines[0];
   EXPECT_EQ(line.length(), c.cilium.length());
@@ -135,17 +135,27 @@ TEST_F(External, WrittenCaseReadsBack) {
   write("a.csv", straight);
   write("r.csv", readings);
   write("earth.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n30,1,1,1\n");
-  const Case c = read(
+  const input::Case c = read(
       "centrelines = [\"a.csv\", \"a.csv\"]\nreadings = \"r.csv\"\n"
       "background = \"earth.csv\"\ntip_uncertainty = \"5 um\"\n");
-  const Case again = read_case(to_toml(c), "elsewhere/case.toml");
-  EXPECT_EQ(to_toml(again), to_toml(c));
+  const input::Case again = input::read_case(input::to_toml(c), "elsewhere/case.toml");
+  EXPECT_EQ(input::to_toml(again), input::to_toml(c));
   ASSERT_EQ(again.external.size(), 1U);
   EXPECT_EQ(again.external[0].centreline_files, c.external[0].centreline_files);
   EXPECT_EQ(*again.external[0].readings[0].B[1], *c.external[0].readings[0].B[1]);
   const std::string without = replaced(head, "AZIMUTH", "\"0 deg\"");
-  EXPECT_THAT(to_toml(read_case(without.substr(0, without.find("[[models.ext")), "x.toml")),
-              Not(HasSubstr("external")));
+  EXPECT_THAT(
+      input::to_toml(input::read_case(without.substr(0, without.find("[[models.ext")), "x.toml")),
+      Not(HasSubstr("external")));
+}
+
+// What is no table of readings is refused before it takes memory in proportion to its commas.
+TEST_F(External, BoundsTheSizeOfATable) {
+  EXPECT_THAT(centreline_faults(std::string(2'000'000, ',')), HasSubstr("more than 1000 columns"));
+  std::string rows = "S [mm],x [mm],y [mm],z [mm]\n";
+  for (int i = 0; i <= 1'000'000; ++i) rows += "0,0,0,0\n";
+  EXPECT_THAT(centreline_faults(rows),
+              HasSubstr("a.csv:1000002:1: there are more than 1000000 rows"));
 }
 
 TEST_F(External, TakesMarksOfOtherProgramsInItsStride) {
@@ -174,7 +184,8 @@ TEST_F(External, TakesTheLengthAlongThePointsWhereThereIsNoS) {
   }
   write("a.csv", csv);
   write("b.csv", straight);
-  const ExternalModel model = read("centrelines = [\"a.csv\", \"b.csv\"]\n").external[0];
+  const input::external::ExternalModel model =
+      read("centrelines = [\"a.csv\", \"b.csv\"]\n").external[0];
   EXPECT_THAT(model.remarks[0], StartsWith("S is the length along the points times 1.000029"));
   for (const double S : {0.0, 1.234e-3, 5e-3, 9.87e-3, 10e-3}) {
     const CentrelinePoint p = model.centrelines[0].at(S);
@@ -302,7 +313,7 @@ TEST_F(External, TakesTheBackgroundOfTheLoadsAzimuthOff) {
   write("r.csv", readings);
   const auto cleaned = [&](const std::string& csv, const std::string& azimuth) {
     write("earth.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n" + csv);
-    const ExternalModel model =
+    const input::external::ExternalModel model =
         read("readings = \"r.csv\"\nbackground = \"earth.csv\"\n", azimuth).external[0];
     return Cleaned{1e6 * *model.undeformed->B[0], 1e6 * *model.readings[0].B[0],
                    1e6 * *model.readings[0].B[1]};

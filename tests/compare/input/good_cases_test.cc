@@ -21,8 +21,8 @@ namespace {
 
 using testing::ElementsAre;
 
-Case read(std::string_view text) {
-  return read_case(text, "test.toml");
+input::Case read(std::string_view text) {
+  return input::read_case(text, "test.toml");
 }
 
 std::filesystem::path source(std::string_view file) {
@@ -52,12 +52,12 @@ void expect_same_cilium(const Cilium& a, const Cilium& b) {
 /// Where the load acts: height, arc length, or nothing.
 double station(const Load& load) {
   if (const auto height = contact_height(load)) return *height;
-  if (const auto* section = std::get_if<SectionLoad>(&load)) return section->arclength;
+  if (const auto section = load.as<SectionLoad>()) return section->arclength;
   return 0;
 }
 
 /// Every value, bit for bit.
-void expect_same(const Case& a, const Case& b) {
+void expect_same(const input::Case& a, const input::Case& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.title, b.title);
   expect_same_cilium(a.cilium, b.cilium);
@@ -68,17 +68,15 @@ void expect_same(const Case& a, const Case& b) {
     EXPECT_EQ(azimuth(a.load_path[i]), azimuth(b.load_path[i]));
     EXPECT_EQ(station(a.load_path[i]), station(b.load_path[i]));
   }
-  EXPECT_EQ(a.flow_velocity, b.flow_velocity);
-  EXPECT_EQ(a.flow_density, b.flow_density);
-  EXPECT_EQ(a.flow_drag_coefficient, b.flow_drag_coefficient);
+  EXPECT_EQ(a.stated_by, b.stated_by);
   EXPECT_EQ(a.sensors, b.sensors);
   EXPECT_EQ(a.mechanics, b.mechanics);
   EXPECT_EQ(a.fields, b.fields);
-  for (const Knob& knob : knobs())
+  for (const input::Knob& knob : input::knobs())
     EXPECT_EQ(knob.get(a.options), knob.get(b.options)) << knob.model << '.' << knob.name;
   ASSERT_EQ(a.options.potential.plates.size(), b.options.potential.plates.size());
   for (std::size_t i = 0; i < a.options.potential.plates.size(); ++i) {
-    const fem::PermeableBox& plate = a.options.potential.plates[i];
+    const fem::potential::PermeableBox& plate = a.options.potential.plates[i];
     EXPECT_EQ(plate.box.min(), b.options.potential.plates[i].box.min());
     EXPECT_EQ(plate.box.max(), b.options.potential.plates[i].box.max());
     EXPECT_EQ(plate.relative_permeability, b.options.potential.plates[i].relative_permeability);
@@ -86,7 +84,7 @@ void expect_same(const Case& a, const Case& b) {
 }
 
 TEST(GoodCase, IsReadAsTheFileStatesIt) {
-  const Case c = read(good_case);
+  const input::Case c = read(good_case);
   EXPECT_EQ(c.name, "good");
   EXPECT_EQ(c.title, "A case without a fault");
   EXPECT_EQ(c.cilium.diameter, 0.003);
@@ -103,12 +101,12 @@ TEST(GoodCase, IsReadAsTheFileStatesIt) {
   ASSERT_EQ(c.load_path.size(), 3U);
   const std::array forces{0.001, 0.002, 0.004};
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto& contact = std::get<ContactLoad>(c.load_path[i]);
+    const auto contact = *c.load_path[i].as<ContactLoad>();
     EXPECT_EQ(contact.force, forces[i]);
     EXPECT_EQ(contact.height, 0.016);
     EXPECT_NEAR(contact.azimuth, std::numbers::pi / 6, 2.3e-16);  // two roundings
   }
-  EXPECT_THAT(c.flow_velocity, testing::IsEmpty());
+  EXPECT_THAT(c.stated_by, testing::IsEmpty());
   EXPECT_THAT(c.sensors, ElementsAre(Vector3(-0.0001, 0.0002, -0.00155)));
   EXPECT_THAT(c.mechanics, ElementsAre("elastica", "beam", "solid"));
   EXPECT_THAT(c.fields, ElementsAre("dipole", "line", "volume", "mesh"));
@@ -120,7 +118,7 @@ TEST(GoodCase, DotsInCommentsAndTextsAreNoDottedKeys) {
     for (int i = 0; i < 40; ++i) text += " .";
     return text;
   }();
-  const Case reference = read(good_case);
+  const input::Case reference = read(good_case);
   expect_same(read("# don't" + dots + "\n" + std::string(good_case)), reference);
   expect_same(read(replaced(good_case, "\"3 mm\"\n", "\"3 mm\" # see \"" + dots + "\n")),
               reference);
@@ -141,58 +139,59 @@ TEST(GoodCase, AzimuthMayBeTwoTurns) {
 }
 
 TEST(GoodCase, LeavesTheModelsTheirDefaults) {
-  const Case c = read(replaced(good_case, "[models.solid]\nrefinement = 1\n", ""));
-  for (const Knob& knob : knobs())
-    EXPECT_EQ(knob.get(c.options), knob.get(ModelOptions{})) << knob.model << '.' << knob.name;
+  const input::Case c = read(replaced(good_case, "[models.solid]\nrefinement = 1\n", ""));
+  for (const input::Knob& knob : input::knobs())
+    EXPECT_EQ(knob.get(c.options), knob.get(input::ModelOptions{}))
+        << knob.model << '.' << knob.name;
 }
 
 TEST(GoodCase, LoadsBroadcastSingleValuesAlongThePath) {
-  const Case c =
+  const input::Case c =
       read(with_load("type = \"contact\"\nforce = \"1 mN\"\nheight = [\"4 mm\", \"8 mm\"]"
                      "\nazimuth = [\"0 deg\", \"-1 rad\"]"));
   ASSERT_EQ(c.load_path.size(), 2U);
-  EXPECT_EQ(std::get<ContactLoad>(c.load_path[0]).force, 0.001);
-  EXPECT_EQ(std::get<ContactLoad>(c.load_path[1]).force, 0.001);
-  EXPECT_EQ(std::get<ContactLoad>(c.load_path[0]).height, 0.004);
-  EXPECT_EQ(std::get<ContactLoad>(c.load_path[1]).height, 0.008);
-  EXPECT_EQ(std::get<ContactLoad>(c.load_path[1]).azimuth, -1.0);
+  EXPECT_EQ(c.load_path[0].as<ContactLoad>()->force, 0.001);
+  EXPECT_EQ(c.load_path[1].as<ContactLoad>()->force, 0.001);
+  EXPECT_EQ(c.load_path[0].as<ContactLoad>()->height, 0.004);
+  EXPECT_EQ(c.load_path[1].as<ContactLoad>()->height, 0.008);
+  EXPECT_EQ(c.load_path[1].as<ContactLoad>()->azimuth, -1.0);
 }
 
 TEST(GoodCase, AzimuthIsZeroByDefault) {
-  const Case c = read(replaced(good_case, "azimuth = \"30 deg\"\n", ""));
+  const input::Case c = read(replaced(good_case, "azimuth = \"30 deg\"\n", ""));
   EXPECT_EQ(azimuth(c.load_path.front()), 0.0);
 }
 
 TEST(GoodCase, VelocityBecomesTheDragOfThePaper) {
   // Oracle: the paper's section 3.5: q_max = 0.375 N/m for v = 0.5 m/s, d = 3 mm, water, C_d = 1.
-  const Case c = read(with_load("type = \"flow\"\nvelocity = [\"0 m/s\", \"0.5 m/s\"]"));
-  EXPECT_EQ(std::get<FlowLoad>(c.load_path[0]).force_per_height, 0.0);
-  EXPECT_NEAR(std::get<FlowLoad>(c.load_path[1]).force_per_height, 0.375, 1e-16);
-  EXPECT_THAT(c.flow_velocity, ElementsAre(0.0, 0.5));
+  const input::Case c = read(with_load("type = \"flow\"\nvelocity = [\"0 m/s\", \"0.5 m/s\"]"));
+  EXPECT_EQ(c.load_path[0].as<FlowLoad>()->force_per_height, 0.0);
+  EXPECT_NEAR(c.load_path[1].as<FlowLoad>()->force_per_height, 0.375, 1e-16);
+  EXPECT_THAT(input::stated_values(c, "velocity"), ElementsAre(0.0, 0.5));
   // Linear in density and drag coefficient: 0.8 · 1.2 · 0.375.
-  const Case oil =
+  const input::Case oil =
       read(with_load("type = \"flow\"\nvelocity = \"0.5 m/s\"\ndensity = \"0.8 "
                      "g/cm^3\"\ndrag_coefficient = 1.2"));
-  EXPECT_NEAR(std::get<FlowLoad>(oil.load_path[0]).force_per_height, 0.36, 2e-16);
+  EXPECT_NEAR(oil.load_path[0].as<FlowLoad>()->force_per_height, 0.36, 2e-16);
 }
 
 TEST(GoodCase, OtherLoadsAreRead) {
-  const Case flow = read(with_load("type = \"flow\"\nforce_per_height = \"0.3 N/m\""));
-  EXPECT_EQ(std::get<FlowLoad>(flow.load_path[0]).force_per_height, 0.3);
-  EXPECT_THAT(flow.flow_velocity, testing::IsEmpty());
-  const Case dead = read(with_load("type = \"dead\"\nforce_per_length = \"0.3 mN/mm\""));
-  EXPECT_NEAR(std::get<DeadLoad>(dead.load_path[0]).force_per_length, 0.3, 6e-17);
-  const Case section =
+  const input::Case flow = read(with_load("type = \"flow\"\nforce_per_height = \"0.3 N/m\""));
+  EXPECT_EQ(flow.load_path[0].as<FlowLoad>()->force_per_height, 0.3);
+  EXPECT_THAT(flow.stated_by, testing::IsEmpty());
+  const input::Case dead = read(with_load("type = \"dead\"\nforce_per_length = \"0.3 mN/mm\""));
+  EXPECT_NEAR(dead.load_path[0].as<DeadLoad>()->force_per_length, 0.3, 6e-17);
+  const input::Case section =
       read(with_load("type = \"section\"\nforce = \"1 mN\"\narclength = \"5 mm\""));
-  EXPECT_EQ(std::get<SectionLoad>(section.load_path[0]).force, 0.001);
-  EXPECT_EQ(std::get<SectionLoad>(section.load_path[0]).arclength, 0.005);
+  EXPECT_EQ(section.load_path[0].as<SectionLoad>()->force, 0.001);
+  EXPECT_EQ(section.load_path[0].as<SectionLoad>()->arclength, 0.005);
   // A displacement of more than the cilium's length is no fault: it slips off.
-  const Case probe = read(with_load(
+  const input::Case probe = read(with_load(
       "type = \"probe\"\ndisplacement = [\"0 mm\", \"2 mm\", \"1 m\"]\nheight = \"16 mm\""));
   ASSERT_EQ(probe.load_path.size(), 3U);
-  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[1]).displacement, 0.002);
-  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[2]).displacement, 1.0);
-  EXPECT_EQ(std::get<ProbeLoad>(probe.load_path[1]).height, 0.016);
+  EXPECT_EQ(probe.load_path[1].as<ProbeLoad>()->displacement, 0.002);
+  EXPECT_EQ(probe.load_path[2].as<ProbeLoad>()->displacement, 1.0);
+  EXPECT_EQ(probe.load_path[1].as<ProbeLoad>()->height, 0.016);
 }
 
 TEST(GoodCase, ASectionAtTheTipIsAtTheTipInSpiteOfRounding) {
@@ -204,14 +203,15 @@ TEST(GoodCase, ASectionAtTheTipIsAtTheTipInSpiteOfRounding) {
         with_load("type = \"section\"\nforce = \"1 mN\"\narclength = \"" + std::string(tip) + "\"");
     text = replaced(text, "length = \"3 mm\"", "length = \"" + std::string(first) + "\"");
     text = replaced(text, "length = \"17 mm\"", "length = \"" + std::string(second) + "\"");
-    const Case c = read(text);
-    EXPECT_EQ(std::get<SectionLoad>(c.load_path[0]).arclength, c.cilium.length());
+    const input::Case c = read(text);
+    EXPECT_EQ(c.load_path[0].as<SectionLoad>()->arclength, c.cilium.length());
   }
 }
 
 TEST(GoodCase, SensorsMayBeAList) {
-  const Case c = read(replaced(good_case, "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
-                               "[[\"1 mm\", \"2 mm\", \"3 mm\"], [\"0 m\", \"0 m\", \"-1 m\"]]"));
+  const input::Case c =
+      read(replaced(good_case, "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
+                    "[[\"1 mm\", \"2 mm\", \"3 mm\"], [\"0 m\", \"0 m\", \"-1 m\"]]"));
   EXPECT_THAT(c.sensors, ElementsAre(Vector3(0.001, 0.002, 0.003), Vector3(0, 0, -1)));
 }
 
@@ -220,7 +220,7 @@ TEST(GoodCase, NeedsNoSensorWithoutFields) {
       replaced(good_case, "fields = [\"dipole\", \"line\", \"volume\", \"mesh\"]\n", "");
   text = replaced(text, "[sensor]\nposition = [\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]\n", "");
   text = replaced(text, "magnetization = \"75 kA/m\"\n", "");
-  const Case c = read(text);
+  const input::Case c = read(text);
   EXPECT_THAT(c.fields, testing::IsEmpty());
   EXPECT_THAT(c.sensors, testing::IsEmpty());
 }
@@ -237,7 +237,7 @@ TEST(GoodCase, NumbersOfSegmentsVary) {
   for (int i = 0; i < 5; ++i)
     more += "[[cilium.segment]]\nname = \"s" + std::to_string(i) +
             "\"\nlength = \"1 mm\"\nyoung_modulus = \"1 GPa\"\npoisson_ratio = 0\n";
-  const Case c = read(replaced(text, "[load]", more + "[load]"));
+  const input::Case c = read(replaced(text, "[load]", more + "[load]"));
   ASSERT_EQ(c.cilium.segments.size(), 7U);
   EXPECT_EQ(c.cilium.segments[6].name, "s4");
   EXPECT_EQ(c.cilium.segments[6].poisson_ratio, 0.0);
@@ -316,8 +316,8 @@ std::string with_mooney_rivlin() {
 }
 
 TEST(Knobs, ReachTheOptionsOfTheirModel) {
-  const ModelOptions o = read(with_all_knobs()).options;
-  EXPECT_EQ(o.elastica.form, analytic::ElasticaOptions::Form::height);
+  const input::ModelOptions o = read(with_all_knobs()).options;
+  EXPECT_EQ(o.elastica.form, analytic::elastica::ElasticaOptions::Form::height);
   EXPECT_EQ(o.elastica.tolerance, 1e-9);
   EXPECT_EQ(o.beam.degree, 2U);
   EXPECT_EQ(o.beam.refinement, 4U);
@@ -325,14 +325,14 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.beam.tolerance, 1e-8);
   EXPECT_EQ(o.beam.max_iterations, 11U);
   EXPECT_EQ(o.beam.max_cutbacks, 3U);
-  EXPECT_EQ(o.solid.material, fem::SolidOptions::Material::yeoh);
+  EXPECT_EQ(o.solid.material, fem::solid::SolidOptions::Material::yeoh);
   EXPECT_EQ(o.solid.yeoh_ratios, (std::array{-0.2, 0.03}));
-  const ModelOptions mooney = read(with_mooney_rivlin()).options;
-  EXPECT_EQ(mooney.solid.material, fem::SolidOptions::Material::mooney_rivlin);
+  const input::ModelOptions mooney = read(with_mooney_rivlin()).options;
+  EXPECT_EQ(mooney.solid.material, fem::solid::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.solid.mooney_ratio, 0.1);
-  EXPECT_EQ(mooney.line.method, analytic::Method::uniform);
+  EXPECT_EQ(mooney.line.method, analytic::rod::Method::uniform);
   EXPECT_EQ(mooney.line.elements, 7U);
-  EXPECT_EQ(mooney.volume.method, analytic::Method::uniform);
+  EXPECT_EQ(mooney.volume.method, analytic::rod::Method::uniform);
   EXPECT_EQ(mooney.volume.elements, 9U);
   EXPECT_EQ(o.calculix.refinement, 3U);
   EXPECT_FALSE(o.calculix.error_estimate);
@@ -342,8 +342,8 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.calculix.program, "/opt/ccx");
   EXPECT_EQ(o.calculix.keep, "/somewhere");
   EXPECT_EQ(o.solid.refinement, 2U);
-  EXPECT_EQ(o.solid.solver, fem::SolverKind::iterative);
-  EXPECT_EQ(o.solid.initial_guess, fem::InitialGuess::none);
+  EXPECT_EQ(o.solid.solver, fem::solid::solvers::SolverKind::iterative);
+  EXPECT_EQ(o.solid.initial_guess, fem::solid::InitialGuess::none);
   EXPECT_FALSE(o.solid.symmetry);
   EXPECT_EQ(o.solid.mesh, source("cases/verification/ogrid.msh"));
   EXPECT_EQ(o.solid.mesh_unit, 1e-3);
@@ -351,17 +351,17 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.solid.tolerance, 1e-7);
   EXPECT_EQ(o.solid.max_iterations, 12U);
   EXPECT_EQ(o.solid.max_cutbacks, 4U);
-  EXPECT_EQ(o.dipole.push_forward, analytic::PushForward::R);
-  EXPECT_EQ(o.line.push_forward, analytic::PushForward::R);
-  EXPECT_EQ(o.line.method, analytic::Method::quadrature);
+  EXPECT_EQ(o.dipole.push_forward, analytic::sources::PushForward::R);
+  EXPECT_EQ(o.line.push_forward, analytic::sources::PushForward::R);
+  EXPECT_EQ(o.line.method, analytic::rod::Method::quadrature);
   EXPECT_EQ(o.line.tolerance, 1e-6);
-  EXPECT_EQ(o.volume.slices, analytic::VolumeOptions::Slices::stacked);
-  EXPECT_EQ(o.volume.method, analytic::Method::quadrature);
+  EXPECT_EQ(o.volume.slices, analytic::rod::VolumeOptions::Slices::stacked);
+  EXPECT_EQ(o.volume.method, analytic::rod::Method::quadrature);
   EXPECT_EQ(o.volume.tolerance, 1e-5);
-  EXPECT_EQ(o.mesh.push_forward, analytic::PushForward::R);
+  EXPECT_EQ(o.mesh.push_forward, analytic::sources::PushForward::R);
   EXPECT_EQ(o.mesh.tolerance, 1e-4);
   EXPECT_EQ(o.potential.relative_permeability, 1.2);
-  EXPECT_EQ(o.potential.push_forward, fem::MagnetPushForward::R);
+  EXPECT_EQ(o.potential.push_forward, fem::potential::MagnetPushForward::R);
   EXPECT_EQ(o.potential.tolerance, 1e-2);
   EXPECT_EQ(o.potential.max_unknowns, 5000U);
   ASSERT_EQ(o.potential.plates.size(), 2U);
@@ -376,11 +376,11 @@ TEST(Knobs, ReachTheOptionsOfTheirModel) {
 TEST(Knobs, TheMeshIsBesideTheCaseFile) {
   const std::string text =
       replaced(good_case, "refinement = 1", "mesh = \"../verification/ogrid.msh\"");
-  const Case c = read_case(text, source("cases/paper/some.toml").string());
+  const input::Case c = input::read_case(text, source("cases/paper/some.toml").string());
   EXPECT_EQ(c.options.solid.mesh, source("cases/verification/ogrid.msh"));
-  expect_same(read(to_toml(c)), c);
+  expect_same(read(input::to_toml(c)), c);
   try {
-    read_case(text, "/some.toml");
+    input::read_case(text, "/some.toml");
     FAIL() << "the mesh is not there";
   } catch (const InputError& error) {
     EXPECT_THAT(
@@ -391,17 +391,17 @@ TEST(Knobs, TheMeshIsBesideTheCaseFile) {
 
 TEST(Knobs, AreAllInTheListAbove) {
   // So that the test of the options and of the round trip covers a knob added later.
-  const ModelOptions set = read(with_all_knobs()).options;
-  const ModelOptions mooney = read(with_mooney_rivlin()).options;
-  for (const Knob& knob : knobs()) {
-    EXPECT_NE(knob.get(belongs(knob, set) ? set : mooney), knob.get(ModelOptions{}))
+  const input::ModelOptions set = read(with_all_knobs()).options;
+  const input::ModelOptions mooney = read(with_mooney_rivlin()).options;
+  for (const input::Knob& knob : input::knobs()) {
+    EXPECT_NE(knob.get(input::belongs(knob, set) ? set : mooney), knob.get(input::ModelOptions{}))
         << knob.model << '.' << knob.name;
   }
 }
 
 TEST(Knobs, HaveDefaultsInTheirRange) {
-  for (const Knob& knob : knobs()) {
-    const KnobValue value = knob.get(ModelOptions{});
+  for (const input::Knob& knob : input::knobs()) {
+    const input::KnobValue value = knob.get(input::ModelOptions{});
     if (const auto* number = std::get_if<double>(&value)) {
       EXPECT_TRUE(knob.range.contains(*number)) << knob.model << '.' << knob.name;
     }
@@ -434,24 +434,24 @@ TEST(WrittenCase, ReadsBackAsTheSameCaseBitForBit) {
                "[[\"1 um\", \"0.1 inch\", \"3 mm\"], [\"0 m\", \"-0 m\", \"-1 ft\"]]")};
   for (const std::string& text : texts) {
     SCOPED_TRACE(text);
-    const Case c = read(text);
-    const std::string written = to_toml(c);
+    const input::Case c = read(text);
+    const std::string written = input::to_toml(c);
     SCOPED_TRACE(written);
     expect_same(read(written), c);
   }
 }
 
 TEST(WrittenCase, StatesEveryKnobWithItsValue) {
-  const Case c = read(good_case);
-  const std::string written = to_toml(c);
-  for (const Knob& knob : knobs()) {
-    if (!belongs(knob, c.options)) {
+  const input::Case c = read(good_case);
+  const std::string written = input::to_toml(c);
+  for (const input::Knob& knob : input::knobs()) {
+    if (!input::belongs(knob, c.options)) {
       EXPECT_THAT(written, Not(testing::HasSubstr(std::string(knob.name)))) << knob.model;
       continue;
     }
     std::string line = "\n";
     line += knob.name;
-    line += " = " + to_toml(knob, knob.get(ModelOptions{})) + "\n";
+    line += " = " + input::to_toml(knob, knob.get(input::ModelOptions{})) + "\n";
     EXPECT_THAT(written, testing::HasSubstr(line)) << knob.model;
   }
   EXPECT_THAT(written, testing::HasSubstr("kernel_width = \"0.0005 m\""));
@@ -460,7 +460,8 @@ TEST(WrittenCase, StatesEveryKnobWithItsValue) {
 
 TEST(WrittenCase, StatesTheDefaultsOfTheChosenMaterial) {
   const auto written = [](const std::string& material) {
-    return to_toml(read(replaced(good_case, "refinement = 1", "material = \"" + material + "\"")));
+    return input::to_toml(
+        read(replaced(good_case, "refinement = 1", "material = \"" + material + "\"")));
   };
   EXPECT_THAT(written("mooney-rivlin"), testing::HasSubstr("\nmooney_ratio = 0.25\n"));
   EXPECT_THAT(written("yeoh"), testing::HasSubstr("\nyeoh_ratios = [-0.1, 0.01]\n"));
@@ -473,9 +474,9 @@ TEST(ShippedCases, AreReadAndWrittenBack) {
         file.path().string().ends_with(".sense.toml"))
       continue;
     SCOPED_TRACE(file.path());
-    const Case c = read_case(file.path());
+    const input::Case c = input::read_case(file.path());
     EXPECT_EQ(c.name, file.path().stem());
-    expect_same(read(to_toml(c)), c);
+    expect_same(read(input::to_toml(c)), c);
     ++count;
   }
   EXPECT_GE(count, 4);
@@ -485,7 +486,7 @@ TEST(ShippedCases, HaveTheFiguresOfThePaper) {
   // Oracle: the paper, sections 3.2, 3.4 and 3.5.
   for (const std::string_view name : {"fig3b", "fig3d", "fig5"}) {
     SCOPED_TRACE(name);
-    const Case c = read_case(source("cases/paper") / (std::string(name) + ".toml"));
+    const input::Case c = input::read_case(source("cases/paper") / (std::string(name) + ".toml"));
     EXPECT_EQ(c.cilium.diameter, 0.003);
     EXPECT_THAT(c.cilium.interfaces(), ElementsAre(0.0, 0.003, 0.02));
     EXPECT_EQ(c.cilium.segments[0].young_modulus, 0.1e6);
@@ -493,24 +494,24 @@ TEST(ShippedCases, HaveTheFiguresOfThePaper) {
     EXPECT_EQ(c.cilium.segments[1].magnetization, 7.5e4);
     EXPECT_THAT(c.sensors, ElementsAre(Vector3(-0.1e-3, 0.2e-3, -1.55e-3)));
   }
-  const Case flow = read_case(source("cases/paper/fig5.toml"));
+  const input::Case flow = input::read_case(source("cases/paper/fig5.toml"));
   EXPECT_EQ(flow.load_path.size(), 5U);
   EXPECT_NEAR(magnitude(flow.load_path.back()), 0.375, 1e-16);  // the paper's q_max
-  const Case contact = read_case(source("cases/paper/fig3b.toml"));
-  EXPECT_EQ(std::get<ContactLoad>(contact.load_path.front()).force, 0.001);
-  EXPECT_EQ(std::get<ContactLoad>(contact.load_path.front()).height, 0.016);
+  const input::Case contact = input::read_case(source("cases/paper/fig3b.toml"));
+  EXPECT_EQ(contact.load_path.front().as<ContactLoad>()->force, 0.001);
+  EXPECT_EQ(contact.load_path.front().as<ContactLoad>()->height, 0.016);
 }
 
 TEST(Documentation, HasTheTableOfKeys) {
-  std::ifstream in(source("docs/cases.md"));
+  std::ifstream in(source("docs/guide/cases.md"));
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (std::getenv("CILIAVAL_PRINT_KEYS") != nullptr) std::fputs(key_table().c_str(), stdout);
-  EXPECT_THAT(text, testing::HasSubstr(key_table()))
-      << "run this test with CILIAVAL_PRINT_KEYS=1 and put the table into docs/cases.md";
+  if (std::getenv("CILIAVAL_PRINT_KEYS") != nullptr) std::fputs(input::key_table().c_str(), stdout);
+  EXPECT_THAT(text, testing::HasSubstr(input::key_table()))
+      << "run this test with CILIAVAL_PRINT_KEYS=1 and put the table into docs/guide/cases.md";
 }
 
 TEST(Documentation, ExampleIsACase) {
-  std::ifstream in(source("docs/cases.md"));
+  std::ifstream in(source("docs/guide/cases.md"));
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   constexpr std::string_view fence = "```toml\n";
   const std::size_t from = text.find(fence);

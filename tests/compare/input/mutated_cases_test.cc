@@ -90,8 +90,8 @@ TEST(MutatedCases, AreReadOrRefusedWithAPlace) {
   for (int i = 0; i < 20000; ++i) {
     const std::string text = mutate(good_case);
     try {
-      const std::string written = to_toml(read_case(text, "mutated.toml"));
-      ASSERT_EQ(to_toml(read_case(written, "written.toml")), written) << text;
+      const std::string written = input::to_toml(input::read_case(text, "mutated.toml"));
+      ASSERT_EQ(input::to_toml(input::read_case(written, "written.toml")), written) << text;
       ++read;
     } catch (const InputError& error) {
       ASSERT_THAT(error.what(), testing::MatchesRegex("mutated.toml:[0-9]+:[0-9]+: .+")) << text;
@@ -115,7 +115,7 @@ TEST(RandomQuantities, AreFiniteOrRefused) {
     std::string text(parts[random() % 4]);
     for (std::size_t n = 1 + random() % 6; n > 0; --n) text += parts[random() % parts.size()];
     try {
-      ASSERT_TRUE(std::isfinite(parse_quantity(text, quantity::length))) << text;
+      ASSERT_TRUE(std::isfinite(input::parse_quantity(text, quantity::length))) << text;
       ++read;
     } catch (const InputError&) {
     }  // any other exception ends the test

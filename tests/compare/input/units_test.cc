@@ -17,84 +17,87 @@ namespace ciliaval::compare {
 namespace {
 
 TEST(Units, MultiplesOfTheSiUnitAreReadToTheLastBit) {
-  EXPECT_EQ(parse_quantity("3 mm", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("17 mm", quantity::length), 0.017);
-  EXPECT_EQ(parse_quantity("-1.55 mm", quantity::length), -0.00155);
-  EXPECT_EQ(parse_quantity("5 um", quantity::length), 5e-6);
-  EXPECT_EQ(parse_quantity("0.7 nm", quantity::length), 0.7e-9);
-  EXPECT_EQ(parse_quantity("2 cm", quantity::length), 0.02);
-  EXPECT_EQ(parse_quantity("0.1 MPa", quantity::pressure), 1e5);
-  EXPECT_EQ(parse_quantity("75 kA/m", quantity::magnetization), 75000.0);
-  EXPECT_EQ(parse_quantity("1 mN", quantity::force), 1e-3);
-  EXPECT_EQ(parse_quantity("0.375 N/m", quantity::force_per_length), 0.375);
-  EXPECT_EQ(parse_quantity("10 cm/s", quantity::velocity), 0.1);
-  EXPECT_EQ(parse_quantity("1000 kg/m^3", quantity::density), 1000.0);
-  EXPECT_EQ(parse_quantity("1.5 rad", quantity::angle), 1.5);
+  EXPECT_EQ(input::parse_quantity("3 mm", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("17 mm", quantity::length), 0.017);
+  EXPECT_EQ(input::parse_quantity("-1.55 mm", quantity::length), -0.00155);
+  EXPECT_EQ(input::parse_quantity("5 um", quantity::length), 5e-6);
+  EXPECT_EQ(input::parse_quantity("0.7 nm", quantity::length), 0.7e-9);
+  EXPECT_EQ(input::parse_quantity("2 cm", quantity::length), 0.02);
+  EXPECT_EQ(input::parse_quantity("0.1 MPa", quantity::pressure), 1e5);
+  EXPECT_EQ(input::parse_quantity("75 kA/m", quantity::magnetization), 75000.0);
+  EXPECT_EQ(input::parse_quantity("1 mN", quantity::force), 1e-3);
+  EXPECT_EQ(input::parse_quantity("0.375 N/m", quantity::force_per_length), 0.375);
+  EXPECT_EQ(input::parse_quantity("10 cm/s", quantity::velocity), 0.1);
+  EXPECT_EQ(input::parse_quantity("1000 kg/m^3", quantity::density), 1000.0);
+  EXPECT_EQ(input::parse_quantity("1.5 rad", quantity::angle), 1.5);
 }
 
 TEST(Units, EveryWholeNumberOfMillimetresIsTheNearestDouble) {
   for (int n = 1; n <= 2000; ++n)
-    EXPECT_EQ(parse_quantity(std::to_string(n) + " mm", quantity::length),
+    EXPECT_EQ(input::parse_quantity(std::to_string(n) + " mm", quantity::length),
               std::stod(std::to_string(n) + "e-3"));
 }
 
 TEST(Units, DegIsADegree) {
   // One rounding of pi/180 and one of the product: 2 units in the last place.
-  EXPECT_NEAR(parse_quantity("30 deg", quantity::angle), std::numbers::pi / 6, 2.3e-16);
-  EXPECT_EQ(parse_quantity("30 deg", quantity::angle),
-            parse_quantity("30 degree", quantity::angle));
-  EXPECT_EQ(parse_quantity("30deg", quantity::angle), parse_quantity("30 deg", quantity::angle));
-  EXPECT_EQ(parse_quantity("30 °", quantity::angle), parse_quantity("30 deg", quantity::angle));
+  EXPECT_NEAR(input::parse_quantity("30 deg", quantity::angle), std::numbers::pi / 6, 2.3e-16);
+  EXPECT_EQ(input::parse_quantity("30 deg", quantity::angle),
+            input::parse_quantity("30 degree", quantity::angle));
+  EXPECT_EQ(input::parse_quantity("30deg", quantity::angle),
+            input::parse_quantity("30 deg", quantity::angle));
+  EXPECT_EQ(input::parse_quantity("30 °", quantity::angle),
+            input::parse_quantity("30 deg", quantity::angle));
 }
 
 TEST(Units, OtherWritingsOfTheSameUnitAreRead) {
-  EXPECT_EQ(parse_quantity("  3mm ", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("+3 mm", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("3e0 mm", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("3. mm", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity(".3 cm", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("5 µm", quantity::length), 5e-6);
-  EXPECT_EQ(parse_quantity("1000 kg m-3", quantity::density), 1000.0);
-  EXPECT_EQ(parse_quantity("1000 kg/m3", quantity::density), 1000.0);
-  EXPECT_EQ(parse_quantity("1000 kg.m^-3", quantity::density), 1000.0);
-  EXPECT_EQ(parse_quantity("1 g/cm^3", quantity::density), 1000.0);
-  EXPECT_EQ(parse_quantity("2 kg m s-2", quantity::force), 2.0);
-  EXPECT_EQ(parse_quantity("0.1 N/mm^2", quantity::pressure), 1e5);
-  EXPECT_EQ(parse_quantity("0.1 N/(mm mm)", quantity::pressure), 1e5);
-  EXPECT_EQ(parse_quantity("0.1 N/mm**2", quantity::pressure), 1e5);
-  EXPECT_EQ(parse_quantity("0.1 N/mm²", quantity::pressure), 1e5);
+  EXPECT_EQ(input::parse_quantity("  3mm ", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("+3 mm", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("3e0 mm", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("3. mm", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity(".3 cm", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("5 µm", quantity::length), 5e-6);
+  EXPECT_EQ(input::parse_quantity("1000 kg m-3", quantity::density), 1000.0);
+  EXPECT_EQ(input::parse_quantity("1000 kg/m3", quantity::density), 1000.0);
+  EXPECT_EQ(input::parse_quantity("1000 kg.m^-3", quantity::density), 1000.0);
+  EXPECT_EQ(input::parse_quantity("1 g/cm^3", quantity::density), 1000.0);
+  EXPECT_EQ(input::parse_quantity("2 kg m s-2", quantity::force), 2.0);
+  EXPECT_EQ(input::parse_quantity("0.1 N/mm^2", quantity::pressure), 1e5);
+  EXPECT_EQ(input::parse_quantity("0.1 N/(mm mm)", quantity::pressure), 1e5);
+  EXPECT_EQ(input::parse_quantity("0.1 N/mm**2", quantity::pressure), 1e5);
+  EXPECT_EQ(input::parse_quantity("0.1 N/mm²", quantity::pressure), 1e5);
 }
 
 TEST(Units, UnitsOutsideTheSiKeepTheirDefinition) {
   // 1 inch = 25.4 mm; 1 lbf = 0.45359237 kg × 9.80665 m/s². UDUNITS has them to 1e-13 or better.
-  EXPECT_NEAR(parse_quantity("1 inch", quantity::length), 0.0254, 1e-17);
-  EXPECT_NEAR(parse_quantity("1 lbf", quantity::force), 0.45359237 * 9.80665, 1e-12);
-  EXPECT_NEAR(parse_quantity("1 psi", quantity::pressure), 0.45359237 * 9.80665 / (0.0254 * 0.0254),
-              1e-8);
+  EXPECT_NEAR(input::parse_quantity("1 inch", quantity::length), 0.0254, 1e-17);
+  EXPECT_NEAR(input::parse_quantity("1 lbf", quantity::force), 0.45359237 * 9.80665, 1e-12);
+  EXPECT_NEAR(input::parse_quantity("1 psi", quantity::pressure),
+              0.45359237 * 9.80665 / (0.0254 * 0.0254), 1e-8);
   // 1 Oe = 1000/(4π) A/m; UDUNITS rounds it to seven digits.
-  EXPECT_NEAR(parse_quantity("1 Oe", quantity::magnetization), 1000 / (4 * std::numbers::pi), 1e-5);
+  EXPECT_NEAR(input::parse_quantity("1 Oe", quantity::magnetization), 1000 / (4 * std::numbers::pi),
+              1e-5);
 }
 
 TEST(Units, UnderscoresBelongToNames) {
   // 1 kgf = 9.80665 N (CGPM 1901), 1 at = 1 kgf/cm², 1 mmHg = 133.322 Pa.
-  EXPECT_NEAR(parse_quantity("1 gram_force", quantity::force), 9.80665e-3, 1e-16);
-  EXPECT_NEAR(parse_quantity("1 kilogram_force", quantity::force), 9.80665, 1e-13);
-  EXPECT_NEAR(parse_quantity("1 technical_atmosphere", quantity::pressure), 98066.5, 1e-9);
-  EXPECT_NEAR(parse_quantity("1 international_inch", quantity::length), 0.0254, 1e-17);
-  EXPECT_NEAR(parse_quantity("180 arc_degree", quantity::angle), std::numbers::pi, 1e-15);
-  EXPECT_NEAR(parse_quantity("1 mm_Hg", quantity::pressure), 133.322, 1e-3);
+  EXPECT_NEAR(input::parse_quantity("1 gram_force", quantity::force), 9.80665e-3, 1e-16);
+  EXPECT_NEAR(input::parse_quantity("1 kilogram_force", quantity::force), 9.80665, 1e-13);
+  EXPECT_NEAR(input::parse_quantity("1 technical_atmosphere", quantity::pressure), 98066.5, 1e-9);
+  EXPECT_NEAR(input::parse_quantity("1 international_inch", quantity::length), 0.0254, 1e-17);
+  EXPECT_NEAR(input::parse_quantity("180 arc_degree", quantity::angle), std::numbers::pi, 1e-15);
+  EXPECT_NEAR(input::parse_quantity("1 mm_Hg", quantity::pressure), 133.322, 1e-3);
 }
 
 TEST(Units, TypesettersBlanksMinusAndSuperscriptsAreRead) {
-  EXPECT_EQ(parse_quantity("3\u00A0mm", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("3\u202Fmm", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("\u00A03\u2009mm\u00A0", quantity::length), 0.003);
-  EXPECT_EQ(parse_quantity("\u22123 mm", quantity::length), -0.003);
-  EXPECT_EQ(parse_quantity("2 kg m s⁻²", quantity::force), 2.0);
-  EXPECT_EQ(parse_quantity("2 kg·m·s\u22122", quantity::force), 2.0);
-  EXPECT_EQ(parse_quantity("2 kg\u202Fm⁻³", quantity::density), 2.0);
-  EXPECT_EQ(parse_quantity("2e6 N (m⁻¹)²", quantity::pressure), 2e6);
-  EXPECT_EQ(parse_quantity("2 m⁺¹", quantity::length), 2.0);
+  EXPECT_EQ(input::parse_quantity("3\u00A0mm", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("3\u202Fmm", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("\u00A03\u2009mm\u00A0", quantity::length), 0.003);
+  EXPECT_EQ(input::parse_quantity("\u22123 mm", quantity::length), -0.003);
+  EXPECT_EQ(input::parse_quantity("2 kg m s⁻²", quantity::force), 2.0);
+  EXPECT_EQ(input::parse_quantity("2 kg·m·s\u22122", quantity::force), 2.0);
+  EXPECT_EQ(input::parse_quantity("2 kg\u202Fm⁻³", quantity::density), 2.0);
+  EXPECT_EQ(input::parse_quantity("2e6 N (m⁻¹)²", quantity::pressure), 2e6);
+  EXPECT_EQ(input::parse_quantity("2 m⁺¹", quantity::length), 2.0);
 }
 
 struct BadText {
@@ -104,7 +107,7 @@ struct BadText {
 };
 
 void PrintTo(const BadText& bad, std::ostream* out) {
-  *out << in_quotes(bad.text) << " as " << bad.expected.name;
+  *out << input::in_quotes(bad.text) << " as " << bad.expected.name;
 }
 
 class BadQuantity : public testing::TestWithParam<BadText> {};
@@ -112,7 +115,7 @@ class BadQuantity : public testing::TestWithParam<BadText> {};
 TEST_P(BadQuantity, IsRefusedWithTheReason) {
   const BadText& bad = GetParam();
   try {
-    const double value = parse_quantity(bad.text, bad.expected);
+    const double value = input::parse_quantity(bad.text, bad.expected);
     FAIL() << '"' << bad.text << "\" was read as " << value;
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr(bad.message)) << bad.text;
@@ -193,16 +196,16 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Units, NothingIsWrittenToTheErrorStreamByUdunits) {
   testing::internal::CaptureStderr();
-  EXPECT_THROW(parse_quantity("3 nonsense", quantity::length), InputError);
-  EXPECT_THROW(parse_quantity("3 degC", quantity::length), InputError);
-  EXPECT_THROW(parse_quantity("3 ((", quantity::length), InputError);
+  EXPECT_THROW(input::parse_quantity("3 nonsense", quantity::length), InputError);
+  EXPECT_THROW(input::parse_quantity("3 degC", quantity::length), InputError);
+  EXPECT_THROW(input::parse_quantity("3 ((", quantity::length), InputError);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(Units, NoUnitIsProposedWhereNoneIsNear) {
   for (const char* text : {"3 mmm", "3 nonsense", "3 N", "3 x"}) {
     try {
-      parse_quantity(text, quantity::length);
+      input::parse_quantity(text, quantity::length);
       FAIL() << text;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), testing::Not(testing::HasSubstr("did you mean"))) << text;
@@ -218,18 +221,18 @@ TEST(Units, WhatIsWrittenReadsBackAsTheSameDouble) {
         quantity::force_per_length, quantity::velocity, quantity::density, quantity::angle}) {
     for (int i = 0; i < 200; ++i) {
       const double value = std::pow(10, exponent(random)) * (i % 2 == 0 ? 1 : -1);
-      EXPECT_EQ(parse_quantity(format_quantity(value, q), q), value) << q.name;
+      EXPECT_EQ(input::parse_quantity(input::format_quantity(value, q), q), value) << q.name;
     }
-    EXPECT_EQ(parse_quantity(format_quantity(0.0, q), q), 0.0) << q.name;
+    EXPECT_EQ(input::parse_quantity(input::format_quantity(0.0, q), q), 0.0) << q.name;
   }
-  EXPECT_EQ(format_quantity(0.003, quantity::length), "0.003 m");
-  EXPECT_EQ(format_quantity(0.49, quantity::number), "0.49");
-  EXPECT_EQ(format_number(1.0 / 3), "0.3333333333333333");
+  EXPECT_EQ(input::format_quantity(0.003, quantity::length), "0.003 m");
+  EXPECT_EQ(input::format_quantity(0.49, quantity::number), "0.49");
+  EXPECT_EQ(input::format_number(1.0 / 3), "0.3333333333333333");
 }
 
 TEST(Units, MessagesCannotControlATerminal) {
-  EXPECT_EQ(in_quotes("a\x1b[2J\n"), "'a\\x1B[2J\\x0A'");
-  EXPECT_EQ(in_quotes(std::string(100, 'x')), "'" + std::string(60, 'x') + "...'");
+  EXPECT_EQ(input::in_quotes("a\x1b[2J\n"), "'a\\x1B[2J\\x0A'");
+  EXPECT_EQ(input::in_quotes(std::string(100, 'x')), "'" + std::string(60, 'x') + "...'");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "analytic/body/mesh_field.h"
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "compare/input/case.h"
@@ -22,10 +23,10 @@ Cilium paper() {
   return {3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
 }
 
-fem::Beam shear_rigid_beam() {
-  fem::BeamOptions options;
+fem::beam::Beam shear_rigid_beam() {
+  fem::beam::BeamOptions options;
   options.shear_rigid = true;
-  return fem::Beam(options);
+  return fem::beam::Beam(options);
 }
 
 /// Largest distance between two centrelines at common material points, m.
@@ -55,7 +56,7 @@ class EveryLoad : public testing::TestWithParam<Load> {};
 // Oracle: without shear and extension, Simo–Reissner's beam is the elastica. Measured: 5e-11 of the
 // length (flow; the beam's interpolation between its nodes) and 1e-15 in the tip angle.
 TEST_P(EveryLoad, ShearRigidBeamIsTheElastica) {
-  const Centreline elastica = solved(analytic::Elastica(), paper(), GetParam());
+  const Centreline elastica = solved(analytic::elastica::Elastica(), paper(), GetParam());
   const Centreline beam = solved(shear_rigid_beam(), paper(), GetParam());
   EXPECT_GT(tip_deflection(elastica), 1e-3);  // not the straight cilium
   EXPECT_LT(largest_distance(elastica, beam), 2e-10 * paper().length());
@@ -74,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(Models, EveryLoad,
 // to 5e-16.
 TEST(Models, ElasticaAndShearRigidBeamSlipOffAtTheSameForce) {
   const LoadPath path{ContactLoad{7e-3, contact_height, 0.0}};
-  const MechanicsStep elastica = analytic::Elastica().solve(paper(), path).steps.at(0);
+  const MechanicsStep elastica = analytic::elastica::Elastica().solve(paper(), path).steps.at(0);
   const MechanicsStep beam = shear_rigid_beam().solve(paper(), path).steps.at(0);
   EXPECT_EQ(elastica.status, Status::slipped_off);
   EXPECT_EQ(beam.status, Status::slipped_off);
@@ -87,7 +88,7 @@ TEST(Models, ElasticaAndShearRigidBeamSlipOffAtTheSameForce) {
 // the base, which turns by nearly 90° there. Measured: 3e-13 (1e-9 on the beam's default mesh, by
 // its discretisation of the base).
 TEST(Models, ElasticaAndShearRigidBeamFindTheSameForceForADisplacement) {
-  fem::BeamOptions fine;
+  fem::beam::BeamOptions fine;
   fine.shear_rigid = true;
   fine.refinement = 2;
   for (const double height : {contact_height, 2.5e-3}) {
@@ -95,8 +96,8 @@ TEST(Models, ElasticaAndShearRigidBeamFindTheSameForceForADisplacement) {
     for (const double part : {0.01, 0.3, 0.6, 0.8})
       path.push_back(ProbeLoad{part * 11e-3, height, 1});
     path.push_back(ProbeLoad{20e-3, height, 1});
-    const MechanicsResult elastica = analytic::Elastica().solve(paper(), path);
-    const MechanicsResult beam = fem::Beam(fine).solve(paper(), path);
+    const MechanicsResult elastica = analytic::elastica::Elastica().solve(paper(), path);
+    const MechanicsResult beam = fem::beam::Beam(fine).solve(paper(), path);
     for (std::size_t i = 0; i < path.size(); ++i) {
       const MechanicsStep& a = elastica.steps[i];
       const MechanicsStep& b = beam.steps[i];
@@ -119,11 +120,11 @@ TEST(Models, ElasticaAndShearRigidBeamFindTheSameForceForADisplacement) {
 // the deflection.
 TEST(Models, AgreeToHalfAPercentForASlenderCilium) {
   const std::string file = CILIAVAL_SOURCE_DIR "/cases/verification/slender.toml";
-  const compare::Case c = compare::read_case(file);
+  const compare::input::Case c = compare::input::read_case(file);
   const Centreline elastica =
-      solved(analytic::Elastica(c.options.elastica), c.cilium, c.load_path.back());
-  const Centreline beam = solved(fem::Beam(c.options.beam), c.cilium, c.load_path.back());
-  const Centreline solid = solved(fem::Solid(c.options.solid), c.cilium, c.load_path.back());
+      solved(analytic::elastica::Elastica(c.options.elastica), c.cilium, c.load_path.back());
+  const Centreline beam = solved(fem::beam::Beam(c.options.beam), c.cilium, c.load_path.back());
+  const Centreline solid = solved(fem::solid::Solid(c.options.solid), c.cilium, c.load_path.back());
   const double deflection = tip_deflection(solid);
   EXPECT_GT(deflection, 0.3 * c.cilium.length());  // a large deflection
   EXPECT_LT(largest_distance(elastica, solid), 5e-3 * deflection);
@@ -136,13 +137,13 @@ TEST(Models, AgreeToHalfAPercentForASlenderCilium) {
 // deflection.
 TEST(Models, ProbesOfASlenderCiliumTakeTheSameForce) {
   const std::string file = CILIAVAL_SOURCE_DIR "/cases/verification/slender.toml";
-  const Cilium cilium = compare::read_case(file).cilium;
+  const Cilium cilium = compare::input::read_case(file).cilium;
   const LoadPath path{ProbeLoad{6e-3, 16e-3, 0.3}};
-  const MechanicsResult solid = fem::Solid({.refinement = 0}).solve(cilium, path);
+  const MechanicsResult solid = fem::solid::Solid({.refinement = 0}).solve(cilium, path);
   ASSERT_EQ(solid.steps[0].status, Status::converged) << solid.steps[0].message;
   const Centreline& line = solid.steps[0].deformation->centreline;
-  for (const MechanicsResult& rod :
-       {analytic::Elastica().solve(cilium, path), fem::Beam().solve(cilium, path)}) {
+  for (const MechanicsResult& rod : {analytic::elastica::Elastica().solve(cilium, path),
+                                     fem::beam::Beam().solve(cilium, path)}) {
     const MechanicsStep& step = rod.steps.at(0);
     EXPECT_NEAR(solid.steps[0].applied_force / step.applied_force, 1, 5e-3);
     EXPECT_LT(largest_distance(step.deformation->centreline, line), 1e-3 * tip_deflection(line));
@@ -154,27 +155,27 @@ TEST(Models, ProbesOfASlenderCiliumTakeTheSameForce) {
 TEST(Models, FieldsOfElasticaAndShearRigidBeamAgree) {
   const Load load = ContactLoad{4e-3, contact_height, 0.5};
   const std::vector<Vector3> sensor{{-0.1e-3, 0.2e-3, -1.55e-3}};
-  const Deformation elastica{solved(analytic::Elastica(), paper(), load), nullptr};
+  const Deformation elastica{solved(analytic::elastica::Elastica(), paper(), load), nullptr};
   const Deformation beam{solved(shear_rigid_beam(), paper(), load), nullptr};
   const auto compare = [&](const FieldModel& model) {
     const Vector3 a = model.field(paper(), elastica, sensor).B[0];
     const Vector3 b = model.field(paper(), beam, sensor).B[0];
     EXPECT_LT((a - b).norm(), 1e-13 * a.norm());
   };
-  compare(analytic::DipoleField());
-  compare(analytic::LineField());
-  compare(analytic::VolumeField());
+  compare(analytic::rod::DipoleField());
+  compare(analytic::rod::LineField());
+  compare(analytic::rod::VolumeField());
 }
 
 // Oracle: the undeformed solid is the straight magnet, whose field `volume` gives in closed form.
 // What is left is the mesh's
 // geometry: 2e-8 measured.
 TEST(Models, FieldOfTheUndeformedSolidIsThatOfTheStraightMagnet) {
-  const MechanicsResult solid = fem::Solid().solve(paper(), {DeadLoad{0, 0}});
+  const MechanicsResult solid = fem::solid::Solid().solve(paper(), {DeadLoad{0, 0}});
   const Deformation straight{straight_centreline(paper().interfaces()), nullptr};
   const std::vector<Vector3> sensor{{-0.1e-3, 0.2e-3, -1.55e-3}};
-  const Vector3 mesh = analytic::MeshField().field(paper(), solid.undeformed, sensor).B[0];
-  const Vector3 volume = analytic::VolumeField().field(paper(), straight, sensor).B[0];
+  const Vector3 mesh = analytic::body::MeshField().field(paper(), solid.undeformed, sensor).B[0];
+  const Vector3 volume = analytic::rod::VolumeField().field(paper(), straight, sensor).B[0];
   EXPECT_LT((mesh - volume).norm(), 1e-7 * volume.norm());
 }
 

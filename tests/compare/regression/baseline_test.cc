@@ -24,29 +24,32 @@ namespace {
 using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 
-const Provenance origin{"0.1.0", "abc", {{"deal.II", "9.4.1"}}, "ciliaval check", "2026-11-21"};
+const output::Provenance origin{
+    "0.1.0", "abc", {{"deal.II", "9.4.1"}}, "ciliaval check", "2026-11-21"};
 
-Case any_case() {
-  return read_case(test::case_text({.name = "any"}, "mechanics = [\"elastica\"]\n"), "any.toml");
+input::Case any_case() {
+  return input::read_case(test::case_text({.name = "any"}, "mechanics = [\"elastica\"]\n"),
+                          "any.toml");
 }
 
-Measurements some() {
-  Measurements m;
+regression::Measurements some() {
+  regression::Measurements m;
   m.quantities = {{"steps/0/mechanics/elastica/tip/x", "elastica", "m", 1.0 / 3, 20e-3, {}},
                   {"steps/0/mechanics/elastica/tip_angle", "elastica", "rad", -0.0, 1, {}}};
   m.outcomes = {{"steps/0/mechanics/elastica/status", "elastica", "converged"}};
   return m;
 }
 
-Baseline some_baseline() {
-  Baseline baseline = make_baseline(any_case(), some(), origin, nullptr);
-  baseline.quantities[0].reference = Reference{"Mattiasson (1981)", 0.3333, {1e-3, 0}};
+regression::Baseline some_baseline() {
+  regression::Baseline baseline = regression::make_baseline(any_case(), some(), origin, nullptr);
+  baseline.quantities[0].reference = regression::Reference{"Mattiasson (1981)", 0.3333, {1e-3, 0}};
   return baseline;
 }
 
 TEST(Baseline, ReadsBackWhatItWrote) {
-  const Baseline written = some_baseline();
-  const Baseline read = read_baseline(to_json(written), "any.baseline.json");
+  const regression::Baseline written = some_baseline();
+  const regression::Baseline read =
+      regression::read_baseline(regression::to_json(written), "any.baseline.json");
   EXPECT_EQ(read.case_name, "any");
   EXPECT_EQ(read.case_text, written.case_text);
   EXPECT_EQ(read.origin.date, "2026-11-21");
@@ -60,18 +63,18 @@ TEST(Baseline, ReadsBackWhatItWrote) {
 }
 
 TEST(Baseline, ListsWhatChangedAndKeepsTheReferences) {
-  const Baseline old = some_baseline();
-  Measurements now = some();
+  const regression::Baseline old = some_baseline();
+  regression::Measurements now = some();
   now.quantities[0].value = 0.25;
   now.quantities[1].id = "steps/0/mechanics/elastica/applied_force";
-  const Baseline candidate = make_baseline(any_case(), now, origin, &old);
+  const regression::Baseline candidate = regression::make_baseline(any_case(), now, origin, &old);
   ASSERT_EQ(candidate.changes.size(), 3u);
   EXPECT_EQ(candidate.changes[0].old_value, 1.0 / 3);
   EXPECT_EQ(candidate.changes[0].new_value, 0.25);
   EXPECT_EQ(candidate.changes[1].old_value, std::nullopt);
   EXPECT_EQ(candidate.changes[2].new_value, std::nullopt);
   EXPECT_TRUE(candidate.quantities[0].reference);
-  const Baseline read = read_baseline(to_json(candidate), "f");
+  const regression::Baseline read = regression::read_baseline(regression::to_json(candidate), "f");
   EXPECT_EQ(read.changes[0].old_value, 1.0 / 3);
   EXPECT_EQ(read.changes[1].old_value, std::nullopt);
 }
@@ -80,13 +83,13 @@ TEST(Baseline, ListsWhatChangedAndKeepsTheReferences) {
 TEST(Baseline, KeepsTheOptionsOfTheModelsInUse) {
   using testing::Contains;
   using testing::Not;
-  const Case problem = read_case(
+  const input::Case problem = input::read_case(
       test::case_text({.name = "any"},
                       "mechanics = [\"beam\"]\nfields = [\"potential\"]\n"
                       "[[models.potential.plate]]\nlower = [\"-1 mm\", \"-1 mm\", \"-5 mm\"]\n"
                       "upper = [\"1 mm\", \"1 mm\", \"-4 mm\"]\nrelative_permeability = 9\n"),
       "any.toml");
-  const std::vector<std::string> text = case_text(problem);
+  const std::vector<std::string> text = regression::case_text(problem);
   EXPECT_THAT(text, Contains("[models.beam]"));
   EXPECT_THAT(text, Contains("[models.potential]"));
   EXPECT_THAT(text, Contains("[[models.potential.plate]]"));
@@ -97,10 +100,10 @@ TEST(Baseline, KeepsTheOptionsOfTheModelsInUse) {
 }
 
 TEST(Baseline, RoundingIsNoChange) {
-  const Baseline old = some_baseline();
-  Measurements now = some();
+  const regression::Baseline old = some_baseline();
+  regression::Measurements now = some();
   now.quantities[0].value *= 1 + 1e-14;
-  const Baseline candidate = make_baseline(any_case(), now, origin, &old);
+  const regression::Baseline candidate = regression::make_baseline(any_case(), now, origin, &old);
   EXPECT_TRUE(candidate.changes.empty());
   EXPECT_EQ(candidate.quantities[0].value, old.quantities[0].value);
 }
@@ -109,7 +112,7 @@ TEST(Baseline, RoundingIsNoChange) {
 // mechanics model's or a sensor's, decides.
 TEST(Baseline, ThePotentialIsHeldToItsOwnEstimate) {
   const auto tolerance = [](const char* id, std::optional<double> uncertainty) {
-    return regression_tolerance({id, "elastica", "T", 1e-3, 2e-3, uncertainty});
+    return regression::regression_tolerance({id, "elastica", "T", 1e-3, 2e-3, uncertainty});
   };
   EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 3e-6).absolute, 3e-6);
   EXPECT_EQ(tolerance("steps/0/fields/elastica/potential/B/0/x", 3e-6).relative, 1e-10);
@@ -119,15 +122,15 @@ TEST(Baseline, ThePotentialIsHeldToItsOwnEstimate) {
 }
 
 TEST(Baseline, IsNotMadeOfWhatFailed) {
-  Measurements bad = some();
+  regression::Measurements bad = some();
   bad.quantities[0].value = std::nan("");
-  EXPECT_THROW(make_baseline(any_case(), bad, origin, nullptr), SolverError);
+  EXPECT_THROW(regression::make_baseline(any_case(), bad, origin, nullptr), SolverError);
   bad = some();
   bad.outcomes[0].value = "failed";
-  EXPECT_THROW(make_baseline(any_case(), bad, origin, nullptr), SolverError);
+  EXPECT_THROW(regression::make_baseline(any_case(), bad, origin, nullptr), SolverError);
   bad = some();
   bad.quantities.clear();
-  EXPECT_THROW(make_baseline(any_case(), bad, origin, nullptr), SolverError);
+  EXPECT_THROW(regression::make_baseline(any_case(), bad, origin, nullptr), SolverError);
 }
 
 struct Damage {
@@ -170,12 +173,12 @@ TEST(Baseline, ADamagedOneIsRefusedWithItsPlace) {
       {"must be a list", [](Json& j) { j["quantities"] = 3; }},
       {"not a baseline", [](Json& j) { j["case_text"][0] = 3; }},
   };
-  const std::string good = to_json(some_baseline());
+  const std::string good = regression::to_json(some_baseline());
   for (const Damage& damage : all) {
     Json json = Json::parse(good);
     damage.plant(json);
     try {
-      read_baseline(json.dump(), "any.baseline.json");
+      regression::read_baseline(json.dump(), "any.baseline.json");
       ADD_FAILURE() << "accepted: " << damage.message;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(damage.message));
@@ -183,13 +186,13 @@ TEST(Baseline, ADamagedOneIsRefusedWithItsPlace) {
     }
   }
   for (std::size_t length = 0; length < good.size() - 2; length += 97)
-    EXPECT_THROW(read_baseline(good.substr(0, length), "f"), InputError) << length;
+    EXPECT_THROW(regression::read_baseline(good.substr(0, length), "f"), InputError) << length;
 }
 
-CheckReport some_report() {
-  CheckReport report;
+regression::CheckReport some_report() {
+  regression::CheckReport report;
   report.case_name = "a <case>";
-  Finding good;
+  regression::Finding good;
   good.passed = true;
   good.id = "steps/0/mechanics/elastica/tip/x";
   good.against = "baseline";
@@ -197,7 +200,7 @@ CheckReport some_report() {
   good.measured = 1.5;
   good.expected = 1.5;
   good.limit = 1e-9;
-  Finding bad = good;
+  regression::Finding bad = good;
   bad.passed = false;
   bad.against = "Mattiasson & others";
   bad.message = "is \"wrong\" <by far>";
@@ -208,7 +211,7 @@ CheckReport some_report() {
 
 // Oracle: an XML parser.
 TEST(Report, JUnitHasAFailureForEachFindingThatFailed) {
-  std::istringstream text(report_junit({some_report()}));
+  std::istringstream text(regression::report_junit({some_report()}));
   boost::property_tree::ptree tree;
   boost::property_tree::read_xml(text, tree);
   const auto& suite = tree.get_child("testsuites.testsuite");
@@ -224,7 +227,7 @@ TEST(Report, JUnitHasAFailureForEachFindingThatFailed) {
 }
 
 TEST(Report, JsonHasMeasuredValueLimitAndUncertainty) {
-  const Json json = Json::parse(report_json({some_report()}));
+  const Json json = Json::parse(regression::report_json({some_report()}));
   EXPECT_EQ(json["passed"], false);
   const Json& bad = json["cases"][0]["findings"][1];
   EXPECT_EQ(bad["measured"], 1.5);

@@ -26,17 +26,19 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A case, what two rods and two field models make of it, and the baseline of that.
 struct Checked {
-  Case problem;
-  CaseResult result;
-  Baseline baseline;
+  input::Case problem;
+  models::CaseResult result;
+  regression::Baseline baseline;
   std::vector<std::string> left_out{};
 
-  CheckReport report() const { return check(problem, result, baseline, left_out); }
+  regression::CheckReport report() const {
+    return regression::check(problem, result, baseline, left_out);
+  }
   MechanicsStep& step(std::size_t model, std::size_t step) {
     return result.mechanics[model].result.steps[step];
   }
-  Expected& expected(const std::string& id) {
-    for (Expected& e : baseline.quantities)
+  regression::Expected& expected(const std::string& id) {
+    for (regression::Expected& e : baseline.quantities)
       if (e.id == id) return e;
     throw std::out_of_range(id);
   }
@@ -44,13 +46,14 @@ struct Checked {
 
 Checked make_checked() {
   Checked setup;
-  setup.problem = read_case(
+  setup.problem = input::read_case(
       test::case_text({.name = "planted", .force = R"(["1 mN", "2 mN", "7 mN"])"},
                       "mechanics = [\"elastica\", \"beam\"]\nfields = [\"line\", \"volume\"]\n"),
       "planted.toml");
   setup.problem.sensors.emplace_back(0.5e-3, 0, -2e-3);
-  setup.result = run(setup.problem, mechanics_models(), field_models());
-  setup.baseline = make_baseline(setup.problem, measurements(setup.result), {}, nullptr);
+  setup.result = models::run(setup.problem, models::mechanics_models(), models::field_models());
+  setup.baseline =
+      regression::make_baseline(setup.problem, regression::measurements(setup.result), {}, nullptr);
   return setup;
 }
 
@@ -165,7 +168,7 @@ std::vector<Fault> faults_of_what_is_there() {
        [](Checked& s) { s.baseline.outcomes.pop_back(); }},
       {"a tolerance that nothing reads", "nothing reads its tolerance",
        [](Checked& s) {
-         Expected extra = s.baseline.quantities.front();
+         regression::Expected extra = s.baseline.quantities.front();
          extra.id += "/mean";
          s.baseline.quantities.push_back(extra);
        }},
@@ -185,18 +188,20 @@ std::vector<Fault> faults_of_what_is_there() {
       {"an empty comparison", "nothing but its own past",
        [](Checked& s) {
          s.result.mechanics.pop_back();
-         std::erase_if(s.result.fields, [](const FieldRun& run) {
+         std::erase_if(s.result.fields, [](const models::FieldRun& run) {
            return run.mechanics == "beam" || run.field == "volume";
          });
          s.problem.mechanics = {"elastica"};
          s.problem.fields = {"line"};
          s.result.problem = s.problem;
-         s.baseline = make_baseline(s.problem, measurements(s.result), {}, nullptr);
+         s.baseline =
+             regression::make_baseline(s.problem, regression::measurements(s.result), {}, nullptr);
        }},
       {"a model under two names", "elastica and beam: give the same bits",
        [](Checked& s) {
          s.result.mechanics[1].result = s.result.mechanics[0].result;
-         s.baseline = make_baseline(s.problem, measurements(s.result), {}, nullptr);
+         s.baseline =
+             regression::make_baseline(s.problem, regression::measurements(s.result), {}, nullptr);
        }},
       {"a model against itself", "a model is compared with itself",
        [](Checked& s) { s.result.mechanics.push_back(s.result.mechanics[0]); }},
@@ -222,17 +227,17 @@ std::vector<Fault> faults_of_the_baseline() {
        [](Checked& s) { s.expected("steps/0/mechanics/beam/tip/x").tolerance.absolute = 1; }},
       {"a reference that is not met, though the baseline is", "Mattiasson",
        [](Checked& s) {
-         Expected& e = s.expected("steps/0/mechanics/beam/tip/x");
-         e.reference = Reference{"Mattiasson", e.value * 1.001, {1e-4, 0}};
+         regression::Expected& e = s.expected("steps/0/mechanics/beam/tip/x");
+         e.reference = regression::Reference{"Mattiasson", e.value * 1.001, {1e-4, 0}};
        }},
       {"a NaN in the baseline", "off by",
        [](Checked& s) { s.expected("steps/0/mechanics/beam/tip/x").value = nan; }},
   };
 }
 
-std::string text(const CheckReport& report) {
+std::string text(const regression::CheckReport& report) {
   std::string result;
-  for (const Finding& finding : report.findings)
+  for (const regression::Finding& finding : report.findings)
     if (!finding.passed)
       result += finding.id + ": " + finding.message + " (" + finding.against + ")\n";
   return result;
@@ -240,7 +245,7 @@ std::string text(const CheckReport& report) {
 
 TEST(Check, ARunThatIsAsItsBaselinePasses) {
   const Checked setup = make_checked();
-  const CheckReport report = setup.report();
+  const regression::CheckReport report = setup.report();
   EXPECT_TRUE(report.passed()) << text(report);
   EXPECT_EQ(report.compared(), setup.baseline.quantities.size());
   EXPECT_GT(report.compared(), 150u);
@@ -251,8 +256,9 @@ TEST(Check, ModelsLeftOutOnPurposeAreCounted) {
   Checked setup = make_checked();
   setup.left_out = {"beam"};
   setup.result.mechanics.pop_back();
-  std::erase_if(setup.result.fields, [](const FieldRun& run) { return run.mechanics == "beam"; });
-  const CheckReport report = setup.report();
+  std::erase_if(setup.result.fields,
+                [](const models::FieldRun& run) { return run.mechanics == "beam"; });
+  const regression::CheckReport report = setup.report();
   EXPECT_TRUE(report.passed()) << text(report);
   EXPECT_EQ(report.left_out + report.findings.size(),
             setup.baseline.quantities.size() + setup.baseline.outcomes.size());
@@ -261,8 +267,9 @@ TEST(Check, ModelsLeftOutOnPurposeAreCounted) {
 TEST(Check, FieldModelsLeftOutOnPurposeAreCounted) {
   Checked checked = make_checked();
   checked.left_out = {"volume"};
-  std::erase_if(checked.result.fields, [](const FieldRun& run) { return run.field == "volume"; });
-  const CheckReport report = checked.report();
+  std::erase_if(checked.result.fields,
+                [](const models::FieldRun& run) { return run.field == "volume"; });
+  const regression::CheckReport report = checked.report();
   EXPECT_TRUE(report.passed()) << text(report);
   EXPECT_EQ(report.left_out + report.findings.size(),
             checked.baseline.quantities.size() + checked.baseline.outcomes.size());
@@ -278,7 +285,7 @@ TEST(Check, EveryPlantedFaultFailsAndIsNamed) {
     for (const Fault& fault : faults) {
       Checked bad = good;
       fault.plant(bad);
-      const CheckReport report = bad.report();
+      const regression::CheckReport report = bad.report();
       const std::string said = text(report);
       ++planted;
       const bool named = said.find(fault.message) != std::string::npos;
@@ -292,11 +299,11 @@ TEST(Check, EveryPlantedFaultFailsAndIsNamed) {
 
 // The law |a − b| ≤ max(ρ max(|a|, |b|), ε), on both sides of its limit.
 TEST(Check, AToleranceHoldsToItsLimitAndNotBeyond) {
-  const Tolerance tolerance{1e-3, 1e-6};
+  const regression::Tolerance tolerance{1e-3, 1e-6};
   EXPECT_DOUBLE_EQ(tolerance.limit(2, -5), 5e-3);
   EXPECT_DOUBLE_EQ(tolerance.limit(1e-5, 0), 1e-6);
   Checked setup = make_checked();
-  Expected& e = setup.expected("steps/0/mechanics/elastica/tip/x");
+  regression::Expected& e = setup.expected("steps/0/mechanics/elastica/tip/x");
   const double value = e.value;
   for (const double sign : {-1.0, 1.0}) {
     e.tolerance = {1e-4, 0};

@@ -36,12 +36,12 @@ class Results {
     write_study(folder_.path(),
                 study_text("pairs = [\"elastica/line\", \"beam/volume\"]\n", modulus_range));
     program("study varied.study.toml -o results");
-    const compare::Claim claim{
-        "3.3", "a < b & \"c\"", {compare::judged("x", 1, 2, "%", false)}, "n"};
+    const compare::claims::Claim claim{
+        "3.3", "a < b & \"c\"", {compare::claims::judged("x", 1, 2, "%", false)}, "n"};
     std::ofstream(results() / "claims.json")
-        << compare::claims_json({claim}, compare::provenance("ciliaval claims"));
+        << compare::claims::claims_json({claim}, compare::output::provenance("ciliaval claims"));
     std::filesystem::create_directory(results() / "pictures");
-    std::filesystem::copy_file(CILIAVAL_SOURCE_DIR "/docs/fig3b.png",
+    std::filesystem::copy_file(CILIAVAL_SOURCE_DIR "/docs/figures/fig3b.png",
                                results() / "pictures/fig3b.png");
     program("report results");
   }

@@ -160,6 +160,14 @@ TEST(CommandLine, TakesItsOwnCentrelineForAnExternalModel) {
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("elastica - bench"));
   EXPECT_THAT(run.out, HasSubstr("bench/line"));
+  EXPECT_TRUE(fs::exists(folder.path() / "again" / "referee" / "bench_0000.csv"));
+  // The external model's files belong to the results and are replaced; its inputs are not.
+  EXPECT_EQ(ciliaval(folder.path(), "run referee.toml -o again").code, 0);
+  const std::string centreline = read_text(folder.path() / "own/referee/elastica_0000.csv");
+  const Outcome onto_input = ciliaval(folder.path(), "run referee.toml -o own");
+  EXPECT_EQ(onto_input.code, 2);
+  EXPECT_THAT(onto_input.err, HasSubstr("own/referee/elastica_0000.csv"));
+  EXPECT_EQ(read_text(folder.path() / "own/referee/elastica_0000.csv"), centreline);
   std::ofstream(folder.path() / "own" / "referee" / "elastica_0000.csv", std::ios::app) << "1,2\n";
   const Outcome damaged = ciliaval(folder.path(), "run referee.toml -o third");
   EXPECT_EQ(damaged.code, 2);
@@ -176,6 +184,61 @@ TEST(CommandLineSlow, ShowsProgressOnATerminal) {
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0);
   EXPECT_THAT(read_text(folder.path() / "terminal.txt"), HasSubstr("solid: "));
   EXPECT_THAT(read_text(folder.path() / "stdout.txt"), testing::Not(HasSubstr("\r")));
+  // Where the table goes to the terminal too, the progress line is taken off before it.
+  const std::string both = "cd '" + folder.path().string() + "' && script -qec \"'" +
+                           CILIAVAL_PROGRAM + "' run long.toml\" both.txt >/dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(both.c_str())), 0);
+  const std::string shown = read_text(folder.path() / "both.txt");
+  ASSERT_THAT(shown, HasSubstr("solid: "));
+  EXPECT_THAT(shown, HasSubstr("\r\033[Klong\r\n"));
+}
+
+// A terminal obeys escape sequences; a file's name may hold one.
+TEST(CommandLine, ShowsControlCharactersInPlaceOfSendingThem) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "bad", "mechanics = [\"elastika\"]\n");
+  fs::rename(folder.path() / "bad.toml", folder.path() / "bad\x1b[2J.toml");
+  for (const char* arguments : {R"x(validate "$(printf 'bad\033[2J.toml')")x",
+                                R"x(validate "$(printf 'none\033[2J.toml')")x"}) {
+    const Outcome outcome = ciliaval(folder.path(), arguments);
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr("\\x1B[2J.toml"));
+    EXPECT_THAT(outcome.err, testing::Not(HasSubstr("\x1b")));
+  }
+}
+
+// Longer messages than a recursive matcher of the place at their start could bear.
+TEST(CommandLine, AMessageMayBeLong) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "quick", "mechanics = [\"elastica\"]\n");
+  const Outcome outcome =
+      ciliaval(folder.path(), "sense quick.toml quick.toml --models " + std::string(60'000, 'x'));
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("xxx"));
+}
+
+TEST(CommandLine, NoOutputReplacesAnInput) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "quick", "mechanics = [\"elastica\"]\n");
+  ASSERT_EQ(ciliaval(folder.path(), "mesh quick.toml -o own.msh --refinement 0").code, 0);
+  write_case(folder.path(), "meshed",
+             "mechanics = [\"solid\"]\n[models.solid]\nmesh = \"own.msh\"\nmesh_unit = \"1 m\"\n");
+  ASSERT_EQ(ciliaval(folder.path(), "check quick.toml --accept").code, 0);
+  fs::rename(folder.path() / "quick.baseline.candidate.json",
+             folder.path() / "quick.baseline.json");
+  for (const auto& [arguments, file] : {
+           std::pair("mesh meshed.toml -o own.msh", "own.msh"),
+           std::pair("check quick.toml --json quick.baseline.json", "quick.baseline.json"),
+           std::pair("budget quick.toml --csv ./quick.toml", "quick.toml"),
+           std::pair("converge quick.toml --json quick.toml", "quick.toml"),
+       }) {
+    const std::string before = read_text(folder.path() / file);
+    const Outcome outcome = ciliaval(folder.path(), arguments);
+    EXPECT_EQ(outcome.code, 2) << arguments << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr(file));
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_EQ(read_text(folder.path() / file), before) << arguments;
+  }
 }
 
 TEST(CommandLine, RefusesTwoCasesOfOneNameBeforeAnythingRuns) {
@@ -301,9 +364,9 @@ TEST(CommandLine, TellsWhyAMeshCannotBeWrittenOrTaken) {
   fails("mesh built.toml", 2, "--output");
   fails("mesh built.toml -o cilium.stl", 2, "one of these extensions");
   fails("mesh built.toml -o cilium.msh --refinement 7", 2, "refinements 0 to 3, not 7");
-  fails("mesh built.toml -o none/cilium.msh", 4, "folder does not exist");
+  fails("mesh built.toml -o none/cilium.msh", 4, "No such file");
   fs::create_directory(folder.path() / "taken.vtu");
-  fails("mesh built.toml -o taken.vtu", 4, "is a folder");
+  fails("mesh built.toml -o taken.vtu", 4, "Is a directory");
   const std::string solid = "mechanics = [\"solid\"]\n[models.solid]\n";
   write_case(folder.path(), "gone", solid + "mesh = \"gone.msh\"\n");
   fails("validate gone.toml", 2, "there is no mesh file '");

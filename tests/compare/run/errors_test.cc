@@ -23,10 +23,11 @@ using test::tilted;
 constexpr double L = 20e-3;
 const Vector3 ex = Vector3::UnitX();
 
-const Comparison& find(const std::vector<Comparison>& all, std::optional<std::size_t> step,
-                       const std::string& quantity, const std::string& component,
-                       const std::string& statistic, const std::string& model) {
-  const auto it = std::find_if(all.begin(), all.end(), [&](const Comparison& c) {
+const models::Comparison& find(const std::vector<models::Comparison>& all,
+                               std::optional<std::size_t> step, const std::string& quantity,
+                               const std::string& component, const std::string& statistic,
+                               const std::string& model) {
+  const auto it = std::find_if(all.begin(), all.end(), [&](const models::Comparison& c) {
     return c.step == step && c.quantity == quantity && c.component == component &&
            c.statistic == statistic && c.model == model;
   });
@@ -37,7 +38,8 @@ const Comparison& find(const std::vector<Comparison>& all, std::optional<std::si
 // Oracle: two straight lines through the base at angle δ are 2 S sin(δ/2) apart at S: largest at
 // the tip, RMS over S is 2 sin(δ/2) L/√3. Rounding only: 1e-14 L.
 TEST(CentrelineDistance, OfTwoTiltedLinesIsTheChordOfTheirAngle) {
-  const CurveDistance d = distance(tilted(L, 3e-3, ex, 0.5), tilted(L, 7e-3, ex, 0.2));
+  const models::CurveDistance d =
+      models::distance(tilted(L, 3e-3, ex, 0.5), tilted(L, 7e-3, ex, 0.2));
   EXPECT_NEAR(d.largest, 2 * L * std::sin(0.15), 1e-14 * L);
   EXPECT_NEAR(d.rms, 2 * L * std::sin(0.15) / std::sqrt(3.0), 1e-14 * L);
   EXPECT_EQ(d.largest_at, L);
@@ -51,7 +53,8 @@ TEST(CentrelineDistance, OfAnArcFromTheStraightCiliumIsItsIntegral) {
   const double integral = 2 * L / (k * k) - 2 * std::sin(k * L) / std::pow(k, 3) +
                           std::pow(L, 3) / 3 -
                           2 / k * (std::sin(k * L) / (k * k) - L * std::cos(k * L) / k);
-  const CurveDistance d = distance(arc(L, 3e-3, ex, k), straight_centreline({0, 5e-3, L}));
+  const models::CurveDistance d =
+      models::distance(arc(L, 3e-3, ex, k), straight_centreline({0, 5e-3, L}));
   EXPECT_NEAR(d.rms, std::sqrt(integral / L), 1e-13 * L);
   EXPECT_NEAR(d.largest, std::hypot((1 - std::cos(k * L)) / k, L - std::sin(k * L) / k), 1e-14 * L);
 }
@@ -65,14 +68,15 @@ TEST(CentrelineDistance, SeesABumpBetweenTheEnds) {
   };
   const Centreline curve = test::planar_curve(
       L, 6.1e-3, ex, bump, [](double) { return 0; }, [](double) { return 0; });
-  const CurveDistance d = distance(curve, straight_centreline({0, L}));
+  const models::CurveDistance d = models::distance(curve, straight_centreline({0, L}));
   EXPECT_NEAR(d.largest, A, 1e-13);
   EXPECT_NEAR(d.largest_at, L / 2, 1e-12);
   EXPECT_NEAR(d.rms, A * std::sqrt(3.0 / 8), 1e-13);
 }
 
 TEST(CentrelineDistance, RefusesCurvesOfDifferentLengths) {
-  EXPECT_THROW(distance(tilted(L, 3e-3, ex, 0.1), tilted(1.01 * L, 3e-3, ex, 0.1)), InputError);
+  EXPECT_THROW(models::distance(tilted(L, 3e-3, ex, 0.1), tilted(1.01 * L, 3e-3, ex, 0.1)),
+               InputError);
 }
 
 // Oracle: lines w = z tan α on N = 400 equal intervals of z: mean z² = (2N+1)/(6N) h², mean z =
@@ -82,7 +86,8 @@ TEST(DeflectionOverHeight, OfTwoTiltedLinesIsThatOfTwoStraightLines) {
   const double b = 0.4;
   const double h = L * std::cos(a);  // the lower tip
   const double mean_square = 801.0 / 2400 * h * h;
-  const auto result = compare_deflection(tilted(L, 3e-3, ex, a), tilted(L, 8e-3, ex, b), ex);
+  const auto result =
+      models::compare_deflection(tilted(L, 3e-3, ex, a), tilted(L, 8e-3, ex, b), ex);
   ASSERT_TRUE(result);
   EXPECT_NEAR(result->rms, (std::tan(a) - std::tan(b)) * std::sqrt(mean_square), 1e-14 * L);
   EXPECT_NEAR(result->correlation, 1, 1e-14);  // proportional
@@ -93,7 +98,8 @@ TEST(DeflectionOverHeight, OfTwoTiltedLinesIsThatOfTwoStraightLines) {
 // by nothing. The arcs' S(z) has to be found; error left by the root-finder: 1e-13 L.
 TEST(DeflectionOverHeight, FollowsACircle) {
   const double k = 50;
-  const auto result = compare_deflection(straight_centreline({0, L}), arc(L, 3e-3, ex, k), ex);
+  const auto result =
+      models::compare_deflection(straight_centreline({0, L}), arc(L, 3e-3, ex, k), ex);
   ASSERT_TRUE(result);
   const double top = std::sin(k * L) / k;
   double squares = 0;
@@ -106,7 +112,7 @@ TEST(DeflectionOverHeight, FollowsACircle) {
 // Oracle: r of z and of the circle's w(z) at the same heights, from the textbook's sums.
 TEST(DeflectionOverHeight, CorrelatesALineWithACircle) {
   const double k = 50;
-  const auto result = compare_deflection(tilted(L, 3e-3, ex, 0.3), arc(L, 3e-3, ex, k), ex);
+  const auto result = models::compare_deflection(tilted(L, 3e-3, ex, 0.3), arc(L, 3e-3, ex, k), ex);
   ASSERT_TRUE(result);
   const double top = std::sin(k * L) / k;
   double z = 0, w = 0, zz = 0, ww = 0, zw = 0;
@@ -124,8 +130,8 @@ TEST(DeflectionOverHeight, CorrelatesALineWithACircle) {
 
 TEST(DeflectionOverHeight, IsUndefinedWhereTheCiliumHangsOver) {
   const Centreline over = arc(L, 3e-3, ex, 0.6 * M_PI / L);
-  EXPECT_FALSE(compare_deflection(over, tilted(L, 3e-3, ex, 0.3), ex));
-  EXPECT_FALSE(compare_deflection(tilted(L, 3e-3, ex, 0.3), over, ex));
+  EXPECT_FALSE(models::compare_deflection(over, tilted(L, 3e-3, ex, 0.3), ex));
+  EXPECT_FALSE(models::compare_deflection(tilted(L, 3e-3, ex, 0.3), over, ex));
 }
 
 // ------------------------------------------------------------------- the comparisons of a case
@@ -136,31 +142,32 @@ Vector3 tip_field(const Deformation& d, const Vector3&) {
   return {tip.x(), 0, 1};
 }
 
-MechanicsEntry tilt(const std::string& id, double factor, std::optional<double> uncertainty = {}) {
+models::MechanicsEntry tilt(const std::string& id, double factor,
+                            std::optional<double> uncertainty = {}) {
   return mechanics_entry(id, [=](const Load& load) {
     return converged(load, tilted(L, 3e-3, ex, factor * magnitude(load)), uncertainty);
   });
 }
 
-CaseResult run_tilts(std::optional<double> rough_uncertainty,
-                     std::optional<double> fine_uncertainty,
-                     const std::optional<Vector3>& field_uncertainty,
-                     const std::vector<double>& forces = {0.1, 0.2}) {
-  Case c = paper_case(forces);
+models::CaseResult run_tilts(std::optional<double> rough_uncertainty,
+                             std::optional<double> fine_uncertainty,
+                             const std::optional<Vector3>& field_uncertainty,
+                             const std::vector<double>& forces = {0.1, 0.2}) {
+  input::Case c = paper_case(forces);
   c.mechanics = {"rough", "fine"};
   c.fields = {"tip"};
-  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1, rough_uncertainty),
-                                              tilt("fine", 2, fine_uncertainty)};
-  const std::vector<FieldEntry> fields{field_entry("tip", tip_field, field_uncertainty)};
+  const std::vector<models::MechanicsEntry> mechanics{tilt("rough", 1, rough_uncertainty),
+                                                      tilt("fine", 2, fine_uncertainty)};
+  const std::vector<models::FieldEntry> fields{field_entry("tip", tip_field, field_uncertainty)};
   return run(c, mechanics, fields);
 }
 
 // Oracle: tilts of 0.1 against 0.2 rad: chord, and tip deflection of the reference L sin 0.2.
 TEST(Comparisons, OfMechanicsAreScaledByTheReferencesTipDeflection) {
-  const auto all = compare_models(run_tilts(1e-6, 2e-6, {}));
+  const auto all = models::compare_models(run_tilts(1e-6, 2e-6, {}));
   const double chord = 2 * L * std::sin(0.05);
   const double deflection = L * std::sin(0.2);
-  const Comparison& largest = find(all, 0, "centreline", "", "maximum", "rough");
+  const models::Comparison& largest = find(all, 0, "centreline", "", "maximum", "rough");
   EXPECT_EQ(largest.reference, "fine");
   EXPECT_NEAR(*largest.difference, chord, 1e-15);
   EXPECT_NEAR(*largest.scale, deflection, 1e-15);
@@ -168,7 +175,7 @@ TEST(Comparisons, OfMechanicsAreScaledByTheReferencesTipDeflection) {
   EXPECT_NEAR(*find(all, 0, "centreline", "", "rms", "rough").relative,
               chord / deflection / std::sqrt(3.0), 1e-13);
   EXPECT_NEAR(*find(all, 0, "tip", "", "value", "rough").difference, chord, 1e-15);
-  const Comparison& angle = find(all, 1, "tip_angle", "", "value", "rough");
+  const models::Comparison& angle = find(all, 1, "tip_angle", "", "value", "rough");
   EXPECT_NEAR(*angle.difference, 0.2 - 0.4, 1e-14);
   EXPECT_NEAR(*angle.relative, -0.5, 1e-13);
   EXPECT_EQ(angle.unit, "rad");
@@ -182,73 +189,75 @@ TEST(Comparisons, OfMechanicsAreScaledByTheReferencesTipDeflection) {
 TEST(Comparisons, AVerdictTakesBothUncertainties) {
   // The tips are 2 L sin 0.05 = 2.0 mm apart at the first step.
   const auto verdict = [](std::optional<double> a, std::optional<double> b) {
-    return find(compare_models(run_tilts(a, b, {})), 0, "tip", "", "value", "rough").verdict;
+    return find(models::compare_models(run_tilts(a, b, {})), 0, "tip", "", "value", "rough")
+        .verdict;
   };
-  EXPECT_EQ(verdict(0.9e-3, 1.0e-3), Verdict::resolved);
-  EXPECT_EQ(verdict(1.1e-3, 1.0e-3), Verdict::below_uncertainty);
-  EXPECT_EQ(verdict(1.1e-3, std::nullopt), Verdict::inconclusive);
-  EXPECT_EQ(verdict(std::nullopt, 0), Verdict::inconclusive);
+  EXPECT_EQ(verdict(0.9e-3, 1.0e-3), models::Verdict::resolved);
+  EXPECT_EQ(verdict(1.1e-3, 1.0e-3), models::Verdict::below_uncertainty);
+  EXPECT_EQ(verdict(1.1e-3, std::nullopt), models::Verdict::inconclusive);
+  EXPECT_EQ(verdict(std::nullopt, 0), models::Verdict::inconclusive);
 }
 
 // The angle's uncertainty is that of the tip in proportion: oracle, a chord 2 L sin(θ/2) of a tilt
 // θ.
 TEST(Comparisons, WholeCentrelinesAndAnglesHaveTheTipsUncertainty) {
-  const auto all = compare_models(run_tilts(1e-6, 2e-6, {}));
+  const auto all = models::compare_models(run_tilts(1e-6, 2e-6, {}));
   for (const char* statistic : {"maximum", "rms"})
     EXPECT_NEAR(*find(all, 0, "centreline", "", statistic, "rough").uncertainty, 3e-6, 1e-20);
   EXPECT_NEAR(*find(all, 0, "deflection", "", "r2", "rough").uncertainty, 3e-6, 1e-20);
-  const Comparison& angle = find(all, 0, "tip_angle", "", "value", "rough");
+  const models::Comparison& angle = find(all, 0, "tip_angle", "", "value", "rough");
   EXPECT_NEAR(*angle.uncertainty,
               0.1 * 1e-6 / (2 * L * std::sin(0.05)) + 0.2 * 2e-6 / (2 * L * std::sin(0.1)), 1e-15);
-  EXPECT_EQ(angle.verdict, Verdict::resolved);
-  EXPECT_FALSE(find(compare_models(run_tilts(1e-6, {}, {})), 0, "tip_angle", "", "value", "rough")
-                   .uncertainty);
+  EXPECT_EQ(angle.verdict, models::Verdict::resolved);
+  EXPECT_FALSE(
+      find(models::compare_models(run_tilts(1e-6, {}, {})), 0, "tip_angle", "", "value", "rough")
+          .uncertainty);
 }
 
 // Two models of the same shape: every error is zero, R² is one, and nothing is resolved.
 TEST(Comparisons, OfIdenticalModelsAreZero) {
-  Case c = paper_case({0.1});
+  input::Case c = paper_case({0.1});
   c.mechanics = {"one", "other"};
   c.fields = {"tip"};
-  const std::vector<MechanicsEntry> mechanics{tilt("one", 1, 1e-9), tilt("other", 1, 1e-9)};
-  const std::vector<FieldEntry> fields{field_entry("tip", tip_field, Vector3(0, 0, 0))};
-  const auto all = compare_models(run(c, mechanics, fields));
+  const std::vector<models::MechanicsEntry> mechanics{tilt("one", 1, 1e-9), tilt("other", 1, 1e-9)};
+  const std::vector<models::FieldEntry> fields{field_entry("tip", tip_field, Vector3(0, 0, 0))};
+  const auto all = models::compare_models(run(c, mechanics, fields));
   ASSERT_EQ(all.size(), 5u + 6 + 6);
-  for (const Comparison& comparison : all) {
+  for (const models::Comparison& comparison : all) {
     EXPECT_EQ(*comparison.difference, 0) << comparison.quantity;
-    EXPECT_NE(comparison.verdict, Verdict::resolved);
+    EXPECT_NE(comparison.verdict, models::Verdict::resolved);
   }
   EXPECT_EQ(*find(all, 0, "deflection", "", "r2", "one").r2, 1);
 }
 
 // Oracle: Bx is the tip's x: L sin θ, so ΔBx too; By vanishes; Bz is constant, ΔBz vanishes.
 TEST(Comparisons, OfFieldsAreScaledByTheLargestOverThePathNeverByAComponent) {
-  const auto all = compare_models(run_tilts({}, {}, {}));
+  const auto all = models::compare_models(run_tilts({}, {}, {}));
   const double largest_dB = L * std::sin(0.4);
   const double largest_B = std::hypot(largest_dB, 1);
-  const Comparison& dBx = find(all, 0, "dB", "x", "value", "rough/tip");
+  const models::Comparison& dBx = find(all, 0, "dB", "x", "value", "rough/tip");
   EXPECT_EQ(dBx.reference, "fine/tip");
   EXPECT_NEAR(*dBx.difference, L * (std::sin(0.1) - std::sin(0.2)), 1e-15);
   EXPECT_NEAR(*dBx.scale, largest_dB, 1e-15);
   EXPECT_NEAR(*dBx.relative, L * (std::sin(0.1) - std::sin(0.2)) / largest_dB, 1e-13);
   EXPECT_NEAR(*find(all, 0, "B", "x", "value", "rough/tip").scale, largest_B, 1e-15);
   EXPECT_EQ(*find(all, 0, "dB", "y", "value", "rough/tip").relative, 0);
-  EXPECT_EQ(dBx.verdict, Verdict::inconclusive);
+  EXPECT_EQ(dBx.verdict, models::Verdict::inconclusive);
   // RRMSE over the two steps.
   const double difference =
       std::hypot(std::sin(0.1) - std::sin(0.2), std::sin(0.2) - std::sin(0.4));
-  const Comparison& rrmse = find(all, std::nullopt, "dB", "x", "rrmse", "rough/tip");
+  const models::Comparison& rrmse = find(all, std::nullopt, "dB", "x", "rrmse", "rough/tip");
   EXPECT_NEAR(*rrmse.relative, difference / std::hypot(std::sin(0.2), std::sin(0.4)), 1e-13);
   EXPECT_NEAR(*rrmse.difference, L * difference / std::sqrt(2.0), 1e-15);
 }
 
 TEST(Comparisons, AreUndefinedAndSaySoWhereTheScaleVanishes) {
-  const auto all = compare_models(run_tilts({}, {}, {}));
-  const Comparison& y = find(all, std::nullopt, "dB", "y", "rrmse", "rough/tip");
+  const auto all = models::compare_models(run_tilts({}, {}, {}));
+  const models::Comparison& y = find(all, std::nullopt, "dB", "y", "rrmse", "rough/tip");
   EXPECT_FALSE(y.relative);
   EXPECT_NE(y.note.find("vanishes"), std::string::npos);
-  const auto unloaded = compare_models(run_tilts({}, {}, {}, {0.0}));
-  for (const Comparison& c : unloaded)
+  const auto unloaded = models::compare_models(run_tilts({}, {}, {}, {0.0}));
+  for (const models::Comparison& c : unloaded)
     if (c.quantity != "B") {
       EXPECT_FALSE(c.relative) << c.quantity;
       EXPECT_NE(c.note.find("vanishes"), std::string::npos) << c.quantity;
@@ -260,15 +269,16 @@ TEST(Comparisons, AreUndefinedAndSaySoWhereTheScaleVanishes) {
 // |tip displacement| = 2 L sin(θ/2) and |ΔB| = L sin θ.
 TEST(Comparisons, CarryTheMechanicsUncertaintyIntoTheFieldOfDifferentMechanicsOnly) {
   const Vector3 u(1e-6, 2e-6, 3e-6);
-  Case c = paper_case({0.1});
+  input::Case c = paper_case({0.1});
   c.mechanics = {"rough", "fine"};
   c.fields = {"one", "two"};
-  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1, 1e-5), tilt("fine", 2, 3e-5)};
-  const std::vector<FieldEntry> fields{field_entry("one", tip_field, u),
-                                       field_entry("two", tip_field, u)};
-  const auto all = compare_models(run(c, mechanics, fields));
+  const std::vector<models::MechanicsEntry> mechanics{tilt("rough", 1, 1e-5),
+                                                      tilt("fine", 2, 3e-5)};
+  const std::vector<models::FieldEntry> fields{field_entry("one", tip_field, u),
+                                               field_entry("two", tip_field, u)};
+  const auto all = models::compare_models(run(c, mechanics, fields));
   const auto uncertainty = [&](const char* model, const char* reference) {
-    const auto it = std::find_if(all.begin(), all.end(), [&](const Comparison& x) {
+    const auto it = std::find_if(all.begin(), all.end(), [&](const models::Comparison& x) {
       return x.step && x.quantity == "dB" && x.component == "y" && x.model == model &&
              x.reference == reference;
     });
@@ -289,52 +299,53 @@ TEST(Comparisons, CarryTheMechanicsUncertaintyIntoTheFieldOfDifferentMechanicsOn
 // Without a load nothing moves and nothing changes: the deformation carries no error into the field
 // there, and the path has a verdict. Oracle: RMS over the two steps of the figures above.
 TEST(Comparisons, AStepWithoutALoadLeavesThePathItsVerdict) {
-  const auto all = compare_models(run_tilts(1e-6, 2e-6, Vector3(0, 0, 0), {0.0, 0.1}));
-  const Comparison& unloaded = find(all, 0, "dB", "x", "value", "rough/tip");
+  const auto all = models::compare_models(run_tilts(1e-6, 2e-6, Vector3(0, 0, 0), {0.0, 0.1}));
+  const models::Comparison& unloaded = find(all, 0, "dB", "x", "value", "rough/tip");
   EXPECT_EQ(*unloaded.difference, 0);
   EXPECT_NEAR(*unloaded.uncertainty, 4 * 16 * std::numeric_limits<double>::epsilon(), 1e-17);
-  EXPECT_EQ(unloaded.verdict, Verdict::below_uncertainty);
+  EXPECT_EQ(unloaded.verdict, models::Verdict::below_uncertainty);
   const auto carried = [](double theta, double tip) {
     return L * std::sin(theta) * tip / (2 * L * std::sin(theta / 2));
   };
-  const Comparison& path = find(all, std::nullopt, "dB", "x", "rrmse", "rough/tip");
+  const models::Comparison& path = find(all, std::nullopt, "dB", "x", "rrmse", "rough/tip");
   EXPECT_NEAR(*path.uncertainty, (carried(0.1, 1e-6) + carried(0.2, 2e-6)) / std::sqrt(2.0), 1e-13);
-  EXPECT_EQ(path.verdict, Verdict::resolved);
+  EXPECT_EQ(path.verdict, models::Verdict::resolved);
 }
 
 // Two mechanics that agree to the last digits and claim to be exact: B ≈ 1 T differs by one ε.
 TEST(Comparisons, RoundingIsNeverResolved) {
-  Case c = paper_case({0.1});
+  input::Case c = paper_case({0.1});
   c.mechanics = {"one", "other"};
   c.fields = {"tip"};
   const double nudge = 1 + 4 * std::numeric_limits<double>::epsilon();
-  const std::vector<MechanicsEntry> mechanics{tilt("one", 1, 0), tilt("other", nudge, 0)};
-  const std::vector<FieldEntry> fields{field_entry(
+  const std::vector<models::MechanicsEntry> mechanics{tilt("one", 1, 0), tilt("other", nudge, 0)};
+  const std::vector<models::FieldEntry> fields{field_entry(
       "tip",
       [](const Deformation& d, const Vector3&) -> Vector3 {
         return {d.centreline.at(L).position.x() / L, 0, 1};
       },
       Vector3(0, 0, 0))};
-  const auto all = compare_models(run(c, mechanics, fields));
-  const Comparison& dBx = find(all, 0, "dB", "x", "value", "one/tip");
+  const auto all = models::compare_models(run(c, mechanics, fields));
+  const models::Comparison& dBx = find(all, 0, "dB", "x", "value", "one/tip");
   EXPECT_NE(*dBx.difference, 0);
-  EXPECT_EQ(dBx.verdict, Verdict::below_uncertainty);
+  EXPECT_EQ(dBx.verdict, models::Verdict::below_uncertainty);
 }
 
 // Oracle: B = tip + x of every computable sensor, so ΔBx is the tip's x = L sin θ at each.
 TEST(Comparisons, ASensorWhereTheFieldDivergesLeavesTheOthersCompared) {
-  Case c = paper_case({0.1, 0.2});
+  input::Case c = paper_case({0.1, 0.2});
   c.sensors = {Vector3(3, 0, 0), Vector3(1, 0, 0)};
   c.mechanics = {"rough", "fine"};
   c.fields = {"tip"};
-  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1, 1e-9), tilt("fine", 2, 1e-9)};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::MechanicsEntry> mechanics{tilt("rough", 1, 1e-9),
+                                                      tilt("fine", 2, 1e-9)};
+  const std::vector<models::FieldEntry> fields{
       field_entry("tip", [](const Deformation& d, const Vector3& x) -> Vector3 {
         if (x.x() == 3) throw InputError("B diverges");
         return d.centreline.at(L).position;
       })};
   std::size_t compared = 0;
-  for (const Comparison& x : compare_models(run(c, mechanics, fields))) {
+  for (const models::Comparison& x : models::compare_models(run(c, mechanics, fields))) {
     if (!x.sensor) continue;
     EXPECT_EQ(*x.sensor, 1u);
     if (x.quantity != "dB" || x.component != "x" || x.step != 0) continue;
@@ -346,13 +357,14 @@ TEST(Comparisons, ASensorWhereTheFieldDivergesLeavesTheOthersCompared) {
 
 // Every pair once, the reference later in the registry, mechanics before fields.
 TEST(Comparisons, TakeTheMoreDetailedModelAsTheReference) {
-  Case c = paper_case({0.1});
+  input::Case c = paper_case({0.1});
   c.mechanics = {"b", "a"};  // asked for in the wrong order
   c.fields = {"v", "l"};
-  const std::vector<MechanicsEntry> mechanics{tilt("a", 1), tilt("b", 2)};
-  const std::vector<FieldEntry> fields{field_entry("l", tip_field), field_entry("v", tip_field)};
+  const std::vector<models::MechanicsEntry> mechanics{tilt("a", 1), tilt("b", 2)};
+  const std::vector<models::FieldEntry> fields{field_entry("l", tip_field),
+                                               field_entry("v", tip_field)};
   std::vector<std::string> pairs;
-  for (const Comparison& x : compare_models(run(c, mechanics, fields)))
+  for (const models::Comparison& x : models::compare_models(run(c, mechanics, fields)))
     if (x.quantity == "tip" || (x.quantity == "B" && x.component == "x" && x.step))
       pairs.push_back(x.model + " " + x.reference);
   const std::vector<std::string> expected{"a b",     "a/l a/v", "a/l b/l", "a/v b/l",

@@ -13,8 +13,8 @@
 #include "compare/input/case.h"
 #include "compare/models/errors.h"
 #include "compare/models/registry.h"
-#include "compare/output/results.h"
 #include "compare/models/run.h"
+#include "compare/output/results.h"
 #include "compare/output/table.h"
 
 namespace ciliaval::compare {
@@ -62,20 +62,21 @@ class ExternalRun : public testing::Test {
   void write(const std::string& name, const std::string& content) const {
     std::ofstream(folder_ / name, std::ios::binary) << content;
   }
-  CaseResult run_case(const std::string& more) const {
-    return run(read_case(text + more, (folder_ / "case.toml").string()), mechanics_models(),
-               field_models());
+  models::CaseResult run_case(const std::string& more) const {
+    return run(input::read_case(text + more, (folder_ / "case.toml").string()),
+               models::mechanics_models(), models::field_models());
   }
   /// The centrelines as `ciliaval run` writes them.
-  void write_centrelines(const CaseResult& result) const {
+  void write_centrelines(const models::CaseResult& result) const {
     for (std::size_t i = 0; i < 2; ++i)
       write(fmt::format("elastica_{}.csv", i),
-            centreline_csv(result.mechanics[0].result.steps[i].deformation->centreline));
+            output::centreline_csv(result.mechanics[0].result.steps[i].deformation->centreline));
   }
   /// B of elastica/volume plus a background, as a bench would log it, in µT.
-  void write_readings(const FieldRun& fields, const Vector3& background, bool undeformed) const {
+  void write_readings(const models::FieldRun& fields, const Vector3& background,
+                      bool undeformed) const {
     std::string csv = "step,sensor,Bx [uT],By [uT],Bz [uT]\n";
-    const auto add = [&](const std::string& step, const FieldStep& values) {
+    const auto add = [&](const std::string& step, const models::FieldStep& values) {
       for (std::size_t s = 0; s < 2; ++s) {
         const Vector3 B = 1e6 * (*values.B[s] + background);
         csv += fmt::format("{},{},{},{},{}\n", step, s, B.x(), B.y(), B.z());
@@ -91,11 +92,11 @@ class ExternalRun : public testing::Test {
 };
 
 /// The largest relative error of a model against a reference.
-double largest(const CaseResult& result, const std::string& model, const std::string& reference,
-               const std::string& quantity) {
+double largest(const models::CaseResult& result, const std::string& model,
+               const std::string& reference, const std::string& quantity) {
   double value = 0;
   int count = 0;
-  for (const Comparison& c : compare_models(result))
+  for (const models::Comparison& c : models::compare_models(result))
     if (c.model == model && c.reference == reference && c.quantity == quantity && c.relative &&
         c.statistic != "rrmse" && c.statistic != "r2") {
       value = std::max(value, std::abs(*c.relative));
@@ -117,7 +118,7 @@ centrelines = ["elastica_0.csv", "elastica_1.csv"]
 // the ends of the magnet decide, comes back to rounding.
 TEST_F(ExternalRun, ACentrelineComesBackAndCarriesTheFieldModels) {
   write_centrelines(run_case(""));
-  const CaseResult result = run_case(shapes);
+  const models::CaseResult result = run_case(shapes);
   ASSERT_EQ(result.mechanics.size(), 2U);
   EXPECT_EQ(result.mechanics[1].model, "copy");
   EXPECT_DOUBLE_EQ(result.mechanics[1].result.steps[1].applied_force, 4e-3);
@@ -130,7 +131,7 @@ TEST_F(ExternalRun, ACentrelineComesBackAndCarriesTheFieldModels) {
           largest(result, std::string("elastica/") + field, std::string("copy/") + field, quantity),
           1e-11)
           << field << ' ' << quantity;
-  for (const Comparison& c : compare_models(result))
+  for (const models::Comparison& c : models::compare_models(result))
     if (c.statistic == "r2") {
       EXPECT_NEAR(c.r2.value_or(0), 1, 1e-12);
     }
@@ -138,7 +139,7 @@ TEST_F(ExternalRun, ACentrelineComesBackAndCarriesTheFieldModels) {
 
 // Oracle: the elastica. Without theta and S they are made from the points: by chords and tangents.
 TEST_F(ExternalRun, PointsAloneAreEnough) {
-  const CaseResult own = run_case("");
+  const models::CaseResult own = run_case("");
   for (std::size_t i = 0; i < 2; ++i) {
     std::string csv = "x [mm],y [mm],z [mm]\n";
     const Centreline& line = own.mechanics[0].result.steps[i].deformation->centreline;
@@ -148,7 +149,7 @@ TEST_F(ExternalRun, PointsAloneAreEnough) {
     }
     write(fmt::format("elastica_{}.csv", i), csv);
   }
-  const CaseResult result = run_case(shapes);
+  const models::CaseResult result = run_case(shapes);
   EXPECT_THAT(result.mechanics[1].result.steps[0].message, HasSubstr("length along the points"));
   EXPECT_LT(largest(result, "elastica", "copy", "tip"), 1e-13);
   EXPECT_LT(largest(result, "elastica", "copy", "tip_angle"), 1e-3);
@@ -166,11 +167,11 @@ field_uncertainty = "0.1 uT"
 // Oracle: elastica/volume itself: its B, logged in µT to 17 digits, and a planted background that
 // is taken off again to rounding, 1e-16 of 2.4 mT or 5e-12 of ΔB.
 TEST_F(ExternalRun, ReadingsComeBackAndAPlantedBackgroundIsRemoved) {
-  const CaseResult own = run_case("");
-  const FieldRun& volume = own.fields[1];
+  const models::CaseResult own = run_case("");
+  const models::FieldRun& volume = own.fields[1];
   ASSERT_EQ(volume.name(), "elastica/volume");
   write_readings(volume, Vector3::Zero(), true);
-  const CaseResult plain = run_case(bench);
+  const models::CaseResult plain = run_case(bench);
   ASSERT_EQ(plain.mechanics.size(), 1U);
   ASSERT_EQ(plain.fields.size(), 3U);
   EXPECT_EQ(plain.fields[2].name(), "bench/readings");
@@ -183,14 +184,14 @@ TEST_F(ExternalRun, ReadingsComeBackAndAPlantedBackgroundIsRemoved) {
   for (const auto& [azimuth, B] : {std::pair{60, earth_60}, std::pair{0, earth_0}})
     csv += fmt::format("{},{},{},{}\n", azimuth, 1e7 * B.x(), 1e7 * B.y(), 1e7 * B.z());
   write("earth.csv", csv);
-  const CaseResult cleaned = run_case(std::string(bench) + "background = \"earth.csv\"\n");
+  const models::CaseResult cleaned = run_case(std::string(bench) + "background = \"earth.csv\"\n");
   EXPECT_LT(largest(cleaned, "elastica/volume", "bench/readings", "B"), 1e-14);
   EXPECT_LT(largest(cleaned, "elastica/volume", "bench/readings", "dB"), 1e-11);
 }
 
 // A bench that took its offset off knows ΔB alone.
 TEST_F(ExternalRun, AChangeAloneIsComparedAsAChange) {
-  const CaseResult own = run_case("");
+  const models::CaseResult own = run_case("");
   std::string csv = "step,sensor,dBx [T],dBy [T],dBz [T]\n";
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t s = 0; s < 2; ++s) {
@@ -198,32 +199,32 @@ TEST_F(ExternalRun, AChangeAloneIsComparedAsAChange) {
       csv += fmt::format("{},{},{},{},{}\n", i, s, dB.x(), dB.y(), dB.z());
     }
   write("readings.csv", csv);
-  const CaseResult result = run_case(bench);
+  const models::CaseResult result = run_case(bench);
   EXPECT_EQ(largest(result, "elastica/line", "bench/readings", "dB"), 0);
   EXPECT_GT(largest(result, "elastica/volume", "bench/readings", "dB"), 0.03);
-  const auto comparisons = compare_models(result);
-  for (const Comparison& c : comparisons)
+  const auto comparisons = models::compare_models(result);
+  for (const models::Comparison& c : comparisons)
     if (c.reference == "bench/readings") {
       EXPECT_EQ(c.quantity, "dB");
     }
-  EXPECT_THAT(table(result, comparisons), HasSubstr("bench/readings"));
-  const std::string json = summary_json(result, comparisons, {});
+  EXPECT_THAT(output::table(result, comparisons), HasSubstr("bench/readings"));
+  const std::string json = output::summary_json(result, comparisons, {});
   EXPECT_THAT(json, HasSubstr("\"bench/readings\""));
 }
 
 // A reading has its own uncertainty, and no deformation's: with a model that has one too, a
 // verdict.
 TEST_F(ExternalRun, UncertaintiesOfReadingsReachTheVerdicts) {
-  const CaseResult own = run_case("");
+  const models::CaseResult own = run_case("");
   write_centrelines(own);
   write_readings(own.fields[1], Vector3::Zero(), false);
   std::string both = shapes;
   both += "tip_uncertainty = \"0 um\"\nreadings = \"readings.csv\"\nfield_uncertainty = \"2 uT\"\n";
-  const CaseResult result = run_case(both);
+  const models::CaseResult result = run_case(both);
   ASSERT_EQ(result.fields.back().name(), "copy/readings");
   EXPECT_FALSE(result.fields.back().steps[0]->dB[0].has_value());
   int count = 0;
-  for (const Comparison& c : compare_models(result)) {
+  for (const models::Comparison& c : models::compare_models(result)) {
     if (c.reference != "copy/readings" || c.statistic != "value") continue;
     EXPECT_EQ(c.quantity, "B");
     const bool model_known = c.model == "copy/volume";
@@ -231,7 +232,7 @@ TEST_F(ExternalRun, UncertaintiesOfReadingsReachTheVerdicts) {
     ++count;
     ASSERT_TRUE(c.uncertainty.has_value());
     EXPECT_NEAR(*c.uncertainty, 2e-6, 1e-9);
-    EXPECT_EQ(c.verdict, Verdict::below_uncertainty);
+    EXPECT_EQ(c.verdict, models::Verdict::below_uncertainty);
   }
   EXPECT_EQ(count, 2 * 2 * 3);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Preloaded into one rank of several: from the n-th allocation of more than 100 kB on,
-// CILIAVAL_FAIL_AT in the environment, operator new finds no memory; if CILIAVAL_FAIL_ONCE is
-// there, for that one alone.
+// CILIAVAL_FAIL_AT in the environment, operator new finds no memory.
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -15,10 +14,7 @@ long first_failure() {
 
 bool fails(std::size_t size) {
   static std::atomic<long> left = first_failure();
-  static const bool once = std::getenv("CILIAVAL_FAIL_ONCE") != nullptr;
-  if (size <= 100'000) return false;
-  const long now = --left;
-  return once ? now == 0 : now <= 0;
+  return size > 100'000 && --left <= 0;
 }
 
 }  // namespace

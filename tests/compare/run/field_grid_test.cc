@@ -19,7 +19,7 @@ using test::paper_case;
 
 constexpr double L = 20e-3;
 
-MechanicsEntry bend(const std::string& id, bool body) {
+models::MechanicsEntry bend(const std::string& id, bool body) {
   return mechanics_entry(id, [body](const Load& load) {
     MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
     if (body) step.deformation->body = std::make_shared<SolidBody>(test::BentBricks::body());
@@ -33,23 +33,23 @@ Vector3 linear(const Deformation&, const Vector3& x) {
 
 // Oracle: a field B = (x, 2y, 3z), read back at each grid point.
 TEST(FieldGrid, IsTheMostDetailedMechanicsAndFieldThatNeedsNoBody) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"rod", "beam", "solid"};
   c.fields = {"line", "volume", "mesh"};
-  const std::vector<MechanicsEntry> mechanics{bend("rod", false), bend("beam", false),
-                                              bend("solid", true)};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::MechanicsEntry> mechanics{bend("rod", false), bend("beam", false),
+                                                      bend("solid", true)};
+  const std::vector<models::FieldEntry> fields{
       field_entry("line",
                   [](const Deformation&, const Vector3&) -> Vector3 {
                     return {9, 9, 9};
                   }),
       field_entry("volume", linear), field_entry("mesh", linear, {}, true)};
-  const CaseResult result = run(c, mechanics, fields);
-  const auto grid = field_grid(result, fields);
+  const models::CaseResult result = run(c, mechanics, fields);
+  const auto grid = output::field_grid(result, fields);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->mechanics, "solid");
   EXPECT_EQ(grid->field, "volume");
-  const FieldGrid::Step step = *grid->sample(0);
+  const output::FieldGrid::Step step = *grid->sample(0);
   ASSERT_EQ(step.B.size(), 33u * 33 * 49);
   const std::size_t i = 5 + 33 * (7 + 33 * 11);
   const Vector3 x = grid->origin + grid->spacing.cwiseProduct(Vector3(5, 7, 11));
@@ -64,19 +64,19 @@ TEST(FieldGrid, IsTheMostDetailedMechanicsAndFieldThatNeedsNoBody) {
 }
 
 TEST(FieldGrid, MasksThePointsAtWhichTheModelHasNoField) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"rod"};
   c.fields = {"volume"};
-  const std::vector<MechanicsEntry> mechanics{bend("rod", false)};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::MechanicsEntry> mechanics{bend("rod", false)};
+  const std::vector<models::FieldEntry> fields{
       field_entry("volume", [](const Deformation&, const Vector3& x) -> Vector3 {
         if (x.z() > 10e-3 && x.x() > 0) throw InputError("B diverges here");
         return {1, 1, 1};
       })};
-  const CaseResult result = run(c, mechanics, fields);
-  const auto grid = field_grid(result, fields);
+  const models::CaseResult result = run(c, mechanics, fields);
+  const auto grid = output::field_grid(result, fields);
   ASSERT_TRUE(grid);
-  const FieldGrid::Step step = *grid->sample(0);
+  const output::FieldGrid::Step step = *grid->sample(0);
   std::size_t point = 0;
   std::size_t masked = 0;
   for (int k = 0; k < 49; ++k)
@@ -96,14 +96,14 @@ TEST(FieldGrid, MasksThePointsAtWhichTheModelHasNoField) {
 // not.
 TEST(FieldGrid, StaysAroundTheCiliumWhateverTheSensors) {
   for (const double far : {2.0, 50e-3, 39e-3}) {
-    Case c = paper_case({1e-3});
+    input::Case c = paper_case({1e-3});
     c.sensors = {Vector3(0, 0, -1.55e-3), Vector3(0, -far, 0)};
     c.mechanics = {"rod"};
     c.fields = {"volume"};
-    const std::vector<MechanicsEntry> mechanics{bend("rod", false)};
-    const std::vector<FieldEntry> fields{field_entry("volume", linear)};
-    const CaseResult result = run(c, mechanics, fields);
-    const auto grid = field_grid(result, fields);
+    const std::vector<models::MechanicsEntry> mechanics{bend("rod", false)};
+    const std::vector<models::FieldEntry> fields{field_entry("volume", linear)};
+    const models::CaseResult result = run(c, mechanics, fields);
+    const auto grid = output::field_grid(result, fields);
     ASSERT_TRUE(grid);
     EXPECT_LT(grid->spacing.maxCoeff(), 3e-3);  // a diameter
     EXPECT_EQ(grid->origin.y() < -far, far < 40e-3) << far;
@@ -113,10 +113,10 @@ TEST(FieldGrid, StaysAroundTheCiliumWhateverTheSensors) {
 
 // A path of any length needs the memory of one step: nothing is sampled before it is asked for.
 TEST(FieldGrid, IsSampledStepByStep) {
-  Case c = paper_case({1e-3, 2e-3, 3e-3});
+  input::Case c = paper_case({1e-3, 2e-3, 3e-3});
   c.mechanics = {"rod"};
   c.fields = {"volume"};
-  const std::vector<MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
+  const std::vector<models::MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
     MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 1e4 * magnitude(load)));
     if (magnitude(load) > 2.5e-3) {
       step.status = Status::failed;
@@ -124,12 +124,13 @@ TEST(FieldGrid, IsSampledStepByStep) {
     }
     return step;
   })};
-  const std::vector<FieldEntry> fields{field_entry(
+  const std::vector<models::FieldEntry> fields{field_entry(
       "volume",
       [](const Deformation& d, const Vector3&) -> Vector3 { return d.centreline.at(L).position; })};
-  const CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = run(c, mechanics, fields);
   std::vector<std::string> sampled;
-  const auto grid = field_grid(result, fields, [&](const std::string& s) { sampled.push_back(s); });
+  const auto grid =
+      output::field_grid(result, fields, [&](const std::string& s) { sampled.push_back(s); });
   ASSERT_TRUE(grid);
   EXPECT_TRUE(sampled.empty());
   const Vector3 tip = result.mechanics[0].result.steps[1].deformation->centreline.at(L).position;

@@ -15,8 +15,8 @@ namespace ciliaval::compare {
 namespace {
 
 /// The ends of the range of a knob that is a number; otherwise none.
-std::vector<KnobValue> ends(const Knob& knob) {
-  const KnobValue fallback = knob.get(ModelOptions{});
+std::vector<input::KnobValue> ends(const input::Knob& knob) {
+  const input::KnobValue fallback = knob.get(input::ModelOptions{});
   if (std::holds_alternative<double>(fallback)) return {knob.range.lower, knob.range.upper};
   if (std::holds_alternative<unsigned int>(fallback))
     return {static_cast<unsigned int>(knob.range.lower),
@@ -25,8 +25,8 @@ std::vector<KnobValue> ends(const Knob& knob) {
 }
 
 /// Options in which a beam is small, with one knob at one end of its range.
-ModelOptions options_with(const Knob& knob, const KnobValue& value) {
-  ModelOptions options;
+input::ModelOptions options_with(const input::Knob& knob, const input::KnobValue& value) {
+  input::ModelOptions options;
   options.beam.degree = 1;
   options.beam.refinement = 0;
   knob.set(options, value);
@@ -45,11 +45,11 @@ void solve_unloaded(const MechanicsModel& model) {
 // takes too long on its finest mesh; its knobs are all checked by its constructor.
 TEST(KnobRanges, BothEndsAreTakenByTheMechanicsModel) {
   int count = 0;
-  for (const MechanicsEntry& entry : mechanics_models())
-    for (const Knob& knob : knobs()) {
+  for (const models::MechanicsEntry& entry : models::mechanics_models())
+    for (const input::Knob& knob : input::knobs()) {
       if (knob.model != entry.id) continue;
-      for (const KnobValue& value : ends(knob)) {
-        SCOPED_TRACE(entry.id + '.' + std::string(knob.name) + " = " + to_toml(knob, value));
+      for (const input::KnobValue& value : ends(knob)) {
+        SCOPED_TRACE(entry.id + '.' + std::string(knob.name) + " = " + input::to_toml(knob, value));
         std::unique_ptr<MechanicsModel> model;
         ASSERT_NO_THROW(model = entry.make(options_with(knob, value)));
         if (entry.id != "solid") {
@@ -63,12 +63,12 @@ TEST(KnobRanges, BothEndsAreTakenByTheMechanicsModel) {
 
 TEST(KnobRanges, BothEndsAreTakenByTheFieldModel) {
   int count = 0;
-  for (const FieldEntry& entry : field_models())
-    for (const Knob& knob : knobs()) {
+  for (const models::FieldEntry& entry : models::field_models())
+    for (const input::Knob& knob : input::knobs()) {
       if (knob.model != entry.id) continue;
-      for (const KnobValue& value : ends(knob)) {
+      for (const input::KnobValue& value : ends(knob)) {
         EXPECT_NO_THROW(entry.make(options_with(knob, value)))
-            << entry.id << '.' << knob.name << " = " << to_toml(knob, value);
+            << entry.id << '.' << knob.name << " = " << input::to_toml(knob, value);
         ++count;
       }
     }

@@ -22,11 +22,11 @@ namespace {
 TEST(MeshGrid, HasTheCurvedCellsOfTheMapping) {
   const Cilium cilium{3e-3, {{"stub", 3e-3, 1e5, 0.49, 0}, {"magnet", 5e-3, 3e6, 0.49, 75e3}}};
   dealii::Triangulation<3> triangulation;
-  meshes::CylinderMeshOptions options;
+  meshes::cylinder::CylinderMeshOptions options;
   options.square_cells = 2;
-  meshes::make_cylinder(cilium, options, triangulation);
-  const auto mapping = meshes::cylinder_mapping(triangulation);
-  const auto grid = mesh_grid(meshes::mesh_nodes(triangulation, *mapping), cilium);
+  meshes::cylinder::make_cylinder(cilium, options, triangulation);
+  const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
+  const auto grid = output::vtk::mesh_grid(meshes::mesh_nodes(triangulation, *mapping), cilium);
   const auto* material =
       vtkIntArray::SafeDownCast(grid->GetCellData()->GetAbstractArray("MaterialIDs"));
   const auto* boundary =

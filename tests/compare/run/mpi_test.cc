@@ -32,7 +32,7 @@ Outcome execute(const fs::path& folder, const std::string& words) {
       "cd '" + folder.string() +
       "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
       "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none "
-      "OMPI_MCA_mpi_yield_when_idle=1 " +
+      "OMPI_MCA_mpi_yield_when_idle=1 OPENBLAS_NUM_THREADS=1 " +
       words + " >out.txt 2>err.txt";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out.txt")};
@@ -97,66 +97,27 @@ void expect_same_steps(const fs::path& results, const fs::path& reference, std::
   }
 }
 
-// Five steps in one block. Oracle: the run on one rank. That
-// the ranks worked apart shows in the second step, which takes more iterations where it is solved
-// beside the first, without its corrections.
-TEST(Mpi, RanksThatShareTheTasksOfABlockGiveWhatOneGives) {
-  for (const int steps : {5, 2}) {
-    const TemporaryFolder folder;
-    write_case(
-        folder.path(), "",
-        steps == 5 ? R"(["1 mN", "2 mN", "3 mN", "3.5 mN", "4 mN"])" : R"(["2 mN", "2.1 mN"])");
-    ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
-    ASSERT_EQ(run(folder.path(), 2, "two").code, 0) << read_text(folder.path() / "err.txt");
-    expect_same_steps(folder.path() / "two", folder.path() / "one",
-                      static_cast<std::size_t>(steps));
-    if (steps == 5) continue;
-    const int beside = solid_step(folder.path() / "two", 1).at("iterations").get<int>();
-    EXPECT_GT(beside, solid_step(folder.path() / "one", 1).at("iterations").get<int>());
-  }
-}
-
-// More ranks than two, steps at several places, and equal ones. Oracle: the
-// run on one rank.
-TEST(Mpi, RanksThatShareTheTasksOfABlockTakeAnyPath) {
+// Steps that converge, equal loads, another height, a slip-off and a step after it; more ranks than
+// two. Oracle: the run on one rank.
+TEST(Mpi, RanksFollowAnyLoadPathAsOneDoes) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "", R"(["1 mN", "2 mN", "2 mN", "3 mN", "1 mN", "2 mN", "3 mN"])");
+  write_case(folder.path(), "", R"(["2 mN", "2 mN", "3 mN", "1 mN", "7 mN", "2 mN"])");
   std::string text = read_text(folder.path() / "case.toml");
   const std::string height = "height = \"16 mm\"";
   text.replace(text.find(height), height.size(),
-               R"(height = ["16 mm", "16 mm", "16 mm", "16 mm", "16 mm", "12 mm", "12 mm"])");
+               R"(height = ["16 mm", "16 mm", "16 mm", "12 mm", "16 mm", "16 mm"])");
   std::ofstream(folder.path() / "case.toml") << text;
   ASSERT_EQ(run(folder.path(), 1, "one").code, 0) << read_text(folder.path() / "err.txt");
+  EXPECT_EQ(solid_step(folder.path() / "one", 4).at("status"), "slipped_off");
   for (const int ranks : {2, 3}) {
     const std::string results = std::to_string(ranks);
     ASSERT_EQ(run(folder.path(), ranks, results).code, 0) << read_text(folder.path() / "err.txt");
-    expect_same_steps(folder.path() / results, folder.path() / "one", 7);
+    expect_same_steps(folder.path() / results, folder.path() / "one", 6);
   }
 }
 
-// The second step of the first block slips off: it and the next ones are solved one by one, up to
-// one that converges. Oracle: the run on one rank.
-TEST(Mpi, RanksThatSolveStepsApartGiveWhatOneGives) {
-  const TemporaryFolder folder;
-  write_case(folder.path(), "", R"(["4 mN", "7 mN", "8 mN", "1 mN", "2 mN", "3 mN"])");
-  ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
-  ASSERT_EQ(run(folder.path(), 2, "two").code, 0) << read_text(folder.path() / "err.txt");
-  EXPECT_EQ(solid_step(folder.path() / "one", 1).at("status"), "slipped_off");
-  expect_same_steps(folder.path() / "two", folder.path() / "one", 6);
-}
-
-// The very first step slips off, from no state. Oracle: the run on one rank.
-TEST(Mpi, RanksThatSolveStepsApartComeBackFromTheFirstStep) {
-  const TemporaryFolder folder;
-  write_case(folder.path(), "", R"(["8 mN", "1 mN"])");
-  ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
-  ASSERT_EQ(run(folder.path(), 2, "two").code, 0) << read_text(folder.path() / "err.txt");
-  EXPECT_EQ(solid_step(folder.path() / "one").at("status"), "slipped_off");
-  expect_same_steps(folder.path() / "two", folder.path() / "one", 2);
-}
-
 // Oracle: the run on one rank.
-TEST(Mpi, RanksThatSolveStepsApartFindTheForceOfAProbe) {
+TEST(Mpi, TwoRanksFindTheForceOfAProbe) {
   const TemporaryFolder folder;
   write_case(folder.path(), "", R"(["1 mm", "3 mm"])");
   std::string text = read_text(folder.path() / "case.toml");
@@ -255,7 +216,7 @@ TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
 }
 
 /// Runs the case on two ranks and kills mpirun and the ranks (which would go on for a while) once
-/// the solid has saved its fourth step, the last of the first block.
+/// the solid has saved its fourth step.
 void interrupt_two_ranks(const fs::path& folder) {
   const std::string kept = "out/.mpi.checkpoint/solid.0003";
   execute(
@@ -294,30 +255,6 @@ TEST(MpiSlow, AKilledRunOfTwoRanksGoesOnOnTwoAndOnOne) {
       expect_same_tip(folder.path() / "out", folder.path() / "undisturbed", step,
                       ranks == 2 ? 1e-12 : 1e-9, std::to_string(ranks) + " ranks");
   }
-}
-
-// Rank 1 finds no memory once, somewhere in its own step: rank 0 solves that step. Oracle: the run
-// on one rank. Where the memory is missing outside the steps, the whole run ends as below.
-TEST(MpiSlow, AStepThatARankCannotSolveIsSolvedByTheFirst) {
-  const TemporaryFolder folder;
-  write_case(folder.path(), "", R"(["1 mN", "2 mN"])");
-  ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
-  const std::string program = "'" CILIAVAL_PROGRAM "' run case.toml -o two";
-  int survived = 0;
-  for (const int allocation : {20, 40, 80}) {
-    fs::remove_all(folder.path() / "two");
-    std::string words = "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 ";
-    words += program;
-    words +=
-        " : -n 1 env LD_PRELOAD='" CILIAVAL_FAILING_NEW "' CILIAVAL_FAIL_ONCE=1 CILIAVAL_FAIL_AT=";
-    words += std::to_string(allocation) + " " + program;
-    const Outcome outcome = execute(folder.path(), words);
-    if (outcome.code == 3) continue;
-    ASSERT_EQ(outcome.code, 0) << allocation << ": " << read_text(folder.path() / "err.txt");
-    expect_same_steps(folder.path() / "two", folder.path() / "one", 2);
-    ++survived;
-  }
-  EXPECT_GE(survived, 1);
 }
 
 /// How often a text occurs.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/output/output_folder.h"
+#include "compare/output/output_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,8 +41,8 @@ std::string summary(const std::string& title, const std::string& name = "case") 
 }
 
 void write_results_of(const fs::path& directory, const std::string& title) {
-  OutputFolder folder(directory, "case");
-  write_text(folder.path() / "summary.json", summary(title));
+  output::OutputFolder folder(directory, "case");
+  output::write_file(folder.path() / "summary.json", summary(title));
   folder.commit();
 }
 
@@ -49,7 +50,7 @@ TEST(OutputFolder, PutsTheNewResultsInThePlaceOfTheOld) {
   const TemporaryFolder out;
   const fs::path directory = out.path() / "deep" / "results";
   write_results_of(directory, "old");
-  write_text(directory / "case" / "beam_0007.csv", "only in the old results");
+  output::write_file(directory / "case" / "beam_0007.csv", "only in the old results");
   write_results_of(directory, "new");
   EXPECT_EQ(read_text(directory / "case" / "summary.json"), summary("new"));
   EXPECT_FALSE(fs::exists(directory / "case" / "beam_0007.csv"));
@@ -61,8 +62,8 @@ TEST(OutputFolder, LeavesTheOldResultsIfAnErrorEndsTheRun) {
   write_results_of(out.path(), "old");
   EXPECT_THROW(
       {
-        const OutputFolder folder(out.path(), "case");
-        write_text(folder.path() / "summary.json", "half of the n");
+        const output::OutputFolder folder(out.path(), "case");
+        output::write_file(folder.path() / "summary.json", "half of the n");
         throw std::runtime_error("a failure midway");
       },
       std::runtime_error);
@@ -75,8 +76,8 @@ TEST(OutputFolder, AKilledRunLeavesTheOldResultsAndTheNextOneCleansUp) {
   write_results_of(out.path(), "old");
   const pid_t child = fork();
   if (child == 0) {
-    const OutputFolder folder(out.path(), "case");
-    write_text(folder.path() / "summary.json", "half of the n");
+    const output::OutputFolder folder(out.path(), "case");
+    output::write_file(folder.path() / "summary.json", "half of the n");
     kill(getpid(), SIGKILL);
   }
   waitpid(child, nullptr, 0);
@@ -103,42 +104,42 @@ TEST(OutputFolder, PutsOldResultsBackThatWereMovedAsideWhenTheProgramWasKilled) 
   const TemporaryFolder out;
   const fs::path aside = out.path() / (".case." + std::to_string(dead_process()) + ".old");
   fs::create_directory(aside);
-  write_text(aside / "summary.json", summary("old"));
-  { const OutputFolder folder(out.path(), "case"); }
+  output::write_file(aside / "summary.json", summary("old"));
+  { const output::OutputFolder folder(out.path(), "case"); }
   EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("old"));
   EXPECT_EQ(entries(out.path()), 1u);
 }
 
 TEST(OutputFolder, SaysWhichFolderCannotBeWrittenAndWhy) {
   const TemporaryFolder out;
-  write_text(out.path() / "file", "a regular file");
+  output::write_file(out.path() / "file", "a regular file");
   try {
-    const OutputFolder folder(out.path() / "file" / "results", "case");
+    const output::OutputFolder folder(out.path() / "file" / "results", "case");
     FAIL() << "a folder below a regular file";
   } catch (const FileError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("file/results"));
     EXPECT_THAT(error.what(), testing::HasSubstr("Not a directory"));
   }
-  EXPECT_THROW(OutputFolder("/proc/ciliaval", "case"), FileError);
-  write_text(out.path() / "case", "a file where the folder should go");
-  EXPECT_THROW(OutputFolder(out.path(), "case"), FileError);
+  EXPECT_THROW(output::OutputFolder("/proc/ciliaval", "case"), FileError);
+  output::write_file(out.path() / "case", "a file where the folder should go");
+  EXPECT_THROW(output::OutputFolder(out.path(), "case"), FileError);
   EXPECT_EQ(entries(out.path()), 2u);
 }
 
 /// Every kind of file that a run writes, as of three models and two steps.
 void write_all_kinds(const fs::path& folder) {
   fs::create_directories(folder / "vtk");
-  write_text(folder / "summary.json", summary("old"));
+  output::write_file(folder / "summary.json", summary("old"));
   for (const char* name :
        {"errors.csv", "case.toml", "elastica_0000.csv", "solid_12345.csv", "vtk/open.py",
         "vtk/body_solid.pvd", "vtk/body_solid_0001.vtu", "vtk/centreline_beam_0000.vtp",
         "vtk/dipoles_elastica.pvd", "vtk/field_beam_volume_0001.vti", "vtk/sensors_0001.vtp"})
-    write_text(folder / name, "result");
+    output::write_file(folder / name, "result");
 }
 
 std::string refusal(const fs::path& directory) {
   try {
-    const OutputFolder folder(directory, "case");
+    const output::OutputFolder folder(directory, "case");
   } catch (const FileError& error) {
     return error.what();
   }
@@ -159,7 +160,7 @@ TEST(OutputFolder, RefusesToReplaceWhatItDidNotWrite) {
     const TemporaryFolder out;
     write_all_kinds(out.path() / "case");
     fs::create_directories((out.path() / "case" / name).parent_path());
-    write_text(out.path() / "case" / name, "precious");
+    output::write_file(out.path() / "case" / name, "precious");
     const std::string first = name == std::string("vtk/old/open.py") ? "vtk/old" : name;
     EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`" + first + "`"));
     EXPECT_THAT(refusal(out.path()), testing::HasSubstr("-o DIR"));
@@ -174,7 +175,7 @@ TEST(OutputFolder, RefusesAFolderWithoutASummaryOfTheCase) {
   write_all_kinds(out.path() / "case");
   for (const std::string& text : {std::string("not JSON"), std::string("{}"), std::string("[1]"),
                                   summary("old", "another")}) {
-    write_text(file, text);
+    output::write_file(file, text);
     EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`case.toml`")) << text;
   }
   fs::remove(file);
@@ -197,9 +198,9 @@ TEST(OutputFolder, KeepsTheNewResultsIfTheyCannotBePutInPlace) {
   write_results_of(out.path(), "old");
   std::string message;
   {
-    OutputFolder folder(out.path(), "case");
-    write_text(folder.path() / "summary.json", summary("new"));
-    write_text(out.path() / "case" / "notes.txt", "written while the models ran");
+    output::OutputFolder folder(out.path(), "case");
+    output::write_file(folder.path() / "summary.json", summary("new"));
+    output::write_file(out.path() / "case" / "notes.txt", "written while the models ran");
     try {
       folder.commit();
     } catch (const FileError& error) {

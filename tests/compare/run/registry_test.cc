@@ -11,17 +11,20 @@ namespace {
 // The case reader knows the models' names without the models: both lists are held together here.
 TEST(Registry, HasTheModelsThatTheCaseReaderKnows) {
   std::vector<std::string> mechanics;
-  for (const MechanicsEntry& entry : mechanics_models()) mechanics.push_back(entry.id);
-  EXPECT_EQ(mechanics, std::vector<std::string>(mechanics_ids().begin(), mechanics_ids().end()));
+  for (const models::MechanicsEntry& entry : models::mechanics_models())
+    mechanics.push_back(entry.id);
+  EXPECT_EQ(mechanics,
+            std::vector<std::string>(input::mechanics_ids().begin(), input::mechanics_ids().end()));
   std::vector<std::string> fields;
-  for (const FieldEntry& entry : field_models()) fields.push_back(entry.id);
-  EXPECT_EQ(fields, std::vector<std::string>(field_ids().begin(), field_ids().end()));
+  for (const models::FieldEntry& entry : models::field_models()) fields.push_back(entry.id);
+  EXPECT_EQ(fields, std::vector<std::string>(input::field_ids().begin(), input::field_ids().end()));
 }
 
 TEST(Registry, MakesEveryModel) {
-  const ModelOptions options;
-  for (const MechanicsEntry& entry : mechanics_models()) EXPECT_NE(entry.make(options), nullptr);
-  for (const FieldEntry& entry : field_models())
+  const input::ModelOptions options;
+  for (const models::MechanicsEntry& entry : models::mechanics_models())
+    EXPECT_NE(entry.make(options), nullptr);
+  for (const models::FieldEntry& entry : models::field_models())
     EXPECT_EQ(entry.make(options)->needs_body(), entry.id == "mesh");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/output/results.h"
+#include "compare/output/output_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,15 +26,15 @@ using test::read_text;
 using test::TemporaryFolder;
 
 constexpr double L = 20e-3;
-const Provenance origin{
+const output::Provenance origin{
     "1.2.3", "abc", {{"VTK", "9.1.0"}}, "ciliaval run x.toml", "2025-01-02T03:04:05Z"};
 
 /// Two models; the second slips off at the second step, and its field fails at the first.
-CaseResult two_models() {
-  Case c = paper_case({1e-3, 2e-3});
+models::CaseResult two_models() {
+  input::Case c = paper_case({1e-3, 2e-3});
   c.mechanics = {"one", "two"};
   c.fields = {"tip"};
-  const std::vector<MechanicsEntry> mechanics{
+  const std::vector<models::MechanicsEntry> mechanics{
       mechanics_entry("one",
                       [](const Load& load) {
                         return converged(load,
@@ -50,7 +51,7 @@ CaseResult two_models() {
         step.slip_off_force = 1.4e-3;
         return step;
       })};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::FieldEntry> fields{
       field_entry("tip", [](const Deformation& d, const Vector3&) -> Vector3 {
         return d.centreline.at(d.centreline.length()).position / 3;
       })};
@@ -65,8 +66,9 @@ std::vector<std::string> keys(const json& object) {
 
 // Oracle: the contract of the summary, key by key.
 TEST(Summary, HasTheKeysOfTheContract) {
-  const CaseResult result = two_models();
-  const json summary = json::parse(summary_json(result, compare_models(result), origin));
+  const models::CaseResult result = two_models();
+  const json summary =
+      json::parse(output::summary_json(result, models::compare_models(result), origin));
   EXPECT_EQ(summary["schema"], 1);
   EXPECT_EQ(summary["case"], "paper");
   EXPECT_THAT(keys(summary["provenance"]),
@@ -91,10 +93,10 @@ TEST(Summary, HasTheKeysOfTheContract) {
 }
 
 TEST(Summary, StatesAProbesDisplacementForceAndSlipOff) {
-  Case c = paper_case({});
+  input::Case c = paper_case({});
   c.load_path = {ProbeLoad{1e-3, 16e-3, 0.5}, ProbeLoad{20e-3, 16e-3, 0.5}};
   c.mechanics = {"rod"};
-  const std::vector<MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
+  const std::vector<models::MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
     MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
     step.applied_force = 7e-4;
     if (magnitude(load) < 11e-3) return step;
@@ -104,8 +106,8 @@ TEST(Summary, StatesAProbesDisplacementForceAndSlipOff) {
     step.slip_off_displacement = 11.7e-3;
     return step;
   })};
-  const CaseResult result = run(c, mechanics, {});
-  const json steps = json::parse(summary_json(result, {}, origin))["steps"];
+  const models::CaseResult result = run(c, mechanics, {});
+  const json steps = json::parse(output::summary_json(result, {}, origin))["steps"];
   EXPECT_EQ(steps[0]["load"],
             json({{"type", "probe"}, {"displacement", 1e-3}, {"height", 16e-3}, {"azimuth", 0.5}}));
   EXPECT_EQ(steps[0]["mechanics"]["rod"]["applied_force"], 7e-4);
@@ -115,8 +117,9 @@ TEST(Summary, StatesAProbesDisplacementForceAndSlipOff) {
 }
 
 TEST(Summary, GivesEveryDoubleBackToTheLastBit) {
-  const CaseResult result = two_models();
-  const json summary = json::parse(summary_json(result, compare_models(result), origin));
+  const models::CaseResult result = two_models();
+  const json summary =
+      json::parse(output::summary_json(result, models::compare_models(result), origin));
   const json& step = summary["steps"][1];
   const Centreline& c = result.mechanics[0].result.steps[1].deformation->centreline;
   const CentrelinePoint tip = c.at(L);
@@ -132,8 +135,9 @@ TEST(Summary, GivesEveryDoubleBackToTheLastBit) {
 }
 
 TEST(Summary, WritesWhatIsUndefinedAsNull) {
-  CaseResult result = two_models();
-  const json summary = json::parse(summary_json(result, compare_models(result), origin));
+  models::CaseResult result = two_models();
+  const json summary =
+      json::parse(output::summary_json(result, models::compare_models(result), origin));
   const json& slipped = summary["steps"][1]["mechanics"]["two"];
   EXPECT_EQ(slipped["status"], "slipped_off");
   EXPECT_EQ(slipped["message"], "slipped, \"off\"");
@@ -150,26 +154,26 @@ TEST(Summary, WritesWhatIsUndefinedAsNull) {
       ++undefined;
     }
   EXPECT_EQ(undefined, 2u);  // B and dB of one pair
-  Comparison c;
+  models::Comparison c;
   c.difference = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(
-      json::parse(summary_json(result, {c}, origin))["comparisons"][0]["difference"].is_null());
+  EXPECT_TRUE(json::parse(output::summary_json(result, {c}, origin))["comparisons"][0]["difference"]
+                  .is_null());
 }
 
 TEST(Summary, HasANullRowForASensorWithoutAField) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.sensors = {Vector3(3, 0, 0), Vector3(1, 0, 0)};
   c.mechanics = {"one"};
   c.fields = {"tip"};
-  const std::vector<MechanicsEntry> mechanics{mechanics_entry(
+  const std::vector<models::MechanicsEntry> mechanics{mechanics_entry(
       "one", [](const Load& load) { return converged(load, arc(L, 3e-3, Vector3::UnitX(), 20)); })};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::FieldEntry> fields{
       field_entry("tip", [](const Deformation&, const Vector3& x) -> Vector3 {
         if (x.x() == 3) throw InputError("B diverges");
         return {1, -0.0, 2};
       })};
-  const CaseResult result = run(c, mechanics, fields);
-  const std::string text = summary_json(result, {}, origin);
+  const models::CaseResult result = run(c, mechanics, fields);
+  const std::string text = output::summary_json(result, {}, origin);
   const json field = json::parse(text)["steps"][0]["fields"]["one/tip"];
   EXPECT_EQ(field["B"], json::parse("[null, [1.0, 0.0, 2.0]]"));
   EXPECT_EQ(field["dB"], json::parse("[null, [0.0, 0.0, 0.0]]"));
@@ -179,10 +183,10 @@ TEST(Summary, HasANullRowForASensorWithoutAField) {
 }
 
 TEST(Summary, HasAnEmptyListWithoutSensors) {
-  CaseResult result = two_models();
+  models::CaseResult result = two_models();
   result.problem.sensors.clear();
   result.fields.clear();
-  const json summary = json::parse(summary_json(result, {}, origin));
+  const json summary = json::parse(output::summary_json(result, {}, origin));
   EXPECT_EQ(summary["sensors"], json::array());
 }
 
@@ -201,7 +205,7 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
 // Oracle: the arc in closed form; interpolation on 24 Chebyshev points is exact to rounding.
 TEST(CentrelineCsv, IsTheCurveAtEquidistantPointsAndBreaks) {
   const double k = 40;
-  const auto rows = parse_csv(centreline_csv(arc(L, 3.01e-3, Vector3::UnitX(), k)));
+  const auto rows = parse_csv(output::centreline_csv(arc(L, 3.01e-3, Vector3::UnitX(), k)));
   EXPECT_EQ(rows[0][0].front(), '#');
   EXPECT_EQ(rows[1], (std::vector<std::string>{"S", "x", "y", "z", "theta", "kappa"}));
   ASSERT_EQ(rows.size(), 2 + 201 + 1u);  // the joint is not one of the 201
@@ -220,9 +224,9 @@ TEST(CentrelineCsv, IsTheCurveAtEquidistantPointsAndBreaks) {
 }
 
 TEST(ErrorsCsv, HoldsEveryComparisonWithTheSameFigures) {
-  const CaseResult result = two_models();
-  const auto comparisons = compare_models(result);
-  const auto rows = parse_csv(errors_csv(comparisons));
+  const models::CaseResult result = two_models();
+  const auto comparisons = models::compare_models(result);
+  const auto rows = parse_csv(output::errors_csv(comparisons));
   ASSERT_EQ(rows.size(), comparisons.size() + 1);
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
     const auto& row = rows[i + 1];
@@ -238,15 +242,15 @@ TEST(ErrorsCsv, HoldsEveryComparisonWithTheSameFigures) {
 }
 
 TEST(ErrorsCsv, QuotesANoteWithACommaAndAQuote) {
-  Comparison c;
+  models::Comparison c;
   c.note = "one, \"two\"";
-  EXPECT_THAT(errors_csv({c}), testing::HasSubstr(",\"one, \"\"two\"\"\"\n"));
+  EXPECT_THAT(output::errors_csv({c}), testing::HasSubstr(",\"one, \"\"two\"\"\"\n"));
 }
 
 TEST(WriteResults, WritesTheFilesThatTheSummaryNames) {
   const TemporaryFolder folder;
-  const CaseResult result = two_models();
-  write_results(result, compare_models(result), origin, folder.path());
+  const models::CaseResult result = two_models();
+  output::write_results(result, models::compare_models(result), origin, folder.path());
   const json summary = json::parse(read_text(folder.path() / "summary.json"));
   EXPECT_EQ(summary["steps"][1]["mechanics"]["one"]["centreline"], "one_0001.csv");
   std::size_t files = 0;
@@ -263,7 +267,7 @@ TEST(WriteResults, WritesTheFilesThatTheSummaryNames) {
 
 TEST(WriteText, SaysWhichFileAndWhyOnAFullDisk) {
   try {
-    write_text("/dev/full", "text");
+    output::write_file("/dev/full", "text");
     FAIL() << "the disk is full";
   } catch (const FileError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("/dev/full"));
@@ -272,7 +276,7 @@ TEST(WriteText, SaysWhichFileAndWhyOnAFullDisk) {
 }
 
 TEST(ThisProvenance, NamesTheLibrariesAndTheTimeInUtc) {
-  const Provenance p = provenance("ciliaval run a.toml");
+  const output::Provenance p = output::provenance("ciliaval run a.toml");
   EXPECT_THAT(p.date, testing::MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:]{8}Z"));
   EXPECT_THAT(p.libraries, testing::Contains(testing::Key("deal.II")));
   EXPECT_THAT(p.libraries, testing::Contains(testing::Key("VTK")));

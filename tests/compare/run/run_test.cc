@@ -28,7 +28,7 @@ Vector3 tip_dipole(const Deformation& d, const Vector3& point) {
   return 1e-7 * (3 * m.dot(a) * a / std::pow(a.norm(), 5) - m / std::pow(a.norm(), 3));
 }
 
-MechanicsEntry bend(const std::string& id) {
+models::MechanicsEntry bend(const std::string& id) {
   return mechanics_entry(id, [](const Load& load) {
     return converged(load, arc(L, 3e-3, Vector3::UnitX(), 1e4 * magnitude(load)));
   });
@@ -36,15 +36,15 @@ MechanicsEntry bend(const std::string& id) {
 
 // Oracle: Eq. 5 by hand for a dipole above the sensor at the origin: B = μ₀/4π · 2m/z³ e_z.
 TEST(Run, SubtractsTheFieldOfTheUndeformedCilium) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.sensors = {Vector3::Zero()};
   c.mechanics = {"bend"};
   c.fields = {"dipole"};
-  const std::vector<MechanicsEntry> mechanics{bend("bend")};
-  const std::vector<FieldEntry> fields{field_entry("dipole", tip_dipole)};
-  const CaseResult result = run(c, mechanics, fields);
+  const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
+  const std::vector<models::FieldEntry> fields{field_entry("dipole", tip_dipole)};
+  const models::CaseResult result = run(c, mechanics, fields);
   ASSERT_EQ(result.fields.size(), 1u);
-  const FieldRun& field = result.fields[0];
+  const models::FieldRun& field = result.fields[0];
   EXPECT_EQ(field.name(), "bend/dipole");
   const Vector3 B0(0, 0, 1e-7 * 2 / std::pow(L, 3));
   EXPECT_LT((*field.undeformed.B[0] - B0).norm(), 1e-14 * B0.norm());
@@ -52,24 +52,24 @@ TEST(Run, SubtractsTheFieldOfTheUndeformedCilium) {
   const Vector3 dB = tip_dipole(bent, Vector3::Zero()) - B0;
   EXPECT_GT(dB.norm(), 0.01 * B0.norm());
   EXPECT_LT((*field.steps[0]->dB[0] - dB).norm(), 1e-14 * B0.norm());
-  EXPECT_TRUE(all_solved(result));
+  EXPECT_TRUE(models::all_solved(result));
 }
 
 TEST(Run, RecordsWhatAModelThrowsAndGoesOnWithTheOthers) {
-  Case c = paper_case({1e-3, 2e-3});
+  input::Case c = paper_case({1e-3, 2e-3});
   c.mechanics = {"broken", "bend"};
   c.fields = {"bad", "dipole"};
-  const std::vector<MechanicsEntry> mechanics{
+  const std::vector<models::MechanicsEntry> mechanics{
       mechanics_entry("broken",
                       [](const Load&) -> MechanicsStep { throw SolverError("no equilibrium"); }),
       bend("bend")};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::FieldEntry> fields{
       field_entry("bad",
                   [](const Deformation&, const Vector3&) -> Vector3 {
                     throw InputError("the sensor is on the rim");
                   }),
       field_entry("dipole", tip_dipole)};
-  const CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = run(c, mechanics, fields);
   ASSERT_EQ(result.mechanics.size(), 2u);
   for (const MechanicsStep& step : result.mechanics[0].result.steps) {
     EXPECT_EQ(step.status, Status::failed);
@@ -80,7 +80,7 @@ TEST(Run, RecordsWhatAModelThrowsAndGoesOnWithTheOthers) {
   ASSERT_EQ(result.fields.size(), 2u);  // of `bend` only
   EXPECT_EQ(result.fields[0].steps[0]->failure, "the sensor is on the rim");
   EXPECT_TRUE(result.fields[1].steps[0]->failure.empty());
-  EXPECT_FALSE(all_solved(result));
+  EXPECT_FALSE(models::all_solved(result));
 }
 
 /// Refuses all points if one is at x = 3, and for the straight cilium if one is at x = 2.
@@ -92,17 +92,18 @@ Vector3 singular(const Deformation& d, const Vector3& x) {
 
 // Sensors 1 and 3 are never computable, sensor 4 only where the cilium is bent: it has B, not ΔB.
 TEST(Run, ASensorWhereTheFieldDivergesLeavesTheOthers) {
-  Case c = paper_case({1e-3, 2e-3});
+  input::Case c = paper_case({1e-3, 2e-3});
   c.sensors = {Vector3(1, 0, 0), Vector3(3, 0, 0), Vector3(4, 0, 0), Vector3(3, 1, 0),
                Vector3(2, 0, 0)};
   c.mechanics = {"bend"};
   c.fields = {"singular"};
-  const std::vector<MechanicsEntry> mechanics{bend("bend")};
-  const std::vector<FieldEntry> fields{field_entry("singular", singular, Vector3(1e-9, 0, 0))};
-  const CaseResult result = run(c, mechanics, fields);
-  const FieldRun& field = result.fields.at(0);
+  const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
+  const std::vector<models::FieldEntry> fields{
+      field_entry("singular", singular, Vector3(1e-9, 0, 0))};
+  const models::CaseResult result = run(c, mechanics, fields);
+  const models::FieldRun& field = result.fields.at(0);
   for (std::size_t i = 0; i < 2; ++i) {
-    const FieldStep& step = *field.steps[i];
+    const models::FieldStep& step = *field.steps[i];
     const Deformation& bent = *result.mechanics[0].result.steps[i].deformation;
     const Vector3 tip = bent.centreline.at(L).position;
     ASSERT_EQ(step.B.size(), 5u);
@@ -122,7 +123,7 @@ TEST(Run, ASensorWhereTheFieldDivergesLeavesTheOthers) {
   }
   EXPECT_EQ(field.undeformed.dB[0].value(), Vector3(0, 0, 0));
   EXPECT_FALSE(field.undeformed.dB[4]);
-  EXPECT_FALSE(all_solved(result));  // exit code 3: values are missing
+  EXPECT_FALSE(models::all_solved(result));  // exit code 3: values are missing
 }
 
 /// One system for all points: its solver fails, or it refuses the points at x = 3.
@@ -145,35 +146,38 @@ class Coupled : public FieldModel {
 
 // Its solutions take long: after a failure of the solver it is asked no second time.
 TEST(Run, AModelOfOneSystemIsAskedAgainOnlyIfItRefusesSensors) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.sensors = {Vector3(1, 0, 0), Vector3(3, 0, 0), Vector3(4, 0, 0)};
   c.mechanics = {"bend"};
   c.fields = {"coupled"};
-  const std::vector<MechanicsEntry> mechanics{bend("bend")};
+  const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
   int calls = 0;
   const auto run_coupled = [&](bool fails) {
     calls = 0;
-    const FieldEntry entry{"coupled", "", [&calls, fails](const ModelOptions&) {
-                             return std::make_unique<Coupled>(fails, calls);
-                           }};
-    return run(c, mechanics, std::vector<FieldEntry>{entry}).fields.at(0).steps.at(0).value();
+    const models::FieldEntry entry{"coupled", "", [&calls, fails](const input::ModelOptions&) {
+                                     return std::make_unique<Coupled>(fails, calls);
+                                   }};
+    return run(c, mechanics, std::vector<models::FieldEntry>{entry})
+        .fields.at(0)
+        .steps.at(0)
+        .value();
   };
-  const FieldStep failed = run_coupled(true);
+  const models::FieldStep failed = run_coupled(true);
   EXPECT_EQ(calls, 2);  // the straight and the bent cilium
   EXPECT_EQ(failed.B.size(), 3u);
   EXPECT_FALSE(failed.any());
   EXPECT_EQ(failed.failure, "the accuracy is not reached");
-  const FieldStep refused = run_coupled(false);
+  const models::FieldStep refused = run_coupled(false);
   EXPECT_EQ(calls, 10);  // all, sensor 0, sensors 1 and 2, 1, 2, of both
   EXPECT_TRUE(refused.B[0] && !refused.B[1] && refused.B[2]);
 }
 
 TEST(Run, TakesAFieldOrAShapeThatIsNotFiniteForAFailure) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"nan", "bend"};
   c.fields = {"nan"};
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<MechanicsEntry> mechanics{
+  const std::vector<models::MechanicsEntry> mechanics{
       mechanics_entry("nan",
                       [=](const Load& load) {
                         Centreline::Piece piece{{0, L}, std::vector<SectionState>(2)};
@@ -181,11 +185,11 @@ TEST(Run, TakesAFieldOrAShapeThatIsNotFiniteForAFailure) {
                         return converged(load, Centreline({piece}));
                       }),
       bend("bend")};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::FieldEntry> fields{
       field_entry("nan", [=](const Deformation&, const Vector3&) -> Vector3 {
         return {nan, 0, 0};
       })};
-  const CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = run(c, mechanics, fields);
   EXPECT_EQ(result.mechanics[0].result.steps[0].status, Status::failed);
   EXPECT_FALSE(result.mechanics[0].result.steps[0].deformation);
   EXPECT_FALSE(result.fields.back().steps[0]->failure.empty());
@@ -193,44 +197,45 @@ TEST(Run, TakesAFieldOrAShapeThatIsNotFiniteForAFailure) {
 }
 
 TEST(Run, ASlipOffIsAResultWithoutAFieldAndNoFailure) {
-  Case c = paper_case({1e-3, 9e-3});
+  input::Case c = paper_case({1e-3, 9e-3});
   c.mechanics = {"slips"};
   c.fields = {"dipole"};
-  const std::vector<MechanicsEntry> mechanics{mechanics_entry("slips", [](const Load& load) {
-    if (magnitude(load) < 5e-3) return converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
-    MechanicsStep step;
-    step.load = load;
-    step.status = Status::slipped_off;
-    step.slip_off_force = 5.8e-3;
-    return step;
-  })};
-  const std::vector<FieldEntry> fields{field_entry("dipole", tip_dipole)};
-  const CaseResult result = run(c, mechanics, fields);
-  EXPECT_TRUE(all_solved(result));
+  const std::vector<models::MechanicsEntry> mechanics{
+      mechanics_entry("slips", [](const Load& load) {
+        if (magnitude(load) < 5e-3) return converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
+        MechanicsStep step;
+        step.load = load;
+        step.status = Status::slipped_off;
+        step.slip_off_force = 5.8e-3;
+        return step;
+      })};
+  const std::vector<models::FieldEntry> fields{field_entry("dipole", tip_dipole)};
+  const models::CaseResult result = run(c, mechanics, fields);
+  EXPECT_TRUE(models::all_solved(result));
   EXPECT_TRUE(result.fields[0].steps[0]);
   EXPECT_FALSE(result.fields[0].steps[1]);
 }
 
 TEST(Run, AFieldModelThatNeedsABodyRunsOnlyWhereThereIsOne) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"rod", "body"};
   c.fields = {"mesh"};
-  const std::vector<MechanicsEntry> mechanics{
+  const std::vector<models::MechanicsEntry> mechanics{
       bend("rod"), mechanics_entry("body", [](const Load& load) {
         MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 20));
         step.deformation->body = std::make_shared<SolidBody>(test::BentBricks::body());
         return step;
       })};
-  const std::vector<FieldEntry> fields{field_entry("mesh", tip_dipole, {}, true)};
-  const CaseResult result = run(c, mechanics, fields);
+  const std::vector<models::FieldEntry> fields{field_entry("mesh", tip_dipole, {}, true)};
+  const models::CaseResult result = run(c, mechanics, fields);
   ASSERT_EQ(result.fields.size(), 1u);
   EXPECT_EQ(result.fields[0].name(), "body/mesh");
 }
 
 TEST(Run, RefusesAModelThatDoesNotExist) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"elastika"};
-  const std::vector<MechanicsEntry> mechanics{bend("bend")};
+  const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
   EXPECT_THROW(run(c, mechanics, {}), InputError);
 }
 

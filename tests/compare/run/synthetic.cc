@@ -119,15 +119,16 @@ Field FormulaField::field(const Cilium&, const Deformation& deformation,
   return field;
 }
 
-compare::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape) {
-  return {std::move(id), "a known shape", [shape](const compare::ModelOptions&) {
+compare::models::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape) {
+  return {std::move(id), "a known shape", [shape](const compare::input::ModelOptions&) {
             return std::make_unique<ShapeModel>(shape, straight_centreline({0, 3e-3, 20e-3}));
           }};
 }
 
-compare::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,
-                                const std::optional<Vector3>& uncertainty, bool needs_body) {
-  return {std::move(id), "a known field", [=](const compare::ModelOptions&) {
+compare::models::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,
+                                        const std::optional<Vector3>& uncertainty,
+                                        bool needs_body) {
+  return {std::move(id), "a known field", [=](const compare::input::ModelOptions&) {
             return std::make_unique<FormulaField>(formula, uncertainty, needs_body);
           }};
 }
@@ -143,8 +144,8 @@ MechanicsStep converged(const Load& load, Centreline centreline,
   return step;
 }
 
-compare::Case paper_case(const std::vector<double>& forces) {
-  compare::Case c;
+compare::input::Case paper_case(const std::vector<double>& forces) {
+  compare::input::Case c;
   c.name = "paper";
   c.title = "The paper's cilium";
   c.cilium = {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};

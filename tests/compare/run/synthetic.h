@@ -81,17 +81,17 @@ class FormulaField : public FieldModel {
   bool needs_body_;
 };
 
-compare::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape);
-compare::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,
-                                const std::optional<Vector3>& uncertainty = {},
-                                bool needs_body = false);
+compare::models::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape);
+compare::models::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,
+                                        const std::optional<Vector3>& uncertainty = {},
+                                        bool needs_body = false);
 
 /// A converged step.
 MechanicsStep converged(const Load& load, Centreline centreline,
                         std::optional<double> tip_uncertainty = {});
 
 /// The paper's cilium under contact forces at h = 16 mm, azimuth 0, one sensor.
-compare::Case paper_case(const std::vector<double>& forces);
+compare::input::Case paper_case(const std::vector<double>& forces);
 
 /// Two bricks on top of each other, nodes of degree 3, bent by x = X + (a Z², 0, −b X Z); the upper
 /// one has magnetisation. J and σ are given at the nodes: σ = diag(1, 2, 3) X-component times

@@ -23,7 +23,7 @@ using testing::Not;
 
 constexpr double L = 20e-3;
 
-MechanicsEntry tilt(const std::string& id, double factor) {
+models::MechanicsEntry tilt(const std::string& id, double factor) {
   return mechanics_entry(id, [=](const Load& load) {
     return converged(load, tilted(L, 3e-3, Vector3::UnitX(), factor * 100 * magnitude(load)), 1e-9);
   });
@@ -33,17 +33,17 @@ MechanicsEntry tilt(const std::string& id, double factor) {
 // distance over deflection 2 sin(0.05)/sin(0.2) = 50.31 %; dBx = 0.1 T/m · tip x = 199.67 uT, error
 // against the reference sin 0.1/sin 0.2 − 1 = −49.7 %.
 TEST(Table, ShowsValuesWithUnitsAndErrorsAgainstTheReference) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"rough", "fine"};
   c.fields = {"sure", "tip"};
-  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1), tilt("fine", 2)};
+  const std::vector<models::MechanicsEntry> mechanics{tilt("rough", 1), tilt("fine", 2)};
   const auto formula = [](const Deformation& d, const Vector3&) -> Vector3 {
     return {0.1 * d.centreline.at(L).position.x(), 0, 5e-3};
   };
-  const std::vector<FieldEntry> fields{field_entry("sure", formula, Vector3(1e-6, 2e-6, 3e-6)),
-                                       field_entry("tip", formula)};
-  const CaseResult result = run(c, mechanics, fields);
-  const std::string text = table(result, compare_models(result));
+  const std::vector<models::FieldEntry> fields{
+      field_entry("sure", formula, Vector3(1e-6, 2e-6, 3e-6)), field_entry("tip", formula)};
+  const models::CaseResult result = run(c, mechanics, fields);
+  const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("contact, force 1 mN at height 16 mm, azimuth 0 deg"));
   EXPECT_THAT(text, ContainsRegex("rough +converged +1.9967 +0.0000 +19.9001 +0.001 +5.730 +1 "));
   EXPECT_THAT(text, ContainsRegex("rough - fine +50.31 +29.05 +50.31 +-50.00 .*resolved"));
@@ -57,25 +57,26 @@ TEST(Table, ShowsValuesWithUnitsAndErrorsAgainstTheReference) {
 }
 
 TEST(Table, SaysWhyAModelHasNoResult) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"slips"};
-  const std::vector<MechanicsEntry> mechanics{mechanics_entry("slips", [](const Load& load) {
-    MechanicsStep step;
-    step.load = load;
-    step.status = Status::slipped_off;
-    step.slip_off_force = 5.862e-3;
-    return step;
-  })};
-  const CaseResult result = run(c, mechanics, {});
-  const std::string text = table(result, compare_models(result));
+  const std::vector<models::MechanicsEntry> mechanics{
+      mechanics_entry("slips", [](const Load& load) {
+        MechanicsStep step;
+        step.load = load;
+        step.status = Status::slipped_off;
+        step.slip_off_force = 5.862e-3;
+        return step;
+      })};
+  const models::CaseResult result = run(c, mechanics, {});
+  const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("slips off above 5.862 mN"));
 }
 
 TEST(Table, ShowsTheForceThatAProbesDisplacementTakes) {
-  Case c = paper_case({});
+  input::Case c = paper_case({});
   c.load_path = {ProbeLoad{2e-3, 16e-3, 0}, ProbeLoad{12e-3, 16e-3, 0}};
   c.mechanics = {"rod"};
-  const std::vector<MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
+  const std::vector<models::MechanicsEntry> mechanics{mechanics_entry("rod", [](const Load& load) {
     MechanicsStep step = test::converged(load, test::tilted(L, 3e-3, Vector3::UnitX(), 0.1));
     step.applied_force = 1.2345e-3;
     if (magnitude(load) < 10e-3) return step;
@@ -85,8 +86,8 @@ TEST(Table, ShowsTheForceThatAProbesDisplacementTakes) {
     step.slip_off_displacement = 11.66e-3;
     return step;
   })};
-  const CaseResult result = run(c, mechanics, {});
-  const std::string text = table(result, compare_models(result));
+  const models::CaseResult result = run(c, mechanics, {});
+  const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("probe, displacement 2 mm at height 16 mm, azimuth 0 deg"));
   EXPECT_THAT(text, ContainsRegex("rod +converged .* 1.2345 "));
   EXPECT_THAT(text, HasSubstr("slips off beyond 11.66 mm"));
@@ -96,23 +97,23 @@ TEST(Table, ShowsTheForceThatAProbesDisplacementTakes) {
 // The last pair gives nothing at any step: the others are set against the last that does, at each
 // step and over the path. Oracle: 1 − 1/2 of each component.
 TEST(Table, TakesTheLastPairWithAFieldForTheReferenceOfThePathToo) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.sensors = {Vector3(0, 0, 0), Vector3(0, 0, 1)};
   c.mechanics = {"rough"};
   c.fields = {"half", "full", "broken"};
-  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1)};
+  const std::vector<models::MechanicsEntry> mechanics{tilt("rough", 1)};
   const auto times = [](double factor) {
     return [=](const Deformation& d, const Vector3&) -> Vector3 {
       return factor * d.centreline.at(L).position;
     };
   };
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::FieldEntry> fields{
       field_entry("half", times(0.5)), field_entry("full", times(1)),
       field_entry("broken", [](const Deformation&, const Vector3&) -> Vector3 {
         throw SolverError("no convergence");
       })};
-  const CaseResult result = run(c, mechanics, fields);
-  const std::string text = table(result, compare_models(result));
+  const models::CaseResult result = run(c, mechanics, fields);
+  const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("RRMSE (3) against rough/full"));
   EXPECT_THAT(text, ContainsRegex("rough/half +50.00 +- +50.00 +50.00 +- +50.00"));
   EXPECT_THAT(text, HasSubstr("rough/broken: no convergence"));
@@ -121,18 +122,18 @@ TEST(Table, TakesTheLastPairWithAFieldForTheReferenceOfThePathToo) {
 
 // At sensor 0 the field of the straight cilium diverges: B stands, ΔB is a dash.
 TEST(Table, ShowsBWhereOnlyItsChangeIsUndefined) {
-  Case c = paper_case({1e-3});
+  input::Case c = paper_case({1e-3});
   c.mechanics = {"rough"};
   c.fields = {"tip"};
-  const std::vector<MechanicsEntry> mechanics{tilt("rough", 1)};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::MechanicsEntry> mechanics{tilt("rough", 1)};
+  const std::vector<models::FieldEntry> fields{
       field_entry("tip", [](const Deformation& d, const Vector3&) -> Vector3 {
         const double x = d.centreline.at(L).position.x();
         if (x == 0) throw InputError("B diverges");
         return {0.1 * x, -1e-12, 0};
       })};
-  const CaseResult result = run(c, mechanics, fields);
-  const std::string text = table(result, compare_models(result));
+  const models::CaseResult result = run(c, mechanics, fields);
+  const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, ContainsRegex("rough/tip +0.1997 +0.0000 +0.0000 +- +- +- "));
   EXPECT_THAT(text, Not(HasSubstr("-0.0000")));
   EXPECT_THAT(text, HasSubstr("rough/tip: undeformed cilium: B diverges"));

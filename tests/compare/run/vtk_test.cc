@@ -32,7 +32,7 @@ using test::read_text;
 using test::TemporaryFolder;
 
 constexpr double L = 20e-3;
-const Provenance origin{"1.2.3", "abc", {{"VTK", "9.1.0"}}, "ciliaval run x.toml", "today"};
+const output::Provenance origin{"1.2.3", "abc", {{"VTK", "9.1.0"}}, "ciliaval run x.toml", "today"};
 
 template <class Reader>
 vtkSmartPointer<Reader> read_back(const fs::path& file) {
@@ -65,14 +65,14 @@ void expect_appended_compressed_float64(const fs::path& file) {
 }
 
 /// A case of one body and one rod, two loads; the second load of the rod slips off.
-CaseResult two_models() {
-  Case c = test::paper_case({1e-3, 2e-3});
+models::CaseResult two_models() {
+  input::Case c = test::paper_case({1e-3, 2e-3});
   c.mechanics = {"rod", "solid"};
   c.fields = {"line"};
   const auto bend = [](const Load& load) {
     return test::converged(load, test::arc(L, 3e-3, Vector3::UnitX(), 2e4 * magnitude(load)));
   };
-  const std::vector<MechanicsEntry> mechanics{
+  const std::vector<models::MechanicsEntry> mechanics{
       test::mechanics_entry("rod",
                             [=](const Load& load) {
                               MechanicsStep step = bend(load);
@@ -86,7 +86,7 @@ CaseResult two_models() {
         step.deformation->body = std::make_shared<SolidBody>(BentBricks::body());
         return step;
       })};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::FieldEntry> fields{
       test::field_entry("line", [](const Deformation& d, const Vector3& x) -> Vector3 {
         return d.centreline.at(L).position + x;
       })};
@@ -98,7 +98,7 @@ CaseResult two_models() {
 TEST(SolidFile, HoldsTheBodyOnItsUndeformedMesh) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "body.vtu";
-  write(*solid_grid(BentBricks::body()), file);
+  output::vtk::write(*output::vtk::solid_grid(BentBricks::body()), file);
   expect_appended_compressed_float64(file);
   const auto reader = read_back<vtkXMLUnstructuredGridReader>(file);
   vtkUnstructuredGrid* grid = reader->GetOutput();
@@ -130,7 +130,7 @@ TEST(SolidFile, HoldsTheBodyOnItsUndeformedMesh) {
 // The order of the 27 nodes: VTK's own shape functions must find the point that the brick's
 // trilinear map has at the same local coordinates.
 TEST(SolidFile, OrdersTheNodesAsVtkReadsThem) {
-  const auto grid = solid_grid(BentBricks::body());
+  const auto grid = output::vtk::solid_grid(BentBricks::body());
   vtkCell* cell = grid->GetCell(1);
   const std::array<double, 3> xi{0.3, 0.6, 0.2};
   std::array<double, 3> X{};
@@ -152,7 +152,8 @@ TEST(RodFile, HoldsTheDeformedCentrelineWithItsFrame) {
   const double k = 40;
   const Cilium cilium = test::paper_case({1e-3}).cilium;
   const fs::path file = folder.path() / "rod.vtp";
-  write(*rod_polyline(cilium, test::arc(L, 3e-3, Vector3::UnitX(), k)), file);
+  output::vtk::write(*output::vtk::rod_polyline(cilium, test::arc(L, 3e-3, Vector3::UnitX(), k)),
+                     file);
   expect_appended_compressed_float64(file);
   const auto reader = read_back<vtkXMLPolyDataReader>(file);
   vtkPolyData* rod = reader->GetOutput();
@@ -187,9 +188,9 @@ TEST(DipoleFile, HoldsTheMomentsOfTheMagneticSegment) {
   const Cilium cilium = test::paper_case({1e-3}).cilium;
   const Centreline curve = test::arc(L, 3e-3, Vector3::UnitX(), k);
   const double AM = std::numbers::pi * 1.5e-3 * 1.5e-3 * 75e3;
-  for (const auto push : {analytic::PushForward::F, analytic::PushForward::R}) {
+  for (const auto push : {analytic::sources::PushForward::F, analytic::sources::PushForward::R}) {
     const fs::path file = folder.path() / "dipoles.vtp";
-    write(*dipoles(cilium, curve, push), file);
+    output::vtk::write(*output::vtk::dipoles(cilium, curve, push), file);
     expect_appended_compressed_float64(file);
     const auto reader = read_back<vtkXMLPolyDataReader>(file);
     vtkPolyData* data = reader->GetOutput();
@@ -202,10 +203,10 @@ TEST(DipoleFile, HoldsTheMomentsOfTheMagneticSegment) {
       const Vector3 moment = tuple(data, "moment", i);
       sum += moment;
       // A chord is shorter than its arc by (k dS)²/24 = 5e-6.
-      const double tolerance = push == analytic::PushForward::R ? 1e-13 : 1e-5;
+      const double tolerance = push == analytic::sources::PushForward::R ? 1e-13 : 1e-5;
       EXPECT_LT((moment - AM * 17e-3 / 64 * d3).norm(), tolerance * moment.norm());
     }
-    if (push == analytic::PushForward::F) {
+    if (push == analytic::sources::PushForward::F) {
       EXPECT_LT((sum - AM * (curve.at(L).position - curve.at(3e-3).position)).norm(),
                 1e-14 * sum.norm());
     }
@@ -214,17 +215,17 @@ TEST(DipoleFile, HoldsTheMomentsOfTheMagneticSegment) {
 
 TEST(FieldFile, HoldsTheGridAndTheMask) {
   const TemporaryFolder folder;
-  FieldGrid grid;
+  output::FieldGrid grid;
   grid.points = {2, 3, 4};
   grid.origin = Vector3(-1, -2, -3);
   grid.spacing = Vector3(0.1, 0.2, 0.3);
-  FieldGrid::Step step;
+  output::FieldGrid::Step step;
   for (int i = 0; i < 24; ++i) {
     step.B.emplace_back(i, 1.0 / (i + 1), -i);
     step.valid.push_back(i == 5 ? 0 : 1);
   }
   const fs::path file = folder.path() / "field.vti";
-  write(*field_image(grid, step), file);
+  output::vtk::write(*output::vtk::field_image(grid, step), file);
   expect_appended_compressed_float64(file);
   const auto reader = read_back<vtkXMLImageDataReader>(file);
   vtkImageData* image = reader->GetOutput();
@@ -256,7 +257,7 @@ TEST(OctreeFile, HoldsThePotentialAndItsFields) {
   }
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "octree.vtu";
-  write(*octree_grid(mesh), file);
+  output::vtk::write(*output::vtk::octree_grid(mesh), file);
   expect_appended_compressed_float64(file);
   const auto reader = read_back<vtkXMLUnstructuredGridReader>(file);
   vtkDataSet* data = reader->GetOutput();
@@ -280,26 +281,28 @@ TEST(Write, SaysWhichFileAndWhyOnAFullDisk) {
   const fs::path file = folder.path() / "full.vtu";
   fs::create_symlink("/dev/full", file);  // VTK removes what it could not write: the link only
   try {
-    write(*solid_grid(BentBricks::body()), file);
+    output::vtk::write(*output::vtk::solid_grid(BentBricks::body()), file);
     FAIL() << "the disk is full";
   } catch (const FileError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("full.vtu"));
   }
-  EXPECT_THROW(write(*solid_grid(BentBricks::body()), folder.path() / "none" / "a.vtu"), FileError);
+  EXPECT_THROW(output::vtk::write(*output::vtk::solid_grid(BentBricks::body()),
+                                  folder.path() / "none" / "a.vtu"),
+               FileError);
 }
 
 TEST(SeriesTimes, AreTheLoadsIfTheyIncreaseElseTheSteps) {
-  EXPECT_EQ(series_times(test::paper_case({1e-3, 4e-3}).load_path),
+  EXPECT_EQ(output::vtk::series_times(test::paper_case({1e-3, 4e-3}).load_path),
             (std::vector<double>{1e-3, 4e-3}));
-  EXPECT_EQ(series_times(test::paper_case({1e-3, 4e-3, 1e-3}).load_path),
+  EXPECT_EQ(output::vtk::series_times(test::paper_case({1e-3, 4e-3, 1e-3}).load_path),
             (std::vector<double>{0, 1, 2}));
 }
 
 TEST(SeriesTimes, OfAProbeAreItsDisplacements) {
   const LoadPath path{ProbeLoad{1e-3, 16e-3, 0}, ProbeLoad{2e-3, 16e-3, 0}};
-  EXPECT_EQ(series_times(path), (std::vector<double>{1e-3, 2e-3}));
-  const auto grid = solid_grid(BentBricks::body());
-  add_provenance(*grid, {}, path[1]);
+  EXPECT_EQ(output::vtk::series_times(path), (std::vector<double>{1e-3, 2e-3}));
+  const auto grid = output::vtk::solid_grid(BentBricks::body());
+  output::vtk::add_provenance(*grid, {}, path[1]);
   EXPECT_EQ(grid->GetFieldData()->GetArray("load")->GetTuple1(0), 2e-3);
   EXPECT_THAT(strings(grid, "load_unit"), testing::ElementsAre("m"));
 }
@@ -308,18 +311,18 @@ TEST(SeriesTimes, OfAProbeAreItsDisplacements) {
 // and where they come from.
 TEST(WriteVtk, MakesASeriesOfEachKindFromWhatExists) {
   const TemporaryFolder folder;
-  const CaseResult result = two_models();
-  FieldGrid grid;
+  const models::CaseResult result = two_models();
+  output::FieldGrid grid;
   grid.mechanics = "rod";
   grid.field = "line";
   grid.points = {2, 2, 2};
   grid.spacing = Vector3(1, 1, 1);
-  grid.sample = [](std::size_t step) -> std::optional<FieldGrid::Step> {
+  grid.sample = [](std::size_t step) -> std::optional<output::FieldGrid::Step> {
     if (step == 1) return std::nullopt;
-    return FieldGrid::Step{std::vector<Vector3>(8, Vector3::Ones()),
-                           std::vector<std::uint8_t>(8, 1)};
+    return output::FieldGrid::Step{std::vector<Vector3>(8, Vector3::Ones()),
+                                   std::vector<std::uint8_t>(8, 1)};
   };
-  write_vtk(result, grid, origin, folder.path() / "vtk");
+  output::vtk::write_vtk(result, grid, origin, folder.path() / "vtk");
 
   std::map<std::string, std::vector<std::string>> listed;
   for (const auto& entry : fs::directory_iterator(folder.path() / "vtk")) {
@@ -356,26 +359,27 @@ TEST(WriteVtk, MakesASeriesOfEachKindFromWhatExists) {
 // converged, and a file without any array would only confuse.
 TEST(WriteVtk, WritesSensorsWhereThereIsAFieldAndMasksThoseWithoutOne) {
   const TemporaryFolder folder;
-  Case c = test::paper_case({1e-3, 2e-3});
+  input::Case c = test::paper_case({1e-3, 2e-3});
   c.sensors = {Vector3(1, 0, 0), Vector3(2, 0, 0), Vector3(3, 0, 0)};
   c.mechanics = {"rod"};
   c.fields = {"line"};
-  const std::vector<MechanicsEntry> mechanics{test::mechanics_entry("rod", [](const Load& load) {
-    if (magnitude(load) < 1.5e-3)
-      return test::converged(load, test::arc(L, 3e-3, Vector3::UnitX(), 20));
-    MechanicsStep step;
-    step.load = load;
-    step.status = Status::slipped_off;
-    return step;
-  })};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::MechanicsEntry> mechanics{
+      test::mechanics_entry("rod", [](const Load& load) {
+        if (magnitude(load) < 1.5e-3)
+          return test::converged(load, test::arc(L, 3e-3, Vector3::UnitX(), 20));
+        MechanicsStep step;
+        step.load = load;
+        step.status = Status::slipped_off;
+        return step;
+      })};
+  const std::vector<models::FieldEntry> fields{
       test::field_entry("line", [](const Deformation& d, const Vector3& x) -> Vector3 {
         const bool straight = d.centreline.at(L).position.x() == 0;
         if (x.x() > 2.5 || (straight && x.x() > 1.5)) throw InputError("B diverges here");
         return d.centreline.at(L).position + x;
       })};
-  const CaseResult result = run(c, mechanics, fields);
-  write_vtk(result, std::nullopt, origin, folder.path() / "vtk");
+  const models::CaseResult result = run(c, mechanics, fields);
+  output::vtk::write_vtk(result, std::nullopt, origin, folder.path() / "vtk");
   EXPECT_FALSE(fs::exists(folder.path() / "vtk" / "sensors_0001.vtp"));
   const auto reader = read_back<vtkXMLPolyDataReader>(folder.path() / "vtk" / "sensors_0000.vtp");
   vtkPolyData* sensors = reader->GetOutput();

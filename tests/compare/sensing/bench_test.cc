@@ -19,52 +19,54 @@ using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180;
 
-Bench paper_bench() {
-  Bench bench;
+sensing::Bench paper_bench() {
+  sensing::Bench bench;
   bench.problem = test::paper_case({1e-3, 2e-3, 4e-3});
-  bench.models = parse_pair("elastica/volume");
+  bench.models = sensing::parse_pair("elastica/volume");
   bench.truth = bench.models;
   return bench;
 }
 
-const BenchRow& row(const BenchResult& result, ErrorSource source) {
-  for (const BenchRow& r : result.rows)
+const sensing::BenchRow& row(const sensing::BenchResult& result, sensing::ErrorSource source) {
+  for (const sensing::BenchRow& r : result.rows)
     if (r.source == source) return r;
   throw std::out_of_range("no such row");
 }
 
 TEST(Bench, WithoutErrorsFindsTheLoads) {
-  const BenchResult result = run_bench(paper_bench());
+  const sensing::BenchResult result = sensing::run_bench(paper_bench());
   ASSERT_EQ(result.rows.size(), 2u);  // none, all
-  for (const BenchRow& r : result.rows) {
+  for (const sensing::BenchRow& r : result.rows) {
     EXPECT_LT(r.inversion.magnitude_rms, 1e-9);
     EXPECT_LT(r.inversion.azimuth_largest, 1e-9);
     EXPECT_EQ(r.inversion.below_ten_degrees, 1);
   }
-  EXPECT_EQ(row(result, ErrorSource::none).inversion.readings, 36u);
+  EXPECT_EQ(row(result, sensing::ErrorSource::none).inversion.readings, 36u);
   // The linear fit is off by what the response is not linear.
-  EXPECT_GT(row(result, ErrorSource::none).linear_fit.magnitude_rms, 1e-3);
+  EXPECT_GT(row(result, sensing::ErrorSource::none).linear_fit.magnitude_rms, 1e-3);
 }
 
 // Oracle: first-order propagation. The noise of reading and offset add up to √2 σ; relative to the
 // load along it, in radians across it.
 TEST(Bench, NoiseSpreadsAsItsPropagationSays) {
-  Bench bench = paper_bench();
+  sensing::Bench bench = paper_bench();
   bench.noise = 0.2e-6;
   bench.draws = 100;
-  const BenchErrors errors = row(run_bench(bench), ErrorSource::noise).inversion;
-  const Response response(bench.problem, "volume", shapes_up_to(bench.problem, "elastica", 5e-3),
-                          bench.problem.sensors);
+  const sensing::BenchErrors errors =
+      row(sensing::run_bench(bench), sensing::ErrorSource::noise).inversion;
+  const sensing::Response response(bench.problem, "volume",
+                                   sensing::shapes_up_to(bench.problem, "elastica", 5e-3),
+                                   bench.problem.sensors);
   double along = 0;
   double across = 0;
   for (const Load& load : bench.problem.load_path)
     for (int a = 0; a < 12; ++a) {
-      const Vector2 e(std::cos(a * 30 * degree), std::sin(a * 30 * degree));
+      const sensing::Vector2 e(std::cos(a * 30 * degree), std::sin(a * 30 * degree));
       const Eigen::MatrixX2d J = response.derivative(magnitude(load) * e);
       const Eigen::Matrix2d covariance =
           2 * bench.noise * bench.noise * (J.transpose() * J).inverse();
       along += e.dot(covariance * e) / std::pow(magnitude(load), 2) / 36;
-      const Vector2 n(-e.y(), e.x());
+      const sensing::Vector2 n(-e.y(), e.x());
       across += n.dot(covariance * n) / std::pow(magnitude(load), 2) / 36;
     }
   EXPECT_NEAR(errors.magnitude_rms, std::sqrt(along), 0.1 * std::sqrt(along));
@@ -73,11 +75,12 @@ TEST(Bench, NoiseSpreadsAsItsPropagationSays) {
 
 // A stage that is turned shows in the direction alone, by the angle that it is turned.
 TEST(Bench, TheStagesAngleIsTheDirectionsError) {
-  Bench bench = paper_bench();
+  sensing::Bench bench = paper_bench();
   bench.stage_azimuth = 2 * degree;
   bench.draws = 400;
   bench.azimuths = 3;
-  const BenchErrors errors = row(run_bench(bench), ErrorSource::stage_azimuth).inversion;
+  const sensing::BenchErrors errors =
+      row(sensing::run_bench(bench), sensing::ErrorSource::stage_azimuth).inversion;
   EXPECT_LT(errors.magnitude_rms, 1e-9);
   EXPECT_NEAR(errors.azimuth_rms, 2 * degree, 0.3 * degree);  // 4 standard deviations of 400 draws
   EXPECT_GT(errors.azimuth_largest, 2 * errors.azimuth_rms);
@@ -86,18 +89,22 @@ TEST(Bench, TheStagesAngleIsTheDirectionsError) {
   const double interval = 1.97 * 2 * degree / std::sqrt(2 * 400.0);
   EXPECT_NEAR(errors.azimuth_rms_interval, interval, 0.2 * interval);
   bench.draws = 1;
-  EXPECT_EQ(row(run_bench(bench), ErrorSource::stage_azimuth).inversion.azimuth_rms_interval, 0);
+  EXPECT_EQ(row(sensing::run_bench(bench), sensing::ErrorSource::stage_azimuth)
+                .inversion.azimuth_rms_interval,
+            0);
 }
 
 // The ambient field is measured at each azimuth and taken off: what is left is the noise of that
 // measurement, however strong the field.
 TEST(Bench, OfTheAmbientFieldTheNoiseOfItsMeasurementIsLeft) {
-  Bench bench = paper_bench();
+  sensing::Bench bench = paper_bench();
   bench.noise = 0.2e-6;
   bench.ambient = Vector3(20e-6, 0, -43e-6);
-  const BenchErrors once = row(run_bench(bench), ErrorSource::ambient).inversion;
+  const sensing::BenchErrors once =
+      row(sensing::run_bench(bench), sensing::ErrorSource::ambient).inversion;
   bench.ambient *= 10;
-  const BenchErrors ten_times = row(run_bench(bench), ErrorSource::ambient).inversion;
+  const sensing::BenchErrors ten_times =
+      row(sensing::run_bench(bench), sensing::ErrorSource::ambient).inversion;
   EXPECT_GT(once.magnitude_rms, 0);
   EXPECT_NEAR(ten_times.magnitude_rms, once.magnitude_rms, 1e-6 * once.magnitude_rms);
 }
@@ -105,27 +112,30 @@ TEST(Bench, OfTheAmbientFieldTheNoiseOfItsMeasurementIsLeft) {
 // A misplaced sensor, digits, and another model each leave errors; all together are more than each;
 // the same seed gives the same numbers, another one others.
 TEST(Bench, EachSourceShowsAndTheSeedDecides) {
-  Bench bench = paper_bench();
-  bench.truth = parse_pair("beam/line");
+  sensing::Bench bench = paper_bench();
+  bench.truth = sensing::parse_pair("beam/line");
   bench.noise = 0.5e-6;
   bench.quantum = 0.5e-6;
   bench.sensor_position = 0.1e-3;
   bench.draws = 5;
-  const BenchResult result = run_bench(bench);
-  const BenchErrors all = row(result, ErrorSource::all).inversion;
-  for (const ErrorSource source : {ErrorSource::noise, ErrorSource::quantum,
-                                   ErrorSource::sensor_position, ErrorSource::models}) {
-    EXPECT_GT(row(result, source).inversion.magnitude_rms, 1e-5) << to_string(source);
-    EXPECT_GT(all.azimuth_largest, row(result, source).inversion.azimuth_rms) << to_string(source);
+  const sensing::BenchResult result = sensing::run_bench(bench);
+  const sensing::BenchErrors all = row(result, sensing::ErrorSource::all).inversion;
+  for (const sensing::ErrorSource source :
+       {sensing::ErrorSource::noise, sensing::ErrorSource::quantum,
+        sensing::ErrorSource::sensor_position, sensing::ErrorSource::models}) {
+    EXPECT_GT(row(result, source).inversion.magnitude_rms, 1e-5) << sensing::to_string(source);
+    EXPECT_GT(all.azimuth_largest, row(result, source).inversion.azimuth_rms)
+        << sensing::to_string(source);
   }
-  EXPECT_EQ(bench_json(bench, result, {}), bench_json(bench, run_bench(bench), {}));
+  EXPECT_EQ(sensing::bench_json(bench, result, {}),
+            sensing::bench_json(bench, sensing::run_bench(bench), {}));
   EXPECT_EQ(result.first_draw.size(), 36u);
   EXPECT_EQ(result.by_magnitude.size(), 3u);
   EXPECT_GT(result.by_magnitude.front().azimuth_rms, result.by_magnitude.back().azimuth_rms);
-  Bench other = bench;
+  sensing::Bench other = bench;
   other.seed = 2;
-  EXPECT_NE(row(run_bench(other), ErrorSource::noise).inversion.magnitude_rms,
-            row(result, ErrorSource::noise).inversion.magnitude_rms);
+  EXPECT_NE(row(sensing::run_bench(other), sensing::ErrorSource::noise).inversion.magnitude_rms,
+            row(result, sensing::ErrorSource::noise).inversion.magnitude_rms);
 }
 
 // The file, as a user writes it and as one gets it wrong.
@@ -139,7 +149,7 @@ TEST(Bench, FilesAreReadAndTheirFaultsSaidWithTheirPlace) {
       "[bench]\ncase = \"one.toml\"\nmodels = \"beam/line\"\nazimuths = 4\ndraws = 2\n[errors]\n"
       "noise = \"0.5 uT\"\nambient = [\"20 uT\", \"0 uT\", \"-43 uT\"]\n";
   write("one.sense.toml", good);
-  const Bench bench = read_bench(folder.path() / "one.sense.toml");
+  const sensing::Bench bench = sensing::read_bench(folder.path() / "one.sense.toml");
   EXPECT_EQ(bench.truth.name(), "beam/line");
   EXPECT_EQ(bench.azimuths, 4u);
   EXPECT_DOUBLE_EQ(bench.ambient.z(), -43e-6);

@@ -18,14 +18,14 @@ namespace {
 
 using testing::HasSubstr;
 
-Vector2 polar(double magnitude, double azimuth) {
+sensing::Vector2 polar(double magnitude, double azimuth) {
   return {magnitude * std::cos(azimuth), magnitude * std::sin(azimuth)};
 }
 
 /// ΔB of a contact force at z = 16 mm, straight from the models.
 template <class Mechanics, class FieldModel>
-Eigen::VectorXd direct(const Case& problem, const Mechanics& mechanics, const FieldModel& field,
-                       const Vector2& p) {
+Eigen::VectorXd direct(const input::Case& problem, const Mechanics& mechanics,
+                       const FieldModel& field, const sensing::Vector2& p) {
   const ContactLoad load{.force = p.norm(), .height = 16e-3, .azimuth = std::atan2(p.y(), p.x())};
   const MechanicsResult result = mechanics.solve(problem.cilium, {load});
   const Field bent =
@@ -40,60 +40,62 @@ Eigen::VectorXd direct(const Case& problem, const Mechanics& mechanics, const Fi
 // Oracle: the models themselves under loads that are no nodes, with the load's own azimuth. One
 // sensor is far off the axis, one on it.
 TEST(Response, IsThatOfTheModels) {
-  Case problem = test::paper_case({1e-3});
+  input::Case problem = test::paper_case({1e-3});
   problem.sensors = {{-0.1e-3, 0.2e-3, -1.55e-3}, {4e-3, -3e-3, 1e-3}, {0, 0, -3e-3}};
-  const Shapes elastica = shapes_up_to(problem, "elastica", 4e-3);
-  const Response volume(problem, "volume", elastica, problem.sensors);
+  const sensing::Shapes elastica = sensing::shapes_up_to(problem, "elastica", 4e-3);
+  const sensing::Response volume(problem, "volume", elastica, problem.sensors);
   EXPECT_LT(volume.interpolation_error(), 1e-7 * volume.largest_change());
-  const Response line(problem, "line", shapes_up_to(problem, "beam", 4e-3), problem.sensors);
-  for (const Vector2& p :
+  const sensing::Response line(problem, "line", sensing::shapes_up_to(problem, "beam", 4e-3),
+                               problem.sensors);
+  for (const sensing::Vector2& p :
        {polar(3.3e-3, 0.4), polar(0.7e-3, -2.5), polar(4e-3, 1.9), polar(1e-5, 3.1), polar(0, 0)}) {
-    const Eigen::VectorXd a = direct(problem, analytic::Elastica(), analytic::VolumeField(), p);
+    const Eigen::VectorXd a =
+        direct(problem, analytic::elastica::Elastica(), analytic::rod::VolumeField(), p);
     EXPECT_LT((volume.change(p) - a).norm(), 1e-8 * volume.largest_change()) << p.transpose();
-    const Eigen::VectorXd b = direct(problem, fem::Beam(), analytic::LineField(), p);
+    const Eigen::VectorXd b = direct(problem, fem::beam::Beam(), analytic::rod::LineField(), p);
     EXPECT_LT((line.change(p) - b).norm(), 1e-8 * line.largest_change()) << p.transpose();
   }
 }
 
 // Oracle: central differences; at zero load too, and beyond the range along the load.
 TEST(Response, ItsDerivativeIsThatOfTheChange) {
-  Case problem = test::paper_case({1e-3});
+  input::Case problem = test::paper_case({1e-3});
   problem.sensors.push_back({3e-3, 1e-3, -2e-3});
-  const Response response(problem, "line", shapes_up_to(problem, "elastica", 3e-3),
-                          problem.sensors);
+  const sensing::Response response(
+      problem, "line", sensing::shapes_up_to(problem, "elastica", 3e-3), problem.sensors);
   constexpr double h = 1e-7;
-  for (const Vector2& p : {polar(2e-3, 0.4), polar(0.1e-3, -2.5), polar(0, 0), polar(1.5e-3, 0.2),
-                           polar(2.9e-3, 1.6)}) {
+  for (const sensing::Vector2& p : {polar(2e-3, 0.4), polar(0.1e-3, -2.5), polar(0, 0),
+                                    polar(1.5e-3, 0.2), polar(2.9e-3, 1.6)}) {
     const Eigen::MatrixX2d derivative = response.derivative(p);
     for (int axis : {0, 1}) {
-      const Vector2 step = h * Vector2::Unit(axis);
+      const sensing::Vector2 step = h * sensing::Vector2::Unit(axis);
       const Eigen::VectorXd difference =
           (response.change(p + step) - response.change(p - step)) / (2 * h);
       EXPECT_LT((difference - derivative.col(axis)).norm(), 1e-6 * derivative.norm())
           << p.transpose() << ", axis " << axis;
     }
   }
-  const Vector2 e = polar(1, 0.7);
+  const sensing::Vector2 e = polar(1, 0.7);
   const Eigen::VectorXd beyond = (response.change(3.6e-3 * e) - response.change(3.4e-3 * e)) / 2e-4;
   EXPECT_LT((beyond - response.derivative(3e-3 * e) * e).norm(), 1e-9 * beyond.norm());
 }
 
 TEST(Response, RefusesWhatItCannotServe) {
-  Case problem = test::paper_case({1e-3});
+  input::Case problem = test::paper_case({1e-3});
   try {
-    shapes_up_to(problem, "elastica", 7e-3);
+    sensing::shapes_up_to(problem, "elastica", 7e-3);
     FAIL();
   } catch (const SolverError& error) {
     EXPECT_THAT(error.what(), HasSubstr("within the range of loads up to 0.007 N"));
   }
-  EXPECT_THROW(shapes_up_to(problem, "elastica", 0), InputError);
-  EXPECT_THROW(shapes_up_to(problem, "elastica", std::nan("")), InputError);
+  EXPECT_THROW(sensing::shapes_up_to(problem, "elastica", 0), InputError);
+  EXPECT_THROW(sensing::shapes_up_to(problem, "elastica", std::nan("")), InputError);
   problem.options.solid.mesh = "mine.msh";
-  EXPECT_THROW(shapes_up_to(problem, "solid", 1e-3), InputError);
-  EXPECT_EQ(parse_pair("beam/volume").name(), "beam/volume");
-  EXPECT_THROW(parse_pair("elastica"), InputError);
-  EXPECT_THROW(parse_pair("elastic/volume"), InputError);
-  EXPECT_THROW(parse_pair("elastica/mesh"), InputError);
+  EXPECT_THROW(sensing::shapes_up_to(problem, "solid", 1e-3), InputError);
+  EXPECT_EQ(sensing::parse_pair("beam/volume").name(), "beam/volume");
+  EXPECT_THROW(sensing::parse_pair("elastica"), InputError);
+  EXPECT_THROW(sensing::parse_pair("elastic/volume"), InputError);
+  EXPECT_THROW(sensing::parse_pair("elastica/mesh"), InputError);
 }
 
 }  // namespace

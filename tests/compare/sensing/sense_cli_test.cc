@@ -94,7 +94,25 @@ TEST_F(Sense, FindsTheForcesBehindReadingsWithTheOffsetOfTheEarthAndTheMagnet) {
   write("change.csv", change);
   ASSERT_EQ(ciliaval("sense one.toml change.csv --models beam/line --json change.json"), 0);
   EXPECT_NEAR(interval("found.json") / interval("change.json"), std::sqrt(1.5), 1e-6);
-  EXPECT_THAT(read_text(folder_.path() / "found.csv"), HasSubstr("\"1\",found,"));
+  EXPECT_THAT(read_text(folder_.path() / "found.csv"), HasSubstr("\n1,found,"));
+}
+
+TEST_F(Sense, RefusesOptionsWithoutEffect) {
+  write("readings.csv", "sample,dBx [T],dBy [T],dBz [T]\n" + row("0", field(0, "dB")));
+  EXPECT_EQ(ciliaval("sense one.toml readings.csv --plot one.svg"), 2);
+  EXPECT_THAT(err_, HasSubstr("--plot"));
+  write("b.sense.toml", "[bench]\ncase = \"one.toml\"\nmodels = \"elastica/line\"\n[errors]\n");
+  EXPECT_EQ(ciliaval("sense b.sense.toml --noise '2 uT'"), 2);
+  EXPECT_THAT(err_, HasSubstr("--noise"));
+}
+
+TEST_F(Sense, LeavesTheReadingsAloneThatItWouldOverwrite) {
+  std::string text = "sample,dBx [T],dBy [T],dBz [T]\n";
+  text += row("0", field(0, "dB"));
+  write("readings.csv", text);
+  EXPECT_EQ(ciliaval("sense one.toml readings.csv --models beam/line --csv readings.csv"), 2);
+  EXPECT_THAT(err_, HasSubstr("readings.csv"));
+  EXPECT_EQ(read_text(folder_.path() / "readings.csv"), text);
 }
 
 // The stage turns, and with it the ambient field that the sensor sees.
@@ -197,8 +215,7 @@ TEST_F(Sense, BadReadingsAndOptionsAreRefusedWithTheirPlace) {
                "leave its rows out");
   const std::string good = header + "a,1,2,3\n";
   expect_error(good, "flux density", "--noise '1 mm'");
-  expect_error(good, "--noise: the noise of a reading must be finite and positive",
-               "--noise '0 uT'");
+  expect_error(good, "--noise: the noise of a reading lies between", "--noise '0 uT'");
   expect_error(good, "elastica/volume", "--models volume");
   expect_error(good, "force", "--largest '4 mm'");
   write("background.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n0,1,2,3\n");
@@ -207,6 +224,23 @@ TEST_F(Sense, BadReadingsAndOptionsAreRefusedWithTheirPlace) {
                "--background background.csv");
   EXPECT_EQ(ciliaval("sense one.toml bad.csv --largest '9 mN'"), 3);
   EXPECT_THAT(err_, HasSubstr("within the range of loads up to 0.009 N"));
+}
+
+// Numbers that no sensor has would end as NaN in the loads found.
+TEST_F(Sense, RefusesNoiseAndReadingsThatNoSensorHas) {
+  write("good.csv", "sample,dBx [uT],dBy [uT],dBz [uT]\na,1,2,3\n");
+  for (const char* noise : {"1e300 uT", "1e-300 uT", "2 T"}) {
+    EXPECT_EQ(ciliaval(fmt::format("sense one.toml good.csv --noise '{}'", noise)), 2) << out_;
+    EXPECT_THAT(err_, HasSubstr(fmt::format("not `{}`", noise)));
+  }
+  write("huge.csv", "sample,dBx [uT],dBy [uT],dBz [uT]\na,1,2,3\nb,1,1e160,3\n");
+  EXPECT_EQ(ciliaval("sense one.toml huge.csv"), 2) << err_;
+  EXPECT_THAT(err_, HasSubstr("huge.csv:3:"));
+  EXPECT_THAT(err_, HasSubstr("1e+154 T"));
+  write("background.csv", "azimuth [deg],Bx [uT],By [uT],Bz [uT]\n0,1,2,3\n90,1e200,2,3\n");
+  write("turned.csv", "sample,azimuth [deg],Bx [uT],By [uT],Bz [uT]\na,0,1,2,3\n");
+  EXPECT_EQ(ciliaval("sense one.toml turned.csv --background background.csv"), 2) << err_;
+  EXPECT_THAT(err_, HasSubstr("background.csv:3:"));
 }
 
 // Two sensors: a row for each in a sample. Oracle: the force of `run`.

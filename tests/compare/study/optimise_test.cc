@@ -39,8 +39,10 @@ Study study_of(const fs::path& folder, const std::string& header, const std::str
 }
 
 struct Models {
-  std::vector<MechanicsEntry> mechanics{mechanics_models().begin(), mechanics_models().end()};
-  std::vector<FieldEntry> fields{field_models().begin(), field_models().end()};
+  std::vector<models::MechanicsEntry> mechanics{models::mechanics_models().begin(),
+                                                models::mechanics_models().end()};
+  std::vector<models::FieldEntry> fields{models::field_models().begin(),
+                                         models::field_models().end()};
 };
 
 Optimum optimum_of(const Study& study, const fs::path& folder, const Models& models = {}) {
@@ -76,7 +78,8 @@ TEST(Optimise, OneParametersOptimumIsThePeakOfItsScan) {
     const Study scan = study_of(folder.path(), header, scanned);
     Journal journal(folder.path() / "scan");
     journal.append(journal_header(scan, "test"));
-    const Trend peak = trend(run_study(scan, journal, mechanics_models(), field_models()), 0, 0);
+    const Trend peak =
+        trend(run_study(scan, journal, models::mechanics_models(), models::field_models()), 0, 0);
     ASSERT_EQ(peak.kind, Trend::Kind::peak);
     const Optimum optimum = optimum_of(header, searched);
     ASSERT_TRUE(optimum.found());
@@ -101,7 +104,8 @@ TEST(Optimise, TwoParametersOptimumUnderALimitIsThatOfAGrid) {
                    bounds("segment.magnet.proportion", "0.55", "0.95", "count = 81\n"));
   Journal journal(folder.path() / "grid");
   journal.append(journal_header(grid, "test"));
-  const StudyResult result = run_study(grid, journal, mechanics_models(), field_models());
+  const StudyResult result =
+      run_study(grid, journal, models::mechanics_models(), models::field_models());
   double largest = 0;
   std::vector<double> at;
   for (std::size_t i = 0; i < result.points.size(); ++i) {
@@ -141,8 +145,8 @@ TEST(Optimise, MultipliersAreTheGainOfARelaxedLimitAndBound) {
   EXPECT_NEAR(optimum.bound_multipliers[2] / std::log(30), by_bound, 1e-3 * by_bound);
 }
 
-// Along E2 at E1 = 1 MPa |ΔB| has a trough at 0.17 MPa (docs/study.md): both ends are optima, the
-// lower one of a basin that a tenth of the starts hit.
+// Along E2 at E1 = 1 MPa |ΔB| has a trough at 0.17 MPa (docs/evidence/studies.md): both ends are
+// optima, the lower one of a basin that a tenth of the starts hit.
 TEST(Optimise, ListsBothSidesOfATrough) {
   const Optimum optimum =
       optimum_of("pairs = [\"elastica/line\"]\noutputs = [\"dB_norm\"]\n",
@@ -249,7 +253,7 @@ TEST(Optimise, GoesOnFromTheJournalAndEvaluatesNothingTwice) {
   Models models;
   const auto genuine = models.mechanics.front();
   ASSERT_EQ(genuine.id, "elastica");
-  models.mechanics.front().make = [&](const ModelOptions& options) {
+  models.mechanics.front().make = [&](const input::ModelOptions& options) {
     if (solved++ == limit) throw RankFailure("stopped");
     return genuine.make(options);
   };

@@ -11,9 +11,9 @@
 
 #include "analytic/elastica/elastica.h"
 #include "compare/models/registry.h"
+#include "compare/output/table.h"
 #include "compare/study/range.h"
 #include "compare/study/sweep.h"
-#include "compare/output/table.h"
 #include "problem/error.h"
 #include "study_texts.h"
 
@@ -58,8 +58,8 @@ Vector3 quadratic(const Deformation& deformation, const Vector3& x) {
 }
 
 struct Models {
-  std::vector<MechanicsEntry> mechanics{test::mechanics_entry("elastica", tilting)};
-  std::vector<FieldEntry> fields{test::field_entry("line", quadratic)};
+  std::vector<models::MechanicsEntry> mechanics{test::mechanics_entry("elastica", tilting)};
+  std::vector<models::FieldEntry> fields{test::field_entry("line", quadratic)};
 };
 
 std::vector<PairResult> evaluate_with(const Models& models, const Study& study, std::size_t point) {
@@ -223,16 +223,17 @@ TEST(StudyRange, OfRodsIsTheForceAtWhichTheContactSlipsOff) {
                parameter("load.force", "\"0 mN\", \"1 mN\", \"9 mN\""));
   for (std::size_t point = 0; point < 3; ++point) {
     const auto range = [&](const std::string& mechanics) {
-      return evaluate(study, study.case_at(point), mechanics, mechanics_models(), field_models())[0]
+      return evaluate(study, study.case_at(point), mechanics, models::mechanics_models(),
+                      models::field_models())[0]
           .values[0]
           .value();
     };
     EXPECT_NEAR(range("elastica"), 5.862e-3, 1e-6);
     EXPECT_NEAR(range("beam"), 5.862e-3, 0.02 * 5.862e-3);
     // A shear-rigid beam is an elastica.
-    Case rigid = study.case_at(point);
+    input::Case rigid = study.case_at(point);
     rigid.options.beam.shear_rigid = true;
-    const auto beam = fem::Beam(rigid.options.beam);
+    const auto beam = fem::beam::Beam(rigid.options.beam);
     const MechanicsStep step = beam.solve(rigid.cilium, rigid.load_path).steps[0];
     EXPECT_NEAR(slip_off(beam, rigid.cilium, step, rigid.options.elastica), range("elastica"),
                 1e-6 * 5.862e-3);
@@ -245,8 +246,8 @@ TEST(StudyRange, OfADeadForceIsThatAtARotation) {
   Cilium cilium{0.003, {{"rod", 0.02, 1e6, 0.49, 0}}};
   const double P = 1e6 * cilium.second_moment() / (0.02 * 0.02);
   for (const double start : {0.0, 0.1 * P, P, 7 * P})
-    EXPECT_NEAR(magnitude_at_rotation(analytic::Elastica(), cilium, SectionLoad{start, 0.02, 0},
-                                      0.4613519497),
+    EXPECT_NEAR(magnitude_at_rotation(analytic::elastica::Elastica(), cilium,
+                                      SectionLoad{start, 0.02, 0}, 0.4613519497),
                 P, 1e-6 * P)
         << start;
 }
@@ -271,9 +272,9 @@ TEST(ShippedStudies, ShowThePapersTrendsWithThePapersModels) {
     study.outputs = {Output::dB_x, Output::dB_norm};
     std::vector<double> all;
     for (std::size_t i = 0; i < study.point_count(); ++i)
-      if (const auto value =
-              evaluate(study, study.case_at(i), "elastica", mechanics_models(), field_models())[0]
-                  .values[output])
+      if (const auto value = evaluate(study, study.case_at(i), "elastica",
+                                      models::mechanics_models(), models::field_models())[0]
+                                 .values[output])
         all.push_back(*value);
     return all;
   };

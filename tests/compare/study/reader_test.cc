@@ -67,7 +67,7 @@ TEST_F(StudyReader, ReadsParametersFixedNumbersPairsAndOutputs) {
   EXPECT_EQ(study.describe(0), "E1 = 0.1 MPa");
   EXPECT_THAT(study.mechanics(), ElementsAre("elastica", "beam"));
   EXPECT_THAT(study.outputs, ElementsAre(Output::dB_x, Output::range));  // in their own order
-  const Case c = study.case_at(4);
+  const input::Case c = study.case_at(4);
   EXPECT_EQ(c.cilium.segments[0].young_modulus, 1e6);
   EXPECT_EQ(c.cilium.segments[1].young_modulus, 3e6);
   ASSERT_EQ(c.load_path.size(), 1u);
@@ -291,7 +291,7 @@ TEST_F(StudyReader, ReadsAnOptimisation) {
   EXPECT_THAT(o.start, ElementsAre(0.2e6, 0.003, 0.017));
   EXPECT_TRUE(o.parameters[0].is_logarithmic);
   EXPECT_THAT(o.parameters[1].values, ElementsAre(0.001, 0.005));
-  const Case c = study.design({1e6, 0.002, 0.015});
+  const input::Case c = study.design({1e6, 0.002, 0.015});
   EXPECT_EQ(c.cilium.segments[0].young_modulus, 1e6);
   EXPECT_EQ(c.cilium.diameter, 0.002);
   EXPECT_EQ(contact_height(c.load_path.front()), 0.015);
@@ -378,8 +378,8 @@ TEST(ShippedStudies, HaveTheFiguresOfThePaper) {
     const Study study = read_study(CILIAVAL_SOURCE_DIR "/cases/paper/" + name + ".study.toml");
     EXPECT_EQ(study.name, name);
     for (const std::size_t point : {std::size_t{0}, study.point_count() - 1}) {
-      const Case c = study.case_at(point);
-      const auto& load = std::get<ContactLoad>(c.load_path.front());
+      const input::Case c = study.case_at(point);
+      const auto load = *c.load_path.front().as<ContactLoad>();
       EXPECT_EQ(load.force, 1e-3);
       EXPECT_EQ(load.height, 0.016);
       EXPECT_DOUBLE_EQ(load.azimuth, std::numbers::pi / 6);
@@ -390,7 +390,7 @@ TEST(ShippedStudies, HaveTheFiguresOfThePaper) {
     return study;
   };
   const auto moduli = [](const Study& study) {
-    const Case c = study.case_at(0);
+    const input::Case c = study.case_at(0);
     return std::pair(c.cilium.segments[0].young_modulus, c.cilium.segments[1].young_modulus);
   };
   EXPECT_EQ(moduli(read("fig4a-e1")), std::pair(0.1e6, 1e6));

@@ -83,6 +83,22 @@ TEST(StudyCommand, ASecondCallSolvesNothingAndSaysTheSame) {
   EXPECT_EQ(read_text(out / "study.json"), json);
 }
 
+// The first file that a program opens gets the number of a closed standard stream.
+TEST(StudyCommand, AClosedStdoutDoesNotBecomeTheStore) {
+  const TemporaryFolder folder;
+  test::write_study_case(folder.path());
+  test::write_study(folder.path(), study_text(line, modulus_range));
+  const std::string closed = "cd '" + folder.path().string() +
+                             "' && '" CILIAVAL_PROGRAM "' study varied.study.toml >&- 2>err.txt";
+  ASSERT_EQ(std::system(closed.c_str()), 0) << read_text(folder.path() / "err.txt");
+  for (const auto& entry : fs::directory_iterator(folder.path() / "results/varied"))
+    EXPECT_THAT(read_text(entry.path()), testing::Not(HasSubstr("Study \"varied\"")))
+        << entry.path();
+  const Outcome second = run_program(folder.path(), "study varied.study.toml");
+  EXPECT_EQ(second.code, 0) << second.err;
+  EXPECT_THAT(second.err, HasSubstr("5 of 5 solutions are there already"));
+}
+
 TEST(StudyCommand, AnotherStudyInTheFolderIsRefusedAndLeftAsItIs) {
   const TemporaryFolder folder;
   test::write_study_case(folder.path());

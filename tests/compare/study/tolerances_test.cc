@@ -33,7 +33,8 @@ Study study_of(const fs::path& folder, const std::string& header, const std::str
 }
 
 StudyResult solve(const fs::path& folder, const Study& study,
-                  std::span<const MechanicsEntry> mechanics, std::span<const FieldEntry> fields) {
+                  std::span<const models::MechanicsEntry> mechanics,
+                  std::span<const models::FieldEntry> fields) {
   Journal journal(folder / "journal", true);
   journal.append(journal_header(study, "test"));
   return run_study(study, journal, mechanics, fields);
@@ -48,11 +49,12 @@ cilium.diameter = "2 %"
 /// B = 25 T/rad² θ² (1 + x/m)³ e_x of a cilium that turns by 0.1 rad under 1 mN.
 StudyResult of_formulas(const std::string& header, const std::string& rest, double largest = 1) {
   const TemporaryFolder folder;
-  const std::vector<MechanicsEntry> mechanics{test::mechanics_entry("elastica", [=](const Load& l) {
-    if (magnitude(l) > largest) throw SolverError("too much");
-    return test::converged(l, test::tilted(L, L / 2, direction(l), 100 * magnitude(l)));
-  })};
-  const std::vector<FieldEntry> fields{
+  const std::vector<models::MechanicsEntry> mechanics{
+      test::mechanics_entry("elastica", [=](const Load& l) {
+        if (magnitude(l) > largest) throw SolverError("too much");
+        return test::converged(l, test::tilted(L, L / 2, direction(l), 100 * magnitude(l)));
+      })};
+  const std::vector<models::FieldEntry> fields{
       test::field_entry("line", [](const Deformation& d, const Vector3& x) -> Vector3 {
         const double theta = d.centreline.at(L).theta();
         return 25 * theta * theta * std::pow(1 + x.x(), 3) * Vector3::UnitX();
@@ -137,7 +139,8 @@ load.azimuth = "1 deg"
 sensor.position.x = "0.05 mm"
 sensor.position.z = "0.05 mm"
 )");
-  const StudyResult result = solve(folder.path(), study, mechanics_models(), field_models());
+  const StudyResult result =
+      solve(folder.path(), study, models::mechanics_models(), models::field_models());
   std::mt19937 random(20261122);  // NOLINT(cert-msc51-cpp): the same cilia in every run
   std::normal_distribution<double> normal;
   constexpr std::size_t count = 4000;
@@ -151,7 +154,8 @@ sensor.position.z = "0.05 mm"
       parameter.values.push_back(t.nominal + t.deviation * normal(random));
     cilia.parameters.push_back(std::move(parameter));
   }
-  const StudyResult samples = solve(folder.path(), cilia, mechanics_models(), field_models());
+  const StudyResult samples =
+      solve(folder.path(), cilia, models::mechanics_models(), models::field_models());
   for (std::size_t output = 0; output < 2; ++output) {
     double mean = 0;
     for (const auto& point : samples.points) mean += point[0].values[output].value() / count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// fem::Beam, the layer for the cilium, under its four loads.
+// fem::beam::Beam, the layer for the cilium, under its four loads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,8 +35,8 @@ std::vector<oracle::Stretch> stretches(const Cilium& cilium, bool shear_rigid) {
   return beam;
 }
 
-fem::BeamOptions options(bool shear_rigid) {
-  fem::BeamOptions result;
+fem::beam::BeamOptions options(bool shear_rigid) {
+  fem::beam::BeamOptions result;
   result.shear_rigid = shear_rigid;
   return result;
 }
@@ -67,7 +67,7 @@ TEST(BeamContact, MatchesTheContactElastica) {
   // discretisation; measured below 5e-14.
   for (const bool shear_rigid : {true, false}) {
     const Cilium cilium = paper_cilium();
-    const auto result = fem::Beam(options(shear_rigid))
+    const auto result = fem::beam::Beam(options(shear_rigid))
                             .solve(cilium, {ContactLoad{1e-3, h, 0}, ContactLoad{4e-3, h, 0},
                                             ContactLoad{5.5e-3, h, 0}});
     for (const MechanicsStep& step : result.steps) {
@@ -89,7 +89,7 @@ TEST(BeamContact, OneMaterial) {
   const Cilium cilium{3e-3, {{"rod", L, 1e6, 0.49, 0}}};
   const double EI = 1e6 * cilium.second_moment();
   const double F = 0.5 * 2 * EI / (h * h);
-  const auto result = fem::Beam(options(true)).solve(cilium, {ContactLoad{F, h, 0}});
+  const auto result = fem::beam::Beam(options(true)).solve(cilium, {ContactLoad{F, h, 0}});
   ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
   EXPECT_NEAR(std::sin(tip(result.steps[0]).theta()), 0.5, 1e-12);
 }
@@ -97,7 +97,7 @@ TEST(BeamContact, OneMaterial) {
 TEST(BeamContact, AlignsWithTheLoadWhereverItSlides) {
   // Oracle: the same closed form. A low contact that leaves the base for the magnet as it slides,
   // at stiffness ratios of 30 and 1000; each step also alone, without the path before it.
-  fem::BeamOptions fine;
+  fem::beam::BeamOptions fine;
   fine.refinement = 2;
   for (const double ratio : {30.0, 1000.0}) {
     const Cilium cilium = paper_cilium(ratio);
@@ -105,7 +105,7 @@ TEST(BeamContact, AlignsWithTheLoadWhereverItSlides) {
     const double unit = 2 * stretches(cilium, false)[0].EI / (low * low);
     LoadPath path;  // up to 98 % of the slip-off force at the ratio 30
     for (const double F : {0.25, 0.6, 0.83, 0.4}) path.push_back(ContactLoad{F * unit, low, 0});
-    const auto result = fem::Beam(fine).solve(cilium, path);
+    const auto result = fem::beam::Beam(fine).solve(cilium, path);
     bool in_base = false;
     bool in_magnet = false;
     for (const MechanicsStep& step : result.steps) {
@@ -115,7 +115,7 @@ TEST(BeamContact, AlignsWithTheLoadWhereverItSlides) {
       EXPECT_LT(measured("tip", tip_error(step, exact.tip)), 1e-10);
       EXPECT_LT(measured("arclength", std::abs(*step.contact_arclength - exact.arclength) / L),
                 1e-10);
-      const auto alone = fem::Beam(fine).solve(cilium, {step.load});
+      const auto alone = fem::beam::Beam(fine).solve(cilium, {step.load});
       EXPECT_LT(measured("path", (tip(alone.steps[0]).position - tip(step).position).norm() / L),
                 1e-10);
     }
@@ -127,7 +127,7 @@ TEST(BeamContact, SlipsOffWhereTheElasticaDoes) {
   // Oracle: root of the closed form's arc length; 5.862 mN in the shear-rigid limit.
   const Cilium cilium = paper_cilium();
   for (const bool shear_rigid : {true, false}) {
-    const auto result = fem::Beam(options(shear_rigid))
+    const auto result = fem::beam::Beam(options(shear_rigid))
                             .solve(cilium, {ContactLoad{5e-3, h, 0}, ContactLoad{6e-3, h, 0},
                                             ContactLoad{4e-3, h, 0}});
     const double exact = oracle::slip_off_force(stretches(cilium, shear_rigid), h);
@@ -150,7 +150,7 @@ TEST(BeamContact, SlipsOffWhereTheElasticaDoes) {
 TEST(BeamContact, HoldsUpToTheSlipOffForce) {
   const Cilium cilium = paper_cilium();
   const double limit = oracle::slip_off_force(stretches(cilium, false), h);
-  const auto result = fem::Beam().solve(
+  const auto result = fem::beam::Beam().solve(
       cilium, {ContactLoad{limit * (1 - 1e-9), h, 0}, ContactLoad{limit * (1 + 1e-9), h, 0}});
   ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
   EXPECT_NEAR(*result.steps[0].contact_arclength / L, 1, 1e-8);
@@ -158,7 +158,7 @@ TEST(BeamContact, HoldsUpToTheSlipOffForce) {
 }
 
 TEST(BeamContact, UnloadedStandsStraight) {
-  const auto result = fem::Beam().solve(paper_cilium(), {ContactLoad{0, h, 0}});
+  const auto result = fem::beam::Beam().solve(paper_cilium(), {ContactLoad{0, h, 0}});
   ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
   EXPECT_NEAR(*result.steps[0].contact_arclength, h, 1e-17);
   EXPECT_LT((tip(result.steps[0]).position - L * Vector3::UnitZ()).norm(), 1e-17);
@@ -177,8 +177,8 @@ TEST(BeamContact, CutsInOneMaterialDoNotMatter) {
   for (const double height : {15.5e-3, h, h * (1 - 2e-16), h - 1e-9}) {
     const LoadPath path{ContactLoad{0, height, 0}, ContactLoad{1e-6, height, 0},
                         ContactLoad{1e-3, height, 0}, ContactLoad{20e-3, height, 0}};
-    const auto whole = fem::Beam().solve(one, path);
-    const auto cut = fem::Beam().solve(twenty, path);
+    const auto whole = fem::beam::Beam().solve(one, path);
+    const auto cut = fem::beam::Beam().solve(twenty, path);
     for (std::size_t i = 0; i < path.size(); ++i) {
       ASSERT_EQ(whole.steps[i].status, Status::converged) << whole.steps[i].message;
       ASSERT_EQ(cut.steps[i].status, Status::converged) << cut.steps[i].message;
@@ -196,9 +196,9 @@ TEST(BeamContact, CutsInOneMaterialDoNotMatter) {
 TEST(BeamContact, ManySegmentsCostNoMoreIterations) {
   // A contact that stays in its segment needs Newton's method once, measured 4 iterations; each
   // interface it slides over needs it twice, measured 10.
-  const auto result =
-      fem::Beam().solve(equal_segments(50),
-                        {ContactLoad{0, h, 0}, ContactLoad{1e-3, h, 0}, ContactLoad{10e-3, h, 0}});
+  const auto result = fem::beam::Beam().solve(
+      equal_segments(50),
+      {ContactLoad{0, h, 0}, ContactLoad{1e-3, h, 0}, ContactLoad{10e-3, h, 0}});
   for (const MechanicsStep& step : result.steps)
     ASSERT_EQ(step.status, Status::converged) << step.message;
   EXPECT_LE(result.steps[0].iterations, 1);
@@ -211,7 +211,7 @@ TEST(BeamContact, ManySegmentsCostNoMoreIterations) {
 TEST(BeamContact, AForceFarBeyondTheSlipOffForceSlipsOff) {
   // Oracle: the closed form's slip-off force.
   const Cilium cilium = equal_segments(5);
-  const auto result = fem::Beam().solve(cilium, {ContactLoad{1e3, h, 0}});
+  const auto result = fem::beam::Beam().solve(cilium, {ContactLoad{1e3, h, 0}});
   ASSERT_EQ(result.steps[0].status, Status::slipped_off) << result.steps[0].message;
   const double exact = oracle::slip_off_force(stretches(cilium, false), h);
   EXPECT_LT(measured("force", std::abs(*result.steps[0].slip_off_force / exact - 1)), 1e-10);
@@ -221,10 +221,10 @@ TEST(BeamContactSlow, ALowContactPastItsLimitSlipsOff) {
   // Oracle: the closed form's slip-off force. The base turns to nearly 90° there, where the contact
   // point runs away with the force. The layer in which it turns is √(EI/F) long: a fine mesh.
   const Cilium cilium = equal_segments(1);
-  fem::BeamOptions fine;
+  fem::beam::BeamOptions fine;
   fine.refinement = 5;
   for (const double low : {4e-3, 2e-3, 1e-3}) {
-    const auto result = fem::Beam(fine).solve(cilium, {ContactLoad{100, low, 0}});
+    const auto result = fem::beam::Beam(fine).solve(cilium, {ContactLoad{100, low, 0}});
     ASSERT_EQ(result.steps[0].status, Status::slipped_off) << result.steps[0].message;
     const double exact = oracle::slip_off_force(stretches(cilium, false), low);
     EXPECT_LT(measured("force", std::abs(*result.steps[0].slip_off_force / exact - 1)), 1e-10);
@@ -236,9 +236,9 @@ TEST(BeamContact, ALargeStepDoesNotTakeTheContactBelowItsSegment) {
   // with a contact below the clamp. Measured: 4e-16.
   const Cilium cilium = paper_cilium();
   const double low = 2.5e-3;
-  const auto at_once = fem::Beam().solve(cilium, {ContactLoad{0.3, low, 0}});
+  const auto at_once = fem::beam::Beam().solve(cilium, {ContactLoad{0.3, low, 0}});
   const auto by_steps =
-      fem::Beam().solve(cilium, {ContactLoad{0.1, low, 0}, ContactLoad{0.3, low, 0}});
+      fem::beam::Beam().solve(cilium, {ContactLoad{0.1, low, 0}, ContactLoad{0.3, low, 0}});
   ASSERT_EQ(at_once.steps[0].status, Status::slipped_off) << at_once.steps[0].message;
   ASSERT_EQ(by_steps.steps[1].status, Status::slipped_off) << by_steps.steps[1].message;
   EXPECT_LT(
@@ -250,8 +250,8 @@ TEST(BeamContact, ALargeStepDoesNotTakeTheContactBelowItsSegment) {
 TEST(BeamContact, NextToTheClampConvergesOrFailsSoon) {
   // Oracle: s_c = h and no bending: a millinewton a nanometre above the clamp. No force is known
   // that shears the clamp off; one of 1e10 N is given up.
-  const auto result = fem::Beam().solve(equal_segments(1),
-                                        {ContactLoad{1e-3, 1e-9, 0}, ContactLoad{1e10, 1e-9, 0}});
+  const auto result = fem::beam::Beam().solve(
+      equal_segments(1), {ContactLoad{1e-3, 1e-9, 0}, ContactLoad{1e10, 1e-9, 0}});
   ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
   EXPECT_NEAR(*result.steps[0].contact_arclength, 1e-9, 1e-17);
   EXPECT_LE(result.steps[0].iterations, 8);
@@ -262,8 +262,8 @@ TEST(BeamContact, NextToTheClampConvergesOrFailsSoon) {
 TEST(BeamFlow, MatchesTheElasticaOfThePaper) {
   // Oracle: EI d(sin θ) = ½q(z₂ − z)² dz by quadrature (oracles.h), shear-rigid limit.
   const Cilium cilium = paper_cilium();
-  const auto result =
-      fem::Beam(options(true)).solve(cilium, {FlowLoad{0.1, 0}, FlowLoad{0.5, 0}, FlowLoad{1, 0}});
+  const auto result = fem::beam::Beam(options(true))
+                          .solve(cilium, {FlowLoad{0.1, 0}, FlowLoad{0.5, 0}, FlowLoad{1, 0}});
   for (const MechanicsStep& step : result.steps) {
     ASSERT_EQ(step.status, Status::converged) << step.message;
     const oracle::Tip exact = oracle::flow(stretches(cilium, true), magnitude(step.load));
@@ -310,7 +310,7 @@ TEST(BeamLoads, SmallLoadsGiveTimoshenko) {
                               {FlowLoad{q, 0}, spread, q * L},
                               {DeadLoad{q, 0}, spread, q * L}};
   for (const Row& row : rows) {
-    const auto result = fem::Beam().solve(cilium, {row.load});
+    const auto result = fem::beam::Beam().solve(cilium, {row.load});
     ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
     EXPECT_LT(measured(std::string(type(row.load)),
                        std::abs(tip(result.steps[0]).position[0] / row.deflection - 1)),
@@ -324,12 +324,12 @@ TEST(BeamLoads, TheBaseBearsTheLoadAsked) {
   const Cilium cilium = paper_cilium();
   for (const Load& load : LoadPath{ContactLoad{4e-3, h, 2.1}, SectionLoad{4e-3, 12e-3, 2.1},
                                    DeadLoad{0.3, 2.1}, FlowLoad{0.3, 2.1}}) {
-    const auto result = fem::Beam().solve(cilium, {load});
+    const auto result = fem::beam::Beam().solve(cilium, {load});
     const MechanicsStep& step = result.steps[0];
     ASSERT_EQ(step.status, Status::converged) << step.message;
     double force = magnitude(load);
-    if (std::holds_alternative<DeadLoad>(load)) force *= L;
-    if (std::holds_alternative<FlowLoad>(load)) force *= tip(step).position[2];
+    if (load.is<DeadLoad>()) force *= L;
+    if (load.is<FlowLoad>()) force *= tip(step).position[2];
     EXPECT_LT(measured(std::string(type(load)), std::abs(step.applied_force / force - 1)), 1e-12);
     const SectionForces base = step.deformation->centreline.at(0).forces;
     EXPECT_LT((base.force - force * direction(load)).norm() / force, 1e-6);
@@ -342,8 +342,8 @@ TEST(BeamLoads, AzimuthTurnsTheSolution) {
   const Quaternion turn(Eigen::AngleAxisd(phi, Vector3::UnitZ()));
   const LoadPath plain{ContactLoad{4e-3, h, 0}, ContactLoad{5e-3, h, 0}};
   const LoadPath turned{ContactLoad{4e-3, h, phi}, ContactLoad{5e-3, h, phi}};
-  const auto a = fem::Beam().solve(cilium, plain);
-  const auto b = fem::Beam().solve(cilium, turned);
+  const auto a = fem::beam::Beam().solve(cilium, plain);
+  const auto b = fem::beam::Beam().solve(cilium, turned);
   for (std::size_t i = 0; i < 2; ++i)
     EXPECT_LT((turn * tip(a.steps[i]).position - tip(b.steps[i]).position).norm() / L, 1e-13);
 }
@@ -355,9 +355,9 @@ TEST(BeamLoads, ResultsDoNotDependOnThePath) {
        {LoadPath{FlowLoad{0.5, 0}, FlowLoad{0.2, 1}, FlowLoad{0.6, 3}},
         LoadPath{SectionLoad{5e-3, L, 0}, SectionLoad{1e-3, 8e-3, 2}, SectionLoad{3e-3, 8e-3, -1}},
         LoadPath{ContactLoad{5e-3, h, 0}, ContactLoad{1e-3, h, 3}, ContactLoad{3e-3, 12e-3, 3}}}) {
-    const auto result = fem::Beam().solve(cilium, path);
+    const auto result = fem::beam::Beam().solve(cilium, path);
     for (const MechanicsStep& step : result.steps) {
-      const auto alone = fem::Beam().solve(cilium, {step.load});
+      const auto alone = fem::beam::Beam().solve(cilium, {step.load});
       ASSERT_EQ(step.status, Status::converged) << step.message;
       EXPECT_LT(measured(std::string(type(step.load)),
                          (tip(step).position - tip(alone.steps[0]).position).norm() / L),
@@ -371,7 +371,7 @@ TEST(BeamCentreline, CarriesCurvatureAndSectionForces) {
   // below the contact and nothing above, at any S.
   const Cilium cilium = paper_cilium();
   const double F = 4e-3;
-  const auto result = fem::Beam().solve(cilium, {ContactLoad{F, h, 0}});
+  const auto result = fem::beam::Beam().solve(cilium, {ContactLoad{F, h, 0}});
   const Centreline& curve = result.steps[0].deformation->centreline;
   const double contact = *result.steps[0].contact_arclength;
   double error = 0;
@@ -396,7 +396,7 @@ TEST(BeamCentreline, CarriesCurvatureAndSectionForces) {
 }
 
 TEST(BeamCentreline, UndeformedIsStraight) {
-  const auto result = fem::Beam().solve(paper_cilium(), {});
+  const auto result = fem::beam::Beam().solve(paper_cilium(), {});
   for (const double S : {0.0, 1e-3, 3e-3, 11e-3, L}) {
     const CentrelinePoint point = result.undeformed.centreline.at(S);
     EXPECT_LT((point.position - S * Vector3::UnitZ()).norm(), 1e-17);
@@ -409,10 +409,10 @@ TEST(BeamUncertainty, IsNotBelowTheError) {
   // Oracle: the closed form. On coarse meshes the estimate must hold what it says.
   const Cilium cilium = paper_cilium();
   for (const unsigned int degree : {2U, 3U, 4U}) {
-    fem::BeamOptions coarse;
+    fem::beam::BeamOptions coarse;
     coarse.degree = degree;
     coarse.refinement = 0;
-    const auto result = fem::Beam(coarse).solve(cilium, {ContactLoad{4e-3, h, 0}});
+    const auto result = fem::beam::Beam(coarse).solve(cilium, {ContactLoad{4e-3, h, 0}});
     const auto exact = oracle::contact(stretches(cilium, false), 4e-3, h).tip;
     const double error = (tip(result.steps[0]).position - Vector3(exact.x, 0, exact.z)).norm();
     EXPECT_GT(error, 1e-14);
@@ -421,10 +421,10 @@ TEST(BeamUncertainty, IsNotBelowTheError) {
 }
 
 TEST(BeamFailure, IsAStatusWithAReasonAndThePathGoesOn) {
-  fem::BeamOptions impatient;
+  fem::beam::BeamOptions impatient;
   impatient.max_iterations = 4;
   impatient.max_cutbacks = 0;
-  const auto result = fem::Beam(impatient).solve(
+  const auto result = fem::beam::Beam(impatient).solve(
       paper_cilium(), {DeadLoad{1e-7, 0}, DeadLoad{5, 0}, DeadLoad{2e-7, 0}});
   EXPECT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
   EXPECT_EQ(result.steps[1].status, Status::failed);
@@ -433,13 +433,28 @@ TEST(BeamFailure, IsAStatusWithAReasonAndThePathGoesOn) {
   EXPECT_EQ(result.steps[2].status, Status::converged) << result.steps[2].message;
 }
 
+TEST(BeamFailure, IncrementsThatAllConvergeButNeverArriveAreGivenUp) {
+  // One iteration converges where the increment is below the tolerance: 2⁻⁴⁰ of the load and less.
+  fem::beam::BeamOptions tiny;
+  tiny.max_iterations = 1;
+  tiny.max_cutbacks = 50;
+  for (const Load& load :
+       LoadPath{DeadLoad{0.3, 0}, ContactLoad{1e-3, h, 0}, ProbeLoad{1e-3, h, 0}}) {
+    const MechanicsStep step = fem::beam::Beam(tiny).solve(paper_cilium(), {load}).steps[0];
+    EXPECT_EQ(step.status, Status::failed);
+    EXPECT_NE(step.message.find("a larger max_iterations (1 now)"), std::string::npos)
+        << step.message;
+    EXPECT_LE(step.iterations, 3000);
+  }
+}
+
 TEST(BeamFailure, RefusesOptionsOutOfRange) {
-  for (const auto& spoil : std::vector<std::function<void(fem::BeamOptions&)>>{
+  for (const auto& spoil : std::vector<std::function<void(fem::beam::BeamOptions&)>>{
            [](auto& o) { o.degree = 0; }, [](auto& o) { o.refinement = 40; },
            [](auto& o) { o.tolerance = 0; }, [](auto& o) { o.max_iterations = 0; }}) {
-    fem::BeamOptions bad;
+    fem::beam::BeamOptions bad;
     spoil(bad);
-    EXPECT_THROW(fem::Beam(bad).solve(paper_cilium(), {}), InputError);
+    EXPECT_THROW(fem::beam::Beam(bad).solve(paper_cilium(), {}), InputError);
   }
 }
 

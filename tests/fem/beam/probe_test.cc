@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// fem::Beam under displacement control of the contact point.
+// fem::beam::Beam under displacement control of the contact point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,13 +37,13 @@ std::vector<oracle::Stretch> stretches(const Cilium& cilium, bool shear_rigid) {
   return beam;
 }
 
-fem::Beam beam(bool shear_rigid) {
-  fem::BeamOptions result;
+fem::beam::Beam beam(bool shear_rigid) {
+  fem::beam::BeamOptions result;
   result.shear_rigid = shear_rigid;
-  return fem::Beam(result);
+  return fem::beam::Beam(result);
 }
 
-MechanicsStep solved(const fem::Beam& model, const Cilium& cilium, const Load& load) {
+MechanicsStep solved(const fem::beam::Beam& model, const Cilium& cilium, const Load& load) {
   MechanicsStep step = model.solve(cilium, {load}).steps.at(0);
   EXPECT_EQ(step.status, Status::converged) << step.message;
   return step;
@@ -96,10 +96,10 @@ TEST(BeamProbe, GivesTheContactForceBack) {
     for (const ContactLoad& contact :
          {ContactLoad{1e-6, h, phi}, ContactLoad{3e-3, h, phi}, ContactLoad{5.8e-3, h, phi},
           ContactLoad{60e-3, 2e-3, phi}, ContactLoad{150e-3, 2e-3, phi}}) {
-      const MechanicsStep given = solved(fem::Beam(), cilium, contact);
+      const MechanicsStep given = solved(fem::beam::Beam(), cilium, contact);
       const Vector3 point = contact_point(given);
       const ProbeLoad probe{point.dot(direction(contact)), contact.height, phi};
-      const MechanicsStep step = solved(fem::Beam(), cilium, probe);
+      const MechanicsStep step = solved(fem::beam::Beam(), cilium, probe);
       EXPECT_LT(measured("force", std::abs(step.applied_force / contact.force - 1)), 1e-9)
           << contact.force;
       EXPECT_LT(measured("tip", (step.deformation->centreline.at(L).position -
@@ -137,7 +137,7 @@ TEST(BeamProbe, SlipsOffWhereTheElasticaDoes) {
 }
 
 TEST(BeamProbe, UnloadedStandsStraight) {
-  const MechanicsStep step = solved(fem::Beam(), paper_cilium(), ProbeLoad{0, h, 0});
+  const MechanicsStep step = solved(fem::beam::Beam(), paper_cilium(), ProbeLoad{0, h, 0});
   EXPECT_EQ(step.applied_force, 0);
   EXPECT_NEAR(*step.contact_arclength, h, 1e-17);
 }
@@ -178,14 +178,14 @@ double deflection_over_height(double c) {
 TEST(BeamProbe, GoesWhereTheForceNoLongerTellsTheDisplacement) {
   // Oracle: the paper's closed form of one material, F = 2 EI sin θ/h², and δ for the angle that
   // the tip has. At δ = 6 h, 0.014° from level, the last bit of F moves δ by 4e-9 h.
-  fem::BeamOptions fine;
+  fem::beam::BeamOptions fine;
   fine.shear_rigid = true;
   fine.refinement = 4;
   const Cilium cilium = equal_segments(1);
   const double low = 2e-3;
   const double limit = 2 * 1e6 * cilium.second_moment() / (low * low);
   const auto result =
-      fem::Beam(fine).solve(cilium, {ProbeLoad{6e-3, low, 0}, ProbeLoad{12e-3, low, 0}});
+      fem::beam::Beam(fine).solve(cilium, {ProbeLoad{6e-3, low, 0}, ProbeLoad{12e-3, low, 0}});
   for (const MechanicsStep& step : result.steps) {
     ASSERT_EQ(step.status, Status::converged) << step.message;
     const Vector3 tangent = step.deformation->centreline.at(L).normal();

@@ -18,7 +18,7 @@
 #include "fem/solid/solid.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::calculix {
 namespace {
 
 namespace fs = std::filesystem;
@@ -88,7 +88,8 @@ class CalculixModel : public testing::Test {
 TEST_F(CalculixModel, SaysWhatToInstallWhereThereIsNoCcx) {
   setenv("PATH", folder_.c_str(), 1);
   EXPECT_EQ(failure(options("ccx")), "ccx is not installed: apt-get install calculix-ccx");
-  EXPECT_THAT(failure(options(folder_ / "nowhere")), HasSubstr("there is no program `"));
+  EXPECT_THAT(failure(options(folder_ / "nowhere")),
+              HasSubstr("nowhere` is not there (models.calculix.program)"));
 }
 
 TEST_F(CalculixModel, SaysThatAFileCannotBeStarted) {
@@ -111,7 +112,9 @@ TEST_F(CalculixModel, EndsAProgramThatHangsWithAllItsChildren) {
       options(script("sleep 300 & echo $! > '" + (folder_ / "pid").string() + "'; wait"));
   hanging.time_limit = 0.5;
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_THAT(failure(hanging), HasSubstr("was ended after 0.5 s, models.calculix.time_limit"));
+  EXPECT_THAT(
+      failure(hanging),
+      HasSubstr("did not end by itself and was killed after 0.5 s, models.calculix.time_limit"));
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
   pid_t child = 0;
   std::ifstream(folder_ / "pid") >> child;
@@ -194,7 +197,7 @@ TEST_F(CalculixModel, MakesCentrelineAndBodyFromTheDisplacementsOfNodes) {
   const double angle = std::numbers::pi / 6;
   for (const double azimuth : {0.0, 2.0}) {
     LoadPath path = section_path;
-    std::get<SectionLoad>(path[0]).azimuth = azimuth;
+    path[0] = with_azimuth(path[0], azimuth);
     const MechanicsResult result = Calculix(options(script(rotate))).solve(cilium(), path);
     ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
     EXPECT_DOUBLE_EQ(result.steps[0].applied_force, 2e-3);
@@ -292,7 +295,8 @@ void expect_agreement_with_the_solid(unsigned int refinement) {
     CalculixOptions calculix;
     calculix.refinement = refinement;
     const MechanicsStep theirs = Calculix(calculix).solve(cilium(), path).steps[0];
-    const MechanicsStep ours = Solid({.refinement = refinement}).solve(cilium(), path).steps[0];
+    const MechanicsStep ours =
+        solid::Solid({.refinement = refinement}).solve(cilium(), path).steps[0];
     ASSERT_EQ(theirs.status, Status::converged) << theirs.message;
     ASSERT_TRUE(theirs.tip_uncertainty && ours.tip_uncertainty);
     const double bound = *theirs.tip_uncertainty + *ours.tip_uncertainty;
@@ -330,4 +334,4 @@ TEST(CalculixModelSlow, AgreesWithTheSolidOnTheDefaultMesh) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::calculix

@@ -15,7 +15,7 @@
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::calculix {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,12 +32,12 @@ Cilium cilium() {
 }
 
 meshes::MeshNodes mesh(bool half) {
-  meshes::CylinderMeshOptions options = level_mesh(1);
+  meshes::cylinder::CylinderMeshOptions options = solid::level_mesh(1);
   options.half = half;
   options.planes = {8e-3};
   dealii::Triangulation<3> triangulation;
-  meshes::make_cylinder(cilium(), options, triangulation);
-  return meshes::mesh_nodes(triangulation, *meshes::cylinder_mapping(triangulation));
+  meshes::cylinder::make_cylinder(cilium(), options, triangulation);
+  return meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation));
 }
 
 // Oracle: the definition of nodal shape functions, their completeness, and differences.
@@ -134,7 +134,7 @@ TEST(Calculix, ReadsTheLastIncrementAndRefusesAnUnfinishedRun) {
 
 // Oracle: another program. The input that is written is one that CalculiX solves, and its tip comes
 // near the solid's. C3D20R is too stiff on coarse meshes: by 3.6 % on the next coarser mesh, 1.6 %
-// on this one's like for the paper's cilium (docs/solid.md).
+// on this one's like for the paper's cilium (docs/measurements/calculix.md).
 TEST(Calculix, SolvesTheSameCilium) {
   if (std::system("command -v ccx > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "CalculiX is not installed: apt-get install calculix-ccx";
@@ -153,7 +153,7 @@ TEST(Calculix, SolvesTheSameCilium) {
       nodes, cilium(), SectionLoad{.force = 2, .arclength = cilium().length(), .azimuth = 0});
   double deflection = 0;  // the weights add up to 1 on the half
   for (std::size_t i = 0; i < tip.size(); ++i) deflection += tip[i].x() * displacements[i].x();
-  const MechanicsResult solid = Solid({.refinement = 0}).solve(cilium(), {load});
+  const MechanicsResult solid = solid::Solid({.refinement = 0}).solve(cilium(), {load});
   const Centreline& line = solid.steps.front().deformation->centreline;
   const double expected = line.at(line.length()).position.x();
   EXPECT_NEAR(deflection, expected, 0.03 * expected);
@@ -162,4 +162,4 @@ TEST(Calculix, SolvesTheSameCilium) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::calculix

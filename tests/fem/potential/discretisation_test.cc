@@ -9,7 +9,7 @@
 #include "fem/potential/functional.h"
 #include "fem/potential/operator.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 /// A cube from −1 to 1 m in leaves of 2⁻ˡᵉᵛᵉˡ⁺¹, with one octant, or two, a level finer.
@@ -285,4 +285,4 @@ TEST(CutCells, PlatesAreIntegratedExactly) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

@@ -9,7 +9,7 @@
 #include "fem/potential/potential.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 using testing::HasSubstr;
@@ -75,4 +75,4 @@ TEST(BadInput, AnAccuracyThatCannotBeReachedIsAnError) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

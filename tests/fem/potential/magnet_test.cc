@@ -9,7 +9,7 @@
 #include "bodies.h"
 #include "fem/potential/block_cut.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 constexpr double R = 1.5e-3;
@@ -167,4 +167,4 @@ TEST(BlockCut, KeepsVolumeAndMoment) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

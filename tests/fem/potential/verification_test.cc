@@ -14,7 +14,7 @@
 #include "fem/potential/potential.h"
 #include "permeable_cylinder.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::potential {
 namespace {
 
 constexpr double R = 1.5e-3;
@@ -112,13 +112,14 @@ TEST(PermeableStraightCilium, FieldIsThatOfItsSurfaceCharge) {
   check("straight, 1.05", solve(magnet, 1.05, points, 3e-4), exact, 3e-4);
 }
 
-// Oracle: the two charged discs of the bent rod's true volume (docs/fields.md), another code; and
-// the same body as a solid's cells of degree 6 in place of the rod.
+// Oracle: the two charged discs of the bent rod's true volume (docs/theory/fields.md), another
+// code; and the same body as a solid's cells of degree 6 in place of the rod.
 TEST(BentCilium, FieldIsThatOfTwoDiscsAsRodAndAsSolid) {
   const Deformation bent = test::arc(60);
   const std::vector<Vector3> points{test::paper_sensor()};
-  const std::vector<Vector3> exact =
-      analytic::VolumeField(analytic::VolumeOptions{}).field(test::paper_cilium(), bent, points).B;
+  const std::vector<Vector3> exact = analytic::rod::VolumeField(analytic::rod::VolumeOptions{})
+                                         .field(test::paper_cilium(), bent, points)
+                                         .B;
   const Magnet rod(test::paper_cilium(), bent, MagnetPushForward::F);
   check("bent rod", solve(rod, 1, points, 1e-3), exact, 1e-3);
 
@@ -161,7 +162,7 @@ TEST(OuterBoundary, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
 TEST(Sampling, OfTheMagnetIsFarBelowTheEstimate) {
   const Deformation bent = test::arc(60);
   const std::vector<Vector3> points{test::paper_sensor()};
-  const Vector3 exact = analytic::VolumeField(analytic::VolumeOptions{})
+  const Vector3 exact = analytic::rod::VolumeField(analytic::rod::VolumeOptions{})
                             .field(test::paper_cilium(), bent, points)
                             .B[0];
   const Magnet rod(test::paper_cilium(), bent, MagnetPushForward::F);
@@ -197,4 +198,4 @@ TEST(Plate, ActsLikeTheImageOfTheMagnet) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::potential

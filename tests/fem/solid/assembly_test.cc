@@ -11,7 +11,12 @@
 
 #include "tests/fem/solid/cube.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace loads;
+using namespace equilibrium;
+using namespace solvers;
 namespace {
 
 /// A distorted block at a random displacement and pressure.
@@ -91,4 +96,4 @@ TEST(SolidAssembly, RefusesAStateTurnedInsideOut) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -9,33 +9,34 @@
 #include <vector>
 
 #include "fem/solid/discretisation/assembly.h"
-#include "fem/solid/fibres.h"
 #include "fem/solid/equilibrium/load_path.h"
+#include "fem/solid/loads/height_loads.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
 
 /// A coarse cilium, bent by hand: no equilibrium is needed to check forces and their derivatives.
 struct BentCilium {
   dealii::Triangulation<3> triangulation;
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
-  std::vector<Hyperelastic> materials{Hyperelastic::mooney_rivlin(3.4e4, 1.7e6, 0.25),
-                                      Hyperelastic::yeoh(1e5, 5e6, -0.1, 0.01)};
-  std::unique_ptr<SolidSpace> space;
-  std::unique_ptr<Fibres> fibres;
-  SolidState state;
+  std::vector<material::Hyperelastic> materials{
+      material::Hyperelastic::mooney_rivlin(3.4e4, 1.7e6, 0.25),
+      material::Hyperelastic::yeoh(1e5, 5e6, -0.1, 0.01)};
+  std::unique_ptr<discretisation::SolidSpace> space;
+  std::unique_ptr<discretisation::ExtrudedQuadrature> quadrature;
+  discretisation::SolidState state;
 
   BentCilium() {
-    meshes::CylinderMeshOptions options;
+    meshes::cylinder::CylinderMeshOptions options;
     options.square_cells = 2;
     options.rings = 1;
     options.finest_layer = options.coarsest_layer = 0.7;
     options.planes = {5e-3};
-    meshes::make_cylinder({3e-3, {{"a", 3e-3, 1e5, 0.49, 0}, {"b", 5e-3, 3e5, 0.49, 0}}}, options,
+    meshes::cylinder::make_cylinder({3e-3, {{"a", 3e-3, 1e5, 0.49, 0}, {"b", 5e-3, 3e5, 0.49, 0}}}, options,
                           triangulation);
-    mapping = meshes::cylinder_mapping(triangulation);
-    space = std::make_unique<SolidSpace>(triangulation, *mapping, materials);
-    fibres = std::make_unique<Fibres>(*space);
+    mapping = meshes::cylinder::cylinder_mapping(triangulation);
+    space = std::make_unique<discretisation::SolidSpace>(triangulation, *mapping, materials);
+    quadrature = std::make_unique<discretisation::ExtrudedQuadrature>(*space);
     state = space->undeformed();
     bend();
     project_pressure(*space, state);
@@ -48,14 +49,14 @@ struct BentCilium {
     std::vector<dealii::Point<3>> support(space->unknowns());
     dealii::DoFTools::map_dofs_to_support_points<3, 3>(*mapping, space->dof_handler(), support);
     const double kappa = 0.5 / 8e-3;
-    for (const SolidElement& element : space->elements()) {
-      for (std::size_t a = 0; a < element_nodes; ++a) {
+    for (const discretisation::SolidElement& element : space->elements()) {
+      for (std::size_t a = 0; a < discretisation::element_nodes; ++a) {
         const auto X = support.at(element.dofs[a]);
         const double theta = kappa * X[2];
         const Vector3 x((1 - std::cos(theta)) / kappa + X[0] * std::cos(theta), X[1],
                         std::sin(theta) / kappa - X[0] * std::sin(theta));
         for (std::size_t c = 0; c < 3; ++c) {
-          double& u = state.displacement[element.dofs[c * element_nodes + a]];
+          double& u = state.displacement[element.dofs[c * discretisation::element_nodes + a]];
           if (u == 0)
             u = x[static_cast<Eigen::Index>(c)] - X[static_cast<unsigned int>(c)] +
                 noise(generator);
@@ -66,10 +67,10 @@ struct BentCilium {
 
   dealii::Vector<double> forces(const Load& load, const dealii::Vector<double>& u) const {
     dealii::Vector<double> result(space->unknowns());
-    external_forces(*space, *fibres, load, 0.5e-3)(u, result, dealii::AffineConstraints<double>(),
-                                                   nullptr);
+    loads::external_forces(*space, *quadrature, load, 0.5e-3)(
+        u, result, dealii::AffineConstraints<double>(), nullptr);
     return result;
   }
 };
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

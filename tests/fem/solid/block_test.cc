@@ -13,7 +13,12 @@
 #include "problem/error.h"
 #include "tests/fem/solid/cube.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace loads;
+using namespace equilibrium;
+using namespace solvers;
 namespace {
 
 std::vector<DirichletCondition> on_all_faces(const std::function<Vector3(const Vector3&)>& u) {
@@ -39,7 +44,7 @@ TEST(SolidBlock, PassesThePatchTestOnADistortedMesh) {
   for (const double nu : {0.3, 0.4999}) {
     const Block block(neo_hooke(1, nu), {3, 3, 3}, Vector3::Ones(), 0.25);
     const SolidSpace space(block.triangulation, block.mapping, block.materials);
-    const SolidState state = equilibrium(
+    const SolidState state = find_equilibrium(
         space, on_all_faces(affine), dealii::Vector<double>(space.unknowns()), 1, nullptr, affine);
     EXPECT_LT(nodal_error(space, state, affine), 1e-10) << "nu " << nu;
   }
@@ -71,8 +76,8 @@ TEST(SolidBlock, StretchesAsTheClosedForm) {
   const Block block(material, {2, 2, 2}, {1, 1, 1}, 0.2);
   const SolidSpace space(block.triangulation, block.mapping, block.materials);
   NewtonResult last;
-  const SolidState state = equilibrium(space, stretched_along_x(stretch - 1),
-                                       dealii::Vector<double>(space.unknowns()), 2, &last);
+  const SolidState state = find_equilibrium(space, stretched_along_x(stretch - 1),
+                                            dealii::Vector<double>(space.unknowns()), 2, &last);
   const auto exact = [&](const Vector3& X) -> Vector3 {
     return {(stretch - 1) * X[0], (low - 1) * X[1], (low - 1) * X[2]};
   };
@@ -92,8 +97,8 @@ TEST(SolidBlock, ShearsAsTheClosedForm) {
   const Block block(material, {2, 2, 2}, {1, 1, 1}, 0.2);
   const SolidSpace space(block.triangulation, block.mapping, block.materials);
   NewtonResult last;
-  const SolidState state = equilibrium(space, on_all_faces(simple_shear),
-                                       dealii::Vector<double>(space.unknowns()), 8, &last);
+  const SolidState state = find_equilibrium(space, on_all_faces(simple_shear),
+                                            dealii::Vector<double>(space.unknowns()), 8, &last);
   EXPECT_LT(nodal_error(space, state, simple_shear), 1e-11);
   for (const PressureVector& p : state.pressure) EXPECT_LT(p.norm(), 1e-9);
   for (const SolidElement& element : space.elements()) {
@@ -182,8 +187,8 @@ TEST(SolidBlock, ConvergesToAManufacturedSolutionWithTheOrdersOfQ2) {
       const SolidSpace space(block.triangulation, block.mapping, block.materials);
       const auto forces =
           body_force(space, [&](const Vector3& X) { return manufactured.body_force(X); });
-      const SolidState state = equilibrium(space, on_all_faces(Manufactured::displacement), forces,
-                                           1, nullptr, Manufactured::displacement);
+      const SolidState state = find_equilibrium(space, on_all_faces(Manufactured::displacement),
+                                                forces, 1, nullptr, Manufactured::displacement);
       error[level] = errors(space, state);
     }
     const double L2 = std::log2(error[0][0] / error[1][0]);
@@ -203,7 +208,7 @@ TEST(SolidBlock, NewtonConvergesQuadratically) {
   const Block block(neo_hooke(1, 0.49), {4, 1, 1}, {4, 1, 1});
   const SolidSpace space(block.triangulation, block.mapping, block.materials);
   NewtonResult last;
-  equilibrium(
+  find_equilibrium(
       space, {{0, {true, true, true}, {}}},
       traction(space, 1, [](const Vector3&, const Vector3&) { return Vector3(0, 0, 0.004); }), 1,
       &last);
@@ -224,8 +229,8 @@ TEST(SolidBlock, NothingConvergesOutOfBalance) {
   const std::vector<DirichletCondition> clamped{{0, {true, true, true}, {}}};
   const auto forces =
       traction(space, 1, [](const Vector3&, const Vector3&) { return Vector3(0, 0, 0.004); });
-  const SolidState exact = equilibrium(space, clamped, forces, 1);
-  Newton newton(space, increment_constraints(space, clamped));
+  const SolidState exact = find_equilibrium(space, clamped, forces, 1);
+  Newton newton(space, increment_constraints(space, clamped), SolverKind::automatic, MPI_COMM_SELF);
   const double tolerance = 1e-3;
   int tried = 0;
   for (int start = 0; start < 15; ++start) {
@@ -261,7 +266,7 @@ TEST(SolidBlock, DoesNotLockInLamesHollowSphere) {
   for (const double nu : {0.3, 0.49, 0.4999}) {
     const Hyperelastic material = neo_hooke(1, nu);
     const SolidSpace space(shell, mapping, std::array{material});
-    const SolidState state = equilibrium(
+    const SolidState state = find_equilibrium(
         space, symmetry,
         traction(space, 0,
                  [&](const Vector3&, const Vector3& N) -> Vector3 { return -pressure * N; }),
@@ -283,4 +288,4 @@ TEST(SolidBlock, RejectsAMeshWithoutMaterial) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -15,7 +15,7 @@
 #include "fem/solid/solid.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
 namespace {
 
 namespace fs = std::filesystem;
@@ -323,7 +323,7 @@ TEST_F(DamagedCheckpoint, OfAnotherProblemIsRefusedByNameOfWhatDiffers) {
   other_options("symmetry", [](SolidOptions& o) { o.symmetry = false; });
   other_options("kernel_width", [](SolidOptions& o) { o.kernel_width = 0.4e-3; });
   other_options("tolerance", [](SolidOptions& o) { o.tolerance = 1e-8; });
-  other_options("solver", [](SolidOptions& o) { o.solver = SolverKind::direct; });
+  other_options("solver", [](SolidOptions& o) { o.solver = solvers::SolverKind::direct; });
 }
 
 // The disk is full: the program's error, not one of the solution, and what was saved is still
@@ -336,4 +336,4 @@ TEST_F(SolidCheckpointFiles, ThatCannotBeWrittenAreAnError) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -9,15 +9,21 @@
 #include <random>
 
 #include "fem/solid/discretisation/assembly.h"
-#include "fem/solid/fibres.h"
-#include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/equilibrium/load_path.h"
+#include "fem/solid/loads/dead_forces.h"
+#include "fem/solid/loads/height_loads.h"
 #include "fem/solid/postprocessing/centreline.h"
 #include "problem/error.h"
 #include "tests/fem/solid/bent_cilium.h"
 #include "tests/fem/solid/cube.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace loads;
+using namespace equilibrium;
+using namespace solvers;
+using namespace postprocessing;
 namespace {
 
 const std::vector<Load>& all_loads() {
@@ -38,21 +44,21 @@ TEST(CiliumLoads, ApplyExactlyTheForceAsked) {
       // ∫ z dA/A over the end face by the section points.
       double height = 0;
       for (std::size_t e = 0; e < cilium.space->elements().size(); ++e) {
-        const FibreCell& cell = cilium.fibres->cells()[e];
+        const ExtrudedCell& cell = cilium.quadrature->cells()[e];
         if (cell.top < 8e-3 * (1 - 1e-9)) continue;
         const auto u = nodal_displacements(cilium.space->elements()[e], cilium.state.displacement);
         for (int q = 0; q < section_points; ++q)
-          height += cell.area[static_cast<std::size_t>(q)] / cilium.fibres->area() *
-                    (8e-3 + u.col(2).tail<9>().dot(cilium.fibres->section_values().col(q)));
+          height += cell.area[static_cast<std::size_t>(q)] / cilium.quadrature->area() *
+                    (8e-3 + u.col(2).tail<9>().dot(cilium.quadrature->section_values().col(q)));
       }
       double base = 0;
       for (std::size_t e = 0; e < cilium.space->elements().size(); ++e) {
-        const FibreCell& cell = cilium.fibres->cells()[e];
+        const ExtrudedCell& cell = cilium.quadrature->cells()[e];
         if (cell.bottom > 1e-9) continue;
         const auto u = nodal_displacements(cilium.space->elements()[e], cilium.state.displacement);
         for (int q = 0; q < section_points; ++q)
-          base += cell.area[static_cast<std::size_t>(q)] / cilium.fibres->area() *
-                  u.col(2).head<9>().dot(cilium.fibres->section_values().col(q));
+          base += cell.area[static_cast<std::size_t>(q)] / cilium.quadrature->area() *
+                  u.col(2).head<9>().dot(cilium.quadrature->section_values().col(q));
       }
       expected *= height - base;
     }
@@ -85,8 +91,8 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
   for (const Load& load : all_loads()) {
     dealii::SparseMatrix<double> matrix(sparsity);
     dealii::Vector<double> unused(space.unknowns());
-    external_forces(space, *cilium.fibres, load, 0.5e-3)(cilium.state.displacement, unused, none,
-                                                         &matrix);
+    external_forces(space, *cilium.quadrature, load, 0.5e-3)(cilium.state.displacement, unused,
+                                                             none, &matrix);
     dealii::Vector<double> product(space.unknowns());
     matrix.vmult(product, direction);
     const double h = 1e-8;
@@ -125,13 +131,13 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
   EXPECT_LT(product.l2_norm(), 1e-6 * difference.l2_norm());
 }
 
-// Oracle: where the kernel reaches beyond the end of the fibres, the missing part of its integral,
-// ∫ k from s₀ to w = ½ − s₀/(2w) − sin(πs₀/w)/(2π), is not applied.
-TEST(CiliumLoads, ContactForceFallsShortWhereTheFibresEnd) {
+// Oracle: where the kernel reaches beyond the end of the extrusion lines, the missing part of its
+// integral, ∫ k from s₀ to w = ½ − s₀/(2w) − sin(πs₀/w)/(2π), is not applied.
+TEST(CiliumLoads, ContactForceFallsShortWhereTheExtrusionLinesEnd) {
   const BentCilium cilium;
   const dealii::Vector<double> straight(cilium.space->unknowns());
   const double w = 0.5e-3;
-  const double end = 0.2e-3;  // of the fibres above h
+  const double end = 0.2e-3;  // of the extrusion lines above h
   const Vector3 total =
       resultant(*cilium.space, cilium.forces(ContactLoad{1e-3, 8e-3 - end, 0}, straight));
   const double missing =
@@ -146,8 +152,8 @@ TEST(CiliumLoads, KernelMayEndAtAPlaneOfTheMesh) {
   const SolidState straight = cilium.space->undeformed();
   for (const double overlap : {0.0, 1e-19, 1e-15, 1e-9, 1e-7}) {
     const Load load = ContactLoad{1e-3, 5e-3 + 0.5e-3 - overlap, 0};
-    const Centreline line = centreline(*cilium.space, *cilium.fibres, straight,
-                                       spread_load(load, cilium.fibres->area(), 0.5e-3));
+    const Centreline line = centreline(*cilium.space, *cilium.quadrature, straight,
+                                       spread_load(load, cilium.quadrature->area(), 0.5e-3));
     EXPECT_EQ(line.length(), 8e-3);
     EXPECT_NEAR(line.at(4.99e-3).position.z(), 4.99e-3, 1e-12);
   }
@@ -156,14 +162,14 @@ TEST(CiliumLoads, KernelMayEndAtAPlaneOfTheMesh) {
 TEST(CiliumLoads, RejectAMeshThatIsNotExtruded) {
   const Block block(neo_hooke(1, 0.3), {2, 2, 2}, Vector3::Ones(), 0.2);
   const SolidSpace space(block.triangulation, block.mapping, block.materials);
-  EXPECT_THROW(Fibres{space}, InputError);
+  EXPECT_THROW(ExtrudedQuadrature{space}, InputError);
 }
 
 TEST(CiliumLoads, RejectASectionWithoutAPlane) {
   const BentCilium cilium;
-  EXPECT_THROW(section_force(*cilium.space, *cilium.fibres, 1, 5.1e-3, Vector3::UnitX()),
+  EXPECT_THROW(section_force(*cilium.space, *cilium.quadrature, 1, 5.1e-3, Vector3::UnitX()),
                InputError);
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -11,20 +11,20 @@
 #include <vector>
 
 #include "fem/solid/discretisation/assembly.h"
-#include "fem/solid/loads/dead_forces.h"
-#include "fem/solid/equilibrium/newton.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/equilibrium/newton.h"
+#include "fem/solid/loads/dead_forces.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
 
 /// A block [0, a] × [0, b] × [0, c] of one material; boundary ids 0…5: −x, +x, −y, +y, −z, +z.
 struct Block {
   dealii::Triangulation<3> triangulation;
-  dealii::MappingQ<3> mapping{element_degree};
-  std::vector<Hyperelastic> materials;
+  dealii::MappingQ<3> mapping{discretisation::element_degree};
+  std::vector<material::Hyperelastic> materials;
 
-  Block(const Hyperelastic& material, const std::vector<unsigned int>& cells,
+  Block(const material::Hyperelastic& material, const std::vector<unsigned int>& cells,
         const Vector3& size = Vector3::Ones(), double distortion = 0)
       : materials{material} {
     dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, cells, dealii::Point<3>(),
@@ -35,17 +35,17 @@ struct Block {
   }
 };
 
-inline Hyperelastic neo_hooke(double young_modulus, double poisson_ratio) {
-  return Hyperelastic::neo_hooke(young_modulus / (2 * (1 + poisson_ratio)),
-                                 young_modulus / (3 * (1 - 2 * poisson_ratio)));
+inline material::Hyperelastic neo_hooke(double young_modulus, double poisson_ratio) {
+  return material::Hyperelastic::neo_hooke(young_modulus / (2 * (1 + poisson_ratio)),
+                                           young_modulus / (3 * (1 - 2 * poisson_ratio)));
 }
 
 /// Calls visit(X, element, a) for every node of every element, a lexicographic.
 template <typename Visit>
-void for_each_node(const SolidSpace& space, const Visit& visit) {
+void for_each_node(const discretisation::SolidSpace& space, const Visit& visit) {
   const auto& points = space.scalar_element().get_unit_support_points();
-  for (const SolidElement& element : space.elements()) {
-    for (unsigned int a = 0; a < element_nodes; ++a) {
+  for (const discretisation::SolidElement& element : space.elements()) {
+    for (unsigned int a = 0; a < discretisation::element_nodes; ++a) {
       const auto X = space.mapping().transform_unit_to_real_cell(element.cell, points[a]);
       visit(Vector3(X[0], X[1], X[2]), element, space.lexicographic()[a]);
     }
@@ -54,26 +54,29 @@ void for_each_node(const SolidSpace& space, const Visit& visit) {
 
 /// Solves with Dirichlet conditions and dead nodal forces, in `steps` equal steps of both. `guess`
 /// is a displacement from whose nine tenths the inner nodes start.
-inline SolidState equilibrium(const SolidSpace& space,
-                              const std::vector<DirichletCondition>& conditions,
-                              const dealii::Vector<double>& forces, int steps,
-                              NewtonResult* last = nullptr,
-                              const std::function<Vector3(const Vector3&)>& guess = {}) {
-  Newton newton(space, increment_constraints(space, conditions));
-  SolidState state = space.undeformed();
+inline discretisation::SolidState find_equilibrium(
+    const discretisation::SolidSpace& space,
+    const std::vector<discretisation::DirichletCondition>& conditions,
+    const dealii::Vector<double>& forces, int steps, equilibrium::NewtonResult* last = nullptr,
+    const std::function<Vector3(const Vector3&)>& guess = {}) {
+  equilibrium::Newton newton(space, increment_constraints(space, conditions),
+                             solvers::SolverKind::automatic, MPI_COMM_SELF);
+  discretisation::SolidState state = space.undeformed();
   if (guess) {
-    for_each_node(space, [&](const Vector3& X, const SolidElement& element, unsigned int a) {
-      const Vector3 u = 0.9 * guess(X);
-      for (unsigned int c = 0; c < 3; ++c)
-        state.displacement[element.dofs[c * element_nodes + a]] = u[c];
-    });
+    for_each_node(
+        space, [&](const Vector3& X, const discretisation::SolidElement& element, unsigned int a) {
+          const Vector3 u = 0.9 * guess(X);
+          for (unsigned int c = 0; c < 3; ++c)
+            state.displacement[element.dofs[c * discretisation::element_nodes + a]] = u[c];
+        });
   }
   for (int step = 1; step <= steps; ++step) {
     const double factor = static_cast<double>(step) / steps;
     prescribe(space, conditions, state, factor);
     dealii::Vector<double> scaled(forces);
     scaled *= factor;
-    const NewtonResult result = newton.solve(dead_forces(scaled), state, {.tolerance = 1e-11});
+    const equilibrium::NewtonResult result =
+        newton.solve(loads::dead_forces(scaled), state, {.tolerance = 1e-11});
     if (!result.converged) throw SolverError("Newton: " + result.reason);
     if (last != nullptr) *last = result;
   }
@@ -82,13 +85,15 @@ inline SolidState equilibrium(const SolidSpace& space,
 
 /// Largest difference between the nodal displacements and a field.
 template <typename Field>
-double nodal_error(const SolidSpace& space, const SolidState& state, const Field& field) {
+double nodal_error(const discretisation::SolidSpace& space, const discretisation::SolidState& state,
+                   const Field& field) {
   double error = 0;
-  for_each_node(space, [&](const Vector3& X, const SolidElement& element, unsigned int a) {
-    const Vector3 u = nodal_displacements(element, state.displacement).row(a).transpose();
-    error = std::max(error, (u - field(X)).norm());
-  });
+  for_each_node(
+      space, [&](const Vector3& X, const discretisation::SolidElement& element, unsigned int a) {
+        const Vector3 u = nodal_displacements(element, state.displacement).row(a).transpose();
+        error = std::max(error, (u - field(X)).norm());
+      });
   return error;
 }
 
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -14,12 +14,17 @@
 #include <vector>
 
 #include "cube.h"
-#include "fem/solid/multigrid.h"
 #include "fem/solid/solid.h"
+#include "fem/solid/solvers/multigrid.h"
 #include "problem/error.h"
 #include "tests/bench/mesh_family.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace loads;
+using namespace equilibrium;
+using namespace solvers;
 namespace {
 
 using dealii::Vector;
@@ -60,7 +65,7 @@ double relative_residual(const System& system, const Vector<double>& solution) {
 TEST(SolidLinearSolver, SolvesToTheReductionAskedFor) {
   const System system(0.49);
   for (const SolverKind kind : {SolverKind::direct, SolverKind::iterative}) {
-    LinearSolver solver(system.space, system.constraints, system.pattern, kind);
+    LinearSolver solver(system.space, system.constraints, system.pattern, kind, MPI_COMM_SELF);
     solver.prepare(system.matrix);
     Vector<double> solution;
     solver.solve(system.forces, solution, 1e-8);
@@ -75,12 +80,13 @@ TEST(SolidLinearSolver, SolvesToTheReductionAskedFor) {
   }
 }
 
-// Oracle: Schwarz theory. A cell meets eight stars, so that λ_max ≤ 8; on a mesh with cells that
-// have eight free stars it comes near. Power iteration, from below.
-TEST(SolidLinearSolver, VertexStarsHaveNoEigenvalueBeyondEight) {
+// Oracle: Schwarz theory. A cell meets eight patches, so that λ_max ≤ 8; on a mesh with cells that
+// have eight free patches it comes near. Power iteration, from below.
+TEST(SolidLinearSolver, VertexPatchesHaveNoEigenvalueBeyondEight) {
   const System system(0.49);
-  VertexStars stars(system.space, system.constraints, {0, system.space.unknowns()});
-  stars.update(system.matrix);
+  VertexPatchSchwarz patches(system.space, system.constraints, {0, system.space.unknowns()},
+                             MPI_COMM_SELF);
+  patches.update(system.matrix);
   Vector<double> x(system.space.unknowns());
   std::iota(x.begin(), x.end(), 1.0);
   system.constraints.set_zero(x);
@@ -89,11 +95,11 @@ TEST(SolidLinearSolver, VertexStarsHaveNoEigenvalueBeyondEight) {
   for (int i = 0; i < 40; ++i) {
     x /= x.l2_norm();
     system.matrix.vmult(y, x);
-    stars.vmult(x, y);
+    patches.vmult(x, y);
     eigenvalue = x.l2_norm();
   }
-  EXPECT_LE(eigenvalue, VertexStars::largest_eigenvalue * (1 + 1e-5));  // single precision
-  EXPECT_GE(eigenvalue, 0.5 * VertexStars::largest_eigenvalue);
+  EXPECT_LE(eigenvalue, VertexPatchSchwarz::largest_eigenvalue * (1 + 1e-5));  // single precision
+  EXPECT_GE(eigenvalue, 0.5 * VertexPatchSchwarz::largest_eigenvalue);
 }
 
 // Oracle: deal.II's product, all rows and the last half of the nodes. Sums in another order.
@@ -105,7 +111,7 @@ TEST(SolidLinearSolver, RowsInBlocksMultiplyAsTheMatrix) {
   Vector<double> expected(size);
   system.matrix.vmult(expected, x);
   for (const Row begin : {Row{0}, size / 2 - size / 2 % node_unknowns}) {
-    OwnRows<double> rows({begin, size});
+    BlockCsr<double> rows({begin, size}, MPI_COMM_SELF);
     rows.update(system.matrix);
     Vector<double> product(size);
     rows.vmult(product, x);
@@ -124,7 +130,7 @@ TEST(SolidLinearSolver, RowsInBlocksRefuseAPatternThatIsNotOneOfNodes) {
     dealii::SparsityPattern pattern;
     pattern.copy_from(dynamic);
     const dealii::SparseMatrix<double> matrix(pattern);
-    OwnRows<double> own({0, rows});
+    BlockCsr<double> own({0, rows}, MPI_COMM_SELF);
     try {
       own.update(matrix);
     } catch (const SolverError&) {
@@ -138,12 +144,13 @@ TEST(SolidLinearSolver, RowsInBlocksRefuseAPatternThatIsNotOneOfNodes) {
   EXPECT_TRUE(refuses(9, {{3, 6}, {3, 7}, {3, 8}, {4, 0}, {4, 1}, {4, 2}, {5, 0}, {5, 1}, {5, 2}}));
 }
 
-// Oracle: the purpose of the vertex stars. A point or cell smoother would need √(K/μ) times as many
-// iterations: 17 times at ν = 0.4999 against 0.3 …
+// Oracle: the purpose of the vertex patches. A point or cell smoother would need √(K/μ) times as
+// many iterations: 17 times at ν = 0.4999 against 0.3 …
 TEST(SolidLinearSolver, IterationsGrowLittleWithTheBulkModulus) {
   const auto iterations = [](double poisson_ratio) {
     const System system(poisson_ratio);
-    LinearSolver solver(system.space, system.constraints, system.pattern, SolverKind::iterative);
+    LinearSolver solver(system.space, system.constraints, system.pattern, SolverKind::iterative,
+                        MPI_COMM_SELF);
     solver.prepare(system.matrix);
     Vector<double> solution;
     return solver.solve(system.forces, solution, 1e-6);
@@ -158,8 +165,8 @@ TEST(SolidLinearSolverSlow, AMillionUnknownsTakeNoMoreThanTwiceTheIterations) {
   std::vector<int> iterations;
   for (const Mesh& mesh : {mesh_family.front(), mesh_family.back()}) {
     const Discretised problem(mesh);
-    LinearSolver solver(*problem.space, problem.constraints, problem.pattern,
-                        SolverKind::iterative);
+    LinearSolver solver(*problem.space, problem.constraints, problem.pattern, SolverKind::iterative,
+                        MPI_COMM_SELF);
     solver.prepare(problem.matrix);
     Vector<double> solution;
     iterations.push_back(solver.solve(problem.forces, solution, 1e-6));
@@ -179,7 +186,8 @@ TEST(SolidLinearSolver, RefusesASingularMatrix) {
   dealii::SparseMatrix<double> regular(system.pattern);
   regular.copy_from(system.matrix);
   system.matrix = 0;
-  LinearSolver solver(system.space, system.constraints, system.pattern, SolverKind::direct);
+  LinearSolver solver(system.space, system.constraints, system.pattern, SolverKind::direct,
+                      MPI_COMM_SELF);
   Vector<double> solution;
   EXPECT_THROW(
       {
@@ -215,4 +223,4 @@ TEST(SolidLinearSolver, DirectAndIterativeGiveTheSameCilium) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -9,7 +9,8 @@
 #include <random>
 #include <string>
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
 namespace {
 
 constexpr double mu = 1.0;
@@ -224,4 +225,4 @@ TEST(Yeoh, IsStableAsLongAsTheShearStressRises) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

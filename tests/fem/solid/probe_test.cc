@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Displacement control of the contact point.
-#include "fem/solid/probe.h"
+#include "fem/solid/loads/probe.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,12 @@
 #include "problem/error.h"
 #include "tests/fem/solid/bent_cilium.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace loads;
+using namespace equilibrium;
+using namespace solvers;
 namespace {
 
 constexpr double width = 0.5e-3;
@@ -40,12 +45,12 @@ dealii::Vector<double> displaced(const BentCilium& cilium, const Field& field) {
 
 double mean(const BentCilium& cilium, const dealii::Vector<double>& u, double height,
             const Vector3& e, dealii::Vector<double>* gradient = nullptr) {
-  return mean_displacement(*cilium.space, *cilium.fibres, contact_density(1, 1, height, width), e,
-                           u, gradient);
+  return mean_displacement(*cilium.space, *cilium.quadrature, contact_density(1, 1, height, width),
+                           e, u, gradient);
 }
 
 // Oracle: a cilium that is tilted rigidly by θ about its foot has its axis at h tan θ at the height
-// h; the other fibres are X (1/cos θ − 1) off, which cancels. Measured: 5e-16 of the height.
+// h; the other lines are X (1/cos θ − 1) off, which cancels. Measured: 5e-16 of the height.
 TEST(ProbeMean, OfATiltedCiliumIsThatOfItsAxis) {
   const BentCilium cilium;
   const double theta = 0.3;
@@ -73,8 +78,8 @@ TEST(ProbeMean, AddsTheKernelsSecondMomentToACurve) {
   EXPECT_GT(c * moment / 2, 1e-4 * at_h);
 }
 
-// Oracle: central differences along a random direction, in mid-fibre and where the fibres end
-// inside the kernel. Measured: 4e-10 and 2e-8.
+// Oracle: central differences along a random direction, in mid-line and where the extrusion lines
+// end inside the kernel. Measured: 4e-10 and 2e-8.
 TEST(ProbeMean, HasItsOwnDerivative) {
   const BentCilium cilium;
   const Vector3 e = direction(Load{ProbeLoad{0, 0, 0.4}});
@@ -106,20 +111,21 @@ struct Bench {
   BentCilium cilium;
   Newton newton{
       *cilium.space,
-      increment_constraints(*cilium.space, std::vector<DirichletCondition>{{.boundary = 0}})};
+      increment_constraints(*cilium.space, std::vector<DirichletCondition>{{.boundary = 0}}),
+      SolverKind::automatic, MPI_COMM_SELF};
   double height = 5.3e-3;
   double azimuth = 0.4;
 
   NewtonResult pull(double force, SolidState& state) {
-    const ExternalForces forces =
-        external_forces(*cilium.space, *cilium.fibres, ContactLoad{force, height, azimuth}, width);
+    const ExternalForces forces = external_forces(*cilium.space, *cilium.quadrature,
+                                                  ContactLoad{force, height, azimuth}, width);
     NewtonResult result = newton.solve(forces, state, {.tolerance = 1e-11});
     EXPECT_TRUE(result.converged) << result.reason;
     return result;
   }
   /// From the force's own amplitude.
   NewtonResult push(double displacement, UnknownForce& force, SolidState& state) {
-    force = probe_force(*cilium.space, *cilium.fibres, {displacement, height, azimuth}, width,
+    force = probe_force(*cilium.space, *cilium.quadrature, {displacement, height, azimuth}, width,
                         force.amplitude);
     NewtonResult result = newton.solve(force, state, {.tolerance = 1e-11});
     EXPECT_TRUE(result.converged) << result.reason;
@@ -158,8 +164,8 @@ TEST(Probe, AndContactAreInTheSameEquilibrium) {
   }
 }
 
-// Oracle: Newton's method with the exact border is as fast as without one; with a wrong derivative
-// it would be linear. Measured: 4 iterations for both.
+// Oracle: Newton's method with the exact bordered system is as fast as without one; with a wrong
+// derivative it would be linear. Measured: 4 iterations for both.
 TEST(Probe, TakesAsManyIterationsAsAContact) {
   Bench bench;
   SolidState probe = bench.cilium.space->undeformed();
@@ -218,4 +224,4 @@ TEST(Probe, CentrelineIsAtTheDisplacementWhereItIsAtTheHeight) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -14,7 +14,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
 namespace {
 
 /// The paper's cilium, and a solid on its coarsest mesh.
@@ -55,8 +55,8 @@ TEST(Solid, CentrelineIsStraightAndItsFrameTheIdentityWhenUndeformed) {
 
 // Oracle: equilibrium. At every section up to the kernel the force is F along e, and its moment is
 // F (h − z) (the kernel is symmetric about h); above the kernel there is none. Sections are tilted
-// by up to 12°: the kernel meets fibres within 0.5 mm + R sin 12° of h. Measured: n 3e-13, m below
-// 1e-8.
+// by up to 12°: the kernel meets extrusion lines within 0.5 mm + R sin 12° of h. Measured: n 3e-13,
+// m below 1e-8.
 TEST(Solid, SectionForcesBalanceTheLoadInEveryLayer) {
   const MechanicsStep& step = converged(bent());
   const Vector3 e = direction(step.load);
@@ -502,9 +502,8 @@ TEST(Solid, EstimatesTheErrorOfItsTip) {
   }
 }
 
-// Oracle: the finest mesh, 87,399 unknowns. The claims of docs/solid.md: the default mesh is within
-// 0.1 %, and its estimate within a factor 3 of the error. Measured: 0.0375 %, factor
-// 1.8.
+// Oracle: the finest mesh, 87,399 unknowns. The claims of docs/theory/solid.md: the default mesh is
+// within 0.1 %, and its estimate within a factor 3 of the error. Measured: 0.0375 %, factor 1.8.
 TEST(SolidSlow, DefaultMeshIsWithinATenthOfAPercentAndKnowsIt) {
   const LoadPath path{ContactLoad{2e-3, 16e-3, 0}};
   const MechanicsResult finest = Solid({.refinement = 3}).solve(stub_and_magnet(), path);
@@ -533,4 +532,4 @@ TEST(SolidSlow, TipOfTheDefaultMeshAgreesWithTheFineMesh) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// First guesses: states carried from mesh to mesh and from a rod to the solid.
+// Initial guesses: states carried from mesh to mesh and from a rod to the solid.
 #include "fem/solid/equilibrium/initial_guess.h"
 
 #include <deal.II/dofs/dof_tools.h>
@@ -18,30 +18,33 @@
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
+using namespace material;
+using namespace discretisation;
+using namespace equilibrium;
 namespace {
 
 struct Mesh {
   dealii::Triangulation<3> triangulation;
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
   std::unique_ptr<SolidSpace> space;
-  std::unique_ptr<Fibres> fibres;
+  std::unique_ptr<ExtrudedQuadrature> quadrature;
 
   Mesh(const Cilium& cilium, unsigned int square_cells, unsigned int rings, double finest,
        bool half = false) {
-    meshes::CylinderMeshOptions options;
+    meshes::cylinder::CylinderMeshOptions options;
     options.square_cells = square_cells;
     options.rings = rings;
     options.finest_layer = finest;
     options.coarsest_layer = 0.7;
     options.half = half;
-    meshes::make_cylinder(cilium, options, triangulation);
-    mapping = meshes::cylinder_mapping(triangulation);
+    meshes::cylinder::make_cylinder(cilium, options, triangulation);
+    mapping = meshes::cylinder::cylinder_mapping(triangulation);
     std::vector<Hyperelastic> materials;
     for (const Segment& s : cilium.segments)
       materials.push_back(Hyperelastic::neo_hooke(s.shear_modulus(), s.bulk_modulus()));
     space = std::make_unique<SolidSpace>(triangulation, *mapping, materials);
-    fibres = std::make_unique<Fibres>(*space, half ? Extent::half : Extent::whole);
+    quadrature = std::make_unique<ExtrudedQuadrature>(*space, half ? Extent::half : Extent::whole);
   }
 };
 
@@ -63,7 +66,7 @@ SolidState random_state(const SolidSpace& space) {
 TEST(Transfer, ToTheSameMeshIsTheIdentity) {
   const Mesh mesh(two_materials(), 2, 2, 0.3);
   const SolidState state = random_state(*mesh.space);
-  const SolidState same = transferred(*mesh.space, *mesh.fibres, state, *mesh.space);
+  const SolidState same = interpolated(*mesh.space, *mesh.quadrature, state, *mesh.space);
   dealii::Vector<double> difference(same.displacement);
   difference -= state.displacement;
   EXPECT_LT(difference.linfty_norm(), 1e-12);
@@ -72,7 +75,7 @@ TEST(Transfer, ToTheSameMeshIsTheIdentity) {
     EXPECT_LT((same.pressure[e] - state.pressure[e]).norm(), 1e-7);
 }
 
-// Oracle: the linear field that is transferred. Both meshes hold it exactly, also where the coarse
+// Oracle: the linear field that is interpolated. Both meshes hold it exactly, also where the coarse
 // section ends inside the fine one.
 TEST(Transfer, KeepsLinearFieldsFromAnyMeshToAnyOther) {
   const Cilium cilium = two_materials();
@@ -101,7 +104,7 @@ TEST(Transfer, KeepsLinearFieldsFromAnyMeshToAnyOther) {
   for (const auto& [from, to] : {std::pair(&coarse, &fine), std::pair(&fine, &coarse)}) {
     const SolidState given = field(*from);
     const SolidState expected = field(*to);
-    const SolidState state = transferred(*from->space, *from->fibres, given, *to->space);
+    const SolidState state = interpolated(*from->space, *from->quadrature, given, *to->space);
     dealii::Vector<double> difference(state.displacement);
     difference -= expected.displacement;
     EXPECT_LT(difference.linfty_norm(), 1e-13);
@@ -119,7 +122,7 @@ TEST(Transfer, RefusesAMeshOfAnotherCilium) {
   const SolidState state = mesh.space->undeformed();
   for (const Cilium& other : {longer, thicker}) {
     const Mesh to(other, 2, 1, 0.5);
-    EXPECT_THROW(transferred(*mesh.space, *mesh.fibres, state, *to.space), InputError);
+    EXPECT_THROW(interpolated(*mesh.space, *mesh.quadrature, state, *to.space), InputError);
   }
 }
 
@@ -145,7 +148,7 @@ double strain_energy_above(const Mesh& mesh, const SolidState& state, double Z) 
   double energy = 0;
   for (std::size_t e = 0; e < mesh.space->elements().size(); ++e) {
     const SolidElement& element = mesh.space->elements()[e];
-    if (mesh.fibres->cells()[e].bottom < Z) continue;
+    if (mesh.quadrature->cells()[e].bottom < Z) continue;
     const auto u = nodal_displacements(element, state.displacement);
     for (int q = 0; q < element_points; ++q) {
       const Matrix3 F = Matrix3::Identity() +
@@ -168,12 +171,12 @@ TEST(Lift, HasTheEnergyOfABentAndStretchedRod) {
   const Mesh mesh(rod, 4, 2, 0.3);
   const double from = 6e-3;
   double lowest = 12e-3;
-  for (const FibreCell& cell : mesh.fibres->cells())
+  for (const ExtrudedCell& cell : mesh.quadrature->cells())
     if (cell.bottom >= from) lowest = std::min(lowest, cell.bottom);
   for (const double phi : {0.0, 0.7, 2.5})
     for (const double extension : {0.0, 1e-3}) {
       const double kappa = 4;
-      const SolidState state = lifted(arc(12e-3, kappa, phi, extension), rod, *mesh.space);
+      const SolidState state = rod_guess(arc(12e-3, kappa, phi, extension), rod, *mesh.space);
       const double length = 12e-3 - lowest;
       const double expected =
           length / 2 * 1e6 *
@@ -186,19 +189,19 @@ TEST(Lift, HasTheEnergyOfABentAndStretchedRod) {
 TEST(Lift, LeavesTheBaseWhereItIs) {
   const Cilium rod{1e-3, {{"rod", 4e-3, 1e6, 0.49, 0}}};
   const Mesh mesh(rod, 2, 1, 0.3);
-  const SolidState state = lifted(arc(4e-3, 50, 0.3, 0), rod, *mesh.space);
+  const SolidState state = rod_guess(arc(4e-3, 50, 0.3, 0), rod, *mesh.space);
   for (std::size_t e = 0; e < mesh.space->elements().size(); ++e) {
-    if (mesh.fibres->cells()[e].bottom > 0) continue;
+    if (mesh.quadrature->cells()[e].bottom > 0) continue;
     const auto u = nodal_displacements(mesh.space->elements()[e], state.displacement);
     EXPECT_LT(u.topRows<9>().norm(), 1e-18);
   }
 }
 
-// The claim of the first guess: the paper's cilium takes its whole load of 4 mN in one step.
+// The claim of the initial guess: the paper's cilium takes its whole load of 4 mN in one step.
 // Without the beam it does not get there so quickly.
 TEST(Lift, TakesThePapersWholeLoadInOneStep) {
   const Cilium cilium{3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
-  meshes::CylinderMeshOptions mesh = cylinder_mesh_options(0);
+  meshes::cylinder::CylinderMeshOptions mesh = cylinder_mesh_options(0);
   mesh.half = true;
   const Load load = ContactLoad{4e-3, 16e-3, 0};
   std::vector<std::string> lines;
@@ -223,4 +226,4 @@ TEST(Lift, TakesThePapersWholeLoadInOneStep) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -13,7 +13,7 @@
 #include "meshes/gmsh/write_gmsh.h"
 #include "problem/error.h"
 
-namespace ciliaval::fem {
+namespace ciliaval::fem::solid {
 namespace {
 
 Cilium paper_cilium() {
@@ -45,12 +45,13 @@ TEST(SolidOnAMeshFile, BendsAsOnTheMeshThatWasWritten) {
   const Vector3 made = tip(options, load);
 
   dealii::Triangulation<3> triangulation;
-  meshes::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {load}), triangulation);
-  const auto mapping = meshes::cylinder_mapping(triangulation);
+  meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {load}),
+                                  triangulation);
+  const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
   options.mesh = temporary_mesh();
   options.mesh_unit = 1e-3;
-  meshes::write_gmsh(meshes::mesh_nodes(triangulation, *mapping), paper_cilium(), options.mesh,
-                     {.unit = 1e-3});
+  meshes::gmsh::write_gmsh(meshes::mesh_nodes(triangulation, *mapping), paper_cilium(),
+                           options.mesh, {.unit = 1e-3});
   const Vector3 read = tip(options, load);
   std::filesystem::remove(options.mesh);
   EXPECT_GT(made.x(), 1e-3);
@@ -64,10 +65,12 @@ TEST(SolidOnAMeshFile, TakesLoadsOfAnyAzimuth) {
   options.refinement = 0;
   options.symmetry = false;
   dealii::Triangulation<3> triangulation;
-  meshes::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {}), triangulation);
+  meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {}),
+                                  triangulation);
   options.mesh = temporary_mesh();
-  meshes::write_gmsh(meshes::mesh_nodes(triangulation, *meshes::cylinder_mapping(triangulation)),
-                     paper_cilium(), options.mesh);
+  meshes::gmsh::write_gmsh(
+      meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation)),
+      paper_cilium(), options.mesh);
   const Vector3 x = tip(options, SectionLoad{1e-4, 20e-3, 0});
   const Vector3 y = tip(options, SectionLoad{1e-4, 20e-3, std::numbers::pi / 2});
   std::filesystem::remove(options.mesh);
@@ -98,4 +101,4 @@ TEST(SolidOnAMeshFileSlow, ShippedGmshMeshAgreesWithTheBuiltInMesh) {
 }
 
 }  // namespace
-}  // namespace ciliaval::fem
+}  // namespace ciliaval::fem::solid

@@ -16,7 +16,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::cylinder {
 namespace {
 
 Cilium stub_and_magnet() {
@@ -229,4 +229,4 @@ TEST(CylinderMesh, RejectsWhatItCannotMesh) {
 }
 
 }  // namespace
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::cylinder

@@ -5,15 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <map>
+#include <random>
+#include <sstream>
+#include <string_view>
 
 #include "meshes/gmsh/gmsh_mesh.h"
+#include "meshes/gmsh/write_gmsh.h"
+#include "meshes/mesh_nodes.h"
 #include "problem/error.h"
 #include "text_mesh.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 using test::TextMesh;
@@ -338,5 +344,109 @@ TEST(GmshFileFaults, ATruncatedFileIsNeverRead) {
   }
 }
 
+/// The message of a file of this content; "read" if it is read.
+std::string message_of(const std::string& text, const Cilium& cilium) {
+  const test::Folder folder;
+  const auto file = folder.path() / "damaged.msh";
+  std::ofstream(file, std::ios::binary) << text;
+  dealii::Triangulation<3> triangulation;
+  try {
+    read_gmsh({file}, cilium, triangulation);
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("damaged.msh"));
+    return error.what();
+  }
+  return "read";
+}
+
+/// The content of a good file, as Gmsh writes it.
+std::string good_text(const GmshFormat& format, const Cilium& cilium) {
+  const test::Folder folder;
+  const auto file = folder.path() / "good.msh";
+  test::built_in(cilium).write(file);
+  dealii::Triangulation<3> triangulation;
+  const GmshMesh mesh = read_gmsh({file}, cilium, triangulation);
+  write_gmsh(mesh_nodes(triangulation, *mesh.mapping), cilium, file, format);
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+// Gmsh 4.8 crashes on both: an element with a node out of range, and a number of names that stands
+// twice.
+TEST(GmshFileFaults, DamageThatCrashesGmshIsAnError) {
+  const Cilium cilium = test::stub_and_magnet();
+  TextMesh mesh = test::built_in(cilium);
+  mesh.elements.front().nodes.front() = static_cast<std::size_t>(-1);
+  EXPECT_THAT(message_of(mesh.text(), cilium), testing::HasSubstr("Gmsh cannot read"));
+  std::string names = good_text({.version = 4.1}, cilium);
+  const std::string head = "$PhysicalNames\n5\n";
+  names.replace(names.find(head), head.size(), head + "5\n");
+  EXPECT_THAT(message_of(names, cilium), testing::HasSubstr("Gmsh cannot read"));
+}
+
+/// The file with one fault: a line gone or doubled, or a word that is out of range or of the wrong
+/// kind; of a binary file a byte changed, or bytes gone.
+std::string mutated(const std::string& text, bool binary, std::mt19937& random) {
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
+  std::string result = text;
+  if (binary) {
+    const std::size_t at = 30 + below(text.size() - 60);
+    if (below(2) == 0) return result.erase(at, 1 + below(20));
+    result[at] = static_cast<char>(below(256));
+    return result;
+  }
+  std::size_t begin = text.find('\n', below(text.size() - 20)) + 1;
+  if (below(2) == 0) {  // near the head of a section
+    begin = text.find("\n$", below(text.size() - 20)) + 1;
+    for (std::size_t lines = below(4); lines > 0; --lines) begin = text.find('\n', begin) + 1;
+  }
+  const std::size_t end = text.find('\n', begin) + 1;
+  if (end == 0) return result;
+  switch (below(4)) {
+    case 0:
+      return result.erase(begin, end - begin);
+    case 1:
+      return result.insert(begin, text.substr(begin, end - begin));
+    default:
+      break;
+  }
+  const std::vector<std::string> words{"-1",         "0", "3",   "15", "99999999999",
+                                       "4294967296", "x", "nan", "",   "1e300"};
+  const std::size_t word = begin + below(end - begin);
+  const std::size_t from = text.find_last_of(" \n", word == 0 ? 0 : word - 1) + 1;
+  return result.replace(from, text.find_first_of(" \n", from) - from, words[below(words.size())]);
+}
+
+// Seeded: a damaged file is read, or refused with an Error that names it; nothing else comes of it.
+TEST(GmshFileFaults, MutatedFilesAreReadOrRefused) {
+  const Cilium cilium = test::stub_and_magnet();
+  std::size_t refused = 0;
+  for (const double version : {2.2, 4.1})
+    for (const bool binary : {false, true}) {
+      const std::string text = good_text({.version = version, .binary = binary}, cilium);
+      ASSERT_EQ(message_of(text, cilium), "read");
+      std::mt19937 random(20261);
+      for (int i = 0; i < 60; ++i)
+        refused += message_of(mutated(text, binary, random), cilium) != "read";
+    }
+  EXPECT_GT(refused, 60U);
+}
+
+// The Gmsh library writes preferences into ~/.fltk.
+TEST(GmshFile, LeavesTheHomeFolderAlone) {
+  const test::Folder home;
+  const test::Folder folder;
+  const Cilium cilium = test::stub_and_magnet();
+  const std::string before = std::getenv("HOME") == nullptr ? "" : std::getenv("HOME");
+  setenv("HOME", home.path().c_str(), 1);
+  test::built_in(cilium).write(folder.path() / "cilium.msh");
+  EXPECT_EQ(message(folder.path() / "cilium.msh", cilium), "no error");
+  EXPECT_TRUE(std::filesystem::is_empty(home.path()));
+  setenv("HOME", before.c_str(), 1);
+}
+
 }  // namespace
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

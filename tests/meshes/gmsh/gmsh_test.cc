@@ -17,7 +17,7 @@
 #include "problem/error.h"
 #include "text_mesh.h"
 
-namespace ciliaval::meshes {
+namespace ciliaval::meshes::gmsh {
 namespace {
 
 using dealii::Point;
@@ -29,9 +29,9 @@ struct Mesh {
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
   std::vector<std::string> remarks;
 
-  void make(const Cilium& cilium, const CylinderMeshOptions& options) {
-    make_cylinder(cilium, options, triangulation);
-    mapping = cylinder_mapping(triangulation);
+  void make(const Cilium& cilium, const cylinder::CylinderMeshOptions& options) {
+    cylinder::make_cylinder(cilium, options, triangulation);
+    mapping = cylinder::cylinder_mapping(triangulation);
   }
   void read(const MeshFile& file, const Cilium& cilium) {
     GmshMesh result = read_gmsh(file, cilium, triangulation);
@@ -106,8 +106,8 @@ double expect_same(const Mesh& a, const Mesh& b) {
   return largest;
 }
 
-CylinderMeshOptions small() {
-  CylinderMeshOptions options;
+cylinder::CylinderMeshOptions small() {
+  cylinder::CylinderMeshOptions options;
   options.square_cells = 2;
   options.rings = 2;
   options.finest_layer = 0.3;
@@ -149,8 +149,8 @@ TEST(GmshRoundTrip, KeepsCellsMaterialsBoundariesAndVolume) {
   }
 }
 
-// Oracle: make_cylinder() curves the same vertices itself (by manifolds): a first-order file gets
-// the same geometry here, and with it the exact volume πd²L/4.
+// Oracle: cylinder::make_cylinder() curves the same vertices itself (by manifolds): a first-order
+// file gets the same geometry here, and with it the exact volume πd²L/4.
 TEST(GmshRoundTrip, CurvesAFirstOrderMeshAsTheBuiltInOne) {
   const test::Folder folder;
   const Cilium cilium = test::stub_and_magnet();
@@ -219,7 +219,7 @@ TEST(GmshMeshes, RepairTurnedAndMirroredCells) {
 TEST(GmshMeshes, HonourSecondOrderNodesAndTellTheirArea) {
   const test::Folder folder;
   const Cilium cilium = test::stub_and_magnet();
-  CylinderMeshOptions options = small();
+  cylinder::CylinderMeshOptions options = small();
   options.equal_area = false;
   Mesh made;
   made.make(cilium, options);
@@ -284,4 +284,4 @@ TEST(GmshWriter, TellsWhatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace ciliaval::meshes
+}  // namespace ciliaval::meshes::gmsh

@@ -59,14 +59,14 @@ Cilium stub_and_magnet() {
 }
 
 TextMesh built_in(const Cilium& cilium) {
-  meshes::CylinderMeshOptions options;
+  meshes::cylinder::CylinderMeshOptions options;
   options.square_cells = 2;
   options.rings = 1;
   options.finest_layer = 0.5;
   options.coarsest_layer = 1;
   dealii::Triangulation<3> triangulation;
-  meshes::make_cylinder(cilium, options, triangulation);
-  const auto mapping = meshes::cylinder_mapping(triangulation);
+  meshes::cylinder::make_cylinder(cilium, options, triangulation);
+  const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
   TextMesh mesh;
   for (const auto& x : triangulation.get_vertices()) mesh.nodes.push_back({x[0], x[1], x[2]});
   for (std::size_t i = 0; i < cilium.segments.size(); ++i)

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/output/text_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "problem/support/words.h"
+
+namespace ciliaval::compare::output {
+namespace {
+
+/// Characters of a text in UTF-8: bytes 10xxxxxx continue one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  }));
+}
+
+}  // namespace
+
+std::string text_table(const TextRows& rows, std::string_view alignment) {
+  TextRows cells = rows;
+  std::vector<std::size_t> widths;
+  for (std::vector<std::string>& row : cells) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      row[i] = support::printable(row[i], "");
+      widths[i] = std::max(widths[i], width_of(row[i]));
+    }
+  }
+  std::string text;
+  for (const std::vector<std::string>& row : cells) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - width_of(row[i]), ' ');
+      const bool is_left = alignment[std::min(i, alignment.size() - 1)] == '<';
+      text += "  " + (is_left ? row[i] + padding : padding + row[i]);
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string number_cell(std::optional<double> value, double unit, std::string_view format) {
+  if (!value) return "-";
+  const std::string text = fmt::format(fmt::runtime(format), *value / unit);
+  const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
+  return is_zero && text.starts_with('-') ? text.substr(1) : text;
+}
+
+}  // namespace ciliaval::compare::output

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/loads/external_forces.h"
+
+#include "fem/solid/loads/dead_forces.h"
+
+namespace ciliaval::fem::solid::loads {
+using namespace discretisation;
+
+Load acting(const Load& load, double applied_force) {
+  if (const auto probe = load.as<ProbeLoad>())
+    return ContactLoad{applied_force, probe->height, probe->azimuth};
+  return load;
+}
+
+SpreadLoad spread_load(const Load& load, double area, double kernel_width) {
+  SpreadLoad result;
+  result.direction = direction(load);
+  if (const auto contact = load.as<ContactLoad>())
+    result.per_height = contact_density(contact->force, area, contact->height, kernel_width);
+  if (const auto flow = load.as<FlowLoad>())
+    result.per_height = flow_density(flow->force_per_height, area);
+  if (const auto dead = load.as<DeadLoad>()) result.per_volume = dead->force_per_length / area;
+  if (!result.per_height && !load.is<DeadLoad>() && !load.is<SectionLoad>())
+    refuse_type(load, "solid");
+  return result;
+}
+
+ExternalForces external_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                               const Load& load, double kernel_width) {
+  const SpreadLoad spread = spread_load(load, quadrature.area(), kernel_width);
+  if (const auto section = load.as<SectionLoad>())
+    return dead_forces(
+        section_force(space, quadrature, section->force, section->arclength, spread.direction));
+  if (!spread.per_height) {
+    const auto b = [&spread](const Vector3&) -> Vector3 {
+      return spread.per_volume * spread.direction;
+    };
+    return dead_forces(body_force(space, b));
+  }
+  return [&space, &quadrature, spread](const dealii::Vector<double>& displacement,
+                                       dealii::Vector<double>& forces,
+                                       const dealii::AffineConstraints<double>& constraints,
+                                       dealii::SparseMatrix<double>* matrix) {
+    add_height_forces(space, quadrature, *spread.per_height, spread.direction, displacement, forces,
+                      constraints, matrix);
+  };
+}
+
+}  // namespace ciliaval::fem::solid::loads

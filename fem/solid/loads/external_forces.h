@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/sparse_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <functional>
+
+#include "fem/solid/discretisation/extruded_quadrature.h"
+#include "fem/solid/discretisation/space.h"
+#include "fem/solid/loads/height_loads.h"
+#include "problem/load.h"
+
+namespace ciliaval::fem::solid::loads {
+
+/// External forces f(u): adds them to `forces` and, where `matrix` is not null, −∂f/∂u to it.
+using ExternalForces = std::function<void(
+    const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+    const dealii::AffineConstraints<double>& constraints, dealii::SparseMatrix<double>* matrix)>;
+
+/// A force F f(u) whose amplitude F is one more unknown, and the condition g(u) = 0 that determines
+/// it.
+struct UnknownForce {
+  std::function<ExternalForces(double amplitude)> forces;
+  /// g; adds ∂g/∂u to `gradient` where that is not null.
+  std::function<double(const dealii::Vector<double>& u, dealii::Vector<double>* gradient)>
+      condition;
+  double amplitude = 0;  ///< F: the guess, and the result
+};
+
+/// The load as far as it is spread over the solid (all but a section load); e in any case.
+SpreadLoad spread_load(const Load& load, double area, double kernel_width);
+
+/// The load's nodal forces as a function of the displacement (docs/theory/solid.md).
+ExternalForces external_forces(const discretisation::SolidSpace& space,
+                               const discretisation::ExtrudedQuadrature& quadrature,
+                               const Load& load, double kernel_width);
+
+/// The contact force of a probe, N; any other load as it is.
+Load acting(const Load& load, double applied_force);
+
+}  // namespace ciliaval::fem::solid::loads

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <deal.II/base/types.h>
+
+namespace ciliaval::meshes {
+
+/// Boundary ids of every mesh of a cilium.
+inline constexpr dealii::types::boundary_id base_id = 0;      ///< Z = 0
+inline constexpr dealii::types::boundary_id mantle_id = 1;    ///< X² + Y² = R²
+inline constexpr dealii::types::boundary_id tip_id = 2;       ///< Z = L
+inline constexpr dealii::types::boundary_id symmetry_id = 3;  ///< Y = 0 of the half cylinder
+
+}  // namespace ciliaval::meshes

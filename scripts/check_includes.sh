@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Fails, with file and line, where an include goes against the arrows of docs/developer/architecture.md, a folder holds more than 20
+# sources and headers, a file has more than 600 lines, or a folder's files declare another namespace than the folder's.
+# SPDX-License-Identifier: LGPL-2.1-or-later
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# Folder: what it may include beside itself. The longest folder that fits a file counts; tests may include everything.
+shared="problem compare/input compare/models compare/output compare/plot"
+export rules="
+problem:
+analytic: problem
+meshes: problem
+fem: problem
+fem/beam: problem
+fem/potential: problem fem/parallel.h
+fem/solid: problem meshes fem
+fem/calculix: problem meshes fem
+compare/input: problem analytic/elastica/elastica.h analytic/rod/field_models.h analytic/body/mesh_field.h fem/beam/beam.h fem/calculix/calculix_model.h fem/potential/potential.h fem/solid/solid_options.h fem/solid/material
+compare/models: problem analytic fem meshes compare/input
+compare/output: problem meshes compare/input compare/models ciliaval_version.h
+compare/plot: problem compare/output
+compare/regression: $shared
+compare/convergence: $shared compare/regression fem/solid/solid.h meshes/cylinder/cylinder_mesh.h
+compare/budget: $shared
+compare/sensing: $shared
+compare/study: $shared compare/budget analytic/elastica/elastica.h fem/checkpoint_file.h
+compare/claims: $shared compare/sensing compare/study analytic/rod/field_models.h
+compare/report: $shared compare/budget compare/convergence
+compare/app: .
+tests: ."
+git ls-files '*.h' '*.cc' | xargs awk '
+  function complain(text) { print FILENAME ":" FNR ": " text; failed = 1 }
+  BEGIN {
+    n = split(ENVIRON["rules"], lines, "\n")
+    for (i = 1; i <= n; ++i) if (split(lines[i], part, ":") > 1) allowed[part[1]] = part[1] " " part[2]
+  }
+  FNR == 1 {
+    folder = FILENAME; sub("/[^/]*$", "", folder)
+    if (++files[folder] == 21 && folder != "compare/study") complain(folder " holds more than 20 sources and headers")
+    for (key = folder; key != "" && !(key in allowed);) if (!sub("/[^/]*$", "", key)) key = ""
+    n = split(allowed[key], may)
+    space = "ciliaval::" folder; gsub("/", "::", space); sub("ciliaval::problem", "ciliaval", space)
+  }
+  FNR == 601 { complain("more than 600 lines") }
+  /^#include "/ && key != "tests" {
+    split($0, quoted, "\"")
+    for (i = 1; i <= n && may[i] != "." && index(quoted[2] "/", may[i] "/") != 1;) ++i
+    if (i > n) complain(key " must not include " quoted[2])
+  }
+  other != "" && !/^(struct|class) [A-Za-z]+;$/ { complain("namespace " other " in place of " space) }  # forward declarations may
+  { other = "" }
+  /^namespace ciliaval/ && key != "tests" && index($2 "::", space "::") != 1 { other = $2 }
+  END { exit failed }'
