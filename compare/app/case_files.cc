@@ -9,13 +9,28 @@
 #include <string>
 #include <system_error>
 
-#include "compare/app/commands/mesh_command.h"
 #include "compare/app/terminal.h"
+#include "meshes/gmsh/gmsh_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Reads the user's mesh of a case, if it names one and asks for the solid, and returns the remarks
+/// on it. Throws InputError and FileError as meshes::gmsh::read_gmsh().
+std::vector<std::string> check_case_mesh(const input::Case& problem) {
+  const fem::solid::SolidOptions& options = problem.options.solid;
+  const auto& ids = problem.mechanics;
+  if (options.mesh.empty() || std::find(ids.begin(), ids.end(), "solid") == ids.end()) return {};
+  dealii::Triangulation<3> triangulation;
+  return meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium, triangulation)
+      .remarks;
+}
+
+}  // namespace
 
 std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
   std::vector<input::Case> cases;
@@ -27,7 +42,7 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
       if (is_bench_file(file))
         throw InputError(file.string() + ": is a test bench, not a case: `ciliaval sense` runs it");
       cases.push_back(input::read_case(file));
-      for (const std::string& remark : commands::check_case_mesh(cases.back()))
+      for (const std::string& remark : check_case_mesh(cases.back()))
         print(fmt::format("Remark: {}: {}\n", cases.back().options.solid.mesh.string(), remark));
     } catch (const InputError& error) {
       faults += (faults.empty() ? "" : "\n") + std::string(error.what());

@@ -19,7 +19,6 @@
 #include <thread>
 #include <vector>
 
-#include "compare/app/command_line.h"
 #include "compare/app/commands/commands.h"
 #include "compare/app/terminal.h"
 #include "fem/parallel.h"
@@ -120,18 +119,22 @@ ExitCode execute(int argc, char** argv) {
       "Cross-validation of models of magnetic-cilium tactile sensors: runs several models of\n"
       "the bending and of the magnetic field on one case and says what separates them.",
       "ciliaval"};
-  app.set_version_flag("--version", ciliaval::compare::app::commands::version_line());
+  app.set_version_flag("--version", commands::version_line());
   app.footer(examples);
   app.require_subcommand(1);
-  ciliaval::compare::app::Command chosen;
-  ciliaval::compare::app::add_commands(app, command_line(argc, argv), chosen);
+  commands::CommandLine line{app, command_line(argc, argv), {}};
+  for (const auto add :
+       {commands::add_run, commands::add_validate, commands::add_mesh, commands::add_check,
+        commands::add_converge, commands::add_budget, commands::add_sense, commands::add_study,
+        commands::add_claims, commands::add_report, commands::add_list})
+    add(line);
   check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return print_parse_result(app, error);
   }
-  return chosen();
+  return line.chosen();
 }
 
 /// The stderr of a rank that keeps silent.
@@ -165,8 +168,8 @@ void start_ranks() {
 void print_error(const std::string& message, bool of_this_rank_alone) {
   using namespace std::chrono_literals;
   if (ciliaval::fem::rank() > 0 && !of_this_rank_alone) std::this_thread::sleep_for(10s);
-  const std::string line =
-      fmt::format("{}{}\n", is_located(message) ? "" : "ciliaval: ", ciliaval::support::printable(message));
+  const std::string line = fmt::format(
+      "{}{}\n", is_located(message) ? "" : "ciliaval: ", ciliaval::support::printable(message));
   const int file = ciliaval::fem::rank() > 0 ? silenced_stderr : STDERR_FILENO;
   if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
 }

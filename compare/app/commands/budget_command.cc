@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/budget_command.h"
+#include "compare/app/commands/commands.h"
 
 #include <stdexcept>
 
@@ -10,11 +10,18 @@
 #include "compare/models/registry.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
-#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
+
+struct Options {
+  std::filesystem::path file;
+  std::vector<std::string> without;  ///< models left out, "sensitivity"
+  OptionalFile json;
+  OptionalFile csv;
+  OptionalFile plot;  ///< an SVG file
+};
 
 budget::Budget run_budget(const input::Case& problem, const std::vector<std::string>& without) {
   ProgressLine line;
@@ -22,21 +29,22 @@ budget::Budget run_budget(const input::Case& problem, const std::vector<std::str
                               line.callback());
 }
 
-}  // namespace
-
-ExitCode budget_case(const std::filesystem::path& file, const BudgetOptions& options) {
-  if (fem::rank_count() > 1)
-    throw InputError("`ciliaval budget` runs on one rank: start it without mpirun");
-  const input::Case problem = read_cases({file}).front();
-  output::check_outputs({options.json, options.csv, options.plot}, input_files(file, problem));
+/// Splits the difference between the paper's model and the best one into the parts of its
+/// assumptions, whatever models the case lists. The plot comes last: without gnuplot, everything
+/// else is there. Returns `solver` if a model failed somewhere, `undecided` if no link could be
+/// judged.
+ExitCode execute(const Options& options, const std::string& words) {
+  require_one_rank("budget");
+  const input::Case problem = read_cases({options.file}).front();
+  output::check_outputs({options.json, options.csv, options.plot},
+                        input_files(options.file, problem));
   const budget::Budget budget = run_budget(problem, options.without);
   for (const budget::BudgetRow& row : budget.rows)
     if (const std::string message = budget::fault(row); !message.empty())
       throw std::logic_error("the error budget is wrong, please report it: " + message);
   print(budget::budget_text(budget));
   if (options.json)
-    output::write_file(*options.json,
-                       budget::budget_json(budget, output::provenance(options.command)));
+    output::write_file(*options.json, budget::budget_json(budget, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, budget::budget_csv(budget));
   if (options.plot) {
     const budget::Waterfall drawing = budget::waterfall(budget);
@@ -47,6 +55,30 @@ ExitCode budget_case(const std::filesystem::path& file, const BudgetOptions& opt
   }
   if (budget.failed) return ExitCode::solver;
   return budget.decided() ? ExitCode::pass : ExitCode::undecided;
+}
+
+}  // namespace
+
+void add_budget(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* budget = line.add(
+      "budget",
+      "Error budget: split what lies between the paper's model and the best one into the parts of\n"
+      "its assumptions, each with its numerical uncertainty, for tip, B, dB and dB/dF.",
+      options, execute);
+  add_file(budget, "CASE", options->file, "Case file (TOML); its lists of models do not matter");
+  budget
+      ->add_option(
+          "--without", options->without,
+          "Leave out beam, solid, volume, mesh, potential, dipole or sensitivity (dB/dF);\n"
+          "may be repeated. Without solid and potential it takes a second.")
+      ->type_name("MODEL")
+      ->expected(1)
+      ->take_all();
+  add_output(budget, "--json", options->json, "Write the budget as JSON too");
+  add_output(budget, "--csv", options->csv, "Write the budget as CSV too");
+  add_output(budget, "--plot", options->plot,
+             "Plot tip and dB of the last step as a waterfall; SVG, by gnuplot", "FILE.svg");
 }
 
 }  // namespace ciliaval::compare::app::commands

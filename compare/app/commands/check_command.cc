@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/check_command.h"
+#include "compare/app/commands/commands.h"
 
 #include <fmt/core.h>
 
@@ -15,13 +15,20 @@
 #include "compare/regression/baseline.h"
 #include "compare/regression/check.h"
 #include "compare/regression/report.h"
-#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<fs::path> files;
+  bool quick = false;   ///< without the models that take more than a moment
+  bool accept = false;  ///< write candidates for new baselines instead
+  OptionalFile junit;
+  OptionalFile json;
+};
 
 /// The models that take seconds, which `--quick` leaves out.
 constexpr std::array<std::string_view, 3> slow_models{"calculix", "solid", "potential"};
@@ -121,16 +128,17 @@ ExitCode verdict(const std::vector<regression::CheckReport>& reports) {
   return ExitCode::pass;
 }
 
-}  // namespace
-
-ExitCode check_cases(std::vector<fs::path> files, const CheckOptions& options) {
-  if (fem::rank_count() > 1)
-    throw InputError("`ciliaval check` runs on one rank: start it without mpirun");
+/// Runs the cases, all shipped ones if none is named, and compares them with the baselines beside
+/// them. With `accept` it writes `NAME.baseline.candidate.json` beside each case that differs from
+/// its baseline; the baseline itself is never touched. Returns `tolerance`, `solver` or `undecided`
+/// if the check fails.
+ExitCode execute(const Options& options, const std::string& words) {
+  require_one_rank("check");
   if (options.quick && options.accept)
     throw InputError("--accept needs all models: leave out --quick");
   if (options.accept && (options.json || options.junit))
     throw InputError("--accept writes candidates and no report: leave out --json and --junit");
-  if (files.empty()) files = shipped_cases().files;
+  const std::vector<fs::path> files = options.files.empty() ? shipped_cases().files : options.files;
   if (files.empty())
     throw InputError("no shipped cases were found beside the program: name a case file");
   const std::vector<input::Case> cases = read_cases(files);
@@ -144,7 +152,7 @@ ExitCode check_cases(std::vector<fs::path> files, const CheckOptions& options) {
   const auto baselines = read_baselines(files, options.accept);
   if (options.accept) {
     for (std::size_t i = 0; i < cases.size(); ++i)
-      write_candidate(cases[i], files[i], baselines[i] ? &*baselines[i] : nullptr, options.command);
+      write_candidate(cases[i], files[i], baselines[i] ? &*baselines[i] : nullptr, words);
     return ExitCode::pass;
   }
   std::vector<regression::CheckReport> reports;
@@ -157,6 +165,28 @@ ExitCode check_cases(std::vector<fs::path> files, const CheckOptions& options) {
   if (options.json) output::write_file(*options.json, regression::report_json(reports));
   print(regression::report_text(reports));
   return verdict(reports);
+}
+
+}  // namespace
+
+void add_check(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* check = line.add(
+      "check",
+      "Regression check: run cases, by default all shipped ones, and hold every result against\n"
+      "the accepted one in the baseline beside the case, NAME.baseline.json "
+      "(docs/guide/accuracy.md).",
+      options, execute);
+  check->add_option("CASE", options->files, "Case files (TOML); none: all shipped ones")
+      ->check(CLI::ExistingFile);
+  check->add_flag("--quick", options->quick,
+                  "Leave out solid and potential: seconds instead of minutes");
+  check->add_flag(
+      "--accept", options->accept,
+      "Check nothing: write NAME.baseline.candidate.json beside each case that has\n"
+      "changed, and say what changed from what to what. It is accepted by renaming it.");
+  add_output(check, "--junit", options->junit, "Write the report as JUnit's XML too");
+  add_output(check, "--json", options->json, "Write the report as JSON too");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/claims_command.h"
+#include "compare/app/commands/commands.h"
 
 #include "compare/app/case_files.h"
 #include "compare/app/terminal.h"
 #include "compare/claims/ledger.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
-#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
+namespace {
 
-ExitCode print_claims(const ClaimsOptions& options) {
-  if (fem::rank_count() > 1)
-    throw InputError("`ciliaval claims` runs on one rank: start it without mpirun");
+struct Options {
+  bool quick = false;  ///< without the 3D solid
+  OptionalFile json;
+};
+
+ExitCode execute(const Options& options, const std::string& words) {
+  require_one_rank("claims");
   const ShippedCases shipped = shipped_cases();
   const std::filesystem::path folder = shipped.folder / "paper";
   if (!std::filesystem::exists(folder / "fig3d.toml"))
@@ -25,9 +29,22 @@ ExitCode print_claims(const ClaimsOptions& options) {
   const std::vector<claims::Claim> all = claims::claims(folder, !options.quick, line.callback());
   print(claims::claims_text(all));
   if (options.json)
-    output::write_file(*options.json,
-                       claims::claims_json(all, output::provenance(options.command)));
+    output::write_file(*options.json, claims::claims_json(all, output::provenance(words)));
   return ExitCode::pass;
+}
+
+}  // namespace
+
+void add_claims(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* claims = line.add(
+      "claims",
+      "The paper's quantitative statements, each with what the models find: reproduced, not\n"
+      "reproduced, depends on the model, or not checkable and why (docs/evidence/paper.md).",
+      options, execute);
+  claims->add_flag("--quick", options->quick,
+                   "Without the 3D solid: seconds instead of two minutes");
+  add_output(claims, "--json", options->json, "Write the ledger as JSON too");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace ciliaval::compare::app::commands {
 
@@ -18,31 +19,51 @@ enum class ExitCode {
   undecided = 5      ///< `check`, `converge`, `budget`: nothing could be compared, refined, judged
 };
 
-struct RunOptions {
-  std::filesystem::path directory = "results";
-  bool fresh = false;   ///< delete the checkpoints of runs that were killed
-  std::string command;  ///< the command line, for the provenance
+/// The command line while it is declared and parsed. It must outlive the parsing.
+struct CommandLine {
+  CLI::App& program;
+  std::string words;                 ///< as a shell reads them back, for the provenance
+  std::function<ExitCode()> chosen;  ///< the command that the user has named
+
+  /// Adds a command. `execute(options)` becomes the chosen one if the user names it.
+  template <typename Options, typename Execute>
+  CLI::App* add(const char* name, const char* description, std::shared_ptr<Options> options,
+                Execute execute) {
+    CLI::App* command = program.add_subcommand(name, description);
+    command->callback([this, options, execute] {
+      chosen = [this, options, execute] { return execute(*options, words); };
+    });
+    return command;
+  }
 };
 
-/// `ciliaval run`: reads and checks all case files, output folders and checkpoints before anything
-/// runs, then runs each case, from its checkpoint if there is one, writes its results to
-/// DIRECTORY/name and its table to stdout. Throws InputError (also if two cases have the same name)
-/// and FileError.
-ExitCode run_cases(const std::vector<std::filesystem::path>& files, const RunOptions& options);
+using OptionalFile = std::optional<std::filesystem::path>;
 
-/// `ciliaval validate`: reads and checks cases and studies, and says so on stdout. Throws
-/// InputError with the faults of all files, FileError.
-void validate_cases(const std::vector<std::filesystem::path>& files);
+/// A positional file that must exist.
+CLI::Option* add_file(CLI::App* command, const char* name, std::filesystem::path& file,
+                      const char* description);
+/// An option that names a file to write.
+void add_output(CLI::App* command, const char* name, OptionalFile& file, const char* description,
+                const char* type = "FILE");
 
-/// `ciliaval mesh`: writes the solid's mesh of a case to a `.msh` or `.vtu` file and a line about
-/// it to stdout (compare/mesh_command.h). Throws InputError, FileError.
-void write_mesh(const std::filesystem::path& file, const std::filesystem::path& output,
-                std::optional<unsigned int> refinement, const std::string& command);
-
-/// `ciliaval list`: models, loads, shipped cases and studies, to stdout.
-void list();
+/// Throws InputError under mpirun.
+void require_one_rank(const char* command);
 
 /// "ciliaval 0.1.0 (git …)"
 std::string version_line();
+
+// Each adds a command with its options and help. The commands throw InputError before anything
+// runs, SolverError and FileError.
+void add_run(CommandLine& line);
+void add_validate(CommandLine& line);
+void add_mesh(CommandLine& line);
+void add_check(CommandLine& line);
+void add_converge(CommandLine& line);
+void add_budget(CommandLine& line);
+void add_sense(CommandLine& line);
+void add_study(CommandLine& line);
+void add_claims(CommandLine& line);
+void add_report(CommandLine& line);
+void add_list(CommandLine& line);
 
 }  // namespace ciliaval::compare::app::commands

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/converge_command.h"
+#include "compare/app/commands/commands.h"
 
 #include <vector>
 
@@ -9,19 +9,30 @@
 #include "compare/convergence/study.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
-#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
+namespace {
 
-ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions& options) {
-  if (fem::rank_count() > 1)
-    throw InputError("`ciliaval converge` runs on one rank: start it without mpirun");
-  const input::Case problem = read_cases({file}).front();
-  output::check_outputs({options.json, options.csv, options.plot}, input_files(file, problem));
+struct Options {
+  std::filesystem::path file;
+  unsigned int levels = 3;
+  OptionalFile json;
+  OptionalFile csv;
+  OptionalFile plot;  ///< an SVG file
+};
+
+/// Refines each model of a case through the levels of its meshes, degrees, sums and tolerances. The
+/// plot comes last: without gnuplot, everything else is there. Returns `solver` if a model failed
+/// on a level, `undecided` if the case has no model that can be refined.
+ExitCode execute(const Options& options, const std::string& words) {
+  require_one_rank("converge");
+  const input::Case problem = read_cases({options.file}).front();
+  output::check_outputs({options.json, options.csv, options.plot},
+                        input_files(options.file, problem));
   if (!problem.options.solid.mesh.empty())
     throw InputError(
-        file.string() +
+        options.file.string() +
         ": a mesh of the user has no levels of refinement: leave out models.solid.mesh");
   std::vector<convergence::RefinementStudy> studies;
   bool failed = false;
@@ -32,8 +43,8 @@ ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions&
     failed = failed || !studies.back().failure.empty();
   }
   if (options.json)
-    output::write_file(*options.json, convergence::study_json(problem.name, studies,
-                                                              output::provenance(options.command)));
+    output::write_file(*options.json,
+                       convergence::study_json(problem.name, studies, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, convergence::study_csv(studies));
   if (studies.empty()) {
     print("The case has no model that can be refined: `dipole` is a closed form.\n");
@@ -48,6 +59,29 @@ ExitCode converge_case(const std::filesystem::path& file, const ConvergeOptions&
       plot::write_svg(*options.plot, drawing.script, drawing.size);
   }
   return failed ? ExitCode::solver : ExitCode::pass;
+}
+
+}  // namespace
+
+void add_converge(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* converge = line.add(
+      "converge",
+      "Refinement study: refine meshes, element degrees, sums and tolerances of each model of a\n"
+      "case; give the observed order, the extrapolated value and its interval of each result, or\n"
+      "say why there is none.",
+      options, execute);
+  add_file(converge, "CASE", options->file, "Case file (TOML)");
+  converge
+      ->add_option("--levels", options->levels,
+                   "How many levels of each refinement, from the coarsest, or as many as there\n"
+                   "are (solid 4, potential 3)")
+      ->capture_default_str();
+  add_output(converge, "--json", options->json, "Write the study as JSON too");
+  add_output(converge, "--csv", options->csv, "Write the study as CSV too");
+  add_output(converge, "--plot", options->plot,
+             "Plot the errors over the levels' sizes, with the fitted orders; SVG, by gnuplot",
+             "FILE.svg");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/mesh_command.h"
+#include "compare/app/commands/commands.h"
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <memory>
 
+#include "compare/app/case_files.h"
+#include "compare/app/terminal.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "compare/output/vtk/files.h"
@@ -21,6 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct Options {
+  fs::path problem;
+  fs::path output;
+  std::optional<unsigned int> refinement;
+};
+
 struct CaseMesh {
   meshes::MeshNodes nodes;
   std::vector<std::string> remarks;
@@ -33,9 +40,10 @@ CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refin
     options.symmetry = false;
     if (refinement) options.refinement = *refinement;
     meshes::cylinder::make_cylinder(problem.cilium,
-                          fem::solid::cylinder_mesh_options(options, problem.load_path),
-                          triangulation);
-    return {meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation)), {}};
+                                    fem::solid::cylinder_mesh_options(options, problem.load_path),
+                                    triangulation);
+    return {meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation)),
+            {}};
   }
   if (refinement)
     throw InputError(
@@ -47,40 +55,56 @@ CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refin
   return {meshes::mesh_nodes(triangulation, *mesh.mapping), std::move(mesh.remarks)};
 }
 
-}  // namespace
-
-std::string write_case_mesh(const input::Case& problem, const fs::path& output,
-                            std::optional<unsigned int> refinement, const std::string& command) {
+/// Writes the mesh on which the solid solves a case, whole (not its half): the built-in one at the
+/// case's refinement or at the one given, or the user's of [models.solid] mesh as it was read. A
+/// `.msh` has the names of the segments and the boundary and can be named in a case again, a `.vtu`
+/// is for ParaView; both keep the curved geometry.
+ExitCode execute(const Options& options, const std::string& words) {
+  const input::Case problem = input::read_case(options.problem);
+  const fs::path& output = options.output;
+  output::check_outputs({output}, input_files(options.problem, problem));
   const std::string extension = output.extension().string();
   if (extension != ".msh" && extension != ".vtu")
     throw InputError(
         fmt::format("{}: the mesh is written as .msh (Gmsh) or .vtu (ParaView): give "
                     "the file one of these extensions",
                     output.string()));
-  const CaseMesh mesh = make_mesh(problem, refinement);
+  const CaseMesh mesh = make_mesh(problem, options.refinement);
   output::write_file(output, [&](const fs::path& file) {
     if (extension == ".msh") {
       meshes::gmsh::write_gmsh(mesh.nodes, problem.cilium, file);
       return;
     }
     const auto grid = output::vtk::mesh_grid(mesh.nodes, problem.cilium);
-    output::vtk::add_provenance(*grid, output::provenance(command));
+    output::vtk::add_provenance(*grid, output::provenance(words));
     output::vtk::write(*grid, file);
   });
   std::string text = fmt::format("Mesh: {}: {} hexahedra, {} nodes, {} boundary faces, in metres\n",
                                  output.string(), mesh.nodes.cells.size(), mesh.nodes.nodes.size(),
                                  mesh.nodes.faces.size());
   for (const std::string& remark : mesh.remarks) text += fmt::format("Remark: {}\n", remark);
-  return text;
+  print(text);
+  return ExitCode::pass;
 }
 
-std::vector<std::string> check_case_mesh(const input::Case& problem) {
-  const fem::solid::SolidOptions& options = problem.options.solid;
-  const auto& ids = problem.mechanics;
-  if (options.mesh.empty() || std::find(ids.begin(), ids.end(), "solid") == ids.end()) return {};
-  dealii::Triangulation<3> triangulation;
-  return meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium, triangulation)
-      .remarks;
+}  // namespace
+
+void add_mesh(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* mesh = line.add(
+      "mesh",
+      "Write the solid's mesh of a case to a file: FILE.msh for Gmsh, with the names of the\n"
+      "segments and the boundary, or FILE.vtu for ParaView. A .msh can be changed and named\n"
+      "in the case, [models.solid] mesh = \"FILE.msh\" (docs/guide/meshes.md).",
+      options, execute);
+  add_file(mesh, "CASE", options->problem, "Case file (TOML)");
+  mesh->add_option("-o,--output", options->output,
+                   "File to write: .msh or .vtu; one that is there is replaced")
+      ->type_name("FILE")
+      ->required();
+  mesh->add_option("--refinement", options->refinement,
+                   "0 coarse, 1 default, 2 fine; left out: as the case says")
+      ->type_name("N");
 }
 
 }  // namespace ciliaval::compare::app::commands

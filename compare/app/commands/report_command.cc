@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/report_command.h"
+#include "compare/app/commands/commands.h"
 
 #include <fmt/core.h>
 
@@ -7,14 +7,37 @@
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "compare/report/report.h"
-#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
+namespace {
 
-ExitCode write_report(const std::filesystem::path& folder, const ReportOptions& options) {
-  if (fem::rank_count() > 1)
-    throw InputError("`ciliaval report` runs on one rank: start it without mpirun");
+constexpr const char* report_help = R"(
+The page shows what lies in DIR and in the folders in it, whatever the files are called:
+
+  ciliaval run CASE.toml -o DIR                      DIR/<case>/summary.json
+  ciliaval study NAME.study.toml -o DIR              DIR/<study>/study.json
+  ciliaval budget CASE.toml --json DIR/NAME.budget.json
+  ciliaval converge CASE.toml --json DIR/NAME.converge.json
+  ciliaval sense NAME.sense.toml --json DIR/NAME.sense.json
+  ciliaval claims --json DIR/claims.json
+  ciliaval check --json DIR/check.json
+  pvpython DIR/<case>/vtk/open.py DIR/pictures/NAME.png
+
+What is not there is named in the page with its command. No number is computed: each is from a
+file that the page names. A file that is damaged is named, the others are shown, and the exit code
+is 4; so it is where gnuplot, which draws the figures, is not installed (docs/guide/report.md).)";
+
+struct Options {
+  std::filesystem::path folder = "results";
+  OptionalFile output;  ///< else report.html in the folder
+};
+
+/// Where a result file is damaged or a figure cannot be drawn, the page is written with what can be
+/// shown and `input_output` returned.
+ExitCode execute(const Options& options, const std::string& words) {
+  const std::filesystem::path& folder = options.folder;
+  require_one_rank("report");
   if (!std::filesystem::is_directory(folder))
     throw InputError(fmt::format(
         "there is no folder `{}`: name the one that `ciliaval run` wrote to", folder.string()));
@@ -24,14 +47,29 @@ ExitCode write_report(const std::filesystem::path& folder, const ReportOptions& 
         "`{}` is there and may be a result: the page replaces .html files only", file.string()));
   output::check_outputs({file}, {});
   report::Figures figures;
-  const report::Report made =
-      report::results_page(folder, output::provenance(options.command), figures);
+  const report::Report made = report::results_page(folder, output::provenance(words), figures);
   output::write_file(file, made.html);
   for (const std::string& what : made.damaged) warn(what);
   if (!figures.failure().empty()) warn(figures.failure());
   print(fmt::format("Report: {}\n", file.string()));
   return made.damaged.empty() && figures.failure().empty() ? ExitCode::pass
                                                            : ExitCode::input_output;
+}
+
+}  // namespace
+
+void add_report(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* report = line.add(
+      "report",
+      "One page of everything in a folder of results, as one file that opens offline: cases,\n"
+      "studies, error budgets, convergence, loads from readings, the ledger of claims, pictures.",
+      options, execute);
+  report->footer(report_help);
+  report->add_option("DIR", options->folder, "Folder of results")->capture_default_str();
+  add_output(report, "-o,--output", options->output,
+             "File to write; left out: DIR/report.html. One that is there is replaced",
+             "FILE.html");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/sense_command.h"
+#include "compare/app/commands/commands.h"
 
 #include <algorithm>
 #include <initializer_list>
@@ -12,16 +12,38 @@
 #include "compare/output/provenance.h"
 #include "compare/sensing/bench.h"
 #include "compare/sensing/sensing.h"
-#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
 
-void require_one_rank() {
-  if (fem::rank_count() > 1)
-    throw InputError("`ciliaval sense` runs on one rank: start it without mpirun");
-}
+constexpr const char* sense_help = R"(
+READINGS.csv has a header with units and a row for each reading:
+
+  sample, Bx [uT], By [uT], Bz [uT]
+  unloaded, 12.1, -33.0, 2231.5          the straight cilium; several rows: their mean
+  first, 71.4, -1.2, 2230.9
+  second, 100.2, 14.8, 2226.0
+
+or dBx, dBy, dBz, what the load has changed. Without READINGS, CASE is a simulated test bench,
+NAME.sense.toml: errors of speed and direction, and which error of the sensor makes them.
+
+The load found is the least-squares solution with the chosen pair of models, its interval that of
+the noise. `nothing`: the interval holds zero; `misfit`: no load explains the reading; `beyond
+range`: see --largest (docs/guide/sensing.md).)";
+
+struct Options {
+  std::filesystem::path file;
+  std::filesystem::path readings;
+  OptionalFile background;
+  std::string models = "elastica/volume";
+  std::string noise = "1 uT";          ///< standard deviation of each component of a reading
+  std::optional<std::string> largest;  ///< load; else 1.25 times the case's largest
+  OptionalFile json;
+  OptionalFile csv;
+  OptionalFile plot;               ///< of a bench, an SVG file
+  std::vector<std::string> given;  ///< names of the options on the command line
+};
 
 const Quantity& load_quantity(const Load& load) {
   const std::string_view unit = magnitude_unit(load);
@@ -30,7 +52,7 @@ const Quantity& load_quantity(const Load& load) {
 }
 
 /// The largest load to be found.
-double largest_load(const input::Case& problem, const SenseOptions& options) {
+double largest_load(const input::Case& problem, const Options& options) {
   if (options.largest)
     return input::parse_quantity(*options.largest, load_quantity(problem.load_path.front()));
   double largest = 0;
@@ -50,52 +72,34 @@ ExitCode exit_code(const sensing::Sensing& sensing) {
 }
 
 /// Throws InputError if an option was given that has no effect here.
-void refuse_options(const SenseOptions& options, std::initializer_list<std::string_view> unfit,
+void refuse_options(const Options& options, std::initializer_list<std::string_view> unfit,
                     const char* why) {
   for (const std::string& name : options.given)
     if (std::find(unfit.begin(), unfit.end(), name) != unfit.end())
       throw InputError(name + ": " + why + ": leave it out");
 }
 
-}  // namespace
-
-ExitCode sense(const std::filesystem::path& file, const std::filesystem::path& readings,
-               const SenseOptions& options) {
-  if (is_bench_file(file)) {
-    if (!readings.empty())
-      throw InputError(file.string() + " is a test bench, which makes its own readings: leave " +
-                       readings.string() + " out");
-    refuse_options(options, {"--background", "--models", "--noise", "--largest", "--csv"},
-                   "a test bench states its models and errors in its file and has no table");
-    return sense_bench(file, options);
-  }
-  if (readings.empty())
-    throw InputError("there is no file of readings after " + file.string() +
-                     "; a test bench to be simulated is called NAME.sense.toml");
-  refuse_options(options, {"--plot"}, "a plot shows a test bench, not readings");
-  return sense_readings(file, readings, options);
-}
-
-ExitCode sense_bench(const std::filesystem::path& file, const SenseOptions& options) {
-  require_one_rank();
-  const sensing::Bench bench = sensing::read_bench(file);
-  output::check_outputs({options.json, options.plot}, input_files(file, bench.problem));
+/// Simulates the test bench `options.file`.
+ExitCode simulate_bench(const Options& options, const std::string& words) {
+  const sensing::Bench bench = sensing::read_bench(options.file);
+  output::check_outputs({options.json, options.plot}, input_files(options.file, bench.problem));
   ProgressLine line;
   const sensing::BenchResult result = sensing::run_bench(bench, line.callback());
   print(sensing::bench_text(bench, result));
   if (options.json)
     output::write_file(*options.json,
-                       sensing::bench_json(bench, result, output::provenance(options.command)));
+                       sensing::bench_json(bench, result, output::provenance(words)));
   if (options.plot)
     plot::write_svg(*options.plot, sensing::bench_script(bench, result), {700, 760});
   return ExitCode::pass;
 }
 
-ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem::path& readings,
-                        const SenseOptions& options) {
-  require_one_rank();
-  const input::Case problem = read_cases({file}).front();
-  if (problem.sensors.empty()) throw InputError(file.string() + ": the case has no sensor");
+/// The load and its direction, with confidence intervals, from each reading of the case's sensors.
+/// Returns `solver` if the least squares fails at a reading, `undecided` if no reading gives a
+/// load.
+ExitCode sense_readings(const Options& options, const std::string& words) {
+  const input::Case problem = read_cases({options.file}).front();
+  if (problem.sensors.empty()) throw InputError(options.file.string() + ": the case has no sensor");
   sensing::Sensing sensing;
   sensing.case_name = problem.name;
   sensing.models = sensing::parse_pair(options.models);
@@ -108,13 +112,13 @@ ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem
   sensing.unit = magnitude_unit(problem.load_path.front());
   sensing.largest = largest_load(problem, options);
   sensing.flow = sensing::flow_law(problem);
-  std::vector<std::filesystem::path> inputs = input_files(file, problem);
-  inputs.push_back(readings);
+  std::vector<std::filesystem::path> inputs = input_files(options.file, problem);
+  inputs.push_back(options.readings);
   if (options.background) inputs.push_back(*options.background);
   output::check_outputs({options.json, options.csv}, inputs);
   // Before the models run, which may take a minute.
   const sensing::SensorReadings read =
-      sensing::read_sensor_readings(readings, options.background, problem.sensors.size());
+      sensing::read_sensor_readings(options.readings, options.background, problem.sensors.size());
   ProgressLine line;
   const sensing::Shapes shapes =
       sensing::shapes_up_to(problem, sensing.models.mechanics, sensing.largest, line.callback());
@@ -130,10 +134,68 @@ ExitCode sense_readings(const std::filesystem::path& file, const std::filesystem
                                     : Eigen::VectorXd(sample.change - response.undeformed())));
   print(sensing::sensing_text(sensing));
   if (options.json)
-    output::write_file(*options.json,
-                       sensing::sensing_json(sensing, output::provenance(options.command)));
+    output::write_file(*options.json, sensing::sensing_json(sensing, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, sensing::sensing_csv(sensing));
   return exit_code(sensing);
+}
+
+ExitCode execute(const Options& options, const std::string& words) {
+  require_one_rank("sense");
+  if (is_bench_file(options.file)) {
+    if (!options.readings.empty())
+      throw InputError(options.file.string() +
+                       " is a test bench, which makes its own readings: leave " +
+                       options.readings.string() + " out");
+    refuse_options(options, {"--background", "--models", "--noise", "--largest", "--csv"},
+                   "a test bench states its models and errors in its file and has no table");
+    return simulate_bench(options, words);
+  }
+  if (options.readings.empty())
+    throw InputError("there is no file of readings after " + options.file.string() +
+                     "; a test bench to be simulated is called NAME.sense.toml");
+  refuse_options(options, {"--plot"}, "a plot shows a test bench, not readings");
+  return sense_readings(options, words);
+}
+
+}  // namespace
+
+void add_sense(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* sense = line.add(
+      "sense",
+      "From what the sensors read to the load: force or flow speed and direction of each reading,\n"
+      "with intervals of 95 %.",
+      options, execute);
+  sense->footer(sense_help);
+  add_file(sense, "CASE", options->file,
+           "Case file (TOML): cilium, kind of load, sensors; or a test bench,\n"
+           "NAME.sense.toml, which is simulated");
+  add_file(sense, "READINGS", options->readings, "Readings (CSV with units)")->required(false);
+  sense
+      ->add_option("--background", options->background,
+                   "The ambient field at each azimuth of the stage (CSV: azimuth, Bx, By, Bz),\n"
+                   "taken off the readings, which then have a column `azimuth`")
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
+  sense->add_option("--models", options->models, "The pair of models to invert, such as solid/mesh")
+      ->type_name("MECHANICS/FIELD")
+      ->capture_default_str();
+  sense->add_option("--noise", options->noise, "Standard deviation of a component of a reading")
+      ->type_name("QUANTITY")
+      ->capture_default_str();
+  sense
+      ->add_option("--largest", options->largest,
+                   "The largest load to look for; left out: 1.25 times the case's largest")
+      ->type_name("QUANTITY");
+  add_output(sense, "--json", options->json, "Write the loads as JSON too");
+  add_output(sense, "--csv", options->csv, "Write the loads as CSV too");
+  add_output(sense, "--plot", options->plot,
+             "Of a test bench: plot the loads found over the true ones; SVG, by gnuplot",
+             "FILE.svg");
+  sense->parse_complete_callback([options, sense] {
+    for (const CLI::Option* option : sense->get_options())
+      if (option->count() > 0) options->given.push_back(option->get_name());
+  });
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/study_command.h"
+#include "compare/app/commands/commands.h"
 
 #include <fmt/core.h>
 
@@ -14,13 +14,50 @@
 #include "compare/study/report.h"
 #include "compare/study/sweep.h"
 #include "compare/study/tolerances.h"
-#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* study_help = R"(
+A study file names a case, the numbers of it to vary, and the pairs of models to run:
+
+  [study]
+  name = "my-study"                      # results in DIR/my-study
+  case = "my.toml"                       # beside the study file
+  pairs = ["elastica/line", "beam/volume"]
+  outputs = ["dB_norm", "sensitivity", "range"]
+
+  [fixed]                                # numbers of the case that differ from it
+  load.force = "1 mN"
+
+  [[parameter]]                          # one or more: every combination is a point
+  path = "cilium.segment.base.young_modulus"
+  from = "0.1 MPa"
+  to = "3 MPa"
+  count = 40
+  spacing = "logarithmic"
+
+  [tolerances]                           # or in place of it: standard deviations
+  cilium.diameter = "0.05 mm"            # at the case with its fixed numbers
+  cilium.segment.base.young_modulus = "5 %"
+
+  [optimise]                             # or: the best design within `from` and `to` of each
+  maximise = "dB_norm"                   # [[parameter]], found with the first pair, confirmed
+  at_least.range = "2 mN"                # with all of them
+
+Each point is kept as soon as it is solved: a study that was killed goes on where it was when the
+same command is given again. All keys and outputs: docs/guide/studies.md; examples:
+`ciliaval list`.)";
+
+struct Options {
+  fs::path file;
+  fs::path directory = "results";
+  OptionalFile json;
+  bool fresh = false;  ///< forget what an earlier run of the study has computed
+};
 
 constexpr const char* journal_name = "points.journal";
 
@@ -94,23 +131,21 @@ ExitCode exit_code(const study::StudyResult& result) {
                                                                              : ExitCode::pass;
 }
 
-}  // namespace
-
-ExitCode run_study(const fs::path& file, const StudyOptions& options) {
-  if (fem::rank_count() > 1)
-    throw InputError(
-        "`ciliaval study` runs on one rank, its points on all cores: start it without "
-        "mpirun");
-  const study::Study study = study::read_study(file);
+/// Computes the outputs of each pair of models at each point, from where an earlier call was
+/// stopped. The plots come last: without gnuplot, everything else is there. Returns `solver` if
+/// every point failed.
+ExitCode execute(const Options& options, const std::string& words) {
+  require_one_rank("study");
+  const study::Study study = study::read_study(options.file);
   const fs::path folder = options.directory / study.name;
-  std::vector<fs::path> inputs = input_files(file, study.base);
+  std::vector<fs::path> inputs = input_files(options.file, study.base);
   inputs.push_back(folder / journal_name);
   output::check_outputs({options.json}, inputs);
   make_folder(folder);
   study::Journal journal(folder / journal_name, options.fresh);
   open_journal(study, folder, journal);
   const study::StudyResult result = solve(study, journal);
-  const std::string json = study::json(result, output::provenance(options.command));
+  const std::string json = study::json(result, output::provenance(words));
   if (!study.parameters.empty()) output::write_file(folder / "study.csv", study::csv(result));
   if (!study.tolerances.empty())
     output::write_file(folder / "tolerances.csv", study::tolerance_csv(result));
@@ -124,6 +159,29 @@ ExitCode run_study(const fs::path& file, const StudyOptions& options) {
   for (const study::StudyPlot& drawing : study::plots(result))
     plot::write_svg(folder / drawing.name, drawing.script, drawing.size);
   return exit_code(result);
+}
+
+}  // namespace
+
+void add_study(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* study = line.add(
+      "study",
+      "Parameter study: vary numbers of a case, alone or together, run pairs of models at each\n"
+      "point, and write tables and plots of the signal, its sensitivity and its range; propagate\n"
+      "tolerances to their standard deviations; find the best design within limits.",
+      options, execute);
+  study->footer(study_help);
+  add_file(study, "STUDY", options->file, "Study file (TOML)");
+  study
+      ->add_option("-o,--output", options->directory,
+                   "Folder for the results: study.csv, study.json, plots and the journal of what\n"
+                   "is solved, in a subfolder of the study's name")
+      ->type_name("DIR")
+      ->capture_default_str();
+  add_output(study, "--json", options->json, "Write study.json to this file too");
+  study->add_flag("--fresh", options->fresh,
+                  "Start anew: forget what an earlier run of the study has solved");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "compare/app/case_files.h"
+#include "compare/app/commands/commands.h"
+#include "compare/app/terminal.h"
+#include "compare/models/registry.h"
+#include "compare/sensing/bench.h"
+#include "compare/study/study.h"
+#include "problem/error.h"
+
+namespace ciliaval::compare::app::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<fs::path> files;
+};
+
+std::string title_of(const fs::path& file) {
+  try {
+    if (is_study_file(file)) return study::read_study(file).title;
+    if (is_bench_file(file)) return sensing::read_bench(file).title;
+    return input::read_case(file).title;
+  } catch (const Error&) {
+    return "(cannot be read: see `ciliaval validate`)";
+  }
+}
+
+std::string list_of_cases() {
+  const ShippedCases shipped = shipped_cases();
+  if (shipped.files.empty()) return "Shipped cases: none found beside the program\n";
+  std::string text;
+  const auto add = [&](const char* kind, const std::vector<fs::path>& files) {
+    if (files.empty()) return;
+    text += fmt::format("{}Shipped {}, in {}\n", text.empty() ? "" : "\n", kind,
+                        shipped.folder.string());
+    for (const fs::path& file : files)
+      text += fmt::format("  {:<28} {}\n", file.lexically_relative(shipped.folder).string(),
+                          title_of(file));
+  };
+  add("cases", shipped.files);
+  add("studies", shipped.studies);
+  add("test benches", shipped.benches);
+  return text;
+}
+
+ExitCode validate(const Options& options, const std::string&) {
+  std::vector<fs::path> files;
+  for (const fs::path& file : options.files) {
+    if (is_bench_file(file)) {
+      const sensing::Bench bench = sensing::read_bench(file);
+      print(fmt::format("{}: the test bench is valid: {} loads at {} azimuths, {} draws\n",
+                        file.string(), bench.problem.load_path.size(), bench.azimuths,
+                        bench.draws));
+      continue;
+    }
+    if (!is_study_file(file)) {
+      files.push_back(file);
+      continue;
+    }
+    const study::Study study = study::read_study(file);
+    const std::string what = study.optimisation ? fmt::format("an optimum over {} numbers",
+                                                              study.optimisation->parameters.size())
+                                                : fmt::format("{} points", study.point_count());
+    print(fmt::format("{}: study \"{}\" is valid: {}, {} pairs of models\n", file.string(),
+                      study.name, what, study.pairs.size()));
+  }
+  const std::vector<input::Case> cases = read_cases(files);
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    print(
+        fmt::format("{}: case \"{}\" is valid: {} load steps, {} sensors, mechanics {}, fields "
+                    "{}\n",
+                    files[i].string(), cases[i].name, cases[i].load_path.size(),
+                    cases[i].sensors.size(), cases[i].mechanics.size(), cases[i].fields.size()));
+  return ExitCode::pass;
+}
+
+ExitCode list(const Options&, const std::string&) {
+  std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
+  for (const models::MechanicsEntry& entry : models::mechanics_models())
+    text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
+  text += fmt::format(
+      "  {:<10} {}\n", "(external)",
+      "[[models.external]]: centrelines and readings from CSV files (docs/guide/referees.md)");
+  text += "\nField models\n";
+  for (const models::FieldEntry& entry : models::field_models())
+    text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
+  text +=
+      "\nLoads\n"
+      "  contact    horizontal force that stays at a height while the cilium slides under it\n"
+      "  flow       horizontal force per unit of current height: drag\n"
+      "  section    dead force on one material cross-section\n"
+      "  dead       dead force per unit of reference length\n"
+      "  probe      displacement of the contact point at a height: the contact force is a result\n"
+      "\n";
+  print(text + list_of_cases());
+  return ExitCode::pass;
+}
+
+}  // namespace
+
+void add_validate(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  line.add("validate", "Read and check case files, run nothing", options, validate)
+      ->add_option("CASE", options->files, "Case, study and test bench files (TOML)")
+      ->required()
+      ->check(CLI::ExistingFile);
+}
+
+void add_list(CommandLine& line) {
+  line.add("list", "List models, loads, shipped cases, studies and benches",
+           std::make_shared<Options>(), list);
+}
+
+}  // namespace ciliaval::compare::app::commands
