@@ -282,6 +282,8 @@ bool read_header(Section& root, Case& c) {
   const std::size_t before = root.faults().size();
   Section table = require_section(root, "case");
   read_name_and_title(table, c.name, c.title);
+  if (const toml::node* node = table.find("references"))
+    c.references = read_line(*node, "references", longest_name, root.faults()).value_or("");
   table.finish();
   return root.faults().size() == before;
 }

@@ -19,8 +19,7 @@
 namespace ciliaval::compare::input {
 namespace {
 
-constexpr std::uintmax_t largest_file = 1'000'000;  ///< bytes
-constexpr int deepest_key = 32;                     ///< parts of a dotted key
+constexpr int deepest_key = 32;  ///< parts of a dotted key
 constexpr std::size_t none = std::string_view::npos;
 
 /// Whether the byte starts a character: bytes 10xxxxxx continue one.
@@ -156,7 +155,8 @@ toml::table parse_toml(std::string_view text, std::string_view file) {
   }
 }
 
-std::string read_toml_file(const std::filesystem::path& file, std::string_view kind) {
+std::string read_file(const std::filesystem::path& file, std::string_view kind,
+                      std::uintmax_t largest) {
   const std::string name = file.string();
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
@@ -167,9 +167,9 @@ std::string read_toml_file(const std::filesystem::path& file, std::string_view k
   if (!std::filesystem::is_regular_file(status))
     throw InputError(fmt::format("{}: is not a regular file", name));
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!error && size > largest_file)
+  if (!error && size > largest)
     throw InputError(fmt::format("{}: {} bytes are too large for a {} file (at most {})", name,
-                                 size, kind, largest_file));
+                                 size, kind, largest));
   std::ifstream in(file, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (!in.is_open() || in.bad())

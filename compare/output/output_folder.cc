@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include "compare/models/registry.h"
+#include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
 #include "compare/output/results.h"
 #include "problem/error.h"
@@ -102,12 +102,13 @@ bool is_result(const fs::path& name, const Series& series) {
 /// its summary names; none if there is no such summary. The list of comparisons, which may be long,
 /// is skipped.
 std::optional<Series> series_in(const fs::path& folder, const std::string& case_name) {
-  using Json = nlohmann::json;
-  std::ifstream stream(folder / "summary.json");
-  const auto wanted = [](int, Json::parse_event_t event, const Json& parsed) {
-    return event != Json::parse_event_t::key || parsed != "comparisons";
-  };
-  const Json summary = Json::parse(stream, wanted, false);
+  using Json = nlohmann::ordered_json;
+  Json summary;
+  try {
+    summary = read_json(folder / "summary.json", "result", "comparisons");
+  } catch (const InputError&) {  // then nothing in the folder is known to be ours
+    return std::nullopt;
+  }
   if (!summary.is_object() || !summary.contains("schema") ||
       !summary["schema"].is_number_integer() || summary.value("case", Json()) != case_name)
     return std::nullopt;

@@ -5,14 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <initializer_list>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
+#include "compare/output/json_file.h"
 #include "problem/error.h"
+#include "problem/support/fingerprint.h"
 
 namespace ciliaval::compare::regression {
 namespace {
@@ -127,7 +127,7 @@ void require_unique_ids(const List& entries, const Reader& reader) {
     if (!ids.insert(entry.id).second) reader.fail(fmt::format("`{}` is there twice", entry.id));
 }
 
-Baseline read_all(const Json& json, const std::string& file) {
+Baseline from_json(const Json& json, const std::string& file) try {
   Reader reader(json, file, "baseline");
   if (reader.number("schema") != 1) reader.fail("`schema` must be 1");
   Baseline baseline;
@@ -152,6 +152,8 @@ Baseline read_all(const Json& json, const std::string& file) {
   require_unique_ids(baseline.quantities, reader);
   require_unique_ids(baseline.outcomes, reader);
   return baseline;
+} catch (const Json::exception& error) {
+  throw InputError(fmt::format("{}: not a baseline: {}", file, error.what()));
 }
 
 Json tolerance_json(Json json, const Tolerance& tolerance) {
@@ -187,6 +189,15 @@ std::vector<Change> changes(const Baseline& old, const std::vector<Expected>& qu
   }
   for (const auto& [id, value] : before) result.push_back({id, value, std::nullopt});
   return result;
+}
+
+/// The part of its scale to which a number of a model is the same on any machine.
+double accuracy_class(const std::string& model) {
+  // CalculiX prints seven digits, and its tolerances for equilibrium are its own.
+  if (model == "calculix") return 1e-5;
+  if (model == "potential") return 1e-6;
+  if (model == "solid" || model == "mesh") return 1e-8;
+  return 1e-10;
 }
 
 }  // namespace
@@ -230,19 +241,11 @@ std::vector<std::string> case_text(const input::Case& problem) {
 }
 
 Baseline read_baseline(std::string_view text, std::string_view file) {
-  try {
-    return read_all(Json::parse(text), std::string(file));
-  } catch (const Json::exception& error) {
-    throw InputError(fmt::format("{}: not a baseline: {}", file, error.what()));
-  }
+  return from_json(output::parse_json(text, file), std::string(file));
 }
 
 Baseline read_baseline(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::stringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw FileError("cannot read `" + file.string() + "`");
-  return read_baseline(text.view(), file.string());
+  return from_json(output::read_json(file, "baseline"), file.string());
 }
 
 std::string to_json(const Baseline& baseline) {
@@ -276,16 +279,24 @@ std::string to_json(const Baseline& baseline) {
 }
 
 Tolerance regression_tolerance(const Quantity& quantity) {
-  if (quantity.id.ends_with("/tip_uncertainty")) return {1e-3, 1e-10 * quantity.scale};
-  // CalculiX prints seven digits, and its tolerances for equilibrium are its own.
-  const double relative = quantity.mechanics == "calculix" ? 1e-5
-                          : quantity.mechanics == "solid"  ? 1e-8
-                                                           : 1e-10;
-  // Rounding may decide which leaves the potential cuts: two meshes are as far apart as its own
-  // estimate says.
-  if (quantity.id.find("/potential/") != std::string::npos && quantity.uncertainty)
-    return {relative, std::max(relative * quantity.scale, *quantity.uncertainty)};
-  return {relative, relative * quantity.scale};
+  const bool estimate = quantity.id.ends_with("/tip_uncertainty");
+  const double part =
+      estimate ? 1e-10
+               : std::max(accuracy_class(quantity.mechanics), accuracy_class(quantity.field));
+  // Two digits, so that a scale's rounding does not show in the file.
+  return {estimate ? 1e-3 : part, std::stod(fmt::format("{:.1e}", part * quantity.scale))};
+}
+
+std::string references(const Baseline& baseline) {
+  std::size_t count = 0;
+  std::string list;
+  for (const Expected& expected : baseline.quantities)
+    if (const auto& r = expected.reference) {
+      ++count;
+      list += fmt::format("{}\t{}\t{}\t{}\t{}\n", expected.id, r->label, r->value,
+                          r->tolerance.relative, r->tolerance.absolute);
+    }
+  return count == 0 ? "" : fmt::format("{} {:08x}", count, support::checksum(list));
 }
 
 Baseline make_baseline(const input::Case& problem, const Measurements& measured,

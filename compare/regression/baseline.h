@@ -66,17 +66,21 @@ std::filesystem::path baseline_path(const std::filesystem::path& case_file);
 std::vector<std::string> case_text(const input::Case& problem);
 
 /// Reads a baseline. Every key must be known and there, every number finite, every tolerance
-/// positive and at most 10 % of the value's scale, every id once. Throws InputError
-/// `file: what is wrong`, FileError if it cannot be read.
+/// positive, the relative ones at most 10 %, every id once. Throws InputError `file: what is wrong`.
 Baseline read_baseline(const std::filesystem::path& file);
 Baseline read_baseline(std::string_view text, std::string_view file);
 
 /// The baseline as JSON, a line for each quantity, so that a difference of two can be read.
 std::string to_json(const Baseline& baseline);
 
-/// The tolerance of a quantity in a new baseline, above what was measured between machines, kernels
-/// and ranks (docs/evidence/regression.md).
+/// The tolerance of a quantity in a new baseline, and the widest one that `check` accepts: the
+/// accuracy class of its models, as a part of the quantity's scale. It is above what was measured
+/// between machines, kernels and ranks (docs/evidence/regression.md).
 Tolerance regression_tolerance(const Quantity& quantity);
+
+/// The number of the baseline's references and the checksum of their list, "12 91f161de"; empty
+/// without references. The case states it too, so that none is lost or loosened in silence.
+std::string references(const Baseline& baseline);
 
 /// A baseline of what was measured. `old` gives the references, the values that differ from it by
 /// less than their tolerance, and what the others were in `changes`. Throws SolverError if

@@ -15,8 +15,8 @@
 namespace ciliaval::compare::regression {
 namespace {
 
-/// A tolerance beyond this part of the quantity's scale checks nothing.
-constexpr double widest = 0.1;
+/// A reference's tolerance beyond this part of the quantity's scale checks nothing.
+constexpr double widest_of_reference = 0.1;
 
 using ById = std::map<std::string, const Quantity*>;
 
@@ -72,9 +72,9 @@ std::string likely_cause(const Quantity& measured, const Expected& expected, dou
   return {};
 }
 
-/// Holds one number against another.
+/// Holds one number against another. No part of the tolerance may be wider than `widest`.
 Finding compare(const Quantity& measured, double expected, const Tolerance& tolerance,
-                std::string against) {
+                const Tolerance& widest, std::string against) {
   Finding finding;
   finding.id = measured.id;
   finding.against = std::move(against);
@@ -86,15 +86,16 @@ Finding compare(const Quantity& measured, double expected, const Tolerance& tole
   if (!std::isfinite(measured.value)) {
     finding.limit.reset();
     finding.message = "is not finite";
-  } else if (tolerance.absolute > widest * std::max(measured.scale, std::abs(expected))) {
-    finding.message = fmt::format(
-        "the absolute tolerance {} {} is wider than a tenth of {}: it "
-        "checks nothing",
-        tolerance.absolute, measured.unit, measured.scale);
   } else if (!(std::abs(measured.value - expected) <= *finding.limit)) {
     finding.message =
         fmt::format("is {} {}, not {}: off by {:.3g}, {:.3g} allowed", measured.value,
                     measured.unit, expected, measured.value - expected, *finding.limit);
+  } else if (tolerance.relative > widest.relative || tolerance.absolute > widest.absolute) {
+    finding.message = fmt::format(
+        "its tolerance, relative {} and absolute {} {}, is wider than {} and {:.3g} {}, hence "
+        "checks too little",
+        tolerance.relative, tolerance.absolute, measured.unit, widest.relative, widest.absolute,
+        measured.unit);
   } else {
     finding.passed = true;
   }
@@ -115,6 +116,11 @@ void check_case(const input::Case& asked, const Baseline& baseline, CheckReport&
                     "the case now has `{}`; --accept makes a new one",
                     was != baseline.case_text.end() ? *was : "nothing",
                     is != now.end() ? *is : "nothing")));
+  if (const std::string there = references(baseline); there != asked.references)
+    report.findings.push_back(failure(
+        "references", fmt::format("the baseline has the references \"{}\", and the case "
+                                  "states \"{}\" under [case]: was one removed or loosened?",
+                                  there, asked.references)));
 }
 
 void check_outcomes(const std::vector<Outcome>& measured, const Baseline& baseline,
@@ -169,13 +175,16 @@ void check_quantities(const std::vector<Quantity>& measured, const Baseline& bas
                                                                  quantity.unit, expected.unit)));
       continue;
     }
-    Finding finding = compare(quantity, expected.value, expected.tolerance, "baseline");
+    Tolerance widest = regression_tolerance(quantity);
+    widest.absolute *= 1.1;  // its second digit may be rounded otherwise in this run
+    Finding finding = compare(quantity, expected.value, expected.tolerance, widest, "baseline");
     if (!finding.passed && finding.limit)
       finding.message += likely_cause(quantity, expected, *finding.limit, now, accepted);
     report.findings.push_back(std::move(finding));
     if (const auto& reference = expected.reference)
-      report.findings.push_back(
-          compare(quantity, reference->value, reference->tolerance, reference->label));
+      report.findings.push_back(compare(quantity, reference->value, reference->tolerance,
+                                        {widest_of_reference, widest_of_reference * quantity.scale},
+                                        reference->label));
   }
   for (const Quantity& quantity : measured)
     if (!accepted.contains(quantity.id))

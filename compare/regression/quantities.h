@@ -14,10 +14,13 @@ namespace ciliaval::compare::regression {
 struct Quantity {
   std::string id;
   std::string mechanics;  ///< the mechanics model that it rests on
+  std::string field;      ///< the field model; empty for a number of the mechanics model itself
   std::string unit;       ///< "m", "rad", "N", "T"
   double value = 0;       ///< in `unit`, may be NaN
-  double scale = 0;       ///< size of what it is a part of, in `unit`: the length of the cilium, 1
-                          ///< rad, the largest |B| of the pair at this sensor, the largest force
+  /// The largest value of its group, in `unit`: all deflections, angles or forces of the model; all
+  /// |B|, or all |ΔB|, of the pair at this sensor; L for places along the cilium. A group that is
+  /// (nearly) zero has a thousandth of the length, field or angle that its rounding comes from.
+  double scale = 0;
   std::optional<double> uncertainty;  ///< the model's own estimate, in `unit`
 };
 

@@ -4,10 +4,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <set>
 
+#include "compare/output/json_file.h"
 #include "compare/report/pictures.h"
 #include "compare/report/sections.h"
 #include "problem/error.h"
@@ -27,26 +26,11 @@ struct Document {
   std::string name;  ///< of the case or study; empty if it has none
 };
 
-/// The text of a file. Throws FileError.
-std::string read(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream.good() && !stream.eof()) throw FileError("cannot read `" + file.string() + "`");
-  return text;
-}
-
-/// Throws FileError if the text is no JSON or not that of a result.
+/// Throws Error if the file is no JSON or not that of a result.
 Document parse(const fs::path& file) {
   Document document;
   document.file = file;
-  const auto fail = [&](const std::string& why) {
-    throw FileError(fmt::format("{}: {}", file.string(), why));
-  };
-  try {
-    document.json = Json::parse(read(file));
-  } catch (const Json::exception& error) {
-    fail(fmt::format("it is damaged: {}", error.what()));
-  }
+  document.json = output::read_json(file, "result");
   const Json& json = document.json;
   const auto has = [&](std::initializer_list<const char*> keys) {
     return json.is_object() && json.contains("schema") &&
@@ -70,11 +54,11 @@ Document parse(const fs::path& file) {
   else if (has({"passed", "cases"}))
     document.kind = Kind::check;
   else
-    fail("it is not a result of `ciliaval`; move it away");
+    throw FileError(file.string() + ": it is not a result of `ciliaval`; move it away");
   try {
     document.name = text_at(json, document.kind == Kind::study ? "study" : "case");
   } catch (const Json::exception& error) {
-    fail(fmt::format("it is damaged: {}", error.what()));
+    throw FileError(fmt::format("{}: it is damaged: {}", file.string(), error.what()));
   }
   return document;
 }
@@ -127,7 +111,10 @@ std::string content_of(const Document& document, Figures& figures) {
 /// Throws FileError if the file is damaged.
 Section section_of(const Document& document, const std::string& id, Figures& figures) {
   try {
-    if (document.kind == Kind::run) case_row(document.json);  // what the overview will read
+    // What the overview and the table of origins will read.
+    if (document.kind == Kind::run) case_row(document.json);
+    provenance_cells(document.json);
+    libraries_text(document.json);
     return {id, title_of(document), content_of(document, figures)};
   } catch (const Json::exception& error) {
     throw FileError(fmt::format("{}: it is damaged: {}", document.file.string(), error.what()));
@@ -243,7 +230,7 @@ Report results_page(const fs::path& folder, const output::Provenance& maker, Fig
   std::vector<Document> found;
   for (const fs::path& file : json_files(folder)) try {
       found.push_back(parse(file));
-    } catch (const FileError& error) {
+    } catch (const Error& error) {
       report.damaged.emplace_back(error.what());
     }
   std::stable_sort(found.begin(), found.end(), [](const Document& a, const Document& b) {

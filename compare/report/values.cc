@@ -37,11 +37,6 @@ double coordinate(const Json& value, double unit) {
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>() / unit;
 }
 
-std::string with_uncertainty(const Json& value, const Json& uncertainty, double unit) {
-  if (value.is_null() || uncertainty.is_null()) return number(value, unit);
-  return fmt::format("{} ± {}", number(value, unit), number(uncertainty, unit, 2));
-}
-
 const Json& at_or_null(const Json& json, const char* key) {
   static const Json null;
   const auto it = json.find(key);

@@ -30,9 +30,6 @@ std::string number(const Json& value, double unit = 1, int digits = 5);
 /// A number for a drawing: NaN for null.
 double coordinate(const Json& value, double unit = 1);
 
-/// "v ± u", or v alone where u is null.
-std::string with_uncertainty(const Json& value, const Json& uncertainty, double unit);
-
 /// The text at a key, or "" if it is missing or null.
 std::string text_at(const Json& json, const char* key);
 

@@ -2,6 +2,7 @@
 // `ciliaval check` as a user calls it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -99,6 +100,22 @@ TEST(CheckCommand, WhatCannotBeCheckedIsRefusedBeforeAnythingRuns) {
   EXPECT_EQ(misspelt.code, 2);
   EXPECT_THAT(misspelt.err, HasSubstr("`relative` is missing"));
   EXPECT_EQ(ciliaval(folder.path(), "check --quick --accept one.toml").code, 2);
+}
+
+// Reading a FIFO would wait for a writer for ever; values nested too deep end in a stack overflow.
+TEST(CheckCommand, ABaselineThatIsNoPlainFileIsRefused) {
+  const TemporaryFolder folder;
+  write_case(folder.path());
+  const fs::path baseline = folder.path() / "one.baseline.json";
+  ASSERT_EQ(mkfifo(baseline.c_str(), 0600), 0);
+  const Outcome fifo = ciliaval(folder.path(), "check one.toml");
+  EXPECT_EQ(fifo.code, 2);
+  EXPECT_THAT(fifo.err, HasSubstr("one.baseline.json: is not a regular file"));
+  fs::remove(baseline);
+  std::ofstream(baseline) << std::string(100000, '[') << std::string(100000, ']');
+  const Outcome deep = ciliaval(folder.path(), "check one.toml");
+  EXPECT_EQ(deep.code, 2);
+  EXPECT_THAT(deep.err, HasSubstr("one.baseline.json: nested more than 100 deep"));
 }
 
 // Without a solid nothing is left out; with nothing but a solid there is nothing left to compare.
