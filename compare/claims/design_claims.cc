@@ -7,8 +7,8 @@
 
 #include "compare/claims/ledger.h"
 #include "compare/models/registry.h"
-#include "compare/study/evaluate.h"
-#include "compare/study/report.h"
+#include "compare/study/reader/study_reader.h"
+#include "compare/study/summary/report.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::claims {
@@ -16,28 +16,13 @@ namespace {
 
 using study::Output;
 using study::StudyResult;
-using study::Trend;
+using study::summary::Trend;
 
 /// A study with one output alone, at all its points.
-StudyResult evaluated(study::Study its, Output output, const Progress& progress) {
-  StudyResult result{std::move(its), {}};
-  study::Study& study = result.study;
+StudyResult evaluated(study::Study study, Output output, const Progress& progress) {
   study.outputs = {output};
-  for (std::size_t point = 0; point < study.point_count(); ++point) {
-    if (progress)
-      progress(study.name + ": point " + std::to_string(point + 1) + " of " +
-               std::to_string(study.point_count()));
-    std::vector<study::PairResult> pairs(study.pairs.size());
-    for (const std::string& mechanics : study.mechanics()) {
-      const auto of_model = study::evaluate(study, study.case_at(point), mechanics,
-                                            models::mechanics_models(), models::field_models());
-      std::size_t next = 0;
-      for (std::size_t p = 0; p < study.pairs.size(); ++p)
-        if (study.pairs[p].mechanics == mechanics) pairs[p] = of_model.at(next++);
-    }
-    result.points.push_back(std::move(pairs));
-  }
-  return result;
+  study::Solutions in_memory;
+  return run_study(study, in_memory, models::mechanics_models(), models::field_models(), progress);
 }
 
 /// The first and the last point that have the output: the values increase.
@@ -64,7 +49,7 @@ StudyResult thinned(const StudyResult& result) {
 template <class Holds>
 void add_trends(const StudyResult& result, std::size_t output, const Holds& holds, Claim& claim) {
   for (std::size_t pair = 0; pair < result.study.pairs.size(); ++pair) {
-    const Trend trend = study::trend(result, pair, output);
+    const Trend trend = study::summary::trend(result, pair, output);
     Finding finding = judged(result.study.pairs[pair].name() + ": dB from end to end",
                              1e6 * trend.first, 1e6 * trend.last, "uT", holds(trend));
     for (const std::size_t end : ends(result, pair, output))
@@ -79,11 +64,11 @@ void add_peaks(const StudyResult& result, Claim& claim) {
   const StudyResult every_second = thinned(result);
   for (std::size_t pair = 0; pair < result.study.pairs.size(); ++pair) {
     const std::string name = result.study.pairs[pair].name();
-    const Trend trend = study::trend(result, pair, 0);
+    const Trend trend = study::summary::trend(result, pair, 0);
     if (trend.kind == Trend::Kind::peak)
-      claim.findings.push_back(
-          in_range(name + ": peak at", trend.extreme_at, trend.extreme_at, "", 0.7, 0.9,
-                   std::abs(study::trend(every_second, pair, 0).extreme_at - trend.extreme_at)));
+      claim.findings.push_back(in_range(
+          name + ": peak at", trend.extreme_at, trend.extreme_at, "", 0.7, 0.9,
+          std::abs(study::summary::trend(every_second, pair, 0).extreme_at - trend.extreme_at)));
     else
       claim.findings.push_back(judged(name + ": no peak", 0, 0, "", false));
   }
@@ -94,7 +79,7 @@ void add_peaks(const StudyResult& result, Claim& claim) {
 std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_solid,
                                  const Progress& progress) {
   const auto run = [&](const char* name, Output output) {
-    return evaluated(study::read_study(folder / name), output, progress);
+    return evaluated(study::reader::read_study(folder / name), output, progress);
   };
   std::vector<Claim> claims;
   claims.push_back({"3.4.1, Fig. 4a", "the signal falls as E1 grows", {}, {}});
@@ -138,7 +123,7 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
   add_peaks(run("fig4c.study.toml", Output::dB_norm), claims.back());
   if (with_solid) {
     // About the peaks of the others: elsewhere the rods have shown that there is none.
-    study::Study about_the_peak = study::read_study(folder / "fig4c.study.toml");
+    study::Study about_the_peak = study::reader::read_study(folder / "fig4c.study.toml");
     about_the_peak.pairs = {{"solid", "mesh"}};
     std::vector<double>& proportions = about_the_peak.parameters.front().values;
     proportions.clear();

@@ -57,40 +57,29 @@ PairResult result_of(const Study& study, const MechanicsStep& step, const models
     append(result.message, path.around.front()
                                ? "sensitivity: a load 2 % higher or lower has no field"
                                : "sensitivity: the load is zero");
-  for (std::size_t i = 0; i < study.outputs.size(); ++i) {
-    std::optional<double>& value = result.values[i];
-    switch (study.outputs[i]) {
+  const Vector3 B = *field.B.front();
+  const auto value = [&](Output output) -> std::optional<double> {
+    switch (output) {
       case Output::B_x:
-        value = field.B.front()->x();
-        break;
       case Output::B_y:
-        value = field.B.front()->y();
-        break;
       case Output::B_z:
-        value = field.B.front()->z();
-        break;
+        return B[static_cast<int>(output) - static_cast<int>(Output::B_x)];
       case Output::dB_x:
-        value = dB.x();
-        break;
       case Output::dB_y:
-        value = dB.y();
-        break;
       case Output::dB_z:
-        value = dB.z();
-        break;
+        return dB[static_cast<int>(output) - static_cast<int>(Output::dB_x)];
       case Output::dB_norm:
-        value = dB.norm();
-        break;
+        return dB.norm();
       case Output::sensitivity:
-        value = slope;
-        break;
+        return slope;
       case Output::resolution:
-        if (slope && *slope != 0) value = *study.noise / std::abs(*slope);
-        break;
+        return slope && *slope != 0 ? std::optional(*study.noise / std::abs(*slope)) : std::nullopt;
       case Output::range:
         break;
     }
-  }
+    return std::nullopt;
+  };
+  for (std::size_t i = 0; i < study.outputs.size(); ++i) result.values[i] = value(study.outputs[i]);
   return result;
 }
 

@@ -6,26 +6,16 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
+#include <cstddef>
+#include <filesystem>
 #include <sstream>
+#include <utility>
 
+#include "compare/input/case_syntax.h"
 #include "compare/input/units.h"
-#include "fem/checkpoint_file.h"
 
 namespace ciliaval::compare::study {
 namespace {
-
-constexpr std::array<Output, 10> outputs{
-    Output::B_x,  Output::B_y,     Output::B_z,         Output::dB_x,  Output::dB_y,
-    Output::dB_z, Output::dB_norm, Output::sensitivity, Output::range, Output::resolution};
-
-/// Checksum of a file that the case names; the results depend on its content.
-std::uint32_t checksum_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  return fem::checksum(bytes);
-}
 
 std::string numbers(const std::vector<double>& values) {
   std::vector<std::string> texts;
@@ -46,37 +36,42 @@ std::optional<Setting> moved_number(const Study& study, std::size_t point) {
   return Setting{tolerance.number, tolerance.nominal + step * tolerance_step * tolerance.deviation};
 }
 
-}  // namespace
-
-std::string_view id(Output output) {
-  switch (output) {
-    case Output::B_x:
-      return "B_x";
-    case Output::B_y:
-      return "B_y";
-    case Output::B_z:
-      return "B_z";
-    case Output::dB_x:
-      return "dB_x";
-    case Output::dB_y:
-      return "dB_y";
-    case Output::dB_z:
-      return "dB_z";
-    case Output::dB_norm:
-      return "dB_norm";
-    case Output::sensitivity:
-      return "sensitivity";
-    case Output::range:
-      return "range";
-    case Output::resolution:
-      break;
+/// Each value under its dotted key; the tables of a list are counted from 1.
+void append_values(const toml::node& node, const std::string& name, support::Fingerprint& all) {
+  const auto inner = [&](std::string_view key) {
+    return name.empty() ? std::string(key) : fmt::format("{}.{}", name, key);
+  };
+  const toml::array* list = node.as_array();
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table) append_values(value, inner(key.str()), all);
+  } else if (list != nullptr && list->is_array_of_tables()) {
+    for (std::size_t i = 0; i < list->size(); ++i)
+      append_values((*list)[i], inner(std::to_string(i + 1)), all);
+  } else {
+    std::ostringstream text;
+    node.visit([&](const auto& value) { text << value; });
+    all.emplace_back(name, std::move(text).str());
   }
-  return "resolution";
 }
 
-std::span<const Output> all_outputs() {
-  return outputs;
+void append_optimisation(const Optimisation& o, support::Fingerprint& all) {
+  all.emplace_back("maximise", id(o.goal));
+  all.emplace_back("global_evaluations", std::to_string(o.global_evaluations));
+  all.emplace_back("starts", std::to_string(o.starts));
+  for (const Limit& limit : o.limits)
+    all.emplace_back(
+        fmt::format("{} {}", limit.is_lower ? "at_least" : "at_most", id(limit.output)),
+        input::format_number(limit.value));
+  for (std::size_t i = 0; i < o.parameters.size(); ++i) {
+    const Parameter& p = o.parameters[i];
+    all.emplace_back(
+        fmt::format("parameter {}", i + 1),
+        fmt::format("{} = {}, {}, from {}", p.number.path, numbers(p.values),
+                    p.is_logarithmic ? "logarithmic" : "linear", input::format_number(o.start[i])));
+  }
 }
+
+}  // namespace
 
 std::size_t Study::point_count() const {
   std::size_t count = parameters.empty() ? 0 : 1;
@@ -142,6 +137,12 @@ std::vector<std::string> Study::mechanics() const {
   return ids;
 }
 
+std::size_t Study::place(std::size_t pair) const {
+  return static_cast<std::size_t>(std::count_if(
+      pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(pair),
+      [&](const models::ModelPair& other) { return other.mechanics == pairs[pair].mechanics; }));
+}
+
 bool Study::asks_for(Output output) const {
   return std::find(outputs.begin(), outputs.end(), output) != outputs.end();
 }
@@ -151,44 +152,37 @@ std::string format_value(const Parameter& parameter, double value) {
   return parameter.unit.empty() ? text : fmt::format("{} {}", text, parameter.unit);
 }
 
-std::vector<std::string> resolved(const Study& study) {
-  std::vector<std::string> lines;
-  input::Case base = study.base;
-  base.name = study.name;
-  base.title = study.name;
-  std::istringstream text(input::to_toml(base));
-  for (std::string line; std::getline(text, line);)
-    if (!line.empty()) lines.push_back(line);
-  const std::filesystem::path& mesh = base.options.solid.mesh;
-  if (!mesh.empty()) lines.push_back(fmt::format("mesh file: checksum {:08x}", checksum_of(mesh)));
+support::Fingerprint fingerprint(const Study& study) {
+  toml::table base = input::parse_toml(input::to_toml(study.base), study.name);
+  base.erase("case");  // its name and title
+  support::Fingerprint all;
+  append_values(base, "", all);
+  const std::filesystem::path& mesh = study.base.options.solid.mesh;
+  if (!mesh.empty())
+    all.emplace_back("content of models.solid.mesh", support::describe_content(mesh));
   for (const Setting& s : study.fixed)
-    lines.push_back(fmt::format("fixed: {} = {}", s.number.path, input::format_number(s.value)));
-  for (const Parameter& p : study.parameters)
-    lines.push_back(fmt::format("parameter: {} = {}", p.number.path, numbers(p.values)));
-  for (const Tolerance& t : study.tolerances)
-    lines.push_back(
-        fmt::format("tolerance: {} = {}", t.number.path, input::format_number(t.deviation)));
-  lines.emplace_back(study.is_zipped ? "combine: zip" : "combine: product");
-  for (const models::ModelPair& pair : study.pairs)
-    lines.push_back(fmt::format("pair: {}", pair.name()));
-  for (const Output output : study.outputs) lines.push_back(fmt::format("output: {}", id(output)));
-  if (study.optimisation) {
-    const Optimisation& o = *study.optimisation;
-    lines.push_back(fmt::format("optimise: {}, {} global evaluations, {} starts", id(o.goal),
-                                o.global_evaluations, o.starts));
-    for (const Limit& limit : o.limits)
-      lines.push_back(fmt::format("limit: {} {} {}", id(limit.output),
-                                  limit.is_lower ? ">=" : "<=", input::format_number(limit.value)));
-    for (std::size_t i = 0; i < o.parameters.size(); ++i)
-      lines.push_back(fmt::format("searched: {} = {}, {}, from {}", o.parameters[i].number.path,
-                                  numbers(o.parameters[i].values),
-                                  o.parameters[i].is_logarithmic ? "logarithmic" : "linear",
-                                  input::format_number(o.start[i])));
+    all.emplace_back("fixed " + s.number.path, input::format_number(s.value));
+  for (std::size_t i = 0; i < study.parameters.size(); ++i) {
+    const Parameter& p = study.parameters[i];
+    all.emplace_back(fmt::format("parameter {}", i + 1),
+                     fmt::format("{} = {}", p.number.path, numbers(p.values)));
   }
-  if (study.noise) lines.push_back(fmt::format("noise: {}", input::format_number(*study.noise)));
-  if (study.rotation)
-    lines.push_back(fmt::format("rotation: {}", input::format_number(*study.rotation)));
-  return lines;
+  for (std::size_t i = 0; i < study.tolerances.size(); ++i) {
+    const Tolerance& t = study.tolerances[i];
+    all.emplace_back(fmt::format("tolerance {}", i + 1),
+                     fmt::format("{} = {}", t.number.path, input::format_number(t.deviation)));
+  }
+  all.emplace_back("combine", study.is_zipped ? "zip" : "product");
+  std::vector<std::string> names;
+  for (const models::ModelPair& pair : study.pairs) names.push_back(pair.name());
+  all.emplace_back("pairs", fmt::format("{}", fmt::join(names, " ")));
+  names.clear();
+  for (const Output output : study.outputs) names.emplace_back(id(output));
+  all.emplace_back("outputs", fmt::format("{}", fmt::join(names, " ")));
+  if (study.optimisation) append_optimisation(*study.optimisation, all);
+  if (study.noise) all.emplace_back("noise", input::format_number(*study.noise));
+  if (study.rotation) all.emplace_back("rotation", input::format_number(*study.rotation));
+  return all;
 }
 
 }  // namespace ciliaval::compare::study

@@ -2,34 +2,17 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compare/input/case.h"
 #include "compare/models/model_pair.h"
 #include "compare/study/case_number.h"
+#include "compare/study/output.h"
+#include "problem/support/fingerprint.h"
 
 namespace ciliaval::compare::study {
-
-/// What a study computes for each pair of models at each point.
-enum class Output {
-  B_x,          ///< B at the sensor, T
-  B_y,          ///< …
-  B_z,          ///< …
-  dB_x,         ///< ΔB at the sensor, T
-  dB_y,         ///< …
-  dB_z,         ///< …
-  dB_norm,      ///< |ΔB|, T
-  sensitivity,  ///< d|ΔB|/dF, F the load's magnitude: T/N, T m/N (force per length) or T/m (probe)
-  range,        ///< the largest F: where the contact slips off, or the tip's rotation is `rotation`
-  resolution    ///< the change of F that the sensor's noise hides: noise / |sensitivity|
-};
-std::string_view id(Output output);
-std::span<const Output> all_outputs();
 
 /// One parameter of a study and its values, SI units.
 struct Parameter {
@@ -51,7 +34,7 @@ struct Tolerance {
 };
 
 /// Part of a standard deviation by which a number is moved for the differences of fourth order of
-/// compare/study/tolerances.h, once and twice, to both sides.
+/// compare/study/summary/tolerances.h, once and twice, to both sides.
 inline constexpr double tolerance_step = 0.25;
 
 /// A limit that a design must keep.
@@ -87,6 +70,7 @@ struct Study {
   std::optional<double> noise;     ///< standard deviation of a reading, T, for `resolution`
   std::optional<double> rotation;  ///< rad, for the `range` of a load that has no slip-off
 
+  const Load& load() const { return base.load_path.front(); }
   /// Points of the sweep over the parameters; 0 without parameters.
   std::size_t point_count() const;
   /// All points that are solved: behind those of the sweep, if there are tolerances, the case with
@@ -101,19 +85,20 @@ struct Study {
   std::string describe(std::size_t point) const;
   /// The mechanics models of the pairs, each once, in their order.
   std::vector<std::string> mechanics() const;
+  /// The place of a pair among those of its mechanics model.
+  std::size_t place(std::size_t pair) const;
   bool asks_for(Output output) const;
 };
+
+inline OutputUnit unit_of(Output output, const Study& study) {
+  return unit_of(output, study.load());
+}
 
 /// A value in the parameter's unit: "0.1 MPa".
 std::string format_value(const Parameter& parameter, double value);
 
-/// Reads and checks a study file, its case and every point. Throws InputError with every fault
-/// found, a line each: `file:line:column: what is wrong; did you mean …?`.
-Study read_study(const std::filesystem::path& file);
-
-/// The study with everything that its results depend on, line by line, in SI units and full
-/// precision: two studies with the same lines have the same results. Names, titles and units of
-/// display are not among them.
-std::vector<std::string> resolved(const Study& study);
+/// Everything that the results of the study depend on, in SI units and full precision; not names,
+/// titles and units of display.
+support::Fingerprint fingerprint(const Study& study);
 
 }  // namespace ciliaval::compare::study

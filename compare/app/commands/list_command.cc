@@ -8,7 +8,7 @@
 #include "compare/app/terminal.h"
 #include "compare/models/registry.h"
 #include "compare/sensing/bench.h"
-#include "compare/study/study.h"
+#include "compare/study/reader/study_reader.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
@@ -22,7 +22,7 @@ struct Options {
 
 std::string title_of(const fs::path& file) {
   try {
-    if (is_study_file(file)) return study::read_study(file).title;
+    if (is_study_file(file)) return study::reader::read_study(file).title;
     if (is_bench_file(file)) return sensing::read_bench(file).title;
     return input::read_case(file).title;
   } catch (const Error&) {
@@ -62,7 +62,7 @@ ExitCode validate(const Options& options, const std::string&) {
       files.push_back(file);
       continue;
     }
-    const study::Study study = study::read_study(file);
+    const study::Study study = study::reader::read_study(file);
     const std::string what = study.optimisation ? fmt::format("an optimum over {} numbers",
                                                               study.optimisation->parameters.size())
                                                 : fmt::format("{} points", study.point_count());

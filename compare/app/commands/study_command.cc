@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 
 #include "compare/app/case_files.h"
@@ -11,9 +13,12 @@
 #include "compare/models/registry.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
-#include "compare/study/report.h"
+#include "compare/output/store/store.h"
+#include "compare/study/optimum/optimise.h"
+#include "compare/study/reader/study_reader.h"
+#include "compare/study/summary/report.h"
+#include "compare/study/summary/tolerances.h"
 #include "compare/study/sweep.h"
-#include "compare/study/tolerances.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
@@ -59,13 +64,18 @@ struct Options {
   bool fresh = false;  ///< forget what an earlier run of the study has computed
 };
 
-constexpr const char* journal_name = "points.journal";
+constexpr const char* store_name = "points.sqlite";
 
 /// Makes the study's folder if it is not there. Throws FileError if something else lies there.
 void make_folder(const fs::path& folder) {
   try {
+    if (fs::is_symlink(folder))
+      throw FileError(fmt::format(
+          "`{}` is a link to `{}`, which may belong to something else: remove the link or choose "
+          "another folder with -o DIR",
+          folder.string(), fs::read_symlink(folder).string()));
     fs::create_directories(folder);
-    if (!fs::exists(folder / journal_name) && !fs::is_empty(folder))
+    if (!fs::exists(folder / store_name) && !fs::is_empty(folder))
       throw FileError(
           fmt::format("`{}` is not the folder of a study: it has other files in it; "
                       "move it away or choose another folder with -o DIR",
@@ -78,46 +88,34 @@ void make_folder(const fs::path& folder) {
   }
 }
 
-/// Says what the study goes on from. Throws FileError if the journal is another's.
-void open_journal(const study::Study& study, const fs::path& folder, study::Journal& journal) {
-  const std::string header = study::journal_header(study, version_line());
-  if (journal.damaged() > 0)
-    fmt::print(stderr, "ciliaval: {} damaged line{} of `{}` left out: computed again\n",
-               journal.damaged(), journal.damaged() == 1 ? "" : "s",
-               (folder / journal_name).string());
-  if (journal.header().empty()) return journal.append(header);
-  if (const std::string what = study::difference(journal.header(), header); !what.empty())
-    throw FileError(
-        fmt::format("the results in `{}` are not of this study: {}. Choose another "
-                    "folder with -o DIR, or start anew with --fresh, which deletes them",
-                    folder.string(), what));
-  if (study.optimisation) {
-    if (const std::size_t kept = study::kept_evaluations(study, journal); kept > 0)
-      fmt::print(stderr,
-                 "ciliaval: study \"{}\": {} evaluations are there already; --fresh starts anew\n",
-                 study.name, kept);
-    return;
-  }
-  const study::Extent extent = study::extent(study, journal);
-  if (extent.kept > 0)
-    fmt::print(stderr,
-               "ciliaval: study \"{}\": {} of {} solutions are there already; --fresh "
-               "starts anew\n",
-               study.name, extent.kept, extent.all);
+/// Says what the study goes on from.
+void announce(const study::Study& study, std::size_t kept) {
+  if (kept == 0) return;
+  const std::string what =
+      study.optimisation
+          ? fmt::format("{} evaluations", kept)
+          : fmt::format("{} of {} solutions", kept, study.all_points() * study.mechanics().size());
+  warn(fmt::format("study \"{}\": {} are there already; --fresh starts anew", study.name, what));
 }
 
-study::StudyResult solve(const study::Study& study, study::Journal& journal) {
+/// What a study computes: an optimum, or the points.
+struct Results {
+  study::StudyResult sweep;
+  std::optional<study::optimum::Optimum> optimum;
+};
+
+Results solve(const study::Study& study, study::Solutions& solutions) {
   ProgressLine line;
-  if (study.optimisation)
-    return {study,
-            {},
-            study::run_optimisation(study, journal, models::mechanics_models(),
-                                    models::field_models(), line.callback())};
-  return study::run_study(study, journal, models::mechanics_models(), models::field_models(),
-                          line.callback());
+  const Progress progress = line.callback();
+  const auto& mechanics = models::mechanics_models();
+  const auto& fields = models::field_models();
+  if (!study.optimisation)
+    return {run_study(study, solutions, mechanics, fields, progress), std::nullopt};
+  return {{study, {}},
+          study::optimum::run_optimisation(study, solutions, mechanics, fields, progress)};
 }
 
-ExitCode exit_code(const study::StudyResult& result) {
+ExitCode exit_code(const Results& result) {
   const auto failed = [](const study::PairResult& r) { return r.status == Status::failed; };
   const auto all_failed = [&](const std::vector<study::PairResult>& pairs) {
     return std::all_of(pairs.begin(), pairs.end(), failed);
@@ -127,8 +125,8 @@ ExitCode exit_code(const study::StudyResult& result) {
     return all_failed(result.optimum->designs.front().pairs) ? ExitCode::solver
                                                              : ExitCode::undecided;
   }
-  return std::all_of(result.points.begin(), result.points.end(), all_failed) ? ExitCode::solver
-                                                                             : ExitCode::pass;
+  const auto& points = result.sweep.points;
+  return std::all_of(points.begin(), points.end(), all_failed) ? ExitCode::solver : ExitCode::pass;
 }
 
 /// Computes the outputs of each pair of models at each point, from where an earlier call was
@@ -136,27 +134,36 @@ ExitCode exit_code(const study::StudyResult& result) {
 /// every point failed.
 ExitCode execute(const Options& options, const std::string& words) {
   require_one_rank("study");
-  const study::Study study = study::read_study(options.file);
+  const study::Study study = study::reader::read_study(options.file);
   const fs::path folder = options.directory / study.name;
   std::vector<fs::path> inputs = input_files(options.file, study.base);
-  inputs.push_back(folder / journal_name);
+  inputs.push_back(folder / store_name);
   output::check_outputs({options.json}, inputs);
   make_folder(folder);
-  study::Journal journal(folder / journal_name, options.fresh);
-  open_journal(study, folder, journal);
-  const study::StudyResult result = solve(study, journal);
-  const std::string json = study::json(result, output::provenance(words));
-  if (!study.parameters.empty()) output::write_file(folder / "study.csv", study::csv(result));
-  if (!study.tolerances.empty())
-    output::write_file(folder / "tolerances.csv", study::tolerance_csv(result));
-  if (result.optimum)
-    output::write_file(folder / "optimum.csv", study::optimum_csv(study, *result.optimum));
-  output::write_file(folder / "study.json", json);
-  if (options.json) output::write_file(*options.json, json);
-  print(study::text(result) + study::tolerance_text(result) +
-        (result.optimum ? study::optimum_text(study, *result.optimum) : "") +
-        fmt::format("\nResults: {}\n", folder.string()));
-  for (const study::StudyPlot& drawing : study::plots(result))
+  output::store::Store store(folder / store_name, options.fresh);
+  study::Solutions solutions(store, study, version_line());
+  announce(study, solutions.size());
+  const Results result = solve(study, solutions);
+  std::string text = study::summary::text(result.sweep);
+  auto json = study::summary::json(result.sweep, output::provenance(words));
+  if (!study.parameters.empty())
+    output::write_file(folder / "study.csv", study::summary::csv(result.sweep));
+  if (!study.tolerances.empty()) {
+    output::write_file(folder / "tolerances.csv", study::summary::tolerance_csv(result.sweep));
+    json["tolerances"] = study::summary::tolerance_json(result.sweep);
+    text += study::summary::tolerance_text(result.sweep);
+  }
+  if (result.optimum) {
+    output::write_file(folder / "optimum.csv", study::optimum::csv(study, *result.optimum));
+    json["optimum"] = study::optimum::json(study, *result.optimum);
+    text += study::optimum::text(study, *result.optimum);
+  }
+  const std::string json_text =
+      json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  output::write_file(folder / "study.json", json_text);
+  if (options.json) output::write_file(*options.json, json_text);
+  print(text + fmt::format("\nResults: {}\n", folder.string()));
+  for (const study::summary::StudyPlot& drawing : study::summary::plots(result.sweep))
     plot::write_svg(folder / drawing.name, drawing.script, drawing.size);
   return exit_code(result);
 }
@@ -175,7 +182,7 @@ void add_study(CommandLine& line) {
   add_file(study, "STUDY", options->file, "Study file (TOML)");
   study
       ->add_option("-o,--output", options->directory,
-                   "Folder for the results: study.csv, study.json, plots and the journal of what\n"
+                   "Folder for the results: study.csv, study.json, plots and the store of what\n"
                    "is solved, in a subfolder of the study's name")
       ->type_name("DIR")
       ->capture_default_str();

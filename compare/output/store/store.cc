@@ -246,12 +246,6 @@ void Store::write(std::string_view owner, const Entries& entries) {
   flushed_ = Clock::now();
 }
 
-void Store::flush() {
-  const std::lock_guard guard(mutex_);
-  execute("PRAGMA wal_checkpoint");
-  flushed_ = Clock::now();
-}
-
 void Store::remove() {
   // Without its log first: that of the next run of this name must not be deleted with this one.
   execute("PRAGMA journal_mode = DELETE");
@@ -269,9 +263,13 @@ std::string difference(const support::Fingerprint& kept, const support::Fingerpr
   const auto say = [&](const std::string& name) {
     const auto value = [&name](const auto& all) {
       const auto place = all.find(name);
-      return place == all.end() ? "not given" : place->second;
+      if (place == all.end()) return std::string("not given");
+      constexpr std::size_t longest = 200;  // a study's parameter has many values
+      return place->second.size() <= longest ? place->second
+                                             : place->second.substr(0, longest) + " ...";
     };
-    if (value(before) == value(now) || ++found > 3) return;
+    if (before.contains(name) == now.contains(name) && before.at(name) == now.at(name)) return;
+    if (++found > 3) return;
     text += fmt::format("{}{} was {}, now it is {}", text.empty() ? "" : "; ", name, value(before),
                         value(now));
   };

@@ -46,8 +46,6 @@ class Store {
   Entries read(std::string_view owner) const;
   /// Adds or replaces entries of an owner, all or none; by any thread.
   void write(std::string_view owner, const Entries& entries);
-  /// Flushes what was written to the disk.
-  void flush();
   /// Deletes the file. Nothing but the destructor may follow.
   void remove();
 

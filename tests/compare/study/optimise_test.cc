@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/optimise.h"
+#include "compare/study/optimum/optimise.h"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -11,11 +11,13 @@
 #include <vector>
 
 #include "compare/models/registry.h"
-#include "compare/study/report.h"
+#include "compare/study/reader/study_reader.h"
+#include "compare/study/summary/report.h"
+#include "compare/study/sweep.h"
 #include "problem/error.h"
 #include "study_texts.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::optimum {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +37,7 @@ const std::string diameter = bounds("diameter", "\"1 mm\"", "\"5 mm\"");
 
 Study study_of(const fs::path& folder, const std::string& header, const std::string& rest) {
   test::write_study_case(folder);
-  return read_study(test::write_study(folder, study_text(header, rest)));
+  return reader::read_study(test::write_study(folder, study_text(header, rest)));
 }
 
 struct Models {
@@ -45,15 +47,14 @@ struct Models {
                                          models::field_models().end()};
 };
 
-Optimum optimum_of(const Study& study, const fs::path& folder, const Models& models = {}) {
-  Journal journal(folder / "journal", true);
-  journal.append(journal_header(study, "test"));
-  return run_optimisation(study, journal, models.mechanics, models.fields);
+Optimum optimum_of(const Study& study, const Models& models = {}) {
+  Solutions in_memory;
+  return run_optimisation(study, in_memory, models.mechanics, models.fields);
 }
 
 Optimum optimum_of(const std::string& header, const std::string& rest) {
   const TemporaryFolder folder;
-  return optimum_of(study_of(folder.path(), header, rest), folder.path());
+  return optimum_of(study_of(folder.path(), header, rest));
 }
 
 /// An output of the first pair at the best design.
@@ -76,11 +77,10 @@ TEST(Optimise, OneParametersOptimumIsThePeakOfItsScan) {
     const std::string header =
         fmt::format("pairs = [\"elastica/{}\"]\noutputs = [\"dB_norm\"]\n", field);
     const Study scan = study_of(folder.path(), header, scanned);
-    Journal journal(folder.path() / "scan");
-    journal.append(journal_header(scan, "test"));
-    const Trend peak =
-        trend(run_study(scan, journal, models::mechanics_models(), models::field_models()), 0, 0);
-    ASSERT_EQ(peak.kind, Trend::Kind::peak);
+    Solutions in_memory;
+    const summary::Trend peak = summary::trend(
+        run_study(scan, in_memory, models::mechanics_models(), models::field_models()), 0, 0);
+    ASSERT_EQ(peak.kind, summary::Trend::Kind::peak);
     const Optimum optimum = optimum_of(header, searched);
     ASSERT_TRUE(optimum.found());
     EXPECT_NEAR(optimum.designs[1].values[0], peak.extreme_at, 1e-4) << field;
@@ -102,10 +102,9 @@ TEST(Optimise, TwoParametersOptimumUnderALimitIsThatOfAGrid) {
       study_of(folder.path(), volume,
                bounds("diameter", "\"1 mm\"", "\"3 mm\"", "count = 81\n") +
                    bounds("segment.magnet.proportion", "0.55", "0.95", "count = 81\n"));
-  Journal journal(folder.path() / "grid");
-  journal.append(journal_header(grid, "test"));
+  Solutions in_memory;
   const StudyResult result =
-      run_study(grid, journal, models::mechanics_models(), models::field_models());
+      run_study(grid, in_memory, models::mechanics_models(), models::field_models());
   double largest = 0;
   std::vector<double> at;
   for (std::size_t i = 0; i < result.points.size(); ++i) {
@@ -200,11 +199,11 @@ TEST(Optimise, WithoutADesignThatKeepsTheLimitsThereIsNone) {
   const Study study =
       study_of(folder.path(), volume,
                "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"1 N\"\n" + diameter);
-  const Optimum optimum = optimum_of(study, folder.path());
+  const Optimum optimum = optimum_of(study);
   EXPECT_FALSE(optimum.found());
   EXPECT_EQ(optimum.designs.size(), 1u);
-  EXPECT_THAT(optimum_text(study, optimum), HasSubstr("No design was found that keeps the limits"));
-  EXPECT_FALSE(optimum_json(study, optimum)["found"].get<bool>());
+  EXPECT_THAT(text(study, optimum), HasSubstr("No design was found that keeps the limits"));
+  EXPECT_FALSE(json(study, optimum)["found"].get<bool>());
 }
 
 // |ΔB| = 5 T/rad² θ² with θ = 100 F/N · 3 mm/d: the largest at the smallest d that the model does
@@ -232,17 +231,17 @@ TEST(Optimise, DesignsAtWhichTheModelFailsAreLeftOutAndOtherPairsConfirm) {
                "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"5 mN\"\n"
                "[[parameter]]\npath = \"sensor.position.z\"\nname = \"z\"\nfrom = \"-3 mm\"\nto = "
                "\"-1 mm\"\n");
-  const Optimum optimum = optimum_of(study, folder.path(), models);
+  const Optimum optimum = optimum_of(study, models);
   ASSERT_TRUE(optimum.found());
   EXPECT_NEAR(optimum.designs[1].values[0], -1.2e-3, 0.01e-3);
   EXPECT_LE(optimum.designs[1].values[0], -1.2e-3);
   ASSERT_EQ(optimum.designs[1].models.size(), 2u);
-  const std::string text = optimum_text(study, optimum);
-  EXPECT_THAT(text, HasSubstr("range missed by 2 %"));
-  EXPECT_THAT(text, HasSubstr("kept"));
+  const std::string shown = text(study, optimum);
+  EXPECT_THAT(shown, HasSubstr("range missed by 2 %"));
+  EXPECT_THAT(shown, HasSubstr("kept"));
 }
 
-TEST(Optimise, GoesOnFromTheJournalAndEvaluatesNothingTwice) {
+TEST(Optimise, GoesOnFromTheStoreAndEvaluatesNothingTwice) {
   const TemporaryFolder folder;
   const Study study = study_of(folder.path(), volume,
                                "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\n"
@@ -258,11 +257,10 @@ TEST(Optimise, GoesOnFromTheJournalAndEvaluatesNothingTwice) {
     return genuine.make(options);
   };
   const auto run = [&](const std::string& name) {
-    Journal journal(folder.path() / name);
-    if (journal.header().empty()) journal.append(journal_header(study, "test"));
-    const Optimum optimum = run_optimisation(study, journal, models.mechanics, models.fields);
-    return optimum_text(study, optimum) + optimum_csv(study, optimum) +
-           optimum_json(study, optimum).dump();
+    output::store::Store store(folder.path() / name);
+    Solutions solutions(store, study, "test");
+    const Optimum optimum = run_optimisation(study, solutions, models.mechanics, models.fields);
+    return text(study, optimum) + csv(study, optimum) + json(study, optimum).dump();
   };
   const std::string whole = run("whole");
   const int all = solved;
@@ -276,9 +274,8 @@ TEST(Optimise, GoesOnFromTheJournalAndEvaluatesNothingTwice) {
     solved = 0;
     EXPECT_EQ(run(name), whole);
     EXPECT_EQ(solved, all - part);
-    EXPECT_EQ(test::read_text(folder.path() / name), test::read_text(folder.path() / "whole"));
-    const Journal journal(folder.path() / name);
-    EXPECT_EQ(kept_evaluations(study, journal), journal.records().size());
+    EXPECT_EQ(output::store::Store(folder.path() / name).read("study"),
+              output::store::Store(folder.path() / "whole").read("study"));
   }
 }
 
@@ -291,26 +288,27 @@ TEST(Optimise, ReportsEachDesignByEachPair) {
       "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\nglobal_evaluations = 0\n"
       "starts = 1\n" +
           diameter);
-  const Optimum optimum = optimum_of(study, folder.path());
-  const std::string csv = optimum_csv(study, optimum);
-  EXPECT_THAT(csv, testing::StartsWith("# units: cilium.diameter m, dB_norm T, range N\n"
-                                       "design,cilium.diameter,pair,status,dB_norm,range,message\n"
-                                       "start,0.003,elastica/line,converged,"));
-  EXPECT_THAT(csv, HasSubstr("\noptimum 1,0.00"));
-  const auto json = optimum_json(study, optimum);
-  EXPECT_EQ(json["designs"].size(), 2u);
-  const auto& best = json["designs"][1];
+  const Optimum optimum = optimum_of(study);
+  const std::string lines = csv(study, optimum);
+  EXPECT_THAT(lines,
+              testing::StartsWith("# units: cilium.diameter m, dB_norm T, range N\n"
+                                  "design,cilium.diameter,pair,status,dB_norm,range,message\n"
+                                  "start,0.003,elastica/line,converged,"));
+  EXPECT_THAT(lines, HasSubstr("\noptimum 1,0.00"));
+  const auto document = json(study, optimum);
+  EXPECT_EQ(document["designs"].size(), 2u);
+  const auto& best = document["designs"][1];
   EXPECT_EQ(best["pairs"].size(), 3u);
   EXPECT_EQ(best["parameters"]["cilium.diameter"].get<double>(), optimum.designs[1].values[0]);
   EXPECT_EQ(best["pairs"]["beam/volume"]["range"].get<double>(),
             optimum.designs[1].pairs[2].values[1].value());
   EXPECT_TRUE(best["constraints"][0]["reached"].get<bool>());
   EXPECT_FALSE(best["constraints"][1]["reached"].get<bool>());
-  const std::string text = optimum_text(study, optimum);
+  const std::string shown = text(study, optimum);
   for (const char* words : {"range >= 2 mN: reached; 1 % less would give", "diameter(mm)",
                             "|dB| of start", "range missed by"})
-    EXPECT_THAT(text, HasSubstr(words));
+    EXPECT_THAT(shown, HasSubstr(words));
 }
 
 }  // namespace
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::optimum

@@ -13,6 +13,7 @@
 #include "compare/models/registry.h"
 #include "compare/output/table.h"
 #include "compare/study/range.h"
+#include "compare/study/reader/study_reader.h"
 #include "compare/study/sweep.h"
 #include "problem/error.h"
 #include "study_texts.h"
@@ -29,7 +30,7 @@ constexpr double L = 0.02;
 
 Study study_of(const fs::path& folder, const std::string& header, const std::string& rest) {
   test::write_study_case(folder);
-  return read_study(test::write_study(folder, study_text(header, rest)));
+  return reader::read_study(test::write_study(folder, study_text(header, rest)));
 }
 
 std::string parameter(const std::string& path, const std::string& values) {
@@ -121,9 +122,8 @@ TEST(StudyOutputs, WhatAModelThrowsIsTheFailureOfItsPointAlone) {
     if (magnitude(load) == 2e-3) throw std::runtime_error("the model is \"broken\",\nso it is");
     return tilting(load);
   })};
-  Journal journal(folder.path() / "journal");
-  journal.append(journal_header(study, "test"));
-  const StudyResult result = run_study(study, journal, models.mechanics, models.fields);
+  Solutions in_memory;
+  const StudyResult result = run_study(study, in_memory, models.mechanics, models.fields);
   EXPECT_EQ(result.points[0][0].status, Status::converged);
   EXPECT_EQ(result.points[1][0].status, Status::failed);
   EXPECT_THAT(result.points[1][0].message, HasSubstr("so it is"));
@@ -138,7 +138,7 @@ TEST(StudyOutputs, WhatAModelThrowsIsTheFailureOfItsPointAlone) {
   EXPECT_THAT(without.message, HasSubstr("no field here"));
 }
 
-TEST(StudySweep, SolvesWhatTheJournalDoesNotHoldAndNothingElse) {
+TEST(StudySweep, SolvesWhatTheStoreDoesNotHoldAndNothingElse) {
   const TemporaryFolder folder;
   const Study study = study_of(folder.path(), "pairs = [\"elastica/line\"]\n",
                                "[[parameter]]\npath = \"load.force\"\nfrom = \"1 mN\"\nto = \"4 "
@@ -151,16 +151,16 @@ TEST(StudySweep, SolvesWhatTheJournalDoesNotHoldAndNothingElse) {
     return tilting(load);
   })};
   const auto run = [&](const std::string& name) {
-    Journal journal(folder.path() / name);
-    if (journal.header().empty()) journal.append(journal_header(study, "test"));
-    return run_study(study, journal, models.mechanics, models.fields);
+    output::store::Store store(folder.path() / name);
+    Solutions solutions(store, study, "test");
+    return run_study(study, solutions, models.mechanics, models.fields);
   };
   const StudyResult whole = run("whole");
   EXPECT_EQ(solved, 40);
   solved = 0;
   limit = 15;
   EXPECT_THROW(run("parts"), RankFailure);
-  const std::size_t kept = Journal(folder.path() / "parts").records().size();
+  const std::size_t kept = output::store::Store(folder.path() / "parts").read("study").size();
   EXPECT_GT(kept, 0u);
   EXPECT_LE(kept, 15u);
   solved = 0;
@@ -175,43 +175,29 @@ TEST(StudySweep, SolvesWhatTheJournalDoesNotHoldAndNothingElse) {
   EXPECT_EQ(solved, 0);
 }
 
-TEST(StudySweep, ARecordThatDoesNotFitIsSolvedAgain) {
+// A study of the same points in other words is the same one.
+TEST(StudySweep, AnotherStudysStoreIsRefusedByWhatDiffers) {
   const TemporaryFolder folder;
-  const Study study = study_of(folder.path(), "pairs = [\"elastica/line\"]\n",
-                               parameter("load.force", "\"1 mN\", \"2 mN\""));
-  Journal journal(folder.path() / "journal");
-  journal.append(journal_header(study, "test"));
-  for (const char* record :
-       {"{}", "no JSON", R"({"point": 7, "mechanics": "elastica", "pairs": []})",
-        R"({"point": 0, "mechanics": "elastica", "pairs": []})",
-        R"({"point": 0, "mechanics": "beam", "pairs": []})",
-        R"({"point": 0, "mechanics": "elastica",
-            "pairs": [{"status": "converged", "message": "", "values": [1]}]})"}) {
-    std::string line = record;
-    std::erase(line, '\n');
-    journal.append(line);
-  }
-  const Models models;
-  const StudyResult result = run_study(study, journal, models.mechanics, models.fields);
-  EXPECT_NEAR(result.points[0][0].values[3].value(), 5 * 0.01 * (1 - 1e-4), 1e-12);
-}
-
-TEST(StudySweep, AnotherStudysJournalIsKnownByWhatDiffers) {
-  const TemporaryFolder folder;
-  const auto header = [&](const std::string& values, const std::string& program) {
-    return journal_header(
-        study_of(folder.path(), "pairs = [\"elastica/line\"]\n", parameter("load.force", values)),
-        program);
+  output::store::Store store(folder.path() / "store");
+  const auto refusal = [&](const std::string& parameters, const std::string& program) {
+    const Study study = study_of(folder.path(), "pairs = [\"elastica/line\"]\n", parameters);
+    try {
+      Solutions(store, study, program).add("elastica at point 0", {});
+    } catch (const CheckpointError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
   };
-  const std::string one = header("\"1 mN\", \"2 mN\"", "ciliaval 1");
-  EXPECT_EQ(difference(one, header("\"1000 uN\", \"2 mN\"", "ciliaval 1")), "");
-  EXPECT_THAT(difference(one, header("\"1 mN\", \"3 mN\"", "ciliaval 1")),
-              HasSubstr("parameter: load.force = 0.001 0.002\" where the study now has "
-                        "\"parameter: load.force = 0.001 0.003"));
-  EXPECT_THAT(difference(one, header("\"1 mN\", \"2 mN\"", "ciliaval 2")),
-              HasSubstr("another version"));
-  for (const std::string bad : {"", "x", "{}", "[]", R"({"ciliaval study journal": 9})"})
-    EXPECT_NE(difference(bad, one), "") << bad;
+  const std::string azimuths = parameter("load.azimuth", "\"0 deg\", \"10 deg\"");
+  const std::string forces = parameter("load.force", "\"1 mN\", \"2 mN\"");
+  EXPECT_EQ(refusal(forces + azimuths, "ciliaval 1"), "");
+  EXPECT_EQ(refusal(parameter("load.force", "\"1000 uN\", \"2 mN\"") + azimuths, "ciliaval 1"), "");
+  EXPECT_THAT(
+      refusal(parameter("load.force", "\"1 mN\", \"3 mN\"") + azimuths, "ciliaval 1"),
+      HasSubstr("parameter 1 was load.force = 0.001 0.002, now it is load.force = 0.001 0.003"));
+  EXPECT_THAT(refusal(azimuths + forces, "ciliaval 1"), HasSubstr("parameter 2 was load.azimuth"));
+  EXPECT_THAT(refusal(forces + azimuths, "ciliaval 2"),
+              HasSubstr("program was ciliaval 1, now it is ciliaval 2"));
 }
 
 // Oracle: two models that share no code; and the elastica's own limit, 5.862 mN for the paper's
@@ -267,7 +253,7 @@ TEST(StudyRange, WhereThereIsNoneIsSaid) {
 // What the paper finds, section 3.4; its figures are curves without numbers.
 TEST(ShippedStudies, ShowThePapersTrendsWithThePapersModels) {
   const auto values = [](const std::string& name, std::size_t output) {
-    Study study = read_study(CILIAVAL_SOURCE_DIR "/cases/paper/" + name + ".study.toml");
+    Study study = reader::read_study(CILIAVAL_SOURCE_DIR "/cases/paper/" + name + ".study.toml");
     study.pairs = {{"elastica", "line"}};
     study.outputs = {Output::dB_x, Output::dB_norm};
     std::vector<double> all;

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "compare/study/study.h"
+#include "compare/study/reader/study_reader.h"
 #include "problem/error.h"
 #include "study_texts.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::reader {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,28 +146,28 @@ TEST_F(StudyReader, AStepOfALoadPathIsChosenByWhatIsSet) {
             1u);
 }
 
-TEST_F(StudyReader, TheResolvedStudyHasWhatTheResultsDependOnAndNothingElse) {
-  const std::vector<std::string> lines = resolved(read(study_text(pairs, modulus_range)));
+TEST_F(StudyReader, TheFingerprintHasWhatTheResultsDependOnAndNothingElse) {
+  const support::Fingerprint usual = fingerprint(read(study_text(pairs, modulus_range)));
   const auto with = [&](const std::string& header, const std::string& rest) {
-    return resolved(read(study_text(header, rest)));
+    return fingerprint(read(study_text(header, rest)));
   };
-  EXPECT_EQ(with(pairs + "title = \"Another\"\n", modulus_range), lines);
+  EXPECT_EQ(with(pairs + "title = \"Another\"\n", modulus_range), usual);
   std::string renamed = modulus_range;
   renamed.replace(renamed.find("E1"), 2, "Eb");
-  EXPECT_EQ(with(pairs, renamed), lines);
+  EXPECT_EQ(with(pairs, renamed), usual);
   // The unit in which a range is stated may change its last bits; here it does not.
-  EXPECT_NE(with(pairs + "outputs = [\"range\"]\n", modulus_range), lines);
-  EXPECT_NE(with("pairs = [\"elastica/line\"]\n", modulus_range), lines);
-  EXPECT_NE(with(pairs, "[fixed]\nload.force = \"1.0000001 mN\"\n" + modulus_range), lines);
+  EXPECT_NE(with(pairs + "outputs = [\"range\"]\n", modulus_range), usual);
+  EXPECT_NE(with("pairs = [\"elastica/line\"]\n", modulus_range), usual);
+  EXPECT_NE(with(pairs, "[fixed]\nload.force = \"1.0000001 mN\"\n" + modulus_range), usual);
   std::string longer = modulus_range;
   longer.replace(longer.find("= 5"), 3, "= 6");
-  EXPECT_NE(with(pairs, longer), lines);
+  EXPECT_NE(with(pairs, longer), usual);
   const auto optimised = [&](const std::string& keys, const std::string& bounds) {
     return with(pairs, "[optimise]\nmaximise = \"dB_x\"\n" + keys +
                            "[[parameter]]\npath = \"cilium.diameter\"\nto = \"5 mm\"\n" + bounds);
   };
   const std::string from = "from = \"1 mm\"\n";
-  const std::vector<std::string> optimum = optimised("", from);
+  const support::Fingerprint optimum = optimised("", from);
   for (const char* keys :
        {"starts = 9\n", "global_evaluations = 9\n", "at_least.dB_x = \"1 uT\"\n"})
     EXPECT_NE(optimised(keys, from), optimum) << keys;
@@ -177,7 +177,7 @@ TEST_F(StudyReader, TheResolvedStudyHasWhatTheResultsDependOnAndNothingElse) {
   EXPECT_EQ(optimised("", from + "name = \"d\"\n"), optimum);
   test::write_study_case(folder_.path(), "\"1 mN\"",
                          "mechanics = [\"elastica\"]\n[models.beam]\ndegree = 4\n");
-  EXPECT_NE(with(pairs, modulus_range), lines);
+  EXPECT_NE(with(pairs, modulus_range), usual);
 }
 
 // Each fault is planted in a study that is right without it, and said where it stands.
@@ -404,4 +404,4 @@ TEST(ShippedStudies, HaveTheFiguresOfThePaper) {
 }
 
 }  // namespace
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::reader

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/report.h"
+#include "compare/study/summary/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "compare/study/reader/study_reader.h"
 #include "study_texts.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::summary {
 namespace {
 
 using test::study_text;
@@ -32,8 +33,8 @@ StudyResult result_of(const std::string& parameters, const std::function<double(
                           "[\"dB_norm\"]\ntitle = \"A title\"\n") {
   const TemporaryFolder folder;
   test::write_study_case(folder.path());
-  StudyResult result{read_study(test::write_study(folder.path(), study_text(header, parameters))),
-                     {}};
+  StudyResult result{
+      reader::read_study(test::write_study(folder.path(), study_text(header, parameters))), {}};
   for (std::size_t i = 0; i < result.study.point_count(); ++i) {
     const double value = f(result.study.values_at(i)[0]);
     PairResult r{Status::converged, "", {value}};
@@ -99,12 +100,12 @@ TEST(StudyReport, CsvHasALineForEachPointAndPairWithUnitsAndQuotes) {
 TEST(StudyReport, JsonGivesBackEveryNumber) {
   const StudyResult result =
       result_of(lengths, [](double x) { return x > 0.85 ? NAN : std::exp(-x) / 3; });
-  const auto json =
-      nlohmann::json::parse(study::json(result, {"1", "abc", {}, "the command", "the date"}));
-  EXPECT_EQ(json["outputs"][0]["unit"], "T");
-  ASSERT_EQ(json["points"].size(), 17u);
+  const auto document =
+      nlohmann::json::parse(json(result, {"1", "abc", {}, "the command", "the date"}).dump());
+  EXPECT_EQ(document["outputs"][0]["unit"], "T");
+  ASSERT_EQ(document["points"].size(), 17u);
   for (std::size_t i = 0; i < 17; ++i) {
-    const auto& point = json["points"][i];
+    const auto& point = document["points"][i];
     const double x = point["parameters"]["cilium.segment.magnet.proportion"];
     EXPECT_EQ(x, result.study.values_at(i)[0]);
     const auto& pair = point["pairs"]["elastica/line"];
@@ -116,7 +117,8 @@ TEST(StudyReport, JsonGivesBackEveryNumber) {
     }
   }
   // Nothing that differs from call to call.
-  EXPECT_THAT(json.dump(), Not(testing::AnyOf(HasSubstr("the command"), HasSubstr("the date"))));
+  EXPECT_THAT(document.dump(),
+              Not(testing::AnyOf(HasSubstr("the command"), HasSubstr("the date"))));
 }
 
 TEST(StudyReport, TheTableIsThinnedAndTellsWhatSlippedOff) {
@@ -176,4 +178,4 @@ TEST(StudyPlot, OfNothingThereIsNone) {
 }
 
 }  // namespace
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The search in the unit box. Oracle: functions whose optima and multipliers follow by hand.
-#include "compare/study/search.h"
+#include "compare/study/optimum/search.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::optimum {
 namespace {
 
 using testing::ElementsAre;
@@ -173,4 +173,4 @@ TEST(Search, WhatTheFunctionThrowsComesThrough) {
 }
 
 }  // namespace
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::optimum

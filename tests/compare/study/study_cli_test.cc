@@ -69,13 +69,13 @@ TEST(StudyCommand, ASecondCallSolvesNothingAndSaysTheSame) {
   const Outcome first = run_program(folder.path(), "study varied.study.toml");
   ASSERT_EQ(first.code, 0) << first.err;
   const fs::path out = folder.path() / "results/varied";
-  const std::string journal = read_text(out / "points.journal");
+  const std::string store = read_text(out / "points.sqlite");
   const std::string json = read_text(out / "study.json");
   const Outcome second = run_program(folder.path(), "study varied.study.toml");
   EXPECT_EQ(second.code, 0);
   EXPECT_EQ(second.out, first.out);
   EXPECT_THAT(second.err, HasSubstr("5 of 5 solutions are there already"));
-  EXPECT_EQ(read_text(out / "points.journal"), journal);
+  EXPECT_EQ(read_text(out / "points.sqlite"), store);
   EXPECT_EQ(read_text(out / "study.json"), json);
   const Outcome fresh = run_program(folder.path(), "study varied.study.toml --fresh");
   EXPECT_EQ(fresh.code, 0);
@@ -104,16 +104,16 @@ TEST(StudyCommand, AnotherStudyInTheFolderIsRefusedAndLeftAsItIs) {
   test::write_study_case(folder.path());
   test::write_study(folder.path(), study_text(line, modulus_range));
   ASSERT_EQ(run_program(folder.path(), "study varied.study.toml").code, 0);
-  const fs::path journal = folder.path() / "results/varied/points.journal";
-  const std::string before = read_text(journal);
+  const fs::path store = folder.path() / "results/varied/points.sqlite";
+  const std::string before = read_text(store);
   std::string longer = modulus_range;
   longer.replace(longer.find("= 5"), 3, "= 6");
   test::write_study(folder.path(), study_text(line, longer));
   const Outcome other = run_program(folder.path(), "study varied.study.toml");
   EXPECT_EQ(other.code, 4);
-  EXPECT_THAT(other.err, HasSubstr("it is that of another study"));
+  EXPECT_THAT(other.err, HasSubstr("it holds results of something else: parameter 1 was "));
   EXPECT_THAT(other.err, HasSubstr("--fresh"));
-  EXPECT_EQ(read_text(journal), before);
+  EXPECT_EQ(read_text(store), before);
   EXPECT_EQ(run_program(folder.path(), "study varied.study.toml --fresh").code, 0);
   // The case belongs to the study.
   test::write_study_case(folder.path(), "\"1.1 mN\"");
@@ -126,6 +126,25 @@ TEST(StudyCommand, AnotherStudyInTheFolderIsRefusedAndLeftAsItIs) {
   const Outcome taken = run_program(folder.path(), "study varied.study.toml -o taken --fresh");
   EXPECT_EQ(taken.code, 4);
   EXPECT_THAT(taken.err, HasSubstr("is not the folder of a study"));
+}
+
+// The folder behind a link may be anybody's, even if it holds a store; nothing in it is changed.
+TEST(StudyCommand, ALinkInPlaceOfTheFolderIsRefusedAndLeftAsItIs) {
+  const TemporaryFolder folder;
+  test::write_study_case(folder.path());
+  test::write_study(folder.path(), study_text(line, modulus_range));
+  ASSERT_EQ(run_program(folder.path(), "study varied.study.toml -o other").code, 0);
+  fs::create_directories(folder.path() / "results");
+  fs::create_symlink(folder.path() / "other/varied", folder.path() / "results/varied");
+  const fs::path store = folder.path() / "other/varied/points.sqlite";
+  const std::string before = read_text(store);
+  for (const char* fresh : {"", " --fresh"}) {
+    const Outcome linked =
+        run_program(folder.path(), std::string("study varied.study.toml") + fresh);
+    EXPECT_EQ(linked.code, 4);
+    EXPECT_THAT(linked.err, HasSubstr("results/varied` is a link to"));
+    EXPECT_EQ(read_text(store), before);
+  }
 }
 
 TEST(StudyCommand, APointThatSlipsOffIsAResultAndOneThatFailsIsRecorded) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/tolerances.h"
+#include "compare/study/summary/tolerances.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,11 +12,12 @@
 #include <vector>
 
 #include "compare/models/registry.h"
-#include "compare/study/report.h"
+#include "compare/study/reader/study_reader.h"
+#include "compare/study/summary/report.h"
 #include "problem/error.h"
 #include "study_texts.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::summary {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,15 +30,13 @@ constexpr double L = 0.02;
 
 Study study_of(const fs::path& folder, const std::string& header, const std::string& rest) {
   test::write_study_case(folder);
-  return read_study(test::write_study(folder, study_text(header, rest)));
+  return reader::read_study(test::write_study(folder, study_text(header, rest)));
 }
 
-StudyResult solve(const fs::path& folder, const Study& study,
-                  std::span<const models::MechanicsEntry> mechanics,
+StudyResult solve(const Study& study, std::span<const models::MechanicsEntry> mechanics,
                   std::span<const models::FieldEntry> fields) {
-  Journal journal(folder / "journal", true);
-  journal.append(journal_header(study, "test"));
-  return run_study(study, journal, mechanics, fields);
+  Solutions in_memory;
+  return run_study(study, in_memory, mechanics, fields);
 }
 
 const std::string tolerances = R"([tolerances]
@@ -59,7 +58,7 @@ StudyResult of_formulas(const std::string& header, const std::string& rest, doub
         const double theta = d.centreline.at(L).theta();
         return 25 * theta * theta * std::pow(1 + x.x(), 3) * Vector3::UnitX();
       })};
-  return solve(folder.path(), study_of(folder.path(), header, rest), mechanics, fields);
+  return solve(study_of(folder.path(), header, rest), mechanics, fields);
 }
 
 // Oracle: the derivatives by hand. The differences are exact for cubics.
@@ -104,9 +103,9 @@ TEST(StudyTolerances, StandBehindTheSweep) {
       tolerances + "[[parameter]]\npath = \"load.force\"\nvalues = [\"2 mN\", \"3 mN\"]\n");
   EXPECT_EQ(result.study.point_count(), 2u);
   EXPECT_EQ(result.points.size(), 2u + 13);
-  const auto json = nlohmann::json::parse(study::json(result, {}));
-  EXPECT_EQ(json["points"].size(), 2u);
-  const auto& entry = json["tolerances"]["pairs"]["elastica/line"]["dB_x"];
+  const auto document = tolerance_json(result);
+  EXPECT_EQ(json(result, {})["points"].size(), 2u);
+  const auto& entry = document["pairs"]["elastica/line"]["dB_x"];
   EXPECT_NEAR(entry["nominal"].get<double>(), 0.25, 1e-3);
   EXPECT_EQ(entry["slopes"].size(), 3u);
   EXPECT_THAT(text(result), HasSubstr("Along force"));
@@ -139,8 +138,7 @@ load.azimuth = "1 deg"
 sensor.position.x = "0.05 mm"
 sensor.position.z = "0.05 mm"
 )");
-  const StudyResult result =
-      solve(folder.path(), study, models::mechanics_models(), models::field_models());
+  const StudyResult result = solve(study, models::mechanics_models(), models::field_models());
   std::mt19937 random(20261122);  // NOLINT(cert-msc51-cpp): the same cilia in every run
   std::normal_distribution<double> normal;
   constexpr std::size_t count = 4000;
@@ -154,8 +152,7 @@ sensor.position.z = "0.05 mm"
       parameter.values.push_back(t.nominal + t.deviation * normal(random));
     cilia.parameters.push_back(std::move(parameter));
   }
-  const StudyResult samples =
-      solve(folder.path(), cilia, models::mechanics_models(), models::field_models());
+  const StudyResult samples = solve(cilia, models::mechanics_models(), models::field_models());
   for (std::size_t output = 0; output < 2; ++output) {
     double mean = 0;
     for (const auto& point : samples.points) mean += point[0].values[output].value() / count;
@@ -200,4 +197,4 @@ TEST(StudyTolerances, FaultsAreSaidWithTheirPlace) {
 }
 
 }  // namespace
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary

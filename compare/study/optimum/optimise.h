@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "compare/study/evaluate.h"
-#include "compare/study/journal.h"
-#include "compare/study/search.h"
+#include "compare/study/optimum/search.h"
+#include "compare/study/solutions.h"
+#include "compare/study/study.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::optimum {
 
 /// A design with what the pairs make of it.
 struct Design {
@@ -45,24 +46,20 @@ std::vector<Constraint> constraints_of(const Study& study);
 /// goal y, a constraint ln(limit/|y|) or ln(|y|/limit), so that the multipliers are elasticities:
 /// per cent of the goal for one per cent of the limit. A design without a goal, because it slips
 /// off or the model fails, has a stand-in far below; how far it is from bearing its load is known
-/// from its range all the same. Each evaluation is in the journal as soon as it is there; the
-/// search asks for the same sequence of designs again and finds them there. Throws FileError,
-/// RankFailure, CheckpointError.
-Optimum run_optimisation(const Study& study, Journal& journal,
+/// from its range all the same. The search asks for the same sequence of designs again and finds
+/// those that are kept. Throws RankFailure, CheckpointError.
+Optimum run_optimisation(const Study& study, Solutions& solutions,
                          std::span<const models::MechanicsEntry> mechanics_models,
                          std::span<const models::FieldEntry> field_models,
                          const Progress& progress = {});
 
-/// How many evaluations of the study the journal holds.
-std::size_t kept_evaluations(const Study& study, const Journal& journal);
-
 /// For a terminal: the designs, what limits them, and what each pair makes of them.
-std::string optimum_text(const Study& study, const Optimum& optimum);
+std::string text(const Study& study, const Optimum& optimum);
 
 /// optimum.csv: a line for each design and pair, as study.csv has it.
-std::string optimum_csv(const Study& study, const Optimum& optimum);
+std::string csv(const Study& study, const Optimum& optimum);
 
 /// The object `optimum` of study.json (docs/guide/studies.md), SI units.
-nlohmann::ordered_json optimum_json(const Study& study, const Optimum& optimum);
+nlohmann::ordered_json json(const Study& study, const Optimum& optimum);
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::optimum

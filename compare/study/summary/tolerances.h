@@ -8,7 +8,7 @@
 
 #include "compare/study/sweep.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::summary {
 
 /// What the tolerances do to one output y of one pair at the case with its fixed numbers.
 struct Propagation {
@@ -35,4 +35,4 @@ std::string tolerance_csv(const StudyResult& result);
 /// "deviation", "slopes": […], "errors": […]}}}}, SI units.
 nlohmann::ordered_json tolerance_json(const StudyResult& result);
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "compare/input/case_sections.h"
-#include "compare/study/reading.h"
+#include "compare/study/reader/reading.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::reader {
 namespace {
 
 constexpr std::size_t longest_name = 40;  ///< of a parameter, bytes
@@ -231,4 +231,4 @@ void read_parameters(input::Section& root, Reading& reading) {
                  [&](input::Section& table) { read_parameter(table, reading); });
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::reader

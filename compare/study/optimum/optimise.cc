@@ -1,42 +1,25 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/optimise.h"
+#include "compare/study/optimum/optimise.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <tuple>
+#include <string_view>
 #include <utility>
 
 #include "compare/budget/sensitivity.h"
-#include "compare/study/record.h"
-#include "compare/study/report.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::optimum {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The gain of a design without a goal, and the least of one that has it: ln of the goal in the
 /// unit in which people read it.
 constexpr double no_gain = -10;
 /// The constraints of a design of which nothing is known.
 constexpr double unknown_violation = 10;
-
-/// One mechanics model at one design, with the search's outputs or with all of them.
-struct Key {
-  bool is_search = true;
-  std::vector<double> values;
-  std::string mechanics;
-  bool operator<(const Key& other) const {
-    return std::tie(is_search, values, mechanics) <
-           std::tie(other.is_search, other.values, other.mechanics);
-  }
-};
-using Records = std::map<Key, std::vector<PairResult>>;
 
 /// The study as the search evaluates it: the first pair, and no output that it does not need.
 Study searched(const Study& study) {
@@ -51,98 +34,62 @@ Study searched(const Study& study) {
   return s;
 }
 
-std::vector<models::ModelPair> pairs_of(const Study& study, const std::string& mechanics) {
-  std::vector<models::ModelPair> pairs;
-  for (const models::ModelPair& pair : study.pairs)
-    if (pair.mechanics == mechanics) pairs.push_back(pair);
-  return pairs;
-}
-
-std::string to_text(const Key& key, const std::vector<PairResult>& results) {
-  return Json{{key.is_search ? "search" : "design", key.values},
-              {"mechanics", key.mechanics},
-              {"pairs", to_json(results)}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// The records of the journal that are of this study.
-Records records_of(const Study& study, const Journal& journal) {
-  const Study search = searched(study);
-  Records records;
-  for (const std::string& text : journal.records()) {
-    try {
-      const Json json = Json::parse(text);
-      const bool is_search = json.contains("search");
-      const Study& of = is_search ? search : study;
-      Key key{is_search, json.at(is_search ? "search" : "design").get<std::vector<double>>(),
-              json.at("mechanics").get<std::string>()};
-      auto results =
-          results_from(json.at("pairs"), of.outputs.size(), pairs_of(of, key.mechanics).size());
-      if (results && key.values.size() == study.optimisation->parameters.size())
-        records.emplace(std::move(key), std::move(*results));
-    } catch (const Json::exception&) {  // another format's: computed again
-    }
-  }
-  return records;
-}
-
-/// Evaluates designs, or finds them in the journal.
+/// Evaluates designs, unless they are known.
 class Evaluations {
  public:
-  Evaluations(const Study& study, Journal& journal,
+  Evaluations(const Study& study, Solutions& solutions,
               std::span<const models::MechanicsEntry> mechanics,
               std::span<const models::FieldEntry> fields, const Progress& progress)
       : study_(study),
         search_(searched(study)),
-        journal_(journal),
+        solutions_(solutions),
         mechanics_(mechanics),
         fields_(fields),
-        progress_(progress),
-        records_(records_of(study, journal)) {}
+        progress_(progress) {}
 
+  /// The study as the search evaluates it.
   const Study& search() const { return search_; }
-
-  const std::vector<PairResult>& of(const Key& key, const Progress& progress = {}) {
-    const auto known = records_.find(key);
-    if (known != records_.end()) return known->second;
-    const Study& study = key.is_search ? search_ : study_;
-    auto results =
-        evaluate(study, study_.design(key.values), key.mechanics, mechanics_, fields_, progress);
-    journal_.append(to_text(key, results));
-    return records_.emplace(key, std::move(results)).first->second;
+  const PairResult& searched_at(const std::vector<double>& values) {
+    return solve("search", search_, values, study_.pairs.front().mechanics, {}).front();
   }
 
-  /// A design by some of the mechanics models, in the order of the study's pairs.
+  /// A design by some of the mechanics models.
   Design design(std::string name, std::vector<double> values,
                 const std::vector<std::string>& mechanics) {
-    for (const std::string& model : mechanics) {
-      Progress inner;
-      if (progress_)
-        inner = [&](const std::string& text) {
-          progress_(fmt::format("{}: {}: {}", study_.name, name, text));
-        };
-      of({false, values, model}, inner);
-    }
+    Progress inner;
+    if (progress_)
+      inner = [&](const std::string& text) {
+        progress_(fmt::format("{}: {}: {}", study_.name, name, text));
+      };
     Design design{std::move(name), std::move(values), {}, {}};
-    std::map<std::string, std::size_t> next;
-    for (const models::ModelPair& pair : study_.pairs) {
-      const auto record = records_.find({false, design.values, pair.mechanics});
+    for (std::size_t i = 0; i < study_.pairs.size(); ++i) {
+      const models::ModelPair& pair = study_.pairs[i];
       if (std::find(mechanics.begin(), mechanics.end(), pair.mechanics) == mechanics.end())
         continue;
       design.models.push_back(pair);
-      design.pairs.push_back(record->second[next[pair.mechanics]++]);
+      design.pairs.push_back(
+          solve("design", study_, design.values, pair.mechanics, inner).at(study_.place(i)));
     }
     return design;
   }
 
  private:
+  const std::vector<PairResult>& solve(std::string_view kind, const Study& study,
+                                       const std::vector<double>& values,
+                                       const std::string& mechanics, const Progress& progress) {
+    const std::string name = fmt::format("{} of {} at {}", kind, mechanics, fmt::join(values, " "));
+    if (solutions_.find(name) == nullptr)
+      solutions_.add(
+          name, evaluate(study, study_.design(values), mechanics, mechanics_, fields_, progress));
+    return *solutions_.find(name);
+  }
+
   const Study& study_;
   Study search_;
-  Journal& journal_;
+  Solutions& solutions_;
   std::span<const models::MechanicsEntry> mechanics_;
   std::span<const models::FieldEntry> fields_;
   const Progress& progress_;
-  Records records_;
 };
 
 /// A parameter between its bounds as a number from 0 to 1, and back.
@@ -211,19 +158,19 @@ std::vector<Constraint> constraints_of(const Study& study) {
   return all;
 }
 
-Optimum run_optimisation(const Study& study, Journal& journal,
+Optimum run_optimisation(const Study& study, Solutions& solutions,
                          std::span<const models::MechanicsEntry> mechanics_models,
                          std::span<const models::FieldEntry> field_models,
                          const Progress& progress) {
   const Optimisation& o = *study.optimisation;
-  Evaluations evaluations(study, journal, mechanics_models, field_models, progress);
+  Evaluations evaluations(study, solutions, mechanics_models, field_models, progress);
   const std::vector<Constraint> constraints = constraints_of(study);
   const std::string& searcher = study.pairs.front().mechanics;
   Optimum optimum;
   double best = no_gain;
   const auto function = [&](const std::vector<double>& u) {
     const std::vector<double> values = from_unit(study, u);
-    const PairResult& result = evaluations.of({true, values, searcher}).front();
+    const PairResult& result = evaluations.searched_at(values);
     const double load = magnitude(study.design(values).load_path.front());
     Trial trial = trial_of(evaluations.search(), constraints, load, result);
     ++optimum.evaluations;
@@ -237,19 +184,13 @@ Optimum run_optimisation(const Study& study, Journal& journal,
   for (std::size_t i = 0; i < o.start.size(); ++i)
     start.push_back(to_unit(o.parameters[i], o.start[i]));
   optimum.search = maximise(function, start, {o.global_evaluations, o.starts});
-  journal.flush();
 
   optimum.designs.push_back(evaluations.design("start", o.start, study.mechanics()));
   for (std::size_t i = 0; i < optimum.search.optima.size(); ++i)
     optimum.designs.push_back(evaluations.design(
         fmt::format("optimum {}", i + 1), from_unit(study, optimum.search.optima[i].u),
         i == 0 ? study.mechanics() : std::vector<std::string>{searcher}));
-  journal.flush();
   return optimum;
 }
 
-std::size_t kept_evaluations(const Study& study, const Journal& journal) {
-  return records_of(study, journal).size();
-}
-
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::optimum

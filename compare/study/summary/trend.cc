@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "compare/study/report.h"
+#include "compare/study/summary/report.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::summary {
 namespace {
 
 struct Sample {
@@ -91,4 +91,4 @@ Trend trend(const StudyResult& result, std::size_t pair, std::size_t output) {
   return t;
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary

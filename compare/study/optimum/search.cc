@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/search.h"
+#include "compare/study/optimum/search.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include <nlopt.hpp>
 #include <utility>
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::optimum {
 namespace {
 
 using Point = std::vector<double>;
@@ -310,4 +310,4 @@ SearchResult maximise(const TrialFunction& function, const std::vector<double>& 
   return result;
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::optimum

@@ -9,11 +9,10 @@
 
 #include "compare/output/results.h"
 #include "compare/output/text_table.h"
-#include "compare/study/optimise.h"
-#include "compare/study/record.h"
-#include "compare/study/report.h"
+#include "compare/study/optimum/optimise.h"
+#include "compare/study/summary/report.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::optimum {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -125,7 +124,7 @@ std::string result_table(const Study& study, const Optimum& optimum) {
       std::vector<std::string>& row = rows.emplace_back();
       row = {design.name, design.models[i].name()};
       for (std::size_t output = 0; output < study.outputs.size(); ++output)
-        row.push_back(cell(result, output, unit_of(study.outputs[output], study).size));
+        row.push_back(summary::cell(result, output, unit_of(study.outputs[output], study).size));
       row.push_back(result.uncertainty ? fmt::format("{:.1g}", *result.uncertainty / 1e-6) : "-");
       std::optional<double> before;
       for (std::size_t s = 0; s < optimum.designs.front().models.size(); ++s)
@@ -156,7 +155,7 @@ Json design_json(const Study& study, const Optimum& optimum, std::size_t index) 
   for (std::size_t i = 0; i < o.parameters.size(); ++i)
     json["parameters"][o.parameters[i].number.path] = design.values[i];
   for (std::size_t i = 0; i < design.models.size(); ++i)
-    json["pairs"][design.models[i].name()] = pair_json(study, design.pairs[i]);
+    json["pairs"][design.models[i].name()] = summary::pair_json(study, design.pairs[i]);
   if (index == 0) return json;
   const LocalOptimum& local = optimum.search.optima[index - 1];
   json["local_searches"] = local.starts;
@@ -176,7 +175,7 @@ Json design_json(const Study& study, const Optimum& optimum, std::size_t index) 
 
 }  // namespace
 
-std::string optimum_text(const Study& study, const Optimum& optimum) {
+std::string text(const Study& study, const Optimum& optimum) {
   const Optimisation& o = *study.optimisation;
   std::vector<std::string> limits;
   for (const Constraint& c : constraints_of(study)) limits.push_back(words(study, c));
@@ -198,16 +197,16 @@ std::string optimum_text(const Study& study, const Optimum& optimum) {
   return text + '\n' + result_table(study, optimum) + messages(optimum);
 }
 
-std::string optimum_csv(const Study& study, const Optimum& optimum) {
+std::string csv(const Study& study, const Optimum& optimum) {
   output::CsvWriter csv;
-  add_csv_header(csv, study, study.optimisation->parameters, "design");
+  summary::add_csv_header(csv, study, study.optimisation->parameters, "design");
   for (const Design& design : optimum.designs)
     for (std::size_t i = 0; i < design.models.size(); ++i)
-      add_csv_row(csv, design.name, design.values, design.models[i], design.pairs[i]);
+      summary::add_csv_row(csv, design.name, design.values, design.models[i], design.pairs[i]);
   return csv.text();
 }
 
-Json optimum_json(const Study& study, const Optimum& optimum) {
+Json json(const Study& study, const Optimum& optimum) {
   const Optimisation& o = *study.optimisation;
   Json json{{"maximise", id(o.goal)},
             {"pair", study.pairs.front().name()},
@@ -229,13 +228,14 @@ Json optimum_json(const Study& study, const Optimum& optimum) {
                                   {"shown_unit_size", p.unit_size},
                                   {"logarithmic", p.is_logarithmic}});
   for (const Constraint& c : constraints_of(study))
-    json["constraints"].push_back({{"output", id(c.output)},
-                                   {c.is_lower ? "at_least" : "at_most", c.value},
-                                   {"times_the_load", c.is_own_load},
-                                   {"unit", c.is_own_load ? "" : si_unit(c.output, study)}});
+    json["constraints"].push_back(
+        {{"output", id(c.output)},
+         {c.is_lower ? "at_least" : "at_most", c.value},
+         {"times_the_load", c.is_own_load},
+         {"unit", c.is_own_load ? "" : quantity_of(c.output, study.load()).unit}});
   for (std::size_t i = 0; i < optimum.designs.size(); ++i)
     json["designs"].push_back(design_json(study, optimum, i));
   return json;
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::optimum

@@ -12,7 +12,7 @@
 #include "compare/input/case_toml.h"
 #include "compare/study/study.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::reader {
 
 /// The points of a study, at most.
 inline constexpr std::size_t most_points = 1'000'000;
@@ -67,4 +67,4 @@ void read_optimisation(input::Section& table, Reading& reading);
 /// [[parameter]] of a study that optimises: their bounds and where the search starts.
 void read_searched_parameters(input::Section& root, Reading& reading);
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::reader

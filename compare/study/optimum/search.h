@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::optimum {
 
 /// A point of the unit box [0, 1]ⁿ as a search sees it.
 struct Trial {
@@ -61,4 +61,4 @@ struct SearchResult {
 SearchResult maximise(const TrialFunction& function, const std::vector<double>& start,
                       const SearchOptions& options);
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::optimum

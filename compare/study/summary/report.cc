@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/report.h"
+#include "compare/study/summary/report.h"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -11,28 +11,13 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/results.h"
 #include "compare/output/text_table.h"
-#include "compare/study/record.h"
-#include "compare/study/tolerances.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::summary {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_rows = 25;
-
-/// The unit of the load's magnitude for people.
-OutputUnit load_unit(const Study& study) {
-  const std::string_view unit = magnitude_unit(study.base.load_path.front());
-  if (unit == "N") return {"mN", 1e-3};
-  if (unit == "m") return {"mm", 1e-3};
-  return {std::string(unit), 1};
-}
-
-/// A unit as a divisor: "N/m" in brackets.
-std::string divisor(const std::string& unit) {
-  return unit.find('/') == std::string::npos ? unit : "(" + unit + ")";
-}
 
 /// As many rows as fit a screen, evenly chosen, the first and the last among them.
 std::vector<std::size_t> shown_points(std::size_t count) {
@@ -132,43 +117,6 @@ std::string cell(const PairResult& result, std::size_t output, double unit) {
   return output::number_cell(result.values[output], unit, "{:.5g}");
 }
 
-std::string_view symbol(Output output) {
-  switch (output) {
-    case Output::dB_norm:
-      return "|dB|";
-    case Output::sensitivity:
-      return "d|dB|/dF";
-    default:
-      return id(output);
-  }
-}
-
-OutputUnit unit_of(Output output, const Study& study) {
-  OutputUnit load = load_unit(study);
-  switch (output) {
-    case Output::sensitivity:
-      return {"uT/" + divisor(load.name), 1e-6 / load.size};
-    case Output::range:
-    case Output::resolution:
-      return load;
-    default:
-      return {"uT", 1e-6};
-  }
-}
-
-std::string si_unit(Output output, const Study& study) {
-  std::string load(magnitude_unit(study.base.load_path.front()));
-  switch (output) {
-    case Output::sensitivity:
-      return "T/" + divisor(load);
-    case Output::range:
-    case Output::resolution:
-      return load;
-    default:
-      return "T";
-  }
-}
-
 std::string text(const StudyResult& result) {
   const Study& study = result.study;
   std::string text = fmt::format("Study \"{}\": {}\n", study.name, study.title);
@@ -188,7 +136,7 @@ void add_csv_header(output::CsvWriter& csv, const Study& study,
     if (!p.number.quantity.unit.empty())
       units.push_back(fmt::format("{} {}", p.number.path, p.number.quantity.unit));
   for (const Output output : study.outputs)
-    units.push_back(fmt::format("{} {}", id(output), si_unit(output, study)));
+    units.push_back(fmt::format("{} {}", id(output), quantity_of(output, study.load()).unit));
   csv.comment(fmt::format("units: {}", fmt::join(units, ", ")));
   csv.add(first);
   for (const Parameter& p : parameters) csv.add(p.number.path);
@@ -208,11 +156,15 @@ void add_csv_row(output::CsvWriter& csv, std::string_view first, const std::vect
   csv.row(result.message);
 }
 
+Json number_json(const std::optional<double>& value) {
+  return value ? Json(*value + 0.0) : Json(nullptr);
+}
+
 Json pair_json(const Study& study, const PairResult& result) {
   Json json{{"status", output::to_string(result.status)}, {"message", result.message}};
   for (std::size_t o = 0; o < study.outputs.size(); ++o)
-    json[std::string(id(study.outputs[o]))] = to_json(result.values[o]);
-  json["dB_uncertainty"] = to_json(result.uncertainty);
+    json[std::string(id(study.outputs[o]))] = number_json(result.values[o]);
+  json["dB_uncertainty"] = number_json(result.uncertainty);
   return json;
 }
 
@@ -227,7 +179,7 @@ std::string csv(const StudyResult& result) {
   return csv.text();
 }
 
-std::string json(const StudyResult& result, const output::Provenance& provenance) {
+Json json(const StudyResult& result, const output::Provenance& provenance) {
   const Study& study = result.study;
   Json json{{"schema", 1},
             {"study", study.name},
@@ -237,11 +189,13 @@ std::string json(const StudyResult& result, const output::Provenance& provenance
              {{"version", provenance.version},
               {"git", provenance.git},
               {"libraries", provenance.libraries}}},
-            {"resolved", resolved(study)},
+            {"resolved", Json::array()},
             {"parameters", Json::array()},
             {"outputs", Json::array()},
             {"pairs", Json::array()},
             {"points", Json::array()}};
+  for (const auto& [name, value] : fingerprint(study))
+    json["resolved"].push_back(fmt::format("{} = {}", name, value));
   for (const Parameter& p : study.parameters)
     json["parameters"].push_back({{"path", p.number.path},
                                   {"name", p.name},
@@ -251,7 +205,8 @@ std::string json(const StudyResult& result, const output::Provenance& provenance
                                   {"shown_unit_size", p.unit_size},
                                   {"logarithmic", p.is_logarithmic}});
   for (const Output output : study.outputs)
-    json["outputs"].push_back({{"id", id(output)}, {"unit", si_unit(output, study)}});
+    json["outputs"].push_back(
+        {{"id", id(output)}, {"unit", quantity_of(output, study.load()).unit}});
   for (const models::ModelPair& pair : study.pairs) json["pairs"].push_back(pair.name());
   for (std::size_t point = 0; point < study.point_count(); ++point) {
     Json entry{{"point", point}, {"parameters", Json::object()}, {"pairs", Json::object()}};
@@ -262,9 +217,7 @@ std::string json(const StudyResult& result, const output::Provenance& provenance
       entry["pairs"][study.pairs[pair].name()] = pair_json(study, result.points[point][pair]);
     json["points"].push_back(std::move(entry));
   }
-  if (!study.tolerances.empty()) json["tolerances"] = tolerance_json(result);
-  if (result.optimum) json["optimum"] = optimum_json(study, *result.optimum);
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json;
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary

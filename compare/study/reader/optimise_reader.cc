@@ -5,31 +5,14 @@
 #include <algorithm>
 #include <string_view>
 
-#include "compare/study/reading.h"
+#include "compare/study/reader/reading.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::reader {
 namespace {
 
 constexpr std::size_t most_searched = 8;
 constexpr Range evaluations_range{0, 1e6, false, "a search must end"};
 constexpr Range starts_range{0, 1000, false, "a search must end"};
-
-/// What an output is, for the values that limit it.
-Quantity quantity_of(Output output, const Load& load) {
-  const std::string_view unit = magnitude_unit(load);
-  switch (output) {
-    case Output::sensitivity:
-      if (unit == "N") return {"a", "flux density per force", "T/N", "50 uT/mN"};
-      if (unit == "m") return {"a", "flux density per length", "T/m", "50 uT/mm"};
-      return {"a", "flux density per force per length", "T m/N", "50 uT m/N"};
-    case Output::range:
-    case Output::resolution:
-      if (unit == "N") return quantity::force;
-      return unit == "m" ? quantity::length : quantity::force_per_length;
-    default:
-      return quantity::flux_density;
-  }
-}
 
 /// [optimise.at_least] or [optimise.at_most].
 void read_limits(input::Section& parent, std::string_view key, bool is_lower, Reading& reading) {
@@ -136,4 +119,4 @@ void read_searched_parameters(input::Section& root, Reading& reading) {
                       fmt::format("an optimisation searches at most {} parameters", most_searched));
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::reader

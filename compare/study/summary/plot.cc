@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "compare/study/report.h"
+#include "compare/study/summary/report.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::summary {
 namespace {
 
 constexpr plot::Size plot_size{760, 520};
@@ -18,32 +18,6 @@ constexpr std::size_t most_families = 6;
 std::string with_mu(std::string unit) {
   if (unit.starts_with("uT")) unit.replace(0, 1, "µ");
   return unit;
-}
-
-std::string axis_title(Output output) {
-  switch (output) {
-    case Output::dB_norm:
-      return "|ΔB|";
-    case Output::sensitivity:
-      return "sensitivity d|ΔB|/dF";
-    case Output::range:
-      return "range: largest load";
-    case Output::resolution:
-      return "resolution: smallest change of the load";
-    case Output::B_x:
-      return "B_x";
-    case Output::B_y:
-      return "B_y";
-    case Output::B_z:
-      return "B_z";
-    case Output::dB_x:
-      return "ΔB_x";
-    case Output::dB_y:
-      return "ΔB_y";
-    case Output::dB_z:
-      break;
-  }
-  return "ΔB_z";
 }
 
 /// The points that differ in the first parameter alone.
@@ -173,7 +147,7 @@ std::string y_axis(const StudyResult& result, std::size_t output, const Extremes
   const Study& study = result.study;
   const OutputUnit unit = unit_of(study.outputs[output], study);
   const std::string script = fmt::format(
-      "set ylabel {}\n", axis_label(axis_title(study.outputs[output]), with_mu(unit.name)));
+      "set ylabel {}\n", axis_label(std::string(title(study.outputs[output])), with_mu(unit.name)));
   bool turns = false;
   if (study.is_zipped || study.parameters.size() == 1)
     for (std::size_t pair = 0; pair < study.pairs.size(); ++pair) {
@@ -239,4 +213,4 @@ std::vector<StudyPlot> plots(const StudyResult& result) {
   return all;
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary

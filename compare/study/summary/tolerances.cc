@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/tolerances.h"
+#include "compare/study/summary/tolerances.h"
 
 #include <fmt/core.h>
 
@@ -9,10 +9,9 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/results.h"
 #include "compare/output/text_table.h"
-#include "compare/study/record.h"
-#include "compare/study/report.h"
+#include "compare/study/summary/report.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::summary {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -94,7 +93,7 @@ std::string tolerance_csv(const StudyResult& result) {
       const Propagation p = propagate(result, pair, o);
       const std::string name = study.pairs[pair].name();
       const std::string_view output = id(study.outputs[o]);
-      const std::string unit = si_unit(study.outputs[o], study);
+      const std::string_view unit = quantity_of(study.outputs[o], study.load()).unit;
       for (std::size_t i = 0; i < p.shares.size(); ++i) {
         const Tolerance& t = study.tolerances[i];
         const Propagation::Share& share = p.shares[i];
@@ -120,12 +119,12 @@ Json tolerance_json(const StudyResult& result) {
     for (std::size_t o = 0; o < study.outputs.size(); ++o) {
       const Propagation p = propagate(result, pair, o);
       Json& entry = of_pair[std::string(id(study.outputs[o]))];
-      entry = {{"nominal", to_json(p.nominal)},
-               {"deviation", to_json(p.deviation)},
+      entry = {{"nominal", number_json(p.nominal)},
+               {"deviation", number_json(p.deviation)},
                {"slopes", Json::array()},
                {"errors", Json::array()}};
       for (const Propagation::Share& share : p.shares) {
-        entry["slopes"].push_back(to_json(share.slope));
+        entry["slopes"].push_back(number_json(share.slope));
         entry["errors"].push_back(share.slope ? Json(share.error) : Json(nullptr));
       }
     }
@@ -133,4 +132,4 @@ Json tolerance_json(const StudyResult& result) {
   return json;
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A study file read and checked.
+#include "compare/study/reader/study_reader.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -15,11 +16,11 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
-#include "compare/study/reading.h"
+#include "compare/study/reader/reading.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::compare::study {
+namespace ciliaval::compare::study::reader {
 namespace {
 
 namespace fs = std::filesystem;
@@ -393,4 +394,4 @@ Study read_study(const fs::path& file) {
   return std::move(reading.study);
 }
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::reader

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,18 +12,7 @@
 #include "compare/plot/gnuplot.h"
 #include "compare/study/sweep.h"
 
-namespace ciliaval::compare::study {
-
-/// The unit in which people read an output, and its size in SI units.
-struct OutputUnit {
-  std::string name;  ///< "uT", "uT/mN"
-  double size = 1;
-};
-OutputUnit unit_of(Output output, const Study& study);
-/// The SI unit of an output: "T", "T/N".
-std::string si_unit(Output output, const Study& study);
-/// "|dB|", "d|dB|/dF": what an output is, in a word.
-std::string_view symbol(Output output);
+namespace ciliaval::compare::study::summary {
 
 /// An output of a result in this unit, or what has become of it.
 std::string cell(const PairResult& result, std::size_t output, double unit);
@@ -42,11 +32,14 @@ void add_csv_header(output::CsvWriter& csv, const Study& study,
 void add_csv_row(output::CsvWriter& csv, std::string_view first, const std::vector<double>& values,
                  const models::ModelPair& pair, const PairResult& result);
 
+/// A number, or null; without negative zero.
+nlohmann::ordered_json number_json(const std::optional<double>& value);
 /// What a pair made of a point: {"status", "message", OUTPUT…, "dB_uncertainty"}, SI units.
 nlohmann::ordered_json pair_json(const Study& study, const PairResult& result);
 
-/// study.json (docs/guide/studies.md), SI units. Nothing in it says when or how often the program ran.
-std::string json(const StudyResult& result, const output::Provenance& provenance);
+/// study.json (docs/guide/studies.md), SI units. Nothing in it says when or how often the program
+/// ran.
+nlohmann::ordered_json json(const StudyResult& result, const output::Provenance& provenance);
 
 /// How an output of a pair runs along the only parameter (or those that are zipped).
 struct Trend {
@@ -71,4 +64,4 @@ struct StudyPlot {
 /// One for each output that has a value somewhere.
 std::vector<StudyPlot> plots(const StudyResult& result);
 
-}  // namespace ciliaval::compare::study
+}  // namespace ciliaval::compare::study::summary
