@@ -28,9 +28,9 @@ const Entry& entry_of(std::span<const Entry> entries, const std::string& id) {
   return *it;
 }
 
-/// The fields of one station, and where the steps of the case are among them.
-struct StationFields {
-  const Station* station;
+/// The fields of one stage, and where the steps of the case are among them.
+struct StageFields {
+  const Stage* stage;
   const models::MechanicsRun* mechanics;
   const std::vector<std::size_t>* place;
   models::FieldRun run;
@@ -47,8 +47,8 @@ struct Computed {
   std::vector<std::size_t> steps;                      ///< 0, 1, …: the places in `alone`
   std::map<std::string, models::MechanicsRun> around;  ///< by id, on the surrounded path
   std::map<std::string, models::MechanicsRun> alone;   ///< the steps of the case only
-  std::vector<StationFields> chain;                    ///< in the order of the stations
-  std::optional<StationFields> beside;
+  std::vector<StageFields> chain;                      ///< in the order of the stages
+  std::optional<StageFields> beside;
 };
 
 models::MechanicsRun steps_of(const models::MechanicsRun& run,
@@ -58,27 +58,27 @@ models::MechanicsRun steps_of(const models::MechanicsRun& run,
   return result;
 }
 
-StationFields compute_fields(const Station& station, const input::Case& problem,
-                             std::span<const models::FieldEntry> entries, const Computed& computed,
-                             const Progress& progress) {
+StageFields compute_fields(const Stage& stage, const input::Case& problem,
+                           std::span<const models::FieldEntry> entries, const Computed& computed,
+                           const Progress& progress) {
   input::ModelOptions options = problem.options;
-  station.set(options);
-  const auto model = entry_of(entries, station.field).make(options);
+  stage.set(options);
+  const auto model = entry_of(entries, stage.field).make(options);
   const models::MechanicsRun& mechanics =
-      (station.sensitivity ? computed.around : computed.alone).at(station.mechanics);
-  StationFields result{
-      &station, &mechanics, station.sensitivity ? &computed.path.step : &computed.steps, {}};
+      (stage.sensitivity ? computed.around : computed.alone).at(stage.mechanics);
+  StageFields result{
+      &stage, &mechanics, stage.sensitivity ? &computed.path.step : &computed.steps, {}};
   if (!mechanics.result.undeformed.centreline.pieces().empty() &&
       (!model->needs_body() || mechanics.result.undeformed.body))
-    result.run = models::run_field(station.field_name(), *model, mechanics, problem, progress);
+    result.run = models::run_field(stage.field_name(), *model, mechanics, problem, progress);
   return result;
 }
 
 void compute(const input::Case& problem, std::span<const models::MechanicsEntry> mechanics,
              std::span<const models::FieldEntry> fields, const Chain& chain,
              const Progress& progress, Computed& computed) {
-  const bool any = std::any_of(chain.stations.begin(), chain.stations.end(),
-                               [](const Station& station) { return station.sensitivity; });
+  const bool any = std::any_of(chain.stages.begin(), chain.stages.end(),
+                               [](const Stage& stage) { return stage.sensitivity; });
   computed.path = surround(problem.load_path, any && !problem.sensors.empty());
   input::Case surrounded = problem;
   surrounded.load_path = computed.path.loads;
@@ -92,18 +92,18 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
     computed.alone.emplace(id, steps_of(run, computed.path.step));
   }
   if (problem.sensors.empty()) return;
-  for (const Station& station : chain.stations)
-    computed.chain.push_back(compute_fields(station, problem, fields, computed, progress));
+  for (const Stage& stage : chain.stages)
+    computed.chain.push_back(compute_fields(stage, problem, fields, computed, progress));
   if (chain.beside)
     computed.beside = compute_fields(*chain.beside, problem, fields, computed, progress);
 }
 
 // ------------------------------------------------------------------------------------------- rows
 
-/// A number of all stations of a chain, with the uncertainty of each difference.
+/// A number of all stages of a chain, with the uncertainty of each difference.
 struct Numbers {
-  std::vector<std::string> names;             ///< of the stations
-  std::vector<std::optional<double>> values;  ///< none where a station has no value
+  std::vector<std::string> names;             ///< of the stages
+  std::vector<std::optional<double>> values;  ///< none where a stage has no value
   std::function<std::optional<double>(std::size_t, std::size_t)> uncertainty;
   std::function<std::string(std::size_t, std::size_t)> physics;
 };
@@ -134,165 +134,109 @@ bool fill(BudgetRow& row, const Numbers& numbers) {
   return true;
 }
 
-/// Tip and tip angle of the mechanics models in a row.
-class MechanicsRows {
- public:
-  MechanicsRows(const Chain& chain, const Computed& computed) : chain_(chain) {
-    for (const std::string& id : chain.mechanics) runs_.push_back(&computed.alone.at(id));
-  }
-
-  void add(std::size_t step, std::vector<BudgetRow>& rows) const {
-    for (Eigen::Index axis = 0; axis < 3; ++axis)
-      add(
-          step, "tip", axis_names[static_cast<std::size_t>(axis)], "m",
-          [axis](const CentrelinePoint& tip) { return tip.position[axis]; },
-          [step](const models::MechanicsRun& run) {
-            return run.result.steps[step].tip_uncertainty;
-          },
-          rows);
-    add(
-        step, "tip_angle", "", "rad", [](const CentrelinePoint& tip) { return tip.theta(); },
-        [step](const models::MechanicsRun& run) {
-          return models::tip_angle_uncertainty(run, step);
-        },
-        rows);
-  }
-
- private:
-  void add(std::size_t step, const char* quantity, const std::string& component, const char* unit,
-           const std::function<double(const CentrelinePoint&)>& value,
-           const std::function<std::optional<double>(const models::MechanicsRun&)>& uncertainty,
-           std::vector<BudgetRow>& rows) const {
-    Numbers numbers{chain_.mechanics, {}, {}, {}};
-    for (const models::MechanicsRun* run : runs_) {
+/// Adds tip and tip angle at a step. The first stages of the chain are the mechanics models, in
+/// their order.
+void add_mechanics(const Chain& chain, const Computed& computed, std::size_t step,
+                   std::vector<BudgetRow>& rows) {
+  std::vector<const models::MechanicsRun*> runs;
+  for (const std::string& id : chain.mechanics) runs.push_back(&computed.alone.at(id));
+  const auto add = [&](const char* quantity, const std::string& component, const char* unit,
+                       const auto& value, const auto& uncertainty) {
+    Numbers numbers{chain.mechanics, {}, {}, {}};
+    for (const models::MechanicsRun* run : runs) {
       const Centreline& centreline = run->result.steps[step].deformation->centreline;
       numbers.values.emplace_back(value(centreline.at(centreline.length())));
     }
     numbers.uncertainty = [&](std::size_t a, std::size_t b) -> std::optional<double> {
-      const auto ua = uncertainty(*runs_[a]);
-      const auto ub = uncertainty(*runs_[b]);
-      if (!ua || !ub) return std::nullopt;
-      return std::abs(*ua) + std::abs(*ub);
+      const std::optional<double> ua = uncertainty(*runs[a]);
+      const std::optional<double> ub = uncertainty(*runs[b]);
+      return ua && ub ? std::optional(std::abs(*ua) + std::abs(*ub)) : std::nullopt;
     };
-    // The first stations of the chain are the mechanics models, in their order.
-    numbers.physics = [&](std::size_t a, std::size_t b) { return chain_.physics(a, b); };
-    BudgetRow row;
-    row.step = step;
-    row.quantity = quantity;
-    row.component = component;
-    row.unit = unit;
+    numbers.physics = [&](std::size_t a, std::size_t b) { return chain.physics(a, b); };
+    BudgetRow row{step, {}, quantity, component, unit, 0, 0, {}, {}, {}};
     if (fill(row, numbers)) rows.push_back(std::move(row));
-  }
-
-  const Chain& chain_;
-  std::vector<const models::MechanicsRun*> runs_;
-};
-
-/// One vector of a field at a sensor at one step by all stations.
-class FieldRows {
- public:
-  FieldRows(const Chain& chain, const Computed& computed, std::size_t step, std::size_t sensor)
-      : chain_(chain), computed_(computed), step_(step), sensor_(sensor) {}
-
-  void add(std::vector<BudgetRow>& rows) const {
-    add_field("B", false, rows);
-    add_field("dB", true, rows);
-    add_sensitivity(rows);
-  }
-
- private:
-  using Uncertainty =
-      std::function<std::optional<Vector3>(const StationFields&, const StationFields&)>;
-  using Value = std::function<std::optional<Vector3>(const StationFields&)>;
-
-  std::optional<Vector3> pair(const StationFields& a, const StationFields& b, bool change) const {
-    const auto va = a.value(step_, sensor_, change);
-    const auto vb = b.value(step_, sensor_, change);
-    if (!va || !vb) return std::nullopt;
-    return models::combined_uncertainty(*va, *vb, a.station->mechanics == b.station->mechanics);
-  }
-
-  void add_field(const char* quantity, bool change, std::vector<BudgetRow>& rows) const {
+  };
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
     add(
-        quantity, "T",
-        [&](const StationFields& fields) -> std::optional<Vector3> {
-          const auto value = fields.value(step_, sensor_, change);
-          return value ? std::optional(value->value) : std::nullopt;
-        },
-        [&](const StationFields& a, const StationFields& b) { return pair(a, b, change); }, rows);
-  }
+        "tip", axis_names[static_cast<std::size_t>(axis)], "m",
+        [&](const CentrelinePoint& tip) { return tip.position[axis]; },
+        [&](const models::MechanicsRun& run) { return run.result.steps[step].tip_uncertainty; });
+  add(
+      "tip_angle", "", "rad", [](const CentrelinePoint& tip) { return tip.theta(); },
+      [&](const models::MechanicsRun& run) { return models::tip_angle_uncertainty(run, step); });
+}
 
-  std::optional<Sensitivity> derivative(const StationFields& fields) const {
-    if (!fields.station->sensitivity) return std::nullopt;
-    return sensitivity(fields.run, computed_.path, step_, sensor_);
-  }
-
-  /// Truncation error of b − a, plus the uncertainty of b − a in ΔB times |dB/dF|/|ΔB| of b.
-  std::optional<Vector3> sensitivity_uncertainty(const StationFields& a,
-                                                 const StationFields& b) const {
-    const auto discretisation = pair(a, b, true);
-    const auto change = b.value(step_, sensor_, true);
-    if (!discretisation || !(change->value.norm() > 0)) return std::nullopt;
-    const Sensitivity da = *derivative(a);
-    const Sensitivity db = *derivative(b);
-    const Vector3 truncation = ((db.value - da.value) - (db.plain - da.plain)).cwiseAbs();
-    return truncation + *discretisation * (db.value.norm() / change->value.norm());
-  }
-
-  void add_sensitivity(std::vector<BudgetRow>& rows) const {
-    const std::string_view unit = magnitude_unit(computed_.path.loads.front());
-    add(
-        "sensitivity", unit == "N/m" ? "T/(N/m)" : fmt::format("T/{}", unit),
-        [&](const StationFields& fields) -> std::optional<Vector3> {
-          const auto value = derivative(fields);
-          return value ? std::optional(value->value) : std::nullopt;
-        },
-        [&](const StationFields& a, const StationFields& b) {
-          return sensitivity_uncertainty(a, b);
-        },
-        rows);
-  }
-
-  void add(const char* quantity, const std::string& unit, const Value& value,
-           const Uncertainty& uncertainty, std::vector<BudgetRow>& rows) const {
+/// Adds B, ΔB and dB/dF at a sensor and a step.
+void add_fields(const Chain& chain, const Computed& computed, std::size_t step, std::size_t sensor,
+                std::vector<BudgetRow>& rows) {
+  using Vector = std::optional<Vector3>;
+  const auto add = [&](const char* quantity, const std::string& unit, const auto& value,
+                       const auto& uncertainty) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const auto component = [axis](const std::optional<Vector3>& v) {
+      const auto component = [axis](const Vector& v) {
         return v ? std::optional((*v)[axis]) : std::nullopt;
       };
       Numbers numbers;
-      for (const StationFields& fields : computed_.chain) {
-        numbers.names.push_back(fields.station->name());
+      for (const StageFields& fields : computed.chain) {
+        numbers.names.push_back(fields.stage->name());
         numbers.values.push_back(component(value(fields)));
       }
       numbers.uncertainty = [&](std::size_t a, std::size_t b) {
-        return component(uncertainty(computed_.chain[a], computed_.chain[b]));
+        return component(uncertainty(computed.chain[a], computed.chain[b]));
       };
-      numbers.physics = [&](std::size_t a, std::size_t b) { return chain_.physics(a, b); };
-      BudgetRow row;
-      row.step = step_;
-      row.sensor = sensor_;
-      row.quantity = quantity;
-      row.component = axis_names[static_cast<std::size_t>(axis)];
-      row.unit = unit;
+      numbers.physics = [&](std::size_t a, std::size_t b) { return chain.physics(a, b); };
+      const std::string& name = axis_names[static_cast<std::size_t>(axis)];
+      BudgetRow row{step, sensor, quantity, name, unit, 0, 0, {}, {}, {}};
       if (!fill(row, numbers)) continue;
-      if (computed_.beside) {
-        const StationFields& paper = computed_.chain.front();
-        const StationFields& beside = *computed_.beside;
-        Numbers two{{paper.station->name(), beside.station->name()},
-                    {numbers.values.front(), component(value(beside))},
-                    [&](std::size_t, std::size_t) { return component(uncertainty(paper, beside)); },
-                    [&](std::size_t, std::size_t) { return beside.station->physics; }};
+      if (computed.beside) {
+        const StageFields& paper = computed.chain.front();
+        const StageFields& beside = *computed.beside;
+        const Numbers two{
+            {paper.stage->name(), beside.stage->name()},
+            {numbers.values.front(), component(value(beside))},
+            [&](std::size_t, std::size_t) { return component(uncertainty(paper, beside)); },
+            [&](std::size_t, std::size_t) { return beside.stage->physics; }};
         if (two.values.back()) row.beside = make_link(two, 0, 1);
       }
       rows.push_back(std::move(row));
     }
-  }
-
-  const Chain& chain_;
-  const Computed& computed_;
-  std::size_t step_;
-  std::size_t sensor_;
-};
+  };
+  const auto pair = [&](const StageFields& a, const StageFields& b, bool change) -> Vector {
+    const auto va = a.value(step, sensor, change);
+    const auto vb = b.value(step, sensor, change);
+    if (!va || !vb) return std::nullopt;
+    return models::combined_uncertainty(*va, *vb, a.stage->mechanics == b.stage->mechanics);
+  };
+  for (const bool change : {false, true})
+    add(
+        change ? "dB" : "B", "T",
+        [&](const StageFields& fields) -> Vector {
+          const auto value = fields.value(step, sensor, change);
+          return value ? Vector(value->value) : std::nullopt;
+        },
+        [&](const StageFields& a, const StageFields& b) { return pair(a, b, change); });
+  const auto derivative = [&](const StageFields& fields) -> std::optional<Sensitivity> {
+    if (!fields.stage->sensitivity) return std::nullopt;
+    return sensitivity(fields.run, computed.path, step, sensor);
+  };
+  const std::string_view unit = magnitude_unit(computed.path.loads.front());
+  add(
+      "sensitivity", unit == "N/m" ? "T/(N/m)" : fmt::format("T/{}", unit),
+      [&](const StageFields& fields) -> Vector {
+        const auto value = derivative(fields);
+        return value ? Vector(value->value) : std::nullopt;
+      },
+      // Truncation error of b − a, plus the uncertainty of b − a in ΔB times |dB/dF|/|ΔB| of b.
+      [&](const StageFields& a, const StageFields& b) -> Vector {
+        const Vector discretisation = pair(a, b, true);
+        const auto change = b.value(step, sensor, true);
+        if (!discretisation || !(change->value.norm() > 0)) return std::nullopt;
+        const Sensitivity da = *derivative(a);
+        const Sensitivity db = *derivative(b);
+        const Vector3 truncation = ((db.value - da.value) - (db.plain - da.plain)).cwiseAbs();
+        return truncation + *discretisation * (db.value.norm() / change->value.norm());
+      });
+}
 
 // ---------------------------------------------------------------------------------------- remarks
 
@@ -336,7 +280,7 @@ void remark_neighbours(const Computed& computed, const Chain& chain, std::size_t
     }
 }
 
-void remark_failures(const StationFields& fields, Budget& budget) {
+void remark_failures(const StageFields& fields, Budget& budget) {
   std::vector<std::string> messages;
   const auto add = [&](const models::FieldStep& step) {
     if (!step.failure.empty() &&
@@ -355,10 +299,10 @@ void remark_failures(const StationFields& fields, Budget& budget) {
 
 /// dB/dF may end before the chain does.
 void remark_sensitivity(const Chain& chain, const Computed& computed, Budget& budget) {
-  if (computed.chain.empty() || !chain.stations.front().sensitivity) return;
-  const auto end = std::find_if(chain.stations.begin(), chain.stations.end(),
-                                [](const Station& station) { return !station.sensitivity; });
-  if (end != chain.stations.end())
+  if (computed.chain.empty() || !chain.stages.front().sensitivity) return;
+  const auto end = std::find_if(chain.stages.begin(), chain.stages.end(),
+                                [](const Stage& stage) { return !stage.sensitivity; });
+  if (end != chain.stages.end())
     budget.remarks.push_back(
         fmt::format("dB/dF ends at {}: the numerical error of {} is too large for differences",
                     std::prev(end)->name(), end->field));
@@ -385,17 +329,16 @@ Budget error_budget(const input::Case& problem, std::span<const models::Mechanic
   const Chain& chain = budget.chain;
   Computed computed;
   compute(problem, mechanics, fields, chain, progress, computed);
-  const MechanicsRows mechanics_rows(chain, computed);
   for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
     if (!borne(computed, chain, step, budget)) continue;
-    mechanics_rows.add(step, budget.rows);
-    if (chain.stations.front().sensitivity && !problem.sensors.empty())
+    add_mechanics(chain, computed, step, budget.rows);
+    if (chain.stages.front().sensitivity && !problem.sensors.empty())
       remark_neighbours(computed, chain, step, budget);
     if (computed.chain.empty()) continue;
     for (std::size_t sensor = 0; sensor < problem.sensors.size(); ++sensor)
-      FieldRows(chain, computed, step, sensor).add(budget.rows);
+      add_fields(chain, computed, step, sensor, budget.rows);
   }
-  for (const StationFields& station : computed.chain) remark_failures(station, budget);
+  for (const StageFields& stage : computed.chain) remark_failures(stage, budget);
   if (computed.beside) remark_failures(*computed.beside, budget);
   remark_sensitivity(chain, computed, budget);
   budget.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -13,17 +13,17 @@
 
 namespace ciliaval::compare::budget {
 
-/// What one change of model does to one number: next − previous.
+/// The effect of one change of model on one number: next − previous.
 struct BudgetLink {
   std::string from;                   ///< the previous model
   std::string to;                     ///< the next one
-  std::string physics;                ///< what changes
+  std::string physics;                ///< the assumption that changes
   double value = 0;                   ///< in the row's unit
   std::optional<double> uncertainty;  ///< numerical: of `value`, in the row's unit
   models::Verdict verdict = models::Verdict::inconclusive;
 };
 
-/// A number of one load step, and what lies between the paper's model and the best one of it.
+/// A number of one load step by the paper's model and by the best one, and the links between.
 struct BudgetRow {
   std::size_t step = 0;
   std::optional<std::size_t> sensor;  ///< none: of the mechanics
@@ -57,7 +57,7 @@ struct Budget {
 ///
 /// A link's uncertainty is that of the pair (combined_uncertainty()): of the same deformation only
 /// the field models' count. dB/dF: the truncation error of the link's difference quotient, plus the
-/// relative uncertainty of the link in ΔB. Where a station has no value, the links before and after
+/// relative uncertainty of the link in ΔB. Where a stage has no value, the links before and after
 /// it are one. A step that a mechanics model does not bear has no rows but a remark.
 ///
 /// Throws InputError if `without` is not as make_chain() takes it or a model is not among the
@@ -66,7 +66,7 @@ Budget error_budget(const input::Case& problem, std::span<const models::Mechanic
                     std::span<const models::FieldEntry> fields,
                     const std::vector<std::string>& without, const Progress& progress = {});
 
-/// What is wrong with the links of a row: they must lead from the paper's model to the best one and
+/// The fault of a row's links: they must lead from the paper's model to the best one and
 /// add up to their difference to rounding. Empty if nothing is.
 std::string fault(const BudgetRow& row);
 

@@ -52,7 +52,7 @@ Set set_potential(double relative_permeability, bool plates) {
 }
 
 /// The mechanics, with dipoles along the centreline.
-std::vector<Station> mechanics_stations() {
+std::vector<Stage> mechanics_stages() {
   return {
       {"elastica", "line", "", set_line, ""},
       {"beam", "line", "", set_line, "shear and extension of the rod"},
@@ -62,9 +62,9 @@ std::vector<Station> mechanics_stations() {
 }
 
 /// The fields on the best mechanics.
-std::vector<Station> field_stations(const input::Case& problem, const std::string& mechanics) {
+std::vector<Stage> field_stages(const input::Case& problem, const std::string& mechanics) {
   using Slices = analytic::rod::VolumeOptions::Slices;
-  std::vector<Station> stations{
+  std::vector<Stage> stages{
       {mechanics, "volume", "stacked", set_slices(Slices::stacked),
        "the magnet's thickness, in flat slices (Eq. 8-9)"},
       {mechanics, "volume", "wedge", set_slices(Slices::wedge),
@@ -78,14 +78,14 @@ std::vector<Station> field_stations(const input::Case& problem, const std::strin
   const fem::potential::PotentialOptions& potential = problem.options.potential;
   const std::string permeability = fmt::format("mu_r = {:g}", potential.relative_permeability);
   if (potential.relative_permeability != 1)
-    stations.push_back({mechanics, "potential", permeability,
-                        set_potential(potential.relative_permeability, false),
-                        "recoil permeability of the magnet", false});
+    stages.push_back({mechanics, "potential", permeability,
+                      set_potential(potential.relative_permeability, false),
+                      "recoil permeability of the magnet", false});
   if (!potential.plates.empty())
-    stations.push_back({mechanics, "potential", permeability + ", plates",
-                        set_potential(potential.relative_permeability, true), "permeable plates",
-                        false});
-  return stations;
+    stages.push_back({mechanics, "potential", permeability + ", plates",
+                      set_potential(potential.relative_permeability, true), "permeable plates",
+                      false});
+  return stages;
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ const std::vector<std::string>& words_to_leave_out() {
 
 std::string Chain::physics(std::size_t from, std::size_t to) const {
   std::vector<std::string> words;
-  for (std::size_t i = from + 1; i <= to; ++i) words.push_back(stations[i].physics);
+  for (std::size_t i = from + 1; i <= to; ++i) words.push_back(stages[i].physics);
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
@@ -108,38 +108,30 @@ Chain make_chain(const input::Case& problem, const std::vector<std::string>& wit
     return std::find(without.begin(), without.end(), word) != without.end();
   };
   Chain chain;
-  const auto add = [&](const Station& station, const std::string& missing) {
+  const auto add = [&](const Stage& stage, const std::string& missing) {
     if (missing.empty())
-      chain.stations.push_back(station);
+      chain.stages.push_back(stage);
     else
-      chain.not_run.push_back(fmt::format("{}: without {}", station.name(), missing));
+      chain.not_run.push_back(fmt::format("{}: without {}", stage.name(), missing));
   };
-  for (const Station& station : mechanics_stations()) {
-    add(station, is_left_out(station.mechanics) ? station.mechanics : "");
-    if (!is_left_out(station.mechanics)) chain.mechanics.push_back(station.mechanics);
+  for (const Stage& stage : mechanics_stages()) {
+    add(stage, is_left_out(stage.mechanics) ? stage.mechanics : "");
+    if (!is_left_out(stage.mechanics)) chain.mechanics.push_back(stage.mechanics);
   }
   const std::string best = chain.mechanics.back();
-  for (Station& station : field_stations(problem, best)) {
-    std::string missing;
-    if (is_left_out(station.field))
-      missing = station.field;
-    else if (station.field == "mesh" && best != "solid")
-      missing = "solid";
-    if (is_left_out("sensitivity")) station.sensitivity = false;
-    add(station, missing);
-  }
-  if (is_left_out("sensitivity"))
-    for (Station& station : chain.stations) station.sensitivity = false;
-  Station dipole{"elastica",
-                 "dipole",
-                 "",
-                 [](input::ModelOptions&) {},
-                 "the whole magnet as one dipole at its centroid",
-                 !is_left_out("sensitivity")};
+  for (const Stage& stage : field_stages(problem, best))
+    add(stage, is_left_out(stage.field)                   ? stage.field
+               : stage.field == "mesh" && best != "solid" ? "solid"
+                                                          : "");
   if (is_left_out("dipole"))
     chain.not_run.push_back("elastica/dipole: without dipole");
   else
-    chain.beside = std::move(dipole);
+    chain.beside = Stage{"elastica", "dipole", "", [](input::ModelOptions&) {},
+                         "the whole magnet as one dipole at its centroid"};
+  if (is_left_out("sensitivity")) {
+    for (Stage& stage : chain.stages) stage.sensitivity = false;
+    if (chain.beside) chain.beside->sensitivity = false;
+  }
   return chain;
 }
 

@@ -11,26 +11,26 @@
 namespace ciliaval::compare::budget {
 
 /// A pair of models on the way from the paper's to the best one.
-struct Station {
+struct Stage {
   std::string mechanics;  ///< id
   std::string field;      ///< id
   std::string variant;    ///< of the field model: "stacked"; empty if it has none
   std::function<void(input::ModelOptions&)> set;  ///< makes the variant
-  std::string physics;      ///< what changes from the station before to this one
+  std::string physics;      ///< the assumption that changes from the stage before
   bool sensitivity = true;  ///< whether dB/dF is computed here
 
   std::string field_name() const { return variant.empty() ? field : field + ' ' + variant; }
   std::string name() const { return mechanics + '/' + field_name(); }
 };
 
-/// The stations; from one to the next a single assumption changes.
+/// The stages; from one to the next a single assumption changes.
 struct Chain {
-  std::vector<Station> stations;       ///< elastica/line, the paper's, first
-  std::optional<Station> beside;       ///< elastica/dipole: a model of its own, not on the way
+  std::vector<Stage> stages;           ///< elastica/line, the paper's, first
+  std::optional<Stage> beside;         ///< elastica/dipole: a model of its own, not on the way
   std::vector<std::string> mechanics;  ///< ids, in the order in which they come
-  std::vector<std::string> not_run;    ///< what was asked to be left out, and what that takes along
+  std::vector<std::string> not_run;    ///< stages that are left out, each with the model it lacks
 
-  /// What the links from one station to a later one change.
+  /// The assumptions that change from one stage to a later one.
   std::string physics(std::size_t from, std::size_t to) const;
 };
 

@@ -47,19 +47,19 @@ BudgetRow read_row(const Json& json) {
 }
 
 /// "solid/volume stacked" taken apart.
-Station read_station(const Json& json) {
+Stage read_stage(const Json& json) {
   const std::string name = json.at("name").get<std::string>();
   const std::size_t slash = name.find('/');
   if (slash == std::string::npos) throw FileError("`" + name + "` is no pair of models");
-  Station station;
-  station.mechanics = name.substr(0, slash);
-  station.field = name.substr(slash + 1);
-  if (const std::size_t blank = station.field.find(' '); blank != std::string::npos) {
-    station.variant = station.field.substr(blank + 1);
-    station.field.resize(blank);
+  Stage stage;
+  stage.mechanics = name.substr(0, slash);
+  stage.field = name.substr(slash + 1);
+  if (const std::size_t blank = stage.field.find(' '); blank != std::string::npos) {
+    stage.variant = stage.field.substr(blank + 1);
+    stage.field.resize(blank);
   }
-  station.physics = text_or_none(json.at("physics"));
-  return station;
+  stage.physics = text_or_none(json.at("physics"));
+  return stage;
 }
 
 }  // namespace
@@ -67,8 +67,7 @@ Station read_station(const Json& json) {
 Budget read_budget(const Json& json) {
   Budget budget;
   budget.case_name = json.at("case").get<std::string>();
-  for (const Json& station : json.at("chain"))
-    budget.chain.stations.push_back(read_station(station));
+  for (const Json& stage : json.at("chain")) budget.chain.stages.push_back(read_stage(stage));
   budget.chain.not_run = json.at("not_run").get<std::vector<std::string>>();
   budget.remarks = json.at("remarks").get<std::vector<std::string>>();
   for (const Json& row : json.at("rows")) budget.rows.push_back(read_row(row));

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "compare/output/csv_writer.h"
+#include "compare/output/json_file.h"
 #include "compare/output/table.h"
 #include "compare/output/text_table.h"
 
@@ -54,7 +55,7 @@ std::string interval_cell(const BudgetLink& link, const Unit& unit) {
 /// The rows that stand side by side in a table.
 using Group = std::vector<const BudgetRow*>;
 
-/// Those of one quantity at one step, of the mechanics or at the first sensor.
+/// The rows of one quantity at one step: of the mechanics, or at the first sensor.
 Group group_of(const Budget& budget, std::size_t step, std::string_view quantity) {
   Group group;
   for (const BudgetRow& row : budget.rows)
@@ -133,11 +134,11 @@ std::string step_text(const Budget& budget, std::size_t step) {
 
 std::string chain_text(const Budget& budget) {
   output::TextRows rows;
-  for (const Station& station : budget.chain.stations)
-    if (&station == &budget.chain.stations.front())
-      rows.push_back({station.name(), "the paper's model: elastica, dipoles along the centreline"});
+  for (const Stage& stage : budget.chain.stages)
+    if (&stage == &budget.chain.stages.front())
+      rows.push_back({stage.name(), "the paper's model: elastica, dipoles along the centreline"});
     else
-      rows.push_back({"-> " + station.name(), station.physics});
+      rows.push_back({"-> " + stage.name(), stage.physics});
   if (budget.chain.beside)
     rows.push_back({"beside: " + budget.chain.beside->name(),
                     budget.chain.beside->physics + "; not in the sum"});
@@ -162,23 +163,18 @@ Json link_json(const BudgetLink& link) {
           {"to", link.to},
           {"physics", link.physics},
           {"value", link.value},
-          {"uncertainty", link.uncertainty ? Json(*link.uncertainty) : Json(nullptr)},
+          {"uncertainty", output::or_null(link.uncertainty)},
           {"verdict", models::to_string(link.verdict)}};
 }
 
 Json row_json(const BudgetRow& row) {
-  Json json{{"step", row.step},
-            {"sensor", row.sensor ? Json(*row.sensor) : Json(nullptr)},
-            {"quantity", row.quantity},
-            {"component", row.component.empty() ? Json(nullptr) : Json(row.component)},
-            {"unit", row.unit},
-            {"paper_model", row.total.from},
-            {"paper", row.paper},
-            {"best_model", row.total.to},
-            {"best", row.best},
-            {"total", link_json(row.total)},
-            {"links", Json::array()},
-            {"beside", row.beside ? link_json(*row.beside) : Json(nullptr)}};
+  Json json{
+      {"step", row.step},         {"sensor", row.sensor ? Json(*row.sensor) : Json(nullptr)},
+      {"quantity", row.quantity}, {"component", output::or_null(row.component)},
+      {"unit", row.unit},         {"paper_model", row.total.from},
+      {"paper", row.paper},       {"best_model", row.total.to},
+      {"best", row.best},         {"total", link_json(row.total)},
+      {"links", Json::array()},   {"beside", row.beside ? link_json(*row.beside) : Json(nullptr)}};
   for (const BudgetLink& link : row.links) json["links"].push_back(link_json(link));
   return json;
 }
@@ -208,10 +204,10 @@ std::string budget_json(const Budget& budget, const output::Provenance& provenan
             {"seconds", budget.seconds},
             {"rows", Json::array()}};
   for (const Load& load : budget.load_path) json["loads"].push_back(output::describe(load));
-  for (const Station& station : budget.chain.stations)
-    json["chain"].push_back({{"name", station.name()}, {"physics", station.physics}});
+  for (const Stage& stage : budget.chain.stages)
+    json["chain"].push_back({{"name", stage.name()}, {"physics", stage.physics}});
   for (const BudgetRow& row : budget.rows) json["rows"].push_back(row_json(row));
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return output::to_text(json);
 }
 
 std::string budget_csv(const Budget& budget) {

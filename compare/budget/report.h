@@ -11,8 +11,8 @@
 
 namespace ciliaval::compare::budget {
 
-/// The budget for a terminal: what each link changes, then for each step a table of tip and tip
-/// angle and of B, ΔB and dB/dF at the first sensor: the paper's value, each link with its
+/// The budget for a terminal: the assumption of each link, then for each step a table of tip and
+/// tip angle and of B, ΔB and dB/dF at the first sensor: the paper's value, each link with its
 /// uncertainty, the best value. Lengths in mm, angles in degrees, fields in µT.
 std::string budget_text(const Budget& budget);
 

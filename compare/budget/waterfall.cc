@@ -46,14 +46,13 @@ std::string_view style_of(models::Verdict verdict) {
   return "fc rgb '#aa3377' fs empty border lc rgb '#aa3377'";
 }
 
-/// The line of a link: that of the station it leads to; of one to a mechanics model that of the
-/// first station that has it.
+/// The line of the stage that a link leads to: for a mechanics model the first stage with it.
 std::size_t line_of(const Budget& budget, const std::string& to) {
-  const std::vector<Station>& stations = budget.chain.stations;
-  const auto it = std::find_if(stations.begin(), stations.end(), [&](const Station& station) {
-    return station.name() == to || station.mechanics == to;
+  const std::vector<Stage>& stages = budget.chain.stages;
+  const auto it = std::find_if(stages.begin(), stages.end(), [&](const Stage& stage) {
+    return stage.name() == to || stage.mechanics == to;
   });
-  return static_cast<std::size_t>(it - stations.begin());
+  return static_cast<std::size_t>(it - stages.begin());
 }
 
 /// A bar from `from` to `to` on a line, with whiskers at `to`.
@@ -76,8 +75,8 @@ std::string bar(double from, double to, std::size_t line, double uncertainty,
 std::string line_names(const Budget& budget, bool shown) {
   std::string text = "set ytics (";
   std::size_t line = 0;
-  for (const Station& station : budget.chain.stations) {
-    if (line > 0) text += fmt::format("{} {}, ", plot::quoted(shown ? station.name() : ""), line);
+  for (const Stage& stage : budget.chain.stages) {
+    if (line > 0) text += fmt::format("{} {}, ", plot::quoted(shown ? stage.name() : ""), line);
     ++line;
   }
   return text + fmt::format("{} {})\n", plot::quoted(shown ? "total" : ""), line);
@@ -92,7 +91,7 @@ std::string joint(double x, std::size_t from, std::size_t to) {
 
 std::string panel_script(const Budget& budget, const Panel& panel, bool first) {
   const BudgetRow& row = *panel.row;
-  const auto lines = static_cast<double>(budget.chain.stations.size());
+  const auto lines = static_cast<double>(budget.chain.stages.size());
   std::string text = "unset object\nunset arrow\n";
   double at = 0;
   std::size_t previous = 0;
@@ -111,9 +110,9 @@ std::string panel_script(const Budget& budget, const Panel& panel, bool first) {
     reach(next, u);
     at = next;
   }
-  text += joint(at, previous, budget.chain.stations.size());
+  text += joint(at, previous, budget.chain.stages.size());
   const double u = row.total.uncertainty.value_or(0) / panel.unit;
-  text += bar(0, row.total.value / panel.unit, budget.chain.stations.size(), u,
+  text += bar(0, row.total.value / panel.unit, budget.chain.stages.size(), u,
               "fc rgb '#ddaa33' fs solid 1 border lc rgb '#ddaa33'");
   reach(row.total.value / panel.unit, u);
   if (!(largest > least)) largest = least + 1;
@@ -134,7 +133,7 @@ constexpr int panel_width = 230;
 constexpr int right_margin = 20;
 
 int height_of(const Budget& budget) {
-  return 170 + 30 * static_cast<int>(budget.chain.stations.size());
+  return 170 + 30 * static_cast<int>(budget.chain.stages.size());
 }
 
 constexpr const char* header =

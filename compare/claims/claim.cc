@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
 
 namespace ciliaval::compare::claims {
@@ -14,13 +15,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "6.1 … 7.9 %", "0.96"
-std::string value_text(const Finding& finding) {
-  const std::string low = fmt::format("{:.4g}", finding.low);
-  const std::string high = fmt::format("{:.4g}", finding.high);
+/// "6.1 to 7.9 %", "0.96"
+std::string value_text(const Evidence& evidence) {
+  const Span& values = evidence.values;
+  const std::string low = fmt::format("{:.4g}", values.low);
+  const std::string high = fmt::format("{:.4g}", values.high);
   std::string text = low == high ? low : low + " to " + high;
-  if (finding.uncertainty > 0) text += fmt::format(" +- {:.2g}", finding.uncertainty);
-  return finding.unit.empty() ? text : text + " " + finding.unit;
+  if (values.uncertainty > 0) text += fmt::format(" +- {:.2g}", values.uncertainty);
+  return evidence.unit.empty() ? text : text + " " + evidence.unit;
 }
 
 std::string_view holds_text(const std::optional<bool>& holds) {
@@ -30,18 +32,21 @@ std::string_view holds_text(const std::optional<bool>& holds) {
 
 }  // namespace
 
-Finding in_range(std::string models, double low, double high, std::string unit, double at_least,
-                 double at_most, double uncertainty) {
-  Finding finding{std::move(models), low, high, std::move(unit), uncertainty, std::nullopt};
-  if (low - uncertainty >= at_least && high + uncertainty <= at_most)
-    finding.holds = true;
-  else if (!(low + uncertainty >= at_least && high - uncertainty <= at_most))
-    finding.holds = false;
-  return finding;
+void Span::add(double value, double off) {
+  low = std::min(low, value);
+  high = std::max(high, value);
+  uncertainty = std::max(uncertainty, off);
 }
 
-Finding judged(std::string models, double low, double high, std::string unit, bool holds) {
-  return {std::move(models), low, high, std::move(unit), 0, holds};
+Evidence in_range(std::string models, const Span& values, std::string unit, double at_least,
+                  double at_most) {
+  const auto [low, high, off] = values;
+  std::optional<bool> holds;
+  if (low - off >= at_least && high + off <= at_most)
+    holds = true;
+  else if (!(low + off >= at_least && high - off <= at_most))
+    holds = false;
+  return {std::move(models), values, std::move(unit), holds};
 }
 
 std::string_view to_string(ClaimVerdict verdict) {
@@ -60,8 +65,8 @@ std::string_view to_string(ClaimVerdict verdict) {
 
 ClaimVerdict Claim::verdict() const {
   const auto count = [&](bool holds) {
-    return std::count_if(findings.begin(), findings.end(),
-                         [&](const Finding& f) { return f.holds == holds; });
+    return std::count_if(evidence.begin(), evidence.end(),
+                         [&](const Evidence& f) { return f.holds == holds; });
   };
   if (count(true) == 0 && count(false) == 0) return ClaimVerdict::not_checkable;
   if (count(false) == 0) return ClaimVerdict::reproduced;
@@ -76,9 +81,8 @@ std::string claims_text(const std::vector<Claim>& claims) {
     text +=
         fmt::format("{}: {}\n  -> {}\n", claim.place, claim.statement, to_string(claim.verdict()));
     output::TextRows rows;
-    for (const Finding& finding : claim.findings)
-      rows.push_back(
-          {"  " + finding.models, value_text(finding), std::string(holds_text(finding.holds))});
+    for (const Evidence& e : claim.evidence)
+      rows.push_back({"  " + e.models, value_text(e), std::string(holds_text(e.holds))});
     text += output::text_table(rows, "<");
     if (!claim.note.empty()) text += fmt::format("     {}\n", claim.note);
     text += '\n';
@@ -95,18 +99,18 @@ std::string claims_json(const std::vector<Claim>& claims, const output::Provenan
     Json entry{{"place", claim.place},
                {"statement", claim.statement},
                {"verdict", to_string(claim.verdict())},
-               {"note", claim.note.empty() ? Json(nullptr) : Json(claim.note)},
+               {"note", output::or_null(claim.note)},
                {"findings", Json::array()}};
-    for (const Finding& f : claim.findings)
+    for (const Evidence& f : claim.evidence)
       entry["findings"].push_back({{"models", f.models},
-                                   {"low", f.low},
-                                   {"high", f.high},
+                                   {"low", f.values.low},
+                                   {"high", f.values.high},
                                    {"unit", f.unit},
-                                   {"uncertainty", f.uncertainty},
+                                   {"uncertainty", f.values.uncertainty},
                                    {"holds", f.holds ? Json(*f.holds) : Json(nullptr)}});
     json["claims"].push_back(std::move(entry));
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return output::to_text(json);
 }
 
 }  // namespace ciliaval::compare::claims

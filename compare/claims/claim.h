@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,23 +11,28 @@
 
 namespace ciliaval::compare::claims {
 
-/// What one pair of models (or one measure) finds for a claim: a value, or the range of values over
-/// the loads.
-struct Finding {
-  std::string models;  ///< "elastica/volume", or what was measured
-  double low = 0;
-  double high = 0;
+/// The range of some values.
+struct Span {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+  double uncertainty = 0;  ///< half-width that each end may be off by, where it is known
+
+  void add(double value, double off = 0);
+};
+
+/// The value that one pair of models (or one measure) finds for a claim, or its range over the
+/// loads.
+struct Evidence {
+  std::string models;  ///< "elastica/volume", or the measure
+  Span values;
   std::string unit;
-  double uncertainty = 0;     ///< half-width that each end may be off by, where it is known
   std::optional<bool> holds;  ///< whether the claim does; none: the uncertainty decides nothing
 };
 
-/// A finding whose values must all lie in [at_least, at_most]: it holds if they do with their
+/// Evidence whose values must all lie in [at_least, at_most]: the claim holds if they do with their
 /// uncertainty, fails if they do not even so, and is undecided between.
-Finding in_range(std::string models, double low, double high, std::string unit, double at_least,
-                 double at_most, double uncertainty = 0);
-/// A finding that holds or not for a reason of its own.
-Finding judged(std::string models, double low, double high, std::string unit, bool holds);
+Evidence in_range(std::string models, const Span& values, std::string unit, double at_least,
+                  double at_most);
 
 enum class ClaimVerdict { reproduced, not_reproduced, depends_on_the_model, not_checkable };
 std::string_view to_string(ClaimVerdict verdict);
@@ -35,10 +41,10 @@ std::string_view to_string(ClaimVerdict verdict);
 struct Claim {
   std::string place;      ///< "3.3, Fig. 3d"
   std::string statement;  ///< in a few words, with the paper's figure
-  std::vector<Finding> findings;
-  std::string note;  ///< why it cannot be checked, or what one should know
+  std::vector<Evidence> evidence;
+  std::string note;  ///< why it cannot be checked, or a remark
 
-  /// Reproduced if it holds in all findings that decide it, not reproduced if in none; not
+  /// Reproduced if all evidence that decides it speaks for it, not reproduced if none does; not
   /// checkable if none decides.
   ClaimVerdict verdict() const;
 };

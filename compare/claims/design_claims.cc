@@ -25,11 +25,11 @@ StudyResult evaluated(study::Study study, Output output, const Progress& progres
   return run_study(study, in_memory, models::mechanics_models(), models::field_models(), progress);
 }
 
-/// The first and the last point that have the output: the values increase.
-std::array<std::size_t, 2> ends(const StudyResult& result, std::size_t pair, std::size_t output) {
+/// The first and the last point that have a value: the values increase.
+std::array<std::size_t, 2> ends(const StudyResult& result, std::size_t pair) {
   std::array<std::size_t, 2> found{result.points.size(), 0};
   for (std::size_t point = 0; point < result.points.size(); ++point)
-    if (result.points[point][pair].values[output]) found = {std::min(found[0], point), point};
+    if (result.points[point][pair].values[0]) found = {std::min(found[0], point), point};
   return found;
 }
 
@@ -47,15 +47,16 @@ StudyResult thinned(const StudyResult& result) {
 
 /// |ΔB| of each pair from end to end of the parameter, and whether its trend is the one claimed.
 template <class Holds>
-void add_trends(const StudyResult& result, std::size_t output, const Holds& holds, Claim& claim) {
+void add_trends(const StudyResult& result, const Holds& holds, Claim& claim) {
   for (std::size_t pair = 0; pair < result.study.pairs.size(); ++pair) {
-    const Trend trend = study::summary::trend(result, pair, output);
-    Finding finding = judged(result.study.pairs[pair].name() + ": dB from end to end",
-                             1e6 * trend.first, 1e6 * trend.last, "uT", holds(trend));
-    for (const std::size_t end : ends(result, pair, output))
-      finding.uncertainty =
-          std::max(finding.uncertainty, 1e6 * result.points[end][pair].uncertainty.value());
-    claim.findings.push_back(std::move(finding));
+    const Trend trend = study::summary::trend(result, pair, 0);
+    double off = 0;
+    for (const std::size_t end : ends(result, pair))
+      off = std::max(off, 1e6 * result.points[end][pair].uncertainty.value());
+    claim.evidence.push_back({result.study.pairs[pair].name() + ": dB from end to end",
+                              {1e6 * trend.first, 1e6 * trend.last, off},
+                              "uT",
+                              holds(trend)});
   }
 }
 
@@ -66,11 +67,13 @@ void add_peaks(const StudyResult& result, Claim& claim) {
     const std::string name = result.study.pairs[pair].name();
     const Trend trend = study::summary::trend(result, pair, 0);
     if (trend.kind == Trend::Kind::peak)
-      claim.findings.push_back(in_range(
-          name + ": peak at", trend.extreme_at, trend.extreme_at, "", 0.7, 0.9,
-          std::abs(study::summary::trend(every_second, pair, 0).extreme_at - trend.extreme_at)));
+      claim.evidence.push_back(in_range(
+          name + ": peak at",
+          {trend.extreme_at, trend.extreme_at,
+           std::abs(study::summary::trend(every_second, pair, 0).extreme_at - trend.extreme_at)},
+          "", 0.7, 0.9));
     else
-      claim.findings.push_back(judged(name + ": no peak", 0, 0, "", false));
+      claim.evidence.push_back({name + ": no peak", {0, 0}, "", false});
   }
 }
 
@@ -84,7 +87,7 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
   std::vector<Claim> claims;
   claims.push_back({"3.4.1, Fig. 4a", "the signal falls as E1 grows", {}, {}});
   add_trends(
-      run("fig4a-e1.study.toml", Output::dB_norm), 0,
+      run("fig4a-e1.study.toml", Output::dB_norm),
       [](const Trend& t) { return t.kind == Trend::Kind::falling; }, claims.back());
 
   const StudyResult e2 = run("fig4a-e2.study.toml", Output::dB_norm);
@@ -95,7 +98,7 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
        "Below some 0.2 MPa the magnet bends so far that dB_x has the other sign, and |dB| falls "
        "first; above it grows (docs/evidence/studies.md). The paper's range of E2 is not given."});
   add_trends(
-      e2, 0, [](const Trend& t) { return t.kind == Trend::Kind::rising; }, claims.back());
+      e2, [](const Trend& t) { return t.kind == Trend::Kind::rising; }, claims.back());
   const StudyResult e2_x = run("fig4a-e2.study.toml", Output::dB_x);
   claims.push_back({"3.4.1, Fig. 4a",
                     "dB_x grows with E2 and reaches a plateau",
@@ -103,8 +106,7 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
                     "A plateau: 95 % of the change by half of the range."});
   const double middle = e2_x.study.parameters.front().values.back() / 2;
   add_trends(
-      e2_x, 0,
-      [&](const Trend& t) { return t.kind == Trend::Kind::rising && t.settled_at < middle; },
+      e2_x, [&](const Trend& t) { return t.kind == Trend::Kind::rising && t.settled_at < middle; },
       claims.back());
 
   claims.push_back({"3.4.2, Fig. 4b",
@@ -113,7 +115,7 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
                     "Where the cilium bears the force at all: thinner ones slip off "
                     "(docs/evidence/studies.md)."});
   add_trends(
-      run("fig4b.study.toml", Output::dB_norm), 0,
+      run("fig4b.study.toml", Output::dB_norm),
       [](const Trend& t) { return t.kind == Trend::Kind::falling; }, claims.back());
 
   claims.push_back({"3.4.3, Fig. 4c",

@@ -13,14 +13,9 @@
 namespace ciliaval::compare::claims {
 namespace {
 
-struct Linearity {
-  double r2 = 0;
-  double uncertainty = 0;
-};
-
 /// R² of |ΔB| = a v² + b over the case's velocities, as measured at one azimuth. The interpolation
 /// of the response may change each |ΔB| and thus the misfit; errors in proportion to |ΔB| cancel.
-Linearity linearity(const sensing::Response& response, const std::vector<double>& forces) {
+Span linearity(const sensing::Response& response, const std::vector<double>& forces) {
   Eigen::MatrixX2d A(static_cast<Eigen::Index>(forces.size()), 2);
   Eigen::VectorXd y(A.rows());
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
@@ -33,7 +28,8 @@ Linearity linearity(const sensing::Response& response, const std::vector<double>
   const double misfit = residual.norm() / deviation;
   const double off =
       response.interpolation_error() * std::sqrt(static_cast<double>(y.size())) / deviation;
-  return {1 - misfit * misfit, off * (2 * misfit + off)};
+  const double r2 = 1 - misfit * misfit;
+  return {r2, r2, off * (2 * misfit + off)};
 }
 
 Claim largest_force(const sensing::Bench& bench) {
@@ -41,7 +37,7 @@ Claim largest_force(const sensing::Bench& bench) {
   const double q = flow.force_per_height(input::stated_values(bench.problem, "velocity").back());
   return {"3.5, Eq. 11",
           "the largest force per length is 0.375 N/m at 0.5 m/s",
-          {in_range("rho v2 C_d d/2", q, q, "N/m", 0.3745, 0.3755)},
+          {in_range("rho v2 C_d d/2", {q, q}, "N/m", 0.3745, 0.3755)},
           {}};
 }
 
@@ -61,9 +57,8 @@ Claim linear_response(const sensing::Bench& bench, bool with_solid, const Progre
         bench.problem, pair.field,
         sensing::shapes_up_to(bench.problem, pair.mechanics, forces.back(), progress),
         bench.problem.sensors);
-    const Linearity found = linearity(response, forces);
-    claim.findings.push_back(
-        in_range(pair.name() + ": R2", found.r2, found.r2, "", 0.99, 1, found.uncertainty));
+    claim.evidence.push_back(
+        in_range(pair.name() + ": R2", linearity(response, forces), "", 0.99, 1));
   }
   return claim;
 }
@@ -83,10 +78,10 @@ Claim direction(sensing::Bench bench, bool with_solid, const Progress& progress)
   const auto degrees = [](double angle) { return angle * 180 / std::numbers::pi; };
   const auto add = [&](const std::string& what, const sensing::BenchErrors& errors) {
     const double rms = degrees(errors.azimuth_rms);
-    claim.findings.push_back(
-        in_range(what + ", rms", rms, rms, "deg", 0, 10, degrees(errors.azimuth_rms_interval)));
+    claim.evidence.push_back(
+        in_range(what + ", rms", {rms, rms, degrees(errors.azimuth_rms_interval)}, "deg", 0, 10));
     const double part = 100 * errors.below_ten_degrees;
-    claim.findings.push_back(in_range(what + ", within 10 deg", part, part, "%", 99, 100));
+    claim.evidence.push_back(in_range(what + ", within 10 deg", {part, part}, "%", 99, 100));
   };
   add(pair, all.inversion);
   add(pair + ", linear fit", all.linear_fit);

@@ -10,10 +10,10 @@
 namespace ciliaval::compare::claims {
 
 /// Every quantitative statement of the paper that its text allows to be checked, and those that it
-/// does not, in the paper's order, each with what the models find. `folder` is that of the shipped
-/// cases (cases/paper/): fig3b.toml, fig3d.toml, fig5.toml, fig4*.study.toml and fig5.sense.toml.
-/// `with_solid`: also with the 3D solid, half a minute more. Throws InputError and FileError if a
-/// file is missing or not as shipped, SolverError if a model fails.
+/// does not, in the paper's order, each with the findings of the models. `folder` is that of the
+/// shipped cases (cases/paper/): fig3b.toml, fig3d.toml, fig5.toml, fig4*.study.toml and
+/// fig5.sense.toml. `with_solid`: also with the 3D solid, half a minute more. Throws InputError and
+/// FileError if a file is missing or not as shipped, SolverError if a model fails.
 std::vector<Claim> claims(const std::filesystem::path& folder, bool with_solid,
                           const Progress& progress = {});
 

@@ -23,24 +23,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The least and the largest of some values, and the largest of what they may be off by.
-struct Span {
-  double low = infinity;
-  double high = -infinity;
-  double uncertainty = 0;
-  void add(double value, double off = 0) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-    uncertainty = std::max(uncertainty, off);
-  }
-};
-
-Finding span_in_range(std::string models, const Span& span, std::string unit, double at_least,
-                      double at_most) {
-  return in_range(std::move(models), span.low, span.high, std::move(unit), at_least, at_most,
-                  span.uncertainty);
-}
-
 input::Case paper_case(const std::filesystem::path& folder, const std::string& name,
                        bool with_solid) {
   input::Case problem = input::read_case(folder / name);
@@ -78,11 +60,10 @@ Claim shapes(const models::CaseResult& result) {
       correlation.add(c.correlation.value(), off(std::sqrt(1 - *c.correlation)));
     }
     if (r2.low > r2.high) continue;
-    claim.findings.push_back(
-        span_in_range("elastica - " + reference.model + ": 1 - SSE/SST", r2, "", 0.99, infinity));
-    claim.findings.push_back(
-        span_in_range("elastica - " + reference.model + ": squared correlation", correlation, "",
-                      0.99, infinity));
+    claim.evidence.push_back(
+        in_range("elastica - " + reference.model + ": 1 - SSE/SST", r2, "", 0.99, infinity));
+    claim.evidence.push_back(in_range("elastica - " + reference.model + ": squared correlation",
+                                      correlation, "", 0.99, infinity));
   }
   return claim;
 }
@@ -103,7 +84,7 @@ Claim base_bends(const models::CaseResult& result) {
       // Either angle may be off by as much, in proportion.
       share.add(part, 2 * part * models::tip_angle_uncertainty(run, step).value() / std::abs(tip));
     }
-    claim.findings.push_back(span_in_range(run.model, share, "%", 50, 100));
+    claim.evidence.push_back(in_range(run.model, share, "%", 50, 100));
   }
   return claim;
 }
@@ -112,7 +93,7 @@ Claim base_bends(const models::CaseResult& result) {
 struct FieldsOfAStep {
   models::FieldValue line;
   models::FieldValue volume;
-  double proportion = 0;  ///< what the deformation's error makes of both ΔB: a part of it
+  double proportion = 0;  ///< the effect of the deformation's error on both ΔB, relative
 
   FieldsOfAStep(const models::CaseResult& result, const models::MechanicsRun& run, std::size_t step,
                 bool change)
@@ -123,7 +104,7 @@ struct FieldsOfAStep {
     proportion = line.from_mechanics.value() / line_change_.norm();
   }
 
-  /// What a figure of both fields may be off by. The deformation's error moves each ΔB by
+  /// The uncertainty of a figure of both fields. The deformation's error moves each ΔB by
   /// `proportion`, and nothing is taken to cancel between the two: where along the cilium it lies
   /// is not known, and the fields weigh that differently.
   template <class Figure>
@@ -151,8 +132,8 @@ struct FieldsOfAStep {
   Vector3 volume_change_;
 };
 
-/// The root mean square of a difference over that of the multi-dipole model's value, in %, and what
-/// it may be off by: the same mean of the uncertainties of the difference.
+/// The root mean square of a difference over the multi-dipole model's, in %. Its uncertainty is the
+/// same mean of the uncertainties of the difference.
 class Rrmse {
  public:
   void add(double difference, double reference, double uncertainty) {
@@ -161,9 +142,8 @@ class Rrmse {
     uncertainty_ += uncertainty * uncertainty;
   }
   Span value() const {
-    Span span;
-    span.add(100 * std::sqrt(difference_ / reference_), 100 * std::sqrt(uncertainty_ / reference_));
-    return span;
+    const double value = 100 * std::sqrt(difference_ / reference_);
+    return {value, value, 100 * std::sqrt(uncertainty_ / reference_)};
   }
 
  private:
@@ -172,7 +152,7 @@ class Rrmse {
   double uncertainty_ = 0;
 };
 
-/// What lies between `volume` (Eq. 8-9, the multi-dipole model) and `line` on each deformation.
+/// The difference of `volume` (Eq. 8-9, the multi-dipole model) and `line` on each deformation.
 std::vector<Claim> two_dipole_models(const models::CaseResult& result) {
   Claim horizontal{
       "3.3, Fig. 3d", "multi-dipole: horizontal field stronger by some 10.0 %", {}, {}};
@@ -205,8 +185,8 @@ std::vector<Claim> two_dipole_models(const models::CaseResult& result) {
           ratio.add(stronger(line, volume), fields.uncertainty(stronger));
           rrmse.add(difference(line, volume), part(volume), fields.uncertainty(difference));
         }
-        ratios.findings.push_back(span_in_range(name, ratio, "%", at_least, at_most));
-        rrmses.findings.push_back(span_in_range(name, rrmse.value(), "%", 0, limit));
+        ratios.evidence.push_back(in_range(name, ratio, "%", at_least, at_most));
+        rrmses.evidence.push_back(in_range(name, rrmse.value(), "%", 0, limit));
       };
       compare(across, horizontal, 9.5, 10.5, rrmse_x, 13);
       if (!change) compare(up, vertical, -6.35, -4.75, rrmse_z, 6);  // the paper has B_z itself
@@ -241,18 +221,14 @@ Timing time_of(const std::function<void()>& call) {
 
 /// How many times as long one takes.
 Span ratio_of(const Timing& a, const Timing& b) {
-  Span span;
   const double times = a.seconds / b.seconds;
-  span.add(times, times * (a.scatter + b.scatter));
-  return span;
+  return {times, times, times * (a.scatter + b.scatter)};
 }
 
 /// The order of the time in n, which is `doublings` doublings larger in a.
 Span order_of(const Timing& a, const Timing& b, double doublings) {
-  Span span;
-  span.add(std::log2(a.seconds / b.seconds) / doublings,
-           std::log2((1 + a.scatter) * (1 + b.scatter)) / doublings);
-  return span;
+  const double order = std::log2(a.seconds / b.seconds) / doublings;
+  return {order, order, std::log2((1 + a.scatter) * (1 + b.scatter)) / doublings};
 }
 
 /// Times of the paper's sums, with n elements and n³.
@@ -270,26 +246,25 @@ std::vector<Claim> costs(const models::CaseResult& result) {
     return time_of([&] { model.field(problem.cilium, shape, problem.sensors); });
   };
   Claim scaling{"3.3", "cost O(n) of the single-dipole, O(n3) of the multi-dipole model", {}, {}};
-  scaling.findings = {span_in_range("line: order, n = 256 to 4096",
-                                    order_of(line(4096), line(256), 4), "", 0.5, 1.5),
-                      span_in_range("volume: order, n = 24 to 96",
-                                    order_of(volume(96), volume(24), 2), "", 2.5, 3.5)};
+  scaling.evidence = {
+      in_range("line: order, n = 256 to 4096", order_of(line(4096), line(256), 4), "", 0.5, 1.5),
+      in_range("volume: order, n = 24 to 96", order_of(volume(96), volume(24), 2), "", 2.5, 3.5)};
   scaling.note =
       "Neither is needed: both have closed forms, O(1) and O(n) (docs/theory/fields.md).";
   Claim ratio{"3.3", "the multi-dipole model takes 100 to 1,000 times as long", {}, {}};
-  ratio.findings = {in_range("numbers of dipoles, n = 10 to 30", 100, 900, "times", 100, 1000)};
+  ratio.evidence = {in_range("numbers of dipoles, n = 10 to 30", {100, 900}, "times", 100, 1000)};
   for (const unsigned int n : {10U, 30U, 100U})
-    ratio.findings.push_back(span_in_range(fmt::format("time of the sums, n = {}", n),
-                                           ratio_of(volume(n), line(n)), "times", 100, 1000));
+    ratio.evidence.push_back(in_range(fmt::format("time of the sums, n = {}", n),
+                                      ratio_of(volume(n), line(n)), "times", 100, 1000));
   const analytic::rod::LineField poles;
   const analytic::rod::VolumeField discs;
   const Timing closed_volume =
       time_of([&] { discs.field(problem.cilium, shape, problem.sensors); });
   const Timing closed_line = time_of([&] { poles.field(problem.cilium, shape, problem.sensors); });
-  ratio.findings.push_back(span_in_range("time of the closed forms",
-                                         ratio_of(closed_volume, closed_line), "times", 100, 1000));
+  ratio.evidence.push_back(in_range("time of the closed forms",
+                                    ratio_of(closed_volume, closed_line), "times", 100, 1000));
   ratio.note =
-      "n is not in the paper. Finding the section at a height takes as long as a hundred dipoles, "
+      "n is not in the paper. Evidence the section at a height takes as long as a hundred dipoles, "
       "so that times differ less than numbers. Wall times of this run, +- their scatter.";
   return {std::move(scaling), std::move(ratio)};
 }
@@ -301,8 +276,8 @@ Claim intractable(const models::CaseResult& result) {
     if (run.model == "elastica") continue;
     Span seconds;
     for (const MechanicsStep& step : run.result.steps) seconds.add(step.seconds);
-    claim.findings.push_back(
-        span_in_range(run.model + ": seconds a load", seconds, "s", 3600, infinity));
+    claim.evidence.push_back(
+        in_range(run.model + ": seconds a load", seconds, "s", 3600, infinity));
   }
   claim.note = "Judged by an hour a load. Wall times of this run.";
   return claim;
@@ -325,9 +300,8 @@ Claim misprints(const models::CaseResult& result) {
     const double volume = off(fields.volume_printed, fields.volume, straight.volume);
     const std::string load =
         fmt::format("{:g} mN", 1e3 * magnitude(result.problem.load_path[step]));
-    claim.findings.push_back(judged("Eq. 6 off by, of |dB| at " + load, line, line, "%", false));
-    claim.findings.push_back(
-        judged("Eq. 8 off by, of |dB| at " + load, volume, volume, "%", false));
+    claim.evidence.push_back({"Eq. 6 off by, of |dB| at " + load, {line, line}, "%", false});
+    claim.evidence.push_back({"Eq. 8 off by, of |dB| at " + load, {volume, volume}, "%", false});
   }
   claim.note =
       "1/cos is once too many in y and z of Eq. 6 and in all of Eq. 8: misprints, as Eq. 5 shows.";
@@ -348,7 +322,7 @@ std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_s
       {"3.2", "E = 0.1 and 3 MPa differ by approximately two orders of magnitude", {}, {}});
   const double orders = std::log10(problem.cilium.segments.back().young_modulus /
                                    problem.cilium.segments.front().young_modulus);
-  claims.back().findings = {in_range("log10 of the ratio", orders, orders, "", 1.75, 2.25)};
+  claims.back().evidence = {in_range("log10 of the ratio", {orders, orders}, "", 1.75, 2.25)};
   for (Claim& claim : two_dipole_models(result)) claims.push_back(std::move(claim));
   for (Claim& claim : costs(result)) claims.push_back(std::move(claim));
   claims.push_back({"3.3, Fig. 3e",

@@ -21,7 +21,7 @@ constexpr double least_order = 0.1;
 constexpr double largest_order = 12;
 constexpr double cautious_order = 2;  // where a formal one is not known
 
-void require_levels(std::span<const Level> levels, std::size_t least) {
+void require_levels(std::span<const RefinementLevel> levels, std::size_t least) {
   if (levels.size() < least)
     throw InputError(fmt::format("an extrapolation needs {} levels of refinement, not {}", least,
                                  levels.size()));
@@ -33,7 +33,7 @@ void require_levels(std::span<const Level> levels, std::size_t least) {
 }
 
 /// Whether the two finest levels agree to rounding: then that is the interval.
-std::optional<Extrapolation> converged(std::span<const Level> levels, double rounding) {
+std::optional<Extrapolation> converged(std::span<const RefinementLevel> levels, double rounding) {
   if (std::abs(levels[1].value - levels[0].value) > rounding) return std::nullopt;
   Extrapolation result;
   result.conclusive = true;
@@ -44,14 +44,14 @@ std::optional<Extrapolation> converged(std::span<const Level> levels, double rou
   return result;
 }
 
-bool monotone(std::span<const Level> levels) {
+bool monotone(std::span<const RefinementLevel> levels) {
   const double direction = levels[1].value - levels[0].value;
   for (std::size_t i = 1; i < levels.size(); ++i)
     if (!((levels[i].value - levels[i - 1].value) * direction > 0)) return false;
   return true;
 }
 
-Extrapolation inconclusive(std::span<const Level> levels, std::string reason) {
+Extrapolation inconclusive(std::span<const RefinementLevel> levels, std::string reason) {
   Extrapolation result;
   result.reason = std::move(reason);
   result.limit = levels.front().value;
@@ -59,7 +59,7 @@ Extrapolation inconclusive(std::span<const Level> levels, std::string reason) {
 }
 
 /// The equation for p at one p, its left side less its right, for the levels from `first` on.
-double order_residual(std::span<const Level> levels, double p, std::size_t first = 0) {
+double order_residual(std::span<const RefinementLevel> levels, double p, std::size_t first = 0) {
   levels = levels.subspan(first, 3);
   const double ratio = (levels[2].value - levels[1].value) / (levels[1].value - levels[0].value);
   const double r21 = levels[1].size / levels[0].size;
@@ -70,7 +70,7 @@ double order_residual(std::span<const Level> levels, double p, std::size_t first
 }
 
 /// Whether the changes fall from level to level faster than with the largest order looked for.
-bool faster_than_any_order(std::span<const Level> levels) {
+bool faster_than_any_order(std::span<const RefinementLevel> levels) {
   for (std::size_t i = 0; i + 2 < levels.size(); ++i)
     if (!(order_residual(levels, largest_order, i) <= 0)) return false;
   return true;
@@ -78,8 +78,8 @@ bool faster_than_any_order(std::span<const Level> levels) {
 
 /// What monotone levels without an order between the limits allow to be said: an interval where
 /// they converge faster than that, from the last change and an order that is far too low for them.
-Extrapolation without_order(std::span<const Level> levels, std::optional<double> formal_order,
-                            double rounding) {
+Extrapolation without_order(std::span<const RefinementLevel> levels,
+                            std::optional<double> formal_order, double rounding) {
   if (!faster_than_any_order(levels))
     return inconclusive(levels,
                         fmt::format("no order between {} and {} fits", least_order, largest_order));
@@ -97,7 +97,7 @@ Extrapolation without_order(std::span<const Level> levels, std::optional<double>
 }
 
 /// The root of the equation for p.
-std::optional<double> observed_order(std::span<const Level> levels) {
+std::optional<double> observed_order(std::span<const RefinementLevel> levels) {
   const auto residual = [&](double p) { return order_residual(levels, p); };
   if (!(residual(least_order) < 0) || !(residual(largest_order) > 0)) return std::nullopt;
   std::uintmax_t iterations = 200;
@@ -113,12 +113,12 @@ struct Fit {
   double deviation = 0;
 };
 
-Fit fit(std::span<const Level> levels, double p) {
+Fit fit(std::span<const RefinementLevel> levels, double p) {
   const auto n = static_cast<Eigen::Index>(levels.size());
   Eigen::MatrixXd A(n, 2);
   Eigen::VectorXd f(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Level& level = levels[static_cast<std::size_t>(i)];
+    const RefinementLevel& level = levels[static_cast<std::size_t>(i)];
     A(i, 0) = 1;
     A(i, 1) = std::pow(level.size / levels.back().size, p);
     f[i] = level.value;
@@ -129,8 +129,8 @@ Fit fit(std::span<const Level> levels, double p) {
 
 }  // namespace
 
-Extrapolation grid_convergence(std::span<const Level> levels, std::optional<double> formal_order,
-                               double rounding) {
+Extrapolation grid_convergence(std::span<const RefinementLevel> levels,
+                               std::optional<double> formal_order, double rounding) {
   require_levels(levels, 3);
   levels = levels.first(3);
   if (const auto result = converged(levels, rounding)) return *result;
@@ -152,7 +152,7 @@ Extrapolation grid_convergence(std::span<const Level> levels, std::optional<doub
   return result;
 }
 
-Extrapolation least_squares_convergence(std::span<const Level> levels,
+Extrapolation least_squares_convergence(std::span<const RefinementLevel> levels,
                                         std::optional<double> formal_order, double rounding) {
   require_levels(levels, 4);
   if (const auto result = converged(levels, rounding)) return *result;
@@ -174,9 +174,9 @@ Extrapolation least_squares_convergence(std::span<const Level> levels,
   if (p < least_order + 1e-6 || p > largest_order - 1e-6)
     return without_order(levels, formal_order, rounding);
   const Fit best_fit = fit(levels, p);
-  const auto [least, largest] =
-      std::minmax_element(levels.begin(), levels.end(),
-                          [](const Level& a, const Level& b) { return a.value < b.value; });
+  const auto [least, largest] = std::minmax_element(
+      levels.begin(), levels.end(),
+      [](const RefinementLevel& a, const RefinementLevel& b) { return a.value < b.value; });
   const double mean_difference =
       (largest->value - least->value) / static_cast<double>(levels.size() - 1);
   Extrapolation result;
@@ -196,16 +196,16 @@ Extrapolation least_squares_convergence(std::span<const Level> levels,
   return result;
 }
 
-Extrapolation extrapolate(std::span<const Level> levels, std::optional<double> formal_order,
-                          double rounding) {
+Extrapolation extrapolate(std::span<const RefinementLevel> levels,
+                          std::optional<double> formal_order, double rounding) {
   return levels.size() > 3 ? least_squares_convergence(levels, formal_order, rounding)
                            : grid_convergence(levels, formal_order, rounding);
 }
 
-Extrapolation kept_tolerances(std::span<const Level> levels, double scale) {
+Extrapolation kept_tolerances(std::span<const RefinementLevel> levels, double scale) {
   require_levels(levels, 3);
-  const Level& finest = levels.front();
-  for (const Level& level : levels.subspan(1)) {
+  const RefinementLevel& finest = levels.front();
+  for (const RefinementLevel& level : levels.subspan(1)) {
     const double moved = std::abs(level.value - finest.value);
     if (!(moved <= (level.size + finest.size) * scale))
       return inconclusive(levels, fmt::format("a tolerance of {:.3g} promises an error below "

@@ -8,12 +8,12 @@
 namespace ciliaval::compare::convergence {
 
 /// A quantity on one level of refinement.
-struct Level {
+struct RefinementLevel {
   double size = 0;   ///< of the discretisation, h > 0, in any unit
   double value = 0;  ///< f(h)
 };
 
-/// What a refinement study says of f(0).
+/// The limit f(0) that a refinement study finds.
 struct Extrapolation {
   bool conclusive = false;      ///< whether there is an interval at all
   std::string reason;           ///< why not, or a remark
@@ -39,7 +39,7 @@ struct Extrapolation {
 ///
 /// Throws InputError if there are not three levels, sizes are not positive and increasing, or a
 /// value is not finite.
-Extrapolation grid_convergence(std::span<const Level> levels,
+Extrapolation grid_convergence(std::span<const RefinementLevel> levels,
                                std::optional<double> formal_order = {}, double rounding = 0);
 
 /// The least-squares version for four or more levels, finest first (Eça & Hoekstra, J. Comput.
@@ -50,18 +50,18 @@ Extrapolation grid_convergence(std::span<const Level> levels,
 /// conclusive if the values are not monotone or p is at the end of what was searched, 0.1 to 12;
 /// but where all changes fall faster than with order 12, the interval is grid_convergence()'s.
 /// Throws as grid_convergence().
-Extrapolation least_squares_convergence(std::span<const Level> levels,
+Extrapolation least_squares_convergence(std::span<const RefinementLevel> levels,
                                         std::optional<double> formal_order = {},
                                         double rounding = 0);
 
 /// The one for the number of levels.
-Extrapolation extrapolate(std::span<const Level> levels, std::optional<double> formal_order = {},
-                          double rounding = 0);
+Extrapolation extrapolate(std::span<const RefinementLevel> levels,
+                          std::optional<double> formal_order = {}, double rounding = 0);
 
 /// What tolerances promise: the value computed with the tolerance h is off by no more than h times
 /// `scale`. Conclusive if each level, finest first, is within its own promise and the finest one's
 /// of the finest: |f_i − f₁| ≤ (h_i + h₁) scale. Then the interval is f₁ ± h₁ scale. Throws as
 /// grid_convergence().
-Extrapolation kept_tolerances(std::span<const Level> levels, double scale);
+Extrapolation kept_tolerances(std::span<const RefinementLevel> levels, double scale);
 
 }  // namespace ciliaval::compare::convergence

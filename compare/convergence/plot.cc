@@ -52,7 +52,7 @@ std::vector<std::pair<double, double>> points_of(const ConvergedQuantity& q) {
   const double finest = q.levels.front().value;
   const double limit = q.extrapolation.conclusive ? q.extrapolation.limit : finest;
   std::vector<std::pair<double, double>> points;
-  for (const Level& level : q.levels) {
+  for (const RefinementLevel& level : q.levels) {
     const double error = std::abs(level.value - limit) / std::abs(finest);
     if (std::isfinite(error) && error > 0) points.emplace_back(level.size, error);
   }
@@ -98,7 +98,7 @@ std::string panel(const RefinementStudy& study, std::size_t step, std::size_t st
   }
   if (curves.empty()) return {};
   std::vector<double> sizes;
-  for (const Level& level : series_of(study, step).front().quantity->levels)
+  for (const RefinementLevel& level : series_of(study, step).front().quantity->levels)
     sizes.push_back(level.size);
   return blocks +
          fmt::format("set title {}\nset xlabel {} offset 0,0.7\nset xtics ({})\nplot \\\n{}\n",

@@ -35,17 +35,17 @@ double rounding_of(const std::string& model) {
 /// What one level gave, by id.
 struct LevelResult {
   double size = 0;
-  std::map<std::string, regression::Quantity> quantities;
+  std::map<std::string, regression::Measurement> quantities;
 };
 
 /// Adds the lengths of the vectors that people look at first.
-void add_lengths(std::map<std::string, regression::Quantity>& quantities) {
-  std::vector<regression::Quantity> lengths;
+void add_lengths(std::map<std::string, regression::Measurement>& quantities) {
+  std::vector<regression::Measurement> lengths;
   for (const auto& [id, x] : quantities) {
     if (!id.ends_with("/x")) continue;
     const std::string vector = id.substr(0, id.size() - 2);
     const double y = quantities.at(vector + "/y").value;
-    regression::Quantity length = x;
+    regression::Measurement length = x;
     if (vector.ends_with("/tip")) {
       length.id = vector + "/deflection";
       length.value = std::hypot(x.value, y);
@@ -56,7 +56,7 @@ void add_lengths(std::map<std::string, regression::Quantity>& quantities) {
       lengths.push_back(std::move(length));
     }
   }
-  for (regression::Quantity& length : lengths) quantities.emplace(length.id, std::move(length));
+  for (regression::Measurement& length : lengths) quantities.emplace(length.id, std::move(length));
 }
 
 Progress named(const Progress& progress, const Refinement& refinement, double value) {
@@ -148,7 +148,7 @@ std::vector<models::CaseResult> run_field_levels(input::Case problem, const Refi
 
 LevelResult level_of(const models::CaseResult& result, const Refinement& refinement, double value) {
   LevelResult level{refinement.size(value), {}};
-  for (regression::Quantity& quantity : regression::measurements(result).quantities)
+  for (regression::Measurement& quantity : regression::measurements(result).quantities)
     if (!quantity.id.ends_with("/tip_uncertainty") &&
         (!refinement.is_field || quantity.id.find("/mechanics/") == std::string::npos))
       level.quantities.emplace(quantity.id, std::move(quantity));
@@ -156,7 +156,8 @@ LevelResult level_of(const models::CaseResult& result, const Refinement& refinem
   return level;
 }
 
-Extrapolation extrapolation_of(const std::vector<Level>& levels, const regression::Quantity& finest,
+Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
+                               const regression::Measurement& finest,
                                const Refinement& refinement) {
   if (refinement.law == Refinement::Law::power)
     return extrapolate(levels, refinement.formal_order,
@@ -194,7 +195,7 @@ bool is_shown(const std::string& id) {
 Json quantity_json(const ConvergedQuantity& quantity) {
   const Extrapolation& e = quantity.extrapolation;
   Json json{{"id", quantity.id}, {"unit", quantity.unit}, {"levels", Json::array()}};
-  for (const Level& level : quantity.levels)
+  for (const RefinementLevel& level : quantity.levels)
     json["levels"].push_back({{"size", level.size}, {"value", level.value}});
   json["conclusive"] = e.conclusive;
   json["reason"] = e.reason.empty() ? Json(nullptr) : Json(e.reason);
@@ -271,7 +272,7 @@ std::string study_text(const std::vector<RefinementStudy>& studies) {
         continue;
       }
       std::vector<double> values;
-      for (const Level& level : quantity.levels) values.push_back(level.value);
+      for (const RefinementLevel& level : quantity.levels) values.push_back(level.value);
       rows.push_back({quantity.id, "-", "-", "-", "-",
                       fmt::format("{}; inconclusive: {}: {:.9g}", quantity.unit, e.reason,
                                   fmt::join(values, ", "))});

@@ -19,7 +19,7 @@ namespace ciliaval::compare::convergence {
 struct ConvergedQuantity {
   std::string id;
   std::string unit;
-  std::vector<Level> levels;
+  std::vector<RefinementLevel> levels;
   Extrapolation extrapolation;
 };
 

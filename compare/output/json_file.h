@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace ciliaval::compare::output {
@@ -17,5 +19,13 @@ nlohmann::ordered_json read_json(const std::filesystem::path& file, std::string_
 /// values are nested more than 100 deep: copying and writing such values recurses.
 nlohmann::ordered_json parse_json(std::string_view text, std::string_view name,
                                   std::string_view skipped = {});
+
+/// The value, or null; nlohmann itself writes what is not finite as null.
+nlohmann::ordered_json or_null(const std::optional<double>& value);
+/// The text, or null if it is empty.
+nlohmann::ordered_json or_null(const std::string& text);
+
+/// The text of a result file. Bytes that are no UTF-8 become U+FFFD.
+std::string to_text(const nlohmann::ordered_json& json);
 
 }  // namespace ciliaval::compare::output

@@ -78,8 +78,8 @@ class Reader {
   std::set<std::string> read_;
 };
 
-Tolerance read_tolerance(Reader& reader, double value) {
-  const Tolerance tolerance{reader.number("relative"), reader.number("absolute")};
+AllowedDeviation read_allowed(Reader& reader, double value) {
+  const AllowedDeviation tolerance{reader.number("relative"), reader.number("absolute")};
   if (tolerance.relative < 0 || tolerance.absolute < 0 || tolerance.limit(value, value) <= 0)
     reader.fail("`relative` and `absolute` must not be negative, nor both without effect");
   if (tolerance.relative > widest)
@@ -95,11 +95,11 @@ Expected read_expected(const Json& json, const std::string& file) {
   expected.id = reader.text("id");
   expected.unit = reader.text("unit");
   expected.value = reader.number("value");
-  expected.tolerance = read_tolerance(reader, expected.value);
+  expected.allowed = read_allowed(reader, expected.value);
   if (reader.has("reference")) {
     Reader from(reader.get("reference"), file, id + "/reference");
     Reference reference{from.text("label"), from.number("value"), {}};
-    reference.tolerance = read_tolerance(from, reference.value);
+    reference.allowed = read_allowed(from, reference.value);
     from.finish();
     expected.reference = reference;
   }
@@ -156,14 +156,10 @@ Baseline from_json(const Json& json, const std::string& file) try {
   throw InputError(fmt::format("{}: not a baseline: {}", file, error.what()));
 }
 
-Json tolerance_json(Json json, const Tolerance& tolerance) {
+Json with_allowed(Json json, const AllowedDeviation& tolerance) {
   json["relative"] = tolerance.relative;
   json["absolute"] = tolerance.absolute;
   return json;
-}
-
-Json optional(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
 }
 
 /// A list with a line for each element.
@@ -202,7 +198,7 @@ double accuracy_class(const std::string& model) {
 
 }  // namespace
 
-double Tolerance::limit(double a, double b) const {
+double AllowedDeviation::limit(double a, double b) const {
   return std::max(relative * std::max(std::abs(a), std::abs(b)), absolute);
 }
 
@@ -251,17 +247,18 @@ Baseline read_baseline(const std::filesystem::path& file) {
 std::string to_json(const Baseline& baseline) {
   std::vector<Json> changed;
   for (const Change& c : baseline.changes)
-    changed.push_back(
-        {{"id", c.id}, {"old", optional(c.old_value)}, {"new", optional(c.new_value)}});
+    changed.push_back({{"id", c.id},
+                       {"old", output::or_null(c.old_value)},
+                       {"new", output::or_null(c.new_value)}});
   std::vector<Json> outcomes;
   for (const ExpectedOutcome& o : baseline.outcomes)
     outcomes.push_back({{"id", o.id}, {"value", o.value}});
   std::vector<Json> quantities;
   for (const Expected& q : baseline.quantities) {
-    Json json = tolerance_json({{"id", q.id}, {"unit", q.unit}, {"value", q.value}}, q.tolerance);
+    Json json = with_allowed({{"id", q.id}, {"unit", q.unit}, {"value", q.value}}, q.allowed);
     if (q.reference)
-      json["reference"] = tolerance_json(
-          {{"label", q.reference->label}, {"value", q.reference->value}}, q.reference->tolerance);
+      json["reference"] = with_allowed(
+          {{"label", q.reference->label}, {"value", q.reference->value}}, q.reference->allowed);
     quantities.push_back(std::move(json));
   }
   const std::vector<Json> text(baseline.case_text.begin(), baseline.case_text.end());
@@ -278,13 +275,13 @@ std::string to_json(const Baseline& baseline) {
       lines(quantities));
 }
 
-Tolerance regression_tolerance(const Quantity& quantity) {
+AllowedDeviation allowed_deviation(const Measurement& quantity) {
   const bool estimate = quantity.id.ends_with("/tip_uncertainty");
   const double part =
       estimate ? 1e-10
                : std::max(accuracy_class(quantity.mechanics), accuracy_class(quantity.field));
-  // Two digits, so that a scale's rounding does not show in the file.
-  return {estimate ? 1e-3 : part, std::stod(fmt::format("{:.1e}", part * quantity.scale))};
+  // Two digits, so that rounding of the group does not show in the file.
+  return {estimate ? 1e-3 : part, std::stod(fmt::format("{:.1e}", part * quantity.size()))};
 }
 
 std::string references(const Baseline& baseline) {
@@ -294,7 +291,7 @@ std::string references(const Baseline& baseline) {
     if (const auto& r = expected.reference) {
       ++count;
       list += fmt::format("{}\t{}\t{}\t{}\t{}\n", expected.id, r->label, r->value,
-                          r->tolerance.relative, r->tolerance.absolute);
+                          r->allowed.relative, r->allowed.absolute);
     }
   return count == 0 ? "" : fmt::format("{} {:08x}", count, support::checksum(list));
 }
@@ -311,16 +308,16 @@ Baseline make_baseline(const input::Case& problem, const Measurements& measured,
   std::map<std::string, Expected> before;
   if (old != nullptr)
     for (const Expected& expected : old->quantities) before[expected.id] = expected;
-  for (const Quantity& q : measured.quantities) {
+  for (const Measurement& q : measured.quantities) {
     if (!std::isfinite(q.value))
       throw SolverError(
           fmt::format("case \"{}\": `{}` is not finite: that is no baseline", problem.name, q.id));
-    Expected expected{q.id, q.unit, q.value, regression_tolerance(q), {}};
+    Expected expected{q.id, q.unit, q.value, allowed_deviation(q), {}};
     if (const auto then = before.find(q.id); then != before.end()) {
       expected.reference = then->second.reference;
       // Rounding is no change, and does not add up from baseline to baseline.
       if (std::abs(q.value - then->second.value) <=
-          then->second.tolerance.limit(q.value, then->second.value))
+          then->second.allowed.limit(q.value, then->second.value))
         expected.value = then->second.value;
     }
     baseline.quantities.push_back(std::move(expected));

@@ -13,9 +13,9 @@
 namespace ciliaval::compare::regression {
 
 /// |a − b| ≤ max(ρ max(|a|, |b|), ε).
-struct Tolerance {
+struct AllowedDeviation {
   double relative = 0;  ///< ρ
-  double absolute = 0;  ///< ε, in the quantity's unit
+  double absolute = 0;  ///< ε, in the unit of the quantity
 
   double limit(double a, double b) const;
 };
@@ -24,15 +24,15 @@ struct Tolerance {
 struct Reference {
   std::string label;  ///< where it comes from
   double value = 0;
-  Tolerance tolerance;
+  AllowedDeviation allowed;
 };
 
-/// What a quantity was when the baseline was accepted.
+/// The accepted value of a quantity.
 struct Expected {
   std::string id;
   std::string unit;
   double value = 0;
-  Tolerance tolerance;
+  AllowedDeviation allowed;
   std::optional<Reference> reference;
 };
 
@@ -66,7 +66,8 @@ std::filesystem::path baseline_path(const std::filesystem::path& case_file);
 std::vector<std::string> case_text(const input::Case& problem);
 
 /// Reads a baseline. Every key must be known and there, every number finite, every tolerance
-/// positive, the relative ones at most 10 %, every id once. Throws InputError `file: what is wrong`.
+/// positive, the relative ones at most 10 %, every id once. Throws InputError `file: what is
+/// wrong`.
 Baseline read_baseline(const std::filesystem::path& file);
 Baseline read_baseline(std::string_view text, std::string_view file);
 
@@ -74,17 +75,17 @@ Baseline read_baseline(std::string_view text, std::string_view file);
 std::string to_json(const Baseline& baseline);
 
 /// The tolerance of a quantity in a new baseline, and the widest one that `check` accepts: the
-/// accuracy class of its models, as a part of the quantity's scale. It is above what was measured
-/// between machines, kernels and ranks (docs/evidence/regression.md).
-Tolerance regression_tolerance(const Quantity& quantity);
+/// accuracy class of its models, as a part of the quantity's group. It is above
+/// the spread between machines, kernels and ranks (docs/evidence/regression.md).
+AllowedDeviation allowed_deviation(const Measurement& quantity);
 
 /// The number of the baseline's references and the checksum of their list, "12 91f161de"; empty
 /// without references. The case states it too, so that none is lost or loosened in silence.
 std::string references(const Baseline& baseline);
 
-/// A baseline of what was measured. `old` gives the references, the values that differ from it by
-/// less than their tolerance, and what the others were in `changes`. Throws SolverError if
-/// something failed or is not finite: that is no baseline.
+/// A baseline of measurements. It keeps the references of `old`, and its values where they differ
+/// by less than their tolerance; `changes` lists the others. Throws SolverError if something failed
+/// or is not finite: that is no baseline.
 Baseline make_baseline(const input::Case& problem, const Measurements& measured,
                        const output::Provenance& origin, const Baseline* old);
 

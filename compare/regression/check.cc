@@ -15,17 +15,14 @@
 namespace ciliaval::compare::regression {
 namespace {
 
-/// A reference's tolerance beyond this part of the quantity's scale checks nothing.
+/// A reference's tolerance beyond this part of the quantity's group checks nothing.
 constexpr double widest_of_reference = 0.1;
 
-using ById = std::map<std::string, const Quantity*>;
+using ById = std::map<std::string, const Measurement*>;
 
-Finding failure(std::string id, std::string message) {
-  Finding finding;
-  finding.id = std::move(id);
-  finding.against = "baseline";
-  finding.message = std::move(message);
-  return finding;
+void fail(CheckReport& report, std::string id, std::string message) {
+  report.findings.push_back(
+      {false, std::move(id), "baseline", std::move(message), {}, {}, {}, {}, {}});
 }
 
 /// Which entries belong to models that are left out: `steps/0/mechanics/solid/…`,
@@ -47,7 +44,7 @@ class LeftOut {
 };
 
 /// " It looks like …", if the wrong value looks like a known mistake.
-std::string likely_cause(const Quantity& measured, const Expected& expected, double limit,
+std::string likely_cause(const Measurement& measured, const Expected& expected, double limit,
                          const ById& all, const std::map<std::string, double>& accepted) {
   const double a = measured.value;
   const double b = expected.value;
@@ -73,8 +70,8 @@ std::string likely_cause(const Quantity& measured, const Expected& expected, dou
 }
 
 /// Holds one number against another. No part of the tolerance may be wider than `widest`.
-Finding compare(const Quantity& measured, double expected, const Tolerance& tolerance,
-                const Tolerance& widest, std::string against) {
+Finding compare(const Measurement& measured, double expected, const AllowedDeviation& tolerance,
+                const AllowedDeviation& widest, std::string against) {
   Finding finding;
   finding.id = measured.id;
   finding.against = std::move(against);
@@ -104,23 +101,21 @@ Finding compare(const Quantity& measured, double expected, const Tolerance& tole
 
 void check_case(const input::Case& asked, const Baseline& baseline, CheckReport& report) {
   if (baseline.case_name != asked.name)
-    report.findings.push_back(
-        failure("case", fmt::format("the baseline is that of case \"{}\"", baseline.case_name)));
+    fail(report, "case", fmt::format("the baseline is that of case \"{}\"", baseline.case_name));
   const std::vector<std::string> now = case_text(asked);
   const auto [is, was] =
       std::mismatch(now.begin(), now.end(), baseline.case_text.begin(), baseline.case_text.end());
   if (is != now.end() || was != baseline.case_text.end())
-    report.findings.push_back(failure(
-        "case",
-        fmt::format("the baseline is that of another version of the case: it has `{}` where "
-                    "the case now has `{}`; --accept makes a new one",
-                    was != baseline.case_text.end() ? *was : "nothing",
-                    is != now.end() ? *is : "nothing")));
+    fail(report, "case",
+         fmt::format("the baseline is that of another version of the case: it has `{}` where the "
+                     "case now has `{}`; --accept makes a new one",
+                     was != baseline.case_text.end() ? *was : "nothing",
+                     is != now.end() ? *is : "nothing"));
   if (const std::string there = references(baseline); there != asked.references)
-    report.findings.push_back(failure(
-        "references", fmt::format("the baseline has the references \"{}\", and the case "
-                                  "states \"{}\" under [case]: was one removed or loosened?",
-                                  there, asked.references)));
+    fail(report, "references",
+         fmt::format("the baseline has the references \"{}\", and the case states \"{}\" under "
+                     "[case]: was one removed or loosened?",
+                     there, asked.references));
 }
 
 void check_outcomes(const std::vector<Outcome>& measured, const Baseline& baseline,
@@ -128,34 +123,30 @@ void check_outcomes(const std::vector<Outcome>& measured, const Baseline& baseli
   std::map<std::string, std::string> now;
   for (const Outcome& outcome : measured) now[outcome.id] = outcome.value;
   for (const ExpectedOutcome& expected : baseline.outcomes) {
+    const auto found = now.find(expected.id);
     if (left_out.contains(expected.id)) {
       ++report.left_out;
-      continue;
+    } else if (found == now.end()) {
+      fail(report, expected.id, "is in the baseline but was not computed: is a model missing?");
+    } else {
+      fail(report, expected.id,
+           fmt::format("is \"{}\", not \"{}\"", found->second, expected.value));
+      Finding& finding = report.findings.back();
+      finding.passed = found->second == expected.value;
+      if (finding.passed) finding.message.clear();
+      report.model_failed = report.model_failed || (!finding.passed && found->second == "failed");
+      now.erase(found);
     }
-    const auto found = now.find(expected.id);
-    if (found == now.end()) {
-      report.findings.push_back(
-          failure(expected.id, "is in the baseline but was not computed: is a model missing?"));
-      continue;
-    }
-    Finding finding = failure(expected.id, "");
-    finding.passed = found->second == expected.value;
-    if (!finding.passed) {
-      finding.message = fmt::format("is \"{}\", not \"{}\"", found->second, expected.value);
-      report.model_failed = report.model_failed || found->second == "failed";
-    }
-    report.findings.push_back(std::move(finding));
-    now.erase(found);
   }
   for (const auto& [id, value] : now)
-    report.findings.push_back(failure(
-        id, fmt::format("is \"{}\", and the baseline does not have it; --accept adds it", value)));
+    fail(report, id,
+         fmt::format("is \"{}\", and the baseline does not have it; --accept adds it", value));
 }
 
-void check_quantities(const std::vector<Quantity>& measured, const Baseline& baseline,
+void check_quantities(const std::vector<Measurement>& measured, const Baseline& baseline,
                       const LeftOut& left_out, CheckReport& report) {
   ById now;
-  for (const Quantity& quantity : measured) now[quantity.id] = &quantity;
+  for (const Measurement& quantity : measured) now[quantity.id] = &quantity;
   std::map<std::string, double> accepted;
   for (const Expected& expected : baseline.quantities) accepted[expected.id] = expected.value;
   for (const Expected& expected : baseline.quantities) {
@@ -165,32 +156,32 @@ void check_quantities(const std::vector<Quantity>& measured, const Baseline& bas
     }
     const auto found = now.find(expected.id);
     if (found == now.end()) {
-      report.findings.push_back(failure(
-          expected.id, "is in the baseline but was not computed: nothing reads its tolerance"));
+      fail(report, expected.id,
+           "is in the baseline but was not computed: nothing reads its tolerance");
       continue;
     }
-    const Quantity& quantity = *found->second;
+    const Measurement& quantity = *found->second;
     if (quantity.unit != expected.unit) {
-      report.findings.push_back(failure(expected.id, fmt::format("is in {}, the baseline is in {}",
-                                                                 quantity.unit, expected.unit)));
+      fail(report, expected.id,
+           fmt::format("is in {}, the baseline is in {}", quantity.unit, expected.unit));
       continue;
     }
-    Tolerance widest = regression_tolerance(quantity);
+    AllowedDeviation widest = allowed_deviation(quantity);
     widest.absolute *= 1.1;  // its second digit may be rounded otherwise in this run
-    Finding finding = compare(quantity, expected.value, expected.tolerance, widest, "baseline");
+    Finding finding = compare(quantity, expected.value, expected.allowed, widest, "baseline");
     if (!finding.passed && finding.limit)
       finding.message += likely_cause(quantity, expected, *finding.limit, now, accepted);
     report.findings.push_back(std::move(finding));
     if (const auto& reference = expected.reference)
-      report.findings.push_back(compare(quantity, reference->value, reference->tolerance,
-                                        {widest_of_reference, widest_of_reference * quantity.scale},
-                                        reference->label));
+      report.findings.push_back(
+          compare(quantity, reference->value, reference->allowed,
+                  {widest_of_reference, widest_of_reference * quantity.size()}, reference->label));
   }
-  for (const Quantity& quantity : measured)
+  for (const Measurement& quantity : measured)
     if (!accepted.contains(quantity.id))
-      report.findings.push_back(failure(
-          quantity.id, fmt::format("is {} {}, and the baseline does not have it; --accept adds it",
-                                   quantity.value, quantity.unit)));
+      fail(report, quantity.id,
+           fmt::format("is {} {}, and the baseline does not have it; --accept adds it",
+                       quantity.value, quantity.unit));
 }
 
 /// ΔB must be B − B(undeformed), to rounding.
@@ -206,7 +197,7 @@ void check_differences(const models::CaseResult& result, CheckReport& report) {
             s < step.B.size() && step.B[s] && s < run.undeformed.B.size() && run.undeformed.B[s];
         if (!complete || !((*step.B[s] - *run.undeformed.B[s] - *step.dB[s]).norm() <=
                            1e-12 * run.undeformed.B[s]->norm()))
-          report.findings.push_back(failure(id, "is not B − B(undeformed)"));
+          fail(report, id, "is not B − B(undeformed)");
       }
     }
 }
@@ -220,56 +211,58 @@ bool same_bits(const Deformation& a, const Deformation& b) {
   return true;
 }
 
-bool same_mechanics(const models::MechanicsRun& a, const models::MechanicsRun& b) {
-  bool any = false;
-  for (std::size_t i = 0; i < a.result.steps.size() && i < b.result.steps.size(); ++i) {
-    const auto& one = a.result.steps[i].deformation;
-    const auto& other = b.result.steps[i].deformation;
-    if (!one || !other) continue;
-    if (!same_bits(*one, *other)) return false;
-    any = true;
+/// Whether two lists of steps have a pair to compare, by `any`, and all such pairs are the same.
+template <class Step, class Any, class Same>
+bool all_same(const std::vector<Step>& a, const std::vector<Step>& b, const Any& any,
+              const Same& same) {
+  bool found = false;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (!any(a[i]) || !any(b[i])) continue;
+    if (!same(a[i], b[i])) return false;
+    found = true;
   }
-  return any;
+  return found;
+}
+
+bool same_mechanics(const models::MechanicsRun& a, const models::MechanicsRun& b) {
+  return all_same(
+      a.result.steps, b.result.steps,
+      [](const MechanicsStep& step) { return step.deformation.has_value(); },
+      [](const auto& one, const auto& other) {
+        return same_bits(*one.deformation, *other.deformation);
+      });
 }
 
 bool same_field(const models::FieldRun& a, const models::FieldRun& b) {
-  bool any = false;
-  for (std::size_t i = 0; i < a.steps.size() && i < b.steps.size(); ++i) {
-    if (!a.steps[i] || !b.steps[i]) continue;
-    if (a.steps[i]->B != b.steps[i]->B) return false;
-    any = any || a.steps[i]->any();
-  }
-  return any;
+  return all_same(
+      a.steps, b.steps, [](const auto& step) { return step && step->any(); },
+      [](const auto& one, const auto& other) { return one->B == other->B; });
 }
 
 /// Models that are compared must be two, and something must be compared.
 void check_independence(const models::CaseResult& result, const Baseline& baseline, bool complete,
                         CheckReport& report) {
-  const auto same = [&](const std::string& a, const std::string& b) {
-    report.findings.push_back(
-        failure(fmt::format("{} and {}", a, b),
-                a == b ? "a model is compared with itself"
-                       : "give the same bits everywhere: a model is compared with itself"));
+  const auto check_pairs = [&](const auto& runs, const auto& name_of, const auto& same) {
+    for (std::size_t b = 0; b < runs.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a) {
+        const bool one = name_of(runs[a]) == name_of(runs[b]);
+        if (one || same(runs[a], runs[b]))
+          fail(report, fmt::format("{} and {}", name_of(runs[a]), name_of(runs[b])),
+               one ? "a model is compared with itself"
+                   : "give the same bits everywhere: a model is compared with itself");
+      }
   };
-  for (std::size_t b = 0; b < result.mechanics.size(); ++b)
-    for (std::size_t a = 0; a < b; ++a)
-      if (result.mechanics[a].model == result.mechanics[b].model ||
-          same_mechanics(result.mechanics[a], result.mechanics[b]))
-        same(result.mechanics[a].model, result.mechanics[b].model);
-  for (std::size_t b = 0; b < result.fields.size(); ++b)
-    for (std::size_t a = 0; a < b; ++a)
-      if (result.fields[a].name() == result.fields[b].name() ||
-          (result.fields[a].mechanics == result.fields[b].mechanics &&
-           same_field(result.fields[a], result.fields[b])))
-        same(result.fields[a].name(), result.fields[b].name());
-  const bool references =
-      std::any_of(baseline.quantities.begin(), baseline.quantities.end(),
-                  [](const Expected& expected) { return expected.reference.has_value(); });
-  if (complete && !references && models::compare_models(result).empty())
-    report.findings.push_back(
-        failure("comparison",
-                "is empty: no two models have a result at the same step, and the baseline has no "
-                "reference; the case is compared with nothing but its own past"));
+  check_pairs(
+      result.mechanics, [](const models::MechanicsRun& run) { return run.model; }, same_mechanics);
+  check_pairs(
+      result.fields, [](const models::FieldRun& run) { return run.name(); },
+      [](const models::FieldRun& a, const models::FieldRun& b) {
+        return a.mechanics == b.mechanics && same_field(a, b);
+      });
+  if (complete && references(baseline).empty() && models::compare_models(result).empty())
+    fail(report, "comparison",
+         "is empty: no two models have a result at the same step, and the baseline has no "
+         "reference; the case is compared with nothing but its own past");
 }
 
 }  // namespace
@@ -297,8 +290,7 @@ CheckReport check(const input::Case& asked, const models::CaseResult& result,
   check_quantities(measured.quantities, baseline, absent, report);
   check_differences(result, report);
   check_independence(result, baseline, absent.none(), report);
-  if (report.compared() == 0)
-    report.findings.push_back(failure("comparison", "no number was compared with any other"));
+  if (report.compared() == 0) fail(report, "comparison", "no number was compared with any other");
   return report;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,17 +12,20 @@ namespace ciliaval::compare::regression {
 
 /// One number that a case's models have computed. Its id is its place in summary.json:
 /// `steps/1/mechanics/elastica/tip/x`, `steps/1/fields/elastica/line/dB/0/y` (sensor 0).
-struct Quantity {
+struct Measurement {
   std::string id;
   std::string mechanics;  ///< the mechanics model that it rests on
   std::string field;      ///< the field model; empty for a number of the mechanics model itself
   std::string unit;       ///< "m", "rad", "N", "T"
   double value = 0;       ///< in `unit`, may be NaN
-  /// The largest value of its group, in `unit`: all deflections, angles or forces of the model; all
-  /// |B|, or all |ΔB|, of the pair at this sensor; L for places along the cilium. A group that is
-  /// (nearly) zero has a thousandth of the length, field or angle that its rounding comes from.
-  double scale = 0;
+  double scale = 0;  ///< the size that its rounding is a part of: the length of the cilium, 1 rad,
+                     ///< the largest |B| of the pair at this sensor, the largest force
+  double group = 0;  ///< the largest of its group, which a tolerance guards: of the model's
+                     ///< deflections or angles, of the pair's |ΔB| at this sensor; else `scale`
   std::optional<double> uncertainty;  ///< the model's own estimate, in `unit`
+
+  /// Size of the group; of one that vanishes a thousandth of `scale`.
+  double size() const { return std::max(group, 1e-3 * scale); }
 };
 
 /// How a model ended a step: `steps/1/mechanics/solid/status`: "converged", "slipped_off",
@@ -33,7 +37,7 @@ struct Outcome {
 };
 
 struct Measurements {
-  std::vector<Quantity> quantities;
+  std::vector<Measurement> quantities;
   std::vector<Outcome> outcomes;
 };
 

@@ -9,15 +9,13 @@
 #include <numeric>
 #include <sstream>
 
+#include "compare/output/json_file.h"
+
 namespace ciliaval::compare::regression {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using Tree = boost::property_tree::ptree;
-
-Json optional(const std::optional<double>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 bool all_passed(const std::vector<CheckReport>& reports) {
   return std::all_of(reports.begin(), reports.end(),
@@ -28,12 +26,12 @@ Json finding_json(const Finding& f) {
   return {{"id", f.id},
           {"against", f.against},
           {"passed", f.passed},
-          {"message", f.message.empty() ? Json(nullptr) : Json(f.message)},
-          {"unit", f.unit.empty() ? Json(nullptr) : Json(f.unit)},
-          {"measured", optional(f.measured)},
-          {"expected", optional(f.expected)},
-          {"limit", optional(f.limit)},
-          {"uncertainty", optional(f.uncertainty)}};
+          {"message", output::or_null(f.message)},
+          {"unit", output::or_null(f.unit)},
+          {"measured", output::or_null(f.measured)},
+          {"expected", output::or_null(f.expected)},
+          {"limit", output::or_null(f.limit)},
+          {"uncertainty", output::or_null(f.uncertainty)}};
 }
 
 Tree test_case(const CheckReport& report, const Finding& finding) {
@@ -92,7 +90,7 @@ std::string report_json(const std::vector<CheckReport>& reports) {
       entry["findings"].push_back(finding_json(finding));
     json["cases"].push_back(std::move(entry));
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return output::to_text(json);
 }
 
 std::string report_junit(const std::vector<CheckReport>& reports) {

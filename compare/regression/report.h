@@ -13,7 +13,7 @@ std::string report_text(const std::vector<CheckReport>& reports);
 
 /// {"schema": 1, "passed": …, "cases": [{"case", "passed", "compared", "failures", "left_out",
 /// "findings": [{"id", "against", "passed", "message", "unit", "measured", "expected", "limit",
-/// "uncertainty"}]}]}; what is not known or not finite is null.
+/// "uncertainty"}]}]}; an unknown or infinite value is null.
 std::string report_json(const std::vector<CheckReport>& reports);
 
 /// JUnit's XML as continuous integration reads it: a test suite for each case, a test case for each

@@ -80,11 +80,11 @@ std::string budget_content(const Json& json, Figures& figures) {
   Table chain{"From the paper's model to the best one, an assumption at a time",
               {"model", "what changes"},
               {}};
-  for (const budget::Station& station : budget.chain.stations)
+  for (const budget::Stage& stage : budget.chain.stages)
     chain.rows.push_back(
-        {station.name(),
-         {station.physics.empty() ? "the paper's model: elastica, dipoles along the centreline"
-                                  : station.physics,
+        {stage.name(),
+         {stage.physics.empty() ? "the paper's model: elastica, dipoles along the centreline"
+                                  : stage.physics,
           "text"}});
   std::string text = html(chain);
   std::vector<std::string> remarks = budget.remarks;

@@ -20,42 +20,34 @@ namespace {
 constexpr double beyond_the_largest = 1.25;  ///< the range of loads looked for, over the largest
 constexpr double least_noise = 1e-9;         ///< T: weights of a sensor without noise
 
-/// Which errors a simulation has.
-struct Active {
-  bool noise, quantum, sensor_position, stage_azimuth, ambient, models;
+/// The sizes of the errors of one simulation: those of the bench, or zero where they are left out.
+struct Errors {
+  double noise, background_noise, quantum, sensor_position, stage_azimuth;
+  Vector3 ambient;
+  bool models;  ///< whether another pair of models is read than inverts
+
+  Errors(const Bench& bench, ErrorSource source) {
+    const auto has = [&](ErrorSource s) { return source == s || source == ErrorSource::all; };
+    const auto size = [&](ErrorSource s, double of_bench) { return has(s) ? of_bench : 0; };
+    noise = size(ErrorSource::noise, bench.noise);
+    background_noise = size(ErrorSource::ambient, bench.noise);
+    quantum = size(ErrorSource::quantum, bench.quantum);
+    sensor_position = size(ErrorSource::sensor_position, bench.sensor_position);
+    stage_azimuth = size(ErrorSource::stage_azimuth, bench.stage_azimuth);
+    ambient = size(ErrorSource::ambient, 1) * bench.ambient;
+    models = has(ErrorSource::models) && bench.truth.name() != bench.models.name();
+  }
+  /// Whether anything goes wrong. An ambient field does no harm without the noise of its reading.
+  bool any() const {
+    return noise > 0 || quantum > 0 || sensor_position > 0 || stage_azimuth > 0 ||
+           (background_noise > 0 && ambient.norm() > 0) || models;
+  }
 };
 
-Active active(ErrorSource source) {
-  const auto is = [&](ErrorSource s) { return source == s || source == ErrorSource::all; };
-  return {is(ErrorSource::noise),           is(ErrorSource::quantum),
-          is(ErrorSource::sensor_position), is(ErrorSource::stage_azimuth),
-          is(ErrorSource::ambient),         is(ErrorSource::models)};
-}
-
-/// Whether the source has a size on this bench.
-bool is_there(const Bench& bench, ErrorSource source) {
-  switch (source) {
-    case ErrorSource::noise:
-      return bench.noise > 0;
-    case ErrorSource::quantum:
-      return bench.quantum > 0;
-    case ErrorSource::sensor_position:
-      return bench.sensor_position > 0;
-    case ErrorSource::stage_azimuth:
-      return bench.stage_azimuth > 0;
-    case ErrorSource::ambient:
-      return bench.ambient.norm() > 0 && bench.noise > 0;
-    case ErrorSource::models:
-      return bench.truth.name() != bench.models.name();
-    default:
-      return true;
-  }
-}
-
 /// Sums of squares that become BenchErrors.
-class Errors {
+class MeanErrors {
  public:
-  explicit Errors(const std::optional<FlowLaw>& flow) : flow_(flow) {}
+  explicit MeanErrors(const std::optional<FlowLaw>& flow) : flow_(flow) {}
   void add(std::size_t draw, const Vector2& truth, const Vector2& found) {
     const double relative = found.norm() / truth.norm() - 1;
     const double angle = std::abs(std::remainder(
@@ -122,11 +114,9 @@ class Simulation {
     std::size_t magnitude;  ///< index in the load path
     std::size_t draw;
     Vector2 truth;
-    Eigen::VectorXd change;  ///< what is made of the readings, all offsets taken off
+    Eigen::VectorXd change;  ///< ΔB from the readings, without offsets
   };
-  void simulate(const Active& errors, std::size_t draw, std::vector<Reading>& readings) const;
-  Eigen::VectorXd digits(Eigen::VectorXd B, bool rounded) const;
-  std::vector<Vector3> displaced(std::mt19937& random, bool is_active) const;
+  void simulate(const Errors& errors, std::size_t draw, std::vector<Reading>& readings) const;
 
   const Bench& bench_;
   std::optional<FlowLaw> flow_;
@@ -165,54 +155,36 @@ Simulation::Simulation(const Bench& bench, const Progress& progress)
   fit_ = std::make_unique<LinearFit>(*response_, noise);
 }
 
-/// What the sensor's digits show.
-Eigen::VectorXd Simulation::digits(Eigen::VectorXd B, bool rounded) const {
-  if (rounded) B = (B / bench_.quantum).array().round() * bench_.quantum;
-  return B;
-}
-
-std::vector<Vector3> Simulation::displaced(std::mt19937& random, bool is_active) const {
-  std::normal_distribution<double> normal;
-  std::vector<Vector3> sensors = bench_.problem.sensors;
-  for (Vector3& sensor : sensors)
-    for (double& coordinate : sensor) {
-      const double error = bench_.sensor_position * normal(random);
-      if (is_active) coordinate += error;
-    }
-  return sensors;
-}
-
-void Simulation::simulate(const Active& errors, std::size_t draw,
+void Simulation::simulate(const Errors& errors, std::size_t draw,
                           std::vector<Reading>& readings) const {
-  // The same errors in every simulation, whether alone or together.
+  // The same random numbers in every simulation, whatever the size of its errors.
   std::mt19937 random(bench_.seed + static_cast<unsigned int>(draw));
   std::normal_distribution<double> normal;
-  const bool other = errors.models && truth_;
-  const std::vector<Vector3> sensors = displaced(random, errors.sensor_position);
+  std::normal_distribution<double> of_position;
+  std::vector<Vector3> sensors = bench_.problem.sensors;
+  for (Vector3& sensor : sensors)
+    for (double& coordinate : sensor) coordinate += errors.sensor_position * of_position(random);
+  const bool other = errors.models;
   std::optional<Response> built;
-  if (errors.sensor_position && bench_.sensor_position > 0)
+  if (errors.sensor_position > 0)
     built.emplace(bench_.problem, other ? bench_.truth.field : bench_.models.field,
                   other ? truth_shapes_ : model_shapes_, sensors);
   const Response& truth = built ? *built : other ? *truth_ : *response_;
-  const double stage = bench_.stage_azimuth * normal(random) * (errors.stage_azimuth ? 1 : 0);
+  const double stage = errors.stage_azimuth * normal(random);
   const auto components = static_cast<Eigen::Index>(3 * sensors.size());
-  const auto read = [&](const Eigen::VectorXd& field, bool with_noise) {
-    Eigen::VectorXd B = field;
-    for (double& component : B) {
-      const double error = bench_.noise * normal(random);
-      if (with_noise) component += error;
-    }
-    return digits(std::move(B), errors.quantum && bench_.quantum > 0);
+  const auto read = [&](Eigen::VectorXd B, double noise) {
+    for (double& component : B) component += noise * normal(random);
+    if (errors.quantum > 0) B = (B / errors.quantum).array().round() * errors.quantum;
+    return B;
   };
   const auto ambient = [&](double azimuth) -> Eigen::VectorXd {
-    const Vector3 seen = Eigen::AngleAxisd(azimuth, Vector3::UnitZ()) *
-                         Vector3(bench_.ambient * (errors.ambient ? 1 : 0));
+    const Vector3 seen = Eigen::AngleAxisd(azimuth, Vector3::UnitZ()) * errors.ambient;
     return seen.replicate(components / 3, 1);
   };
   Eigen::VectorXd offset;
   for (unsigned int a = 0; a < bench_.azimuths; ++a) {
     const double azimuth = 2 * std::numbers::pi * a / bench_.azimuths;
-    const Eigen::VectorXd background = read(ambient(azimuth), errors.ambient);
+    const Eigen::VectorXd background = read(ambient(azimuth), errors.background_noise);
     if (a == 0) offset = read(ambient(0) + truth.undeformed(), errors.noise) - background;
     for (std::size_t m = 0; m < bench_.problem.load_path.size(); ++m) {
       const double magnitude = ciliaval::magnitude(bench_.problem.load_path[m]);
@@ -230,20 +202,21 @@ void Simulation::simulate(const Active& errors, std::size_t draw,
 BenchResult Simulation::run(const Progress& progress) const {
   BenchResult result;
   result.linear_misfit = fit_->misfit();
-  std::vector<Errors> by_magnitude(bench_.problem.load_path.size(), Errors(flow_));
+  std::vector<MeanErrors> by_magnitude(bench_.problem.load_path.size(), MeanErrors(flow_));
   for (const ErrorSource source :
        {ErrorSource::none, ErrorSource::noise, ErrorSource::quantum, ErrorSource::sensor_position,
         ErrorSource::stage_azimuth, ErrorSource::ambient, ErrorSource::models, ErrorSource::all}) {
-    if (!is_there(bench_, source)) continue;
+    const Errors errors(bench_, source);
+    if (!errors.any() && source != ErrorSource::none && source != ErrorSource::all) continue;
     const bool once = source == ErrorSource::none || source == ErrorSource::models;
     std::vector<Reading> readings;
     for (std::size_t draw = 0; draw < (once ? 1 : bench_.draws); ++draw) {
       if (progress)
         progress(fmt::format("{}: sensor {} of {}", to_string(source), draw + 1, bench_.draws));
-      simulate(active(source), draw, readings);
+      simulate(errors, draw, readings);
     }
-    Errors inversion(flow_);
-    Errors linear(flow_);
+    MeanErrors inversion(flow_);
+    MeanErrors linear(flow_);
     for (const Reading& reading : readings) {
       const SensedLoad sensed = (*invert_)(reading.change);
       if (!sensed.converged) throw SolverError("the least squares of the bench did not converge");
@@ -255,7 +228,7 @@ BenchResult Simulation::run(const Progress& progress) const {
     }
     result.rows.push_back({source, inversion.mean(), linear.mean()});
   }
-  for (const Errors& errors : by_magnitude) result.by_magnitude.push_back(errors.mean());
+  for (const MeanErrors& errors : by_magnitude) result.by_magnitude.push_back(errors.mean());
   return result;
 }
 

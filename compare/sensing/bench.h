@@ -19,7 +19,7 @@ struct Bench {
   std::string title;
   input::Case problem;  ///< its load path has the magnitudes, its sensors are where they should be
   models::ModelPair models;    ///< by which the readings are inverted
-  models::ModelPair truth;     ///< what bends and is read
+  models::ModelPair truth;     ///< of the cilium that bends and is read
   unsigned int azimuths = 12;  ///< of the load as the sensor sees it, evenly round the circle
   unsigned int draws = 20;     ///< sensors built and benches run, each with its own errors
   unsigned int seed = 1;
@@ -33,7 +33,7 @@ struct Bench {
 /// Throws InputError with every fault of the file, a line each; FileError.
 Bench read_bench(const std::filesystem::path& file);
 
-/// What goes wrong in a reading.
+/// An error of a reading.
 enum class ErrorSource {
   none,
   noise,

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a simulated bench found, for people and programs.
+// The results of a simulated bench, for people and programs.
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
 #include "compare/sensing/bench.h"
 
@@ -115,7 +116,7 @@ std::string bench_json(const Bench& bench, const BenchResult& result,
   for (const BenchPoint& p : result.first_draw)
     json["first_draw"].push_back(
         {{"truth", {p.truth.x(), p.truth.y()}}, {"found", {p.found.x(), p.found.y()}}});
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return output::to_text(json);
 }
 
 std::string bench_script(const Bench& bench, const BenchResult& result) {

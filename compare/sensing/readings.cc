@@ -75,7 +75,7 @@ std::vector<std::pair<std::string, Rows>> samples_of(const input::CsvTable& tabl
   return samples;
 }
 
-/// What a row reads less the background at its azimuth.
+/// A row's reading less the background at its azimuth.
 Vector3 without_background(const input::CsvTable& table, std::size_t row, std::size_t sensor,
                            const input::external::Background* background, input::Faults& faults) {
   Vector3 B = input::external::row_vector(table, field_column, row);

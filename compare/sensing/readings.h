@@ -9,7 +9,7 @@
 
 namespace ciliaval::compare::sensing {
 
-/// What sensors have read at one time.
+/// The readings of all sensors at one time.
 struct Sample {
   std::string name;        ///< as the file has it, or the row's number from 1
   Eigen::VectorXd change;  ///< ΔB of all sensors one after the other, T
@@ -27,7 +27,7 @@ struct SensorReadings {
 /// Bz, or dBx, dBy, dBz; with several sensors `sample` and `sensor`, a row for each; `azimuth`,
 /// that of the sensor's own x axis, where the background is taken off; `time` is ignored. Rows of
 /// the sample `unloaded` are the straight cilium: with more than one row of a sensor, their mean.
-/// What the earth's field and the magnet make of a reading goes off it:
+/// The earth's field and the undeformed magnet's field are subtracted:
 ///
 ///   ΔB = (B − background(azimuth)) − (B_unloaded − background(azimuth of the unloaded)).
 ///

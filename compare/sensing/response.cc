@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <numbers>
 #include <variant>
@@ -72,21 +73,18 @@ std::vector<Eigen::Matrix3Xd> changes(const FieldModel& field, const Cilium& cil
   return result;
 }
 
-/// Σ_m c_m cos mβ + s_m sin mβ through the values at equal angles. The highest mode of an even
-/// number has no sine.
-void fourier(const Eigen::Matrix3Xd& values, Eigen::Matrix3Xd& cosines, Eigen::Matrix3Xd& sines) {
+/// z of Re Σ_m z_m exp(imβ) through the values at equal angles.
+Eigen::Matrix3Xcd fourier(const Eigen::Matrix3Xd& values) {
   const Eigen::Index n = values.cols();
-  cosines = Eigen::Matrix3Xd::Zero(3, n / 2 + 1);
-  sines = cosines;
+  Eigen::Matrix3Xcd result = Eigen::Matrix3Xcd::Zero(3, n / 2 + 1);
   for (Eigen::Index m = 0; m <= n / 2; ++m) {
     const double scale = (m == 0 || 2 * m == n ? 1.0 : 2.0) / static_cast<double>(n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double angle =
-          2 * std::numbers::pi * static_cast<double>((m * j) % n) / static_cast<double>(n);
-      cosines.col(m) += scale * std::cos(angle) * values.col(j);
-      sines.col(m) += scale * std::sin(angle) * values.col(j);
-    }
+    for (Eigen::Index j = 0; j < n; ++j)
+      result.col(m) += values.col(j) *
+                       std::polar(scale, -2 * std::numbers::pi * static_cast<double>((m * j) % n) /
+                                             static_cast<double>(n));
   }
+  return result;
 }
 
 double largest_column(const Eigen::Matrix3Xd& values) {
@@ -179,16 +177,12 @@ Response::Response(const input::Case& problem, const std::string& field, const S
                        circle(sensors[s], angles, first));
       };
       const std::vector<Eigen::Matrix3Xd> values = at(shapes.nodes, 0);
-      table.cosines.assign(1, Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(angles / 2 + 1)));
-      table.sines = table.cosines;
+      table.values.assign(1, Eigen::Matrix3Xcd::Zero(3, static_cast<Eigen::Index>(angles / 2 + 1)));
       for (const Eigen::Matrix3Xd& value : values) {
-        table.cosines.emplace_back();
-        table.sines.emplace_back();
-        fourier(value, table.cosines.back(), table.sines.back());
+        table.values.push_back(fourier(value));
         largest_change_ = std::max(largest_change_, largest_column(value));
       }
-      table.cosine_slopes = slopes(table.cosines);
-      table.sine_slopes = slopes(table.sines);
+      table.slopes = slopes(table.values);
       // Between the angles, under the largest load; and between the magnitudes.
       const double half = std::numbers::pi / static_cast<double>(angles);
       const auto worst = [&](std::span<const Deformation> of, std::span<const double> magnitudes) {
@@ -219,11 +213,11 @@ Response::Response(const input::Case& problem, const std::string& field, const S
         largest(), error_, largest_change_));
 }
 
-std::vector<Eigen::Matrix3Xd> Response::slopes(const std::vector<Eigen::Matrix3Xd>& values) const {
+Response::Coefficients Response::slopes(const Coefficients& values) const {
   const std::size_t n = magnitudes_.size();
-  std::vector<Eigen::Matrix3Xd> result;
+  Coefficients result;
   for (std::size_t i = 0; i < n; ++i) {
-    result.emplace_back(Eigen::Matrix3Xd::Zero(3, values[i].cols()));
+    result.emplace_back(Eigen::Matrix3Xcd::Zero(3, values[i].cols()));
     for (std::size_t k = 0; k < n; ++k)
       if (k != i)
         result[i] +=
@@ -247,25 +241,20 @@ Response::Value Response::evaluate(const Table& table, double magnitude, double 
     }
     for (double& v : value) v /= sum;
   }
-  const Eigen::Index modes = table.cosines.front().cols();
-  Eigen::Matrix3Xd c = Eigen::Matrix3Xd::Zero(3, modes);
-  Eigen::Matrix3Xd s = c;
-  Eigen::Matrix3Xd dc = c;
-  Eigen::Matrix3Xd ds = c;
+  const Eigen::Index modes = table.values.front().cols();
+  Eigen::Matrix3Xcd z = Eigen::Matrix3Xcd::Zero(3, modes);
+  Eigen::Matrix3Xcd dz = z;
   for (std::size_t k = 0; k < n; ++k) {
-    c += value[k] * table.cosines[k];
-    s += value[k] * table.sines[k];
-    dc += value[k] * table.cosine_slopes[k];
-    ds += value[k] * table.sine_slopes[k];
+    z += value[k] * table.values[k];
+    dz += value[k] * table.slopes[k];
   }
   Value result{Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
   for (Eigen::Index m = 0; m < modes; ++m) {
     const double order = static_cast<double>(m);
-    const double cosine = std::cos(order * beta);
-    const double sine = std::sin(order * beta);
-    result.b += cosine * c.col(m) + sine * s.col(m);
-    result.by_force += cosine * dc.col(m) + sine * ds.col(m);
-    result.by_angle += order * (cosine * s.col(m) - sine * c.col(m));
+    const std::complex<double> wave = std::polar(1.0, order * beta);
+    result.b += (wave * z.col(m)).real();
+    result.by_force += (wave * dz.col(m)).real();
+    result.by_angle -= order * (wave * z.col(m)).imag();
   }
   return result;
 }

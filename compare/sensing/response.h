@@ -63,13 +63,13 @@ class Response {
   const Eigen::VectorXd& undeformed() const { return undeformed_; }
 
  private:
-  /// b of one sensor: Fourier coefficients of each component at each magnitude.
+  /// The part of Σ_m z_m exp(imβ) that is real, z of each component at each magnitude.
+  using Coefficients = std::vector<Eigen::Matrix3Xcd>;
+  /// b of one sensor.
   struct Table {
-    double beta = 0;                        ///< of the sensor, rad
-    std::vector<Eigen::Matrix3Xd> cosines;  ///< [magnitude] component × m
-    std::vector<Eigen::Matrix3Xd> sines;
-    std::vector<Eigen::Matrix3Xd> cosine_slopes;  ///< ∂/∂F of them
-    std::vector<Eigen::Matrix3Xd> sine_slopes;
+    double beta = 0;  ///< of the sensor, rad
+    Coefficients values;
+    Coefficients slopes;  ///< ∂/∂F of them
   };
   struct Value {
     Vector3 b;         ///< T
@@ -77,7 +77,7 @@ class Response {
     Vector3 by_angle;  ///< ∂b/∂β
   };
   /// Derivatives at the magnitudes of the polynomials through values there.
-  std::vector<Eigen::Matrix3Xd> slopes(const std::vector<Eigen::Matrix3Xd>& values) const;
+  Coefficients slopes(const Coefficients& values) const;
   Value evaluate(const Table& table, double magnitude, double beta) const;
 
   std::vector<double> magnitudes_;  ///< 0 first

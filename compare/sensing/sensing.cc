@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "compare/output/csv_writer.h"
+#include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
 
 namespace ciliaval::compare::sensing {
@@ -20,9 +21,10 @@ using Json = nlohmann::ordered_json;
 constexpr double degree = std::numbers::pi / 180;
 constexpr double unlikely = 1e-3;
 
-/// The velocities at the ends of the interval of q.
-std::pair<double, double> velocities(const FlowLaw& flow, const SensedLoad& sensed) {
-  return {flow.velocity(sensed.magnitude() - sensed.magnitude_interval()),
+/// The velocity of q, and those at the ends of its interval.
+std::array<double, 3> velocities(const FlowLaw& flow, const SensedLoad& sensed) {
+  return {flow.velocity(sensed.magnitude()),
+          flow.velocity(sensed.magnitude() - sensed.magnitude_interval()),
           flow.velocity(sensed.magnitude() + sensed.magnitude_interval())};
 }
 
@@ -85,11 +87,8 @@ std::string sensing_text(const Sensing& s) {
            fmt::format("{:.2g}", sensed.magnitude_interval() * factor),
            has_azimuth ? fmt::format("{:.2f}", sensed.azimuth() / degree) : "-",
            has_azimuth ? fmt::format("{:.2f}", sensed.azimuth_interval() / degree) : ""};
-    if (s.flow) {
-      const auto [low, high] = velocities(*s.flow, sensed);
-      for (const double v : {s.flow->velocity(sensed.magnitude()), low, high})
-        row.push_back(fmt::format("{:.4f}", v));
-    }
+    if (s.flow)
+      for (const double v : velocities(*s.flow, sensed)) row.push_back(fmt::format("{:.4f}", v));
     row.emplace_back(to_string(status_of(sensed)));
   }
   return text + output::text_table(rows, s.flow ? "<>>>>>>><" : "<>>>><") +
@@ -120,13 +119,13 @@ std::string sensing_json(const Sensing& s, const output::Provenance& provenance)
                 {"chi_squared", sensed.chi_squared},
                 {"misfit_probability", sensed.misfit_probability}};
     if (s.flow) {
-      const auto [low, high] = velocities(*s.flow, sensed);
-      sample["velocity"] = s.flow->velocity(sensed.magnitude());
+      const auto [velocity, low, high] = velocities(*s.flow, sensed);
+      sample["velocity"] = velocity;
       sample["velocity_interval"] = {low, high};
     }
     json["samples"].push_back(std::move(sample));
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return output::to_text(json);
 }
 
 std::string sensing_csv(const Sensing& s) {
@@ -150,10 +149,8 @@ std::string sensing_csv(const Sensing& s) {
           sensed.azimuth(), sensed.azimuth_interval(), sensed.chi_squared,
           sensed.misfit_probability})
       csv.add(value);
-    if (s.flow) {
-      const auto [low, high] = velocities(*s.flow, sensed);
-      for (const double v : {s.flow->velocity(sensed.magnitude()), low, high}) csv.add(v);
-    }
+    if (s.flow)
+      for (const double v : velocities(*s.flow, sensed)) csv.add(v);
     csv.end_row();
   }
   return csv.text();

@@ -12,7 +12,7 @@
 
 namespace ciliaval::compare::sensing {
 
-/// What a reading tells.
+/// The outcome for a reading.
 enum class SenseStatus {
   found,         ///< a load, with its interval
   nothing,       ///< the interval holds zero: no load is seen, and no direction known
@@ -31,10 +31,10 @@ struct FlowLaw {
   double velocity(double force_per_height) const;  ///< 0 for a q below 0
   double force_per_height(double velocity) const;
 };
-/// That of a case whose flow is given by its velocity.
+/// The law of a case whose flow is given by its velocity.
 std::optional<FlowLaw> flow_law(const input::Case& problem);
 
-/// A case's readings and what was made of them.
+/// A case's readings and the loads found from them.
 struct Sensing {
   std::string case_name;
   models::ModelPair models;

@@ -161,9 +161,9 @@ ExitCode execute(const Options& options, const std::string& words) {
     reports.push_back(
         regression::check(cases[i], run_case(cases[i], left_out), *baselines[i], left_out));
   }
+  print(regression::report_text(reports));  // first: a full disk must not cost the table
   if (options.junit) output::write_file(*options.junit, regression::report_junit(reports));
   if (options.json) output::write_file(*options.json, regression::report_json(reports));
-  print(regression::report_text(reports));
   return verdict(reports);
 }
 

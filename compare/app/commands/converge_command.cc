@@ -42,15 +42,14 @@ ExitCode execute(const Options& options, const std::string& words) {
         convergence::refinement_study(problem, refinement, options.levels, line.callback()));
     failed = failed || !studies.back().failure.empty();
   }
+  print(studies.empty()
+            ? "The case has no model that can be refined: `dipole` is a closed form.\n"
+            : convergence::study_text(studies));  // first: a full disk must not cost the table
   if (options.json)
     output::write_file(*options.json,
                        convergence::study_json(problem.name, studies, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, convergence::study_csv(studies));
-  if (studies.empty()) {
-    print("The case has no model that can be refined: `dipole` is a closed form.\n");
-    return ExitCode::undecided;
-  }
-  print(convergence::study_text(studies));
+  if (studies.empty()) return ExitCode::undecided;
   if (options.plot) {
     const convergence::ConvergencePlot drawing = convergence::convergence_plot(problem, studies);
     if (drawing.script.empty())

@@ -106,10 +106,10 @@ void expect_no_fault(const budget::Budget& budget) {
   for (const budget::BudgetRow& row : budget.rows) EXPECT_EQ(budget::fault(row), "");
 }
 
-std::vector<std::string> names(const std::vector<budget::Station>& stations) {
+std::vector<std::string> names(const std::vector<budget::Stage>& stages) {
   std::vector<std::string> result;
-  result.reserve(stations.size());
-  for (const budget::Station& station : stations) result.push_back(station.name());
+  result.reserve(stages.size());
+  for (const budget::Stage& stage : stages) result.push_back(stage.name());
   return result;
 }
 
@@ -117,7 +117,7 @@ std::vector<std::string> names(const std::vector<budget::Station>& stations) {
 TEST(Budget, ALinkIsTheNextModelLessThePreviousOne) {
   const double F = 2e-3;
   const budget::Budget budget = World{}.budget({F});
-  EXPECT_THAT(names(budget.chain.stations),
+  EXPECT_THAT(names(budget.chain.stages),
               ElementsAre("elastica/line", "beam/line", "solid/line", "solid/volume stacked",
                           "solid/volume wedge", "solid/mesh R", "solid/mesh F",
                           "solid/potential mu_r = 1", "solid/potential mu_r = 1.05"));
@@ -136,8 +136,8 @@ TEST(Budget, ALinkIsTheNextModelLessThePreviousOne) {
   ASSERT_EQ(dB.links.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_NEAR(dB.links[i].value, expected[i], 1e-16) << i;
-    EXPECT_EQ(dB.links[i].from, budget.chain.stations[i].name());
-    EXPECT_EQ(dB.links[i].to, budget.chain.stations[i + 1].name());
+    EXPECT_EQ(dB.links[i].from, budget.chain.stages[i].name());
+    EXPECT_EQ(dB.links[i].to, budget.chain.stages[i + 1].name());
   }
   EXPECT_NEAR(dB.paper, 1e-2 * x(20), 1e-16);
   EXPECT_NEAR(dB.best, 1.19e-2 * x(17), 1e-16);
@@ -306,22 +306,22 @@ TEST(Budget, LinksJoinOverAStationWithoutValue) {
 TEST(Chain, FollowsTheCase) {
   input::Case problem = test::paper_case({1e-3});
   problem.options.potential.relative_permeability = 1;
-  EXPECT_EQ(budget::make_chain(problem, {}).stations.back().name(), "solid/potential mu_r = 1");
+  EXPECT_EQ(budget::make_chain(problem, {}).stages.back().name(), "solid/potential mu_r = 1");
   problem.options.potential.plates.resize(1);
-  EXPECT_EQ(budget::make_chain(problem, {}).stations.back().name(),
+  EXPECT_EQ(budget::make_chain(problem, {}).stages.back().name(),
             "solid/potential mu_r = 1, plates");
   problem.options.potential.relative_permeability = 1.1;
   const budget::Chain chain = budget::make_chain(problem, {});
-  ASSERT_EQ(chain.stations.size(), 10U);
+  ASSERT_EQ(chain.stages.size(), 10U);
   input::ModelOptions options = problem.options;
-  chain.stations[7].set(options);
+  chain.stages[7].set(options);
   EXPECT_EQ(options.potential.relative_permeability, 1);
   EXPECT_TRUE(options.potential.plates.empty());
   options = problem.options;
-  chain.stations[9].set(options);
+  chain.stages[9].set(options);
   EXPECT_EQ(options.potential.relative_permeability, 1.1);
   EXPECT_EQ(options.potential.plates.size(), 1U);
-  EXPECT_THAT(names(budget::make_chain(problem, {"beam", "solid", "volume", "potential"}).stations),
+  EXPECT_THAT(names(budget::make_chain(problem, {"beam", "solid", "volume", "potential"}).stages),
               ElementsAre("elastica/line"));
 }
 

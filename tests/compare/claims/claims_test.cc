@@ -23,19 +23,19 @@ namespace {
 using testing::HasSubstr;
 
 TEST(Claims, AFindingHoldsFailsOrIsUndecidedWithinItsUncertainty) {
-  EXPECT_EQ(claims::in_range("a", 1, 2, "", 0.5, 2.5).holds, true);
-  EXPECT_EQ(claims::in_range("a", 1, 2, "", 1.5, 2.5).holds, false);
-  EXPECT_EQ(claims::in_range("a", 1, 2, "", 0.95, 2.5, 0.1).holds, std::nullopt);
-  EXPECT_EQ(claims::in_range("a", 1, 2, "", 1.05, 2.5, 0.1).holds, std::nullopt);
-  EXPECT_EQ(claims::in_range("a", 1, 2, "", 1.2, 2.5, 0.1).holds, false);
-  EXPECT_EQ(claims::in_range("a", std::nan(""), 2, "", 0, 3).holds, false);
+  EXPECT_EQ(claims::in_range("a", {1, 2}, "", 0.5, 2.5).holds, true);
+  EXPECT_EQ(claims::in_range("a", {1, 2}, "", 1.5, 2.5).holds, false);
+  EXPECT_EQ(claims::in_range("a", {1, 2, 0.1}, "", 0.95, 2.5).holds, std::nullopt);
+  EXPECT_EQ(claims::in_range("a", {1, 2, 0.1}, "", 1.05, 2.5).holds, std::nullopt);
+  EXPECT_EQ(claims::in_range("a", {1, 2, 0.1}, "", 1.2, 2.5).holds, false);
+  EXPECT_EQ(claims::in_range("a", {std::nan(""), 2}, "", 0, 3).holds, false);
 }
 
 TEST(Claims, TheVerdictIsThatOfTheFindings) {
-  const claims::Finding yes = claims::judged("a", 1, 1, "", true);
-  const claims::Finding no = claims::judged("b", 1, 1, "", false);
-  const claims::Finding open = claims::in_range("c", 1, 1, "", 1.05, 2, 0.1);
-  const auto verdict = [](std::vector<claims::Finding> findings) {
+  const claims::Evidence yes{"a", {1, 1}, "", true};
+  const claims::Evidence no{"b", {1, 1}, "", false};
+  const claims::Evidence open = claims::in_range("c", {1, 1, 0.1}, "", 1.05, 2);
+  const auto verdict = [](std::vector<claims::Evidence> findings) {
     return claims::Claim{"1", "s", std::move(findings), ""}.verdict();
   };
   EXPECT_EQ(verdict({yes, yes}), claims::ClaimVerdict::reproduced);
@@ -119,9 +119,9 @@ TEST(Claims, TheIntervalsOfACoarseBeamHoldTheFineBeams) {
   ASSERT_EQ(coarse.size(), fine.size());
   int compared = 0;
   for (std::size_t i = 0; i < fine.size(); ++i)
-    for (std::size_t j = 0; j < fine[i].findings.size(); ++j) {
-      const claims::Finding& a = coarse[i].findings[j];
-      const claims::Finding& b = fine[i].findings[j];
+    for (std::size_t j = 0; j < fine[i].evidence.size(); ++j) {
+      const claims::Evidence& a = coarse[i].evidence[j];
+      const claims::Evidence& b = fine[i].evidence[j];
       ASSERT_EQ(a.models, b.models);
       if (a.models.find("beam") == std::string::npos || a.unit == "s") continue;
       ++compared;

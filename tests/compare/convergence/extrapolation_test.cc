@@ -15,9 +15,9 @@ namespace ciliaval::compare {
 namespace {
 
 /// f₀ + α h^p, finest first.
-std::vector<convergence::Level> levels(double limit, double slope, double p,
-                                       const std::vector<double>& sizes) {
-  std::vector<convergence::Level> result;
+std::vector<convergence::RefinementLevel> levels(double limit, double slope, double p,
+                                                 const std::vector<double>& sizes) {
+  std::vector<convergence::RefinementLevel> result;
   result.reserve(sizes.size());
   for (const double h : sizes) result.push_back({h, limit + slope * std::pow(h, p)});
   return result;
@@ -27,9 +27,9 @@ std::vector<convergence::Level> levels(double limit, double slope, double p,
 // 18,000, 8,000, 4,500 cells in the plane, φ = 6.063, 5.972, 5.863; p = 1.53, φ_ext = 6.1685,
 // GCI_fine = 2.2 % (F_s = 1.25, of φ₁), here for the observed order taken as the formal one.
 TEST(GridConvergence, IsThatOfThePublishedExample) {
-  const std::vector<convergence::Level> data{{1 / std::sqrt(18000.0), 6.063},
-                                             {1 / std::sqrt(8000.0), 5.972},
-                                             {1 / std::sqrt(4500.0), 5.863}};
+  const std::vector<convergence::RefinementLevel> data{{1 / std::sqrt(18000.0), 6.063},
+                                                       {1 / std::sqrt(8000.0), 5.972},
+                                                       {1 / std::sqrt(4500.0), 5.863}};
   const convergence::Extrapolation result = convergence::grid_convergence(data, 1.53);
   ASSERT_TRUE(result.conclusive);
   EXPECT_NEAR(*result.order, 1.53, 0.005);
@@ -53,7 +53,7 @@ TEST(GridConvergence, FindsOrderAndLimitOfAPureSequence) {
 
 // Out of the asymptotic range: F_s = 3, and no more order in the interval than the scheme has.
 TEST(GridConvergence, IsCautiousOutOfTheAsymptoticRange) {
-  const std::vector<convergence::Level> data = levels(1, 0.1, 4, {1, 2, 4});
+  const std::vector<convergence::RefinementLevel> data = levels(1, 0.1, 4, {1, 2, 4});
   const convergence::Extrapolation result = convergence::grid_convergence(data, 2);
   EXPECT_NEAR(*result.order, 4, 1e-9);
   EXPECT_EQ(result.safety, 3);
@@ -62,24 +62,24 @@ TEST(GridConvergence, IsCautiousOutOfTheAsymptoticRange) {
 }
 
 TEST(GridConvergence, GivesNoIntervalWhereItIsNotMonotone) {
-  const std::vector<convergence::Level> wavy{{1, 1.0}, {2, 1.1}, {4, 1.05}};
+  const std::vector<convergence::RefinementLevel> wavy{{1, 1.0}, {2, 1.1}, {4, 1.05}};
   EXPECT_FALSE(convergence::grid_convergence(wavy, 2).conclusive);
   EXPECT_NE(convergence::grid_convergence(wavy, 2).reason.find("monotone"), std::string::npos);
-  const std::vector<convergence::Level> still{{1, 1.0}, {2, 1.1}, {4, 1.1}};  // e₃₂ = 0
+  const std::vector<convergence::RefinementLevel> still{{1, 1.0}, {2, 1.1}, {4, 1.1}};  // e₃₂ = 0
   EXPECT_FALSE(convergence::grid_convergence(still, 2).conclusive);
-  const std::vector<convergence::Level> diverging{{1, 1.0}, {2, 1.1}, {4, 1.15}};
+  const std::vector<convergence::RefinementLevel> diverging{{1, 1.0}, {2, 1.1}, {4, 1.15}};
   EXPECT_FALSE(convergence::grid_convergence(diverging, 2).conclusive);
-  const std::vector<convergence::Level> four{{1, 1.0}, {2, 1.1}, {4, 1.05}, {8, 1.2}};
+  const std::vector<convergence::RefinementLevel> four{{1, 1.0}, {2, 1.1}, {4, 1.05}, {8, 1.2}};
   EXPECT_FALSE(convergence::least_squares_convergence(four, 2).conclusive);
 }
 
 // Exponential convergence, as of element degrees of a smooth solution: no order, but an interval.
 // Oracle: the sequence's own limit; and that one slow change among fast ones gives none.
 TEST(GridConvergence, FasterThanAnyOrderHasAnIntervalWithoutAnOrder) {
-  std::vector<convergence::Level> data;
+  std::vector<convergence::RefinementLevel> data;
   for (const double n : {5.0, 4.0, 3.0, 2.0})
     data.push_back({std::exp2(-n), std::pow(10.0, -n * n)});  // limit 0
-  const std::vector<convergence::Level> three(data.begin(), data.end() - 1);
+  const std::vector<convergence::RefinementLevel> three(data.begin(), data.end() - 1);
   for (const convergence::Extrapolation& result :
        {convergence::extrapolate(three), convergence::extrapolate(data)}) {
     ASSERT_TRUE(result.conclusive) << result.reason;
@@ -98,7 +98,8 @@ TEST(GridConvergence, FasterThanAnyOrderHasAnIntervalWithoutAnOrder) {
 }
 
 TEST(GridConvergence, ValuesThatAgreeToRoundingAreConverged) {
-  const std::vector<convergence::Level> data{{1, 1.0}, {2, 1.0 + 1e-15}, {4, 1.0 - 1e-15}};
+  const std::vector<convergence::RefinementLevel> data{
+      {1, 1.0}, {2, 1.0 + 1e-15}, {4, 1.0 - 1e-15}};
   const convergence::Extrapolation result = convergence::grid_convergence(data, 2, 1e-14);
   EXPECT_TRUE(result.conclusive);
   EXPECT_EQ(result.uncertainty, 1e-14);
@@ -125,7 +126,7 @@ TEST(LeastSquaresConvergence, TheIntervalHoldsTheLimit) {
   int conclusive = 0;
   int held = 0;
   for (int i = 0; i < 500; ++i) {
-    std::vector<convergence::Level> data;
+    std::vector<convergence::RefinementLevel> data;
     const double second = 0.3 * unit(random);
     for (const double h : {0.125, 0.25, 0.5, 1.0})
       data.push_back({h, 2 + h * h + second * h * h * h + 1e-3 * unit(random)});
@@ -152,7 +153,7 @@ TEST(GridConvergence, BadLevelsAreInputErrors) {
 
 // A tolerance that is kept, one that is not, and one whose finest level alone is off.
 TEST(KeptTolerances, HoldWhereEachLevelIsWithinItsOwnOfTheFinest) {
-  const std::vector<convergence::Level> kept{
+  const std::vector<convergence::RefinementLevel> kept{
       {1e-8, 5.0}, {1e-6, 5.0 - 1.9e-6}, {1e-4, 5.0 + 1.9e-4}};
   const convergence::Extrapolation good = convergence::kept_tolerances(kept, 2);
   EXPECT_TRUE(good.conclusive);
@@ -160,12 +161,12 @@ TEST(KeptTolerances, HoldWhereEachLevelIsWithinItsOwnOfTheFinest) {
   EXPECT_DOUBLE_EQ(good.uncertainty, 2e-8);
   EXPECT_FALSE(good.order);
   EXPECT_FALSE(convergence::kept_tolerances(kept, 1).conclusive);
-  std::vector<convergence::Level> broken = kept;
+  std::vector<convergence::RefinementLevel> broken = kept;
   broken[1].value = 5.0 - 2.1e-6;
   const convergence::Extrapolation bad = convergence::kept_tolerances(broken, 2);
   EXPECT_FALSE(bad.conclusive);
   EXPECT_THAT(bad.reason, testing::HasSubstr("a tolerance of 1e-06 promises an error below 2e-06"));
-  std::vector<convergence::Level> off = kept;
+  std::vector<convergence::RefinementLevel> off = kept;
   off[0].value = 5.001;
   EXPECT_FALSE(convergence::kept_tolerances(off, 2).conclusive);
   EXPECT_THROW(convergence::kept_tolerances(std::span(kept).first(2), 1), InputError);

@@ -59,14 +59,14 @@ TEST(Gnuplot, OneThatHangsIsEndedWithAnErrorThatSaysSo) {
 }
 
 convergence::ConvergedQuantity quantity(const std::string& id,
-                                        const std::vector<convergence::Level>& levels) {
+                                        const std::vector<convergence::RefinementLevel>& levels) {
   return {id, "m", levels, convergence::extrapolate(levels)};
 }
 
 /// Two steps; of the second one field is missing on a level, the other is not monotone.
 convergence::RefinementStudy study() {
   convergence::RefinementStudy study{"solid", "refinement", "size", {2, 1, 0}, {}, {}, {}};
-  const std::vector<convergence::Level> second_order{{1, 5 + 1}, {2, 5 + 4}, {4, 5 + 16}};
+  const std::vector<convergence::RefinementLevel> second_order{{1, 5 + 1}, {2, 5 + 4}, {4, 5 + 16}};
   study.quantities.push_back(
       quantity("steps/1/fields/solid/mesh/dB/0/norm", {{1, 1.0}, {2, 1.1}, {4, 1.05}}));
   study.quantities.push_back(quantity("steps/1/mechanics/solid/tip/deflection", second_order));

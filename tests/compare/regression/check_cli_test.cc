@@ -168,6 +168,9 @@ TEST(CheckCommand, AReportThatCannotBeWrittenIsExitCode4) {
   const Outcome outcome = ciliaval(folder.path(), "check one.toml --json none/report.json");
   EXPECT_EQ(outcome.code, 4);
   EXPECT_THAT(outcome.err, HasSubstr("none/report.json"));
+  const Outcome full = ciliaval(folder.path(), "check one.toml --json /dev/full");
+  EXPECT_EQ(full.code, 4);
+  EXPECT_THAT(full.out, HasSubstr("Passed: 1 cases"));  // the table stays
 }
 
 // The shipped cases without the solid.

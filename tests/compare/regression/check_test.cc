@@ -224,26 +224,22 @@ std::vector<Fault> faults_of_the_baseline() {
       {"another unit", "is in m, the baseline is in mm",
        [](Checked& s) { s.expected("steps/0/mechanics/beam/tip/x").unit = "mm"; }},
       {"a tolerance that checks nothing", "checks too little",
-       [](Checked& s) { s.expected("steps/0/mechanics/beam/tip/x").tolerance.absolute = 1; }},
+       [](Checked& s) { s.expected("steps/0/mechanics/beam/tip/x").allowed.absolute = 1; }},
       {"all tolerances at 10 % and all values 9 % off", "relative 0.1",
        [](Checked& s) {
          for (regression::Expected& e : s.baseline.quantities) {
            e.value *= 1.09;
-           e.tolerance = {0.1, 0.1 * std::abs(e.value)};
+           e.allowed = {0.1, 0.1 * std::abs(e.value)};
          }
        }},
       {"a tolerance of 1e-9 of a rod's", "wider than 1e-10",
-       [](Checked& s) {
-         s.expected("steps/0/mechanics/beam/tip/x").tolerance.relative = 1e-9;
-       }},
+       [](Checked& s) { s.expected("steps/0/mechanics/beam/tip/x").allowed.relative = 1e-9; }},
       {"a tolerance of twice the class", "checks too little",
-       [](Checked& s) {
-         s.expected("steps/0/fields/beam/line/dB/0/x").tolerance.absolute *= 2;
-       }},
+       [](Checked& s) { s.expected("steps/0/fields/beam/line/dB/0/x").allowed.absolute *= 2; }},
       {"a tolerance of ΔB as a part of |B|, and all ΔB zero", "dB/1/z",
        [](Checked& s) {
          for (regression::Expected& e : s.baseline.quantities)
-           if (e.id.find("/dB/") != std::string::npos) e.tolerance.absolute = 0.1 * 2.5e-3;
+           if (e.id.find("/dB/") != std::string::npos) e.allowed.absolute = 0.1 * 2.5e-3;
          for (models::FieldRun& run : s.result.fields)
            for (auto& step : run.steps)
              if (step)
@@ -251,7 +247,7 @@ std::vector<Fault> faults_of_the_baseline() {
        }},
       {"a tolerance of a deflection as a part of L", "tip/x",
        [](Checked& s) {
-         s.expected("steps/0/mechanics/beam/tip/x").tolerance.absolute = 1e-10 * 20e-3;
+         s.expected("steps/0/mechanics/beam/tip/x").allowed.absolute = 1e-10 * 20e-3;
        }},
       {"a reference that the case does not state", "was one removed or loosened?",
        [](Checked& s) {
@@ -265,7 +261,7 @@ std::vector<Fault> faults_of_the_baseline() {
          regression::Expected& e = s.expected("steps/0/mechanics/beam/tip/x");
          e.reference = regression::Reference{"Mattiasson", e.value, {1e-4, 0}};
          s.problem.references = regression::references(s.baseline);
-         e.reference->tolerance.relative = 1e-2;
+         e.reference->allowed.relative = 1e-2;
        }},
       {"a reference's tolerance that checks nothing", "checks too little",
        [](Checked& s) {
@@ -347,14 +343,14 @@ TEST(Check, EveryPlantedFaultFailsAndIsNamed) {
 
 // The law |a − b| ≤ max(ρ max(|a|, |b|), ε), on both sides of its limit.
 TEST(Check, AToleranceHoldsToItsLimitAndNotBeyond) {
-  const regression::Tolerance tolerance{1e-3, 1e-6};
+  const regression::AllowedDeviation tolerance{1e-3, 1e-6};
   EXPECT_DOUBLE_EQ(tolerance.limit(2, -5), 5e-3);
   EXPECT_DOUBLE_EQ(tolerance.limit(1e-5, 0), 1e-6);
   Checked setup = make_checked();
   regression::Expected& e = setup.expected("steps/0/mechanics/elastica/tip/x");
   const double value = e.value;
   for (const double sign : {-1.0, 1.0}) {
-    e.tolerance = {1e-10, 0};
+    e.allowed = {1e-10, 0};
     e.value = value * (1 + sign * 0.99e-10);
     EXPECT_TRUE(setup.report().passed());
     e.value = value * (1 + sign * 1.01e-10);

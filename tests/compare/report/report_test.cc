@@ -265,10 +265,10 @@ TEST(Report, AFileThatIsDamagedIsNamedAndTheOthersAreShown) {
   fails("one/summary.json", R"({"schema": 1, "case": "one", "steps": 3, "comparisons": []})");
   fails("one.budget.json",
         std::regex_replace(whole, std::regex("\"fmt\": ?\"[^\"]*\""), "\"fmt\": null"));
-  fails("one.budget.json", std::regex_replace(whole, std::regex("\"schema\""),
-                                              "\"schema\": 1, \"schema\""));
-  fails("deep.json", R"({"schema": 1, "claims": )" + std::string(100000, '[') +
-                         std::string(100000, ']') + "}");
+  fails("one.budget.json",
+        std::regex_replace(whole, std::regex("\"schema\""), "\"schema\": 1, \"schema\""));
+  fails("deep.json",
+        R"({"schema": 1, "claims": )" + std::string(100000, '[') + std::string(100000, ']') + "}");
   fails("one/beam_0001.csv", "S,x,y\n1,2\n");
   fails("notes.json", R"({"mine": true})");
   fails("list.json", "[1, 2]");
