@@ -5,16 +5,14 @@
 #include <optional>
 #include <utility>
 
+#include "compare/output/json_file.h"
+
 namespace ciliaval::compare::study {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* owner = "study";
-
-Json to_json(std::optional<double> value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 std::optional<double> number(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
@@ -24,16 +22,16 @@ std::string to_bytes(const std::vector<PairResult>& results) {
   Json pairs = Json::array();
   for (const PairResult& result : results) {
     Json values = Json::array();
-    for (const auto& value : result.values) values.push_back(to_json(value));
+    for (const auto& value : result.values) values.push_back(output::or_null(value));
     pairs.push_back({static_cast<int>(result.status), result.message, std::move(values),
-                     to_json(result.uncertainty)});
+                     output::or_null(result.uncertainty)});
   }
   return pairs.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::vector<PairResult> from_bytes(const std::string& bytes) {
   std::vector<PairResult> results;
-  for (const Json& pair : Json::parse(bytes)) {
+  for (const Json& pair : output::parse_json(bytes, "the store of the study")) {
     PairResult& result = results.emplace_back();
     result.status = static_cast<Status>(pair.at(0).get<int>());
     result.message = pair.at(1).get<std::string>();
