@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "../run/synthetic.h"
+#include "compare/output/json_file.h"
 #include "compare/regression/report.h"
 #include "problem/error.h"
 
@@ -232,6 +233,19 @@ TEST(Baseline, ADamagedOneIsRefusedWithItsPlace) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("the key \"relative\" is there twice"));
   }
+}
+
+// Both sides of the bounds of every JSON file that the program reads.
+TEST(JsonFile, RefusesAKeyTwiceInOneObjectAndDepthBeyondItsBound) {
+  const auto parse = [](const std::string& text) { return output::parse_json(text, "f"); };
+  const auto nested = [](std::size_t n) { return std::string(n, '[') + std::string(n, ']'); };
+  EXPECT_NO_THROW(parse(nested(100)));
+  EXPECT_THROW(parse(nested(101)), InputError);
+  EXPECT_THROW(parse(R"({"a": [{"b": 1, "c": {}, "b": 2}]})"), InputError);
+  EXPECT_NO_THROW(parse(R"({"a": {"b": 1}, "b": [{"b": 1}, {"b": {"b": 2}}]})"));
+  const Json partly = output::parse_json(R"({"a": {"b": 1}, "b": [2]})", "f", "b");
+  EXPECT_FALSE(partly.contains("b"));
+  EXPECT_EQ(partly["a"]["b"], 1);
 }
 
 regression::CheckReport some_report() {
