@@ -84,7 +84,7 @@ std::string budget_content(const Json& json, Figures& figures) {
     chain.rows.push_back(
         {stage.name(),
          {stage.physics.empty() ? "the paper's model: elastica, dipoles along the centreline"
-                                  : stage.physics,
+                                : stage.physics,
           "text"}});
   std::string text = html(chain);
   std::vector<std::string> remarks = budget.remarks;
