@@ -21,11 +21,13 @@ constexpr std::array<LaterKey, 2> known_later{{
     {"cilium.segment.density", "weight (it goes with [environment])"},
 }};
 
-const std::array<TextKey, 10> text_keys{{
+const std::array<TextKey, 11> text_keys{{
     {"case", "name", "text", "",
      "Name of the results' folder: letters, digits, `.`, `_`, `-`, not starting with `.` or `-`, "
      "at most 100."},
     {"case", "title", "text", "the name", "A line for people, at most 200 characters."},
+    {"case", "references", "text", "none",
+     "Number and checksum of the references in the case's baseline, as `check` states them."},
     {"cilium.segment", "name", "text", "", "Name of the segment, different from the others'."},
     {"load", "type", "`contact`, `flow`, `section`, `dead` or `probe`", "",
      "What the load is and does as the cilium bends."},
