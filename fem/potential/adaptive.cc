@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/potential/adaptive.h"
 
-#include <mpi.h>
-
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <sstream>
-#include <type_traits>
+#include <string>
 
 #include "fem/parallel.h"
+#include "fem/potential/cut_cells.h"
 #include "fem/potential/functional.h"
 #include "fem/potential/multipole.h"
 #include "fem/potential/operator.h"
@@ -28,6 +27,7 @@ constexpr double solver_tolerance = 1e-8;   ///< residual of ψ
 constexpr double dual_tolerance = 1e-4;     ///< of the duals, which only choose the leaves to cut
 constexpr double ball_over_distance = 0.7;  ///< radius of a sensor's ball over its distance
 constexpr double finest_over_extent = 1.0 / 4096;  ///< finest leaf over the radius of the bodies
+constexpr double refined_fraction = 0.7;  ///< of the indicators' sum, whose leaves are cut
 
 /// The sphere that holds all bodies and points, and the sensors' balls.
 struct Layout {
@@ -91,20 +91,17 @@ Layout lay_out(const PotentialProblem& problem) {
 /// Moves all ranks' leaves to rank 0. Collective.
 void gather_leaves(std::vector<FieldMesh::Leaf>& leaves) {
   if (rank_count() == 1) return;
-  static_assert(std::is_trivially_copyable_v<decltype(FieldMesh::Leaf::psi)>);
-  constexpr int doubles = sizeof(FieldMesh::Leaf) / sizeof(double);
+  constexpr std::size_t doubles = sizeof(FieldMesh::Leaf) / sizeof(double);
   static_assert(sizeof(FieldMesh::Leaf) == doubles * sizeof(double));
-  const auto ranks = static_cast<std::size_t>(rank_count());
-  std::vector<int> counts(ranks);
-  std::vector<int> starts(ranks, 0);
-  const int count = doubles * static_cast<int>(leaves.size());
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
-  for (std::size_t r = 1; r < ranks; ++r) starts[r] = starts[r - 1] + counts[r - 1];
-  std::vector<FieldMesh::Leaf> all;
-  if (rank() == 0) all.resize(static_cast<std::size_t>(starts.back() + counts.back()) / doubles);
-  MPI_Gatherv(leaves.data(), count, MPI_DOUBLE, all.data(), counts.data(), starts.data(),
-              MPI_DOUBLE, 0, MPI_COMM_WORLD);
-  leaves.swap(all);
+  const auto* const own = reinterpret_cast<const double*>(leaves.data());
+  const auto all = dealii::Utilities::MPI::gather(
+      MPI_COMM_WORLD, std::vector<double>(own, own + doubles * leaves.size()));
+  leaves.clear();
+  for (const std::vector<double>& part : all) {
+    const std::size_t first = leaves.size();
+    leaves.resize(first + part.size() / doubles);
+    std::copy(part.begin(), part.end(), reinterpret_cast<double*>(leaves.data() + first));
+  }
 }
 
 /// Dipole and quadrupole of the magnet, and the largest |ψ| that they leave out on a sphere.
@@ -139,7 +136,6 @@ struct Solution {
   PotentialOperator matrix;
   PotentialMultigrid multigrid;
   PotentialVector psi;  ///< complete
-  unsigned int iterations = 0;
 
   Solution(const Octree& octree, unsigned int p, const CutCells& bodies,
            const PotentialMultigrid::Coarse& coarse)
@@ -160,11 +156,12 @@ void Solution::solve_for(const CutCells& bodies,
       space.add_free(cell, F, load);
   load.compress(dealii::VectorOperation::add);
   PotentialVector x = space.vector();
-  if (guess != nullptr) space.copy_free(*guess, x);
-  iterations = solve(matrix, multigrid, load, solver_tolerance, x);
+  if (guess != nullptr) x = *guess;
+  space.constraints().set_zero(x);
+  solve(matrix, multigrid, load, solver_tolerance, x);
   psi = lift;
   psi.zero_out_ghost_values();
-  space.add_free_values(x, psi);
+  psi += x;
   space.complete(psi);
 }
 
@@ -196,15 +193,14 @@ class Adaptive {
   void make_first_mesh();
   PotentialCycle solve();
   std::shared_ptr<const FieldMesh> mesh() const;
-  void refine() { octree_.refine_largest(indicators_, control_.refined_fraction); }
-  std::size_t cells() const { return octree_.leaf_count(); }
+  void refine() { octree_.refine_largest(indicators_, refined_fraction); }
 
  private:
   double boundary_value(const Vector3& x) const;
   void update_induced();
   double truncation() const;
   void set_indicators();
-  std::vector<Vector3> kinks() const;
+  std::vector<Vector3> interface_error() const;
   std::vector<Vector3> B_at_points(const PotentialSpace& space, const PotentialVector& psi) const;
   std::vector<std::vector<Vector3>> dual_directions() const;
 
@@ -298,12 +294,11 @@ std::vector<Vector3> Adaptive::B_at_points(const PotentialSpace& space,
 }
 
 PotentialCycle Adaptive::solve() {
-  const auto start = std::chrono::steady_clock::now();
   high_.reset();
   low_.reset();
   coarse_.reset();
   bodies_.emplace(octree_, degree + 1);
-  bodies_->add(problem_.magnet, problem_.relative_permeability, control_.sampling);
+  bodies_->add(problem_.magnet, problem_.relative_permeability);
   for (const PermeableBox& plate : problem_.plates) bodies_->add(plate);
   coarse_ = std::make_unique<PotentialMultigrid::Coarse>(octree_, *bodies_);
   const auto boundary = [&](const Vector3& x) { return boundary_value(x); };
@@ -314,20 +309,16 @@ PotentialCycle Adaptive::solve() {
   high_->solve_for(*bodies_, boundary, &guess);
 
   PotentialCycle cycle;
-  cycle.cells = octree_.leaf_count();
   cycle.unknowns = low_->space.unknowns();
-  cycle.iterations = low_->iterations;
-  cycle.check_iterations = high_->iterations;
   cycle.B = B_at_points(low_->space, low_->psi);
   B_ = B_at_points(high_->space, high_->psi);
   for (std::size_t i = 0; i < B_.size(); ++i) cycle.difference.push_back(B_[i] - cycle.B[i]);
   update_induced();
   cycle.truncation = truncation();
-  cycle.kinks = kinks();
+  cycle.interface_error = interface_error();
   set_indicators();
   for (const Vector3& B : B_)
     if (!B.allFinite()) throw SolverError("the potential is not finite");
-  cycle.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return cycle;
 }
 
@@ -368,11 +359,10 @@ std::shared_ptr<const FieldMesh> Adaptive::mesh() const {
   return result;
 }
 
-/// What the permeable bodies contribute to the difference of the degrees, T. With ψ_p and z_p of
-/// the degree p, ∂J(ψ_p)/∂μ_r = −∫ ∇ψ_p·∇z_p over the body, so that it is about −∫ (μ_r − 1) ∇(ψ₃ −
-/// ψ₂)·∇z. The duals z need not be known for it: it is J(w) with a(w, φ) = −∫ (μ_r − 1) ∇(ψ₃ −
-/// ψ₂)·∇φ.
-std::vector<Vector3> Adaptive::kinks() const {
+/// Share of the permeable bodies in the difference of the degrees, T. With ψ_p and z_p of the
+/// degree p, ∂J(ψ_p)/∂μ_r = −∫ ∇ψ_p·∇z_p over the body, so that the share is about
+/// −∫ (μ_r − 1) ∇(ψ₃ − ψ₂)·∇z = J(w) with a(w, φ) = −∫ (μ_r − 1) ∇(ψ₃ − ψ₂)·∇φ: no dual is needed.
+std::vector<Vector3> Adaptive::interface_error() const {
   const PotentialSpace& space = low_->space;
   const Eigen::MatrixXd raise = interpolation(space.basis(), high_->space.basis());
   Eigen::VectorXd u(space.nodes());
@@ -388,32 +378,24 @@ std::vector<Vector3> Adaptive::kinks() const {
   load.compress(dealii::VectorOperation::add);
   PotentialVector w = space.vector();
   if (load.l2_norm() > 0) potential::solve(low_->matrix, low_->multigrid, load, dual_tolerance, w);
-  PotentialVector complete = space.vector();
-  space.add_free_values(w, complete);
-  space.complete(complete);
-  return B_at_points(space, complete);
+  space.complete(w);
+  return B_at_points(space, w);
 }
 
-/// Indicator of a leaf: the energy norms of the errors of ψ and of the duals on it multiplied. That
-/// of ψ is the difference of the two degrees; that of a dual z is foreseen from the energies of
-/// its trilinear part s₁ and of the rest s₂ as s₂²/s₁, plus the kink that a permeable body's
-/// surface puts into z, which no polynomial of the leaf follows.
+/// Indicator of a leaf: the product of the energy norms of the errors of ψ and of the duals on it.
+/// The error of ψ is the difference of the two degrees. The error of a dual z is estimated from the
+/// energies s₁ of its trilinear part and s₂ of the rest as s₂²/s₁, plus the interface error: no
+/// polynomial of the leaf follows z across the surface of a permeable body.
 void Adaptive::set_indicators() {
   const PotentialSpace& space = low_->space;
   const auto cells = static_cast<int>(octree_.cells().size());
-  const auto count = static_cast<std::size_t>(cells);
   const LagrangeBasis linear({0, 1});
   const Eigen::MatrixXd to_linear = interpolation(space.basis(), linear);
   const Eigen::MatrixXd from_linear = interpolation(linear, space.basis());
   const Eigen::MatrixXd raise = interpolation(space.basis(), high_->space.basis());
   Eigen::VectorXd u(space.nodes());
   Eigen::VectorXd v(high_->space.nodes());
-  const auto error_of_psi = [&](int cell) {
-    space.read(cell, low_->psi, u);
-    high_->space.read(cell, high_->psi, v);
-    v -= raise * u;
-  };
-  indicators_.assign(count, 0);
+  indicators_.assign(octree_.cells().size(), 0);
   const SensorFunctional functional(space, layout_.balls);
   for (const std::vector<Vector3>& direction : dual_directions()) {
     PotentialVector z = space.vector();
@@ -426,11 +408,13 @@ void Adaptive::set_indicators() {
       const double s2 = low_->matrix.energy(c, u - trilinear);
       double& sum = indicators_[static_cast<std::size_t>(c)];
       if (s2 > 0) sum += s2 * std::min(1.0, s2 / s1);
-      sum += bodies_->kink(c) / 4 * (s1 + s2);
+      sum += bodies_->interface_indicator(c) / 4 * (s1 + s2);
     }
   }
   for (int c = 0; c < cells; ++c) {
-    error_of_psi(c);
+    space.read(c, low_->psi, u);
+    high_->space.read(c, high_->psi, v);
+    v -= raise * u;
     double& indicator = indicators_[static_cast<std::size_t>(c)];
     indicator = std::sqrt(indicator * high_->matrix.energy(c, v));
   }
@@ -439,7 +423,7 @@ void Adaptive::set_indicators() {
 }  // namespace
 
 Vector3 PotentialCycle::estimate(std::size_t point) const {
-  const Vector3 error = difference[point] + 2 * kinks[point];
+  const Vector3 error = difference[point] + 2 * interface_error[point];
   const Vector3 shared = (error.array().square() / 2 + error.squaredNorm() / 6).sqrt();
   return shared.array() + truncation;
 }
@@ -460,8 +444,7 @@ bool agrees_with_last(const std::vector<PotentialCycle>& cycles) {
 
 }  // namespace
 
-PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control,
-                                const std::function<void(const std::string&)>& progress) {
+PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control) {
   start_mpi();
   require_valid(problem, control);
   Adaptive adaptive(problem, control);
@@ -477,9 +460,6 @@ PotentialResult solve_potential(const PotentialProblem& problem, const Potential
       result.uncertainty.push_back(cycle.estimate(i));
       worst = std::max(worst, result.uncertainty.back().norm() / cycle.B[i].norm());
     }
-    if (progress)
-      progress(std::to_string(cycle.unknowns) + " unknowns, estimate " + std::to_string(worst) +
-               " of |B|");
     if (worst <= control.tolerance && agrees_with_last(result.cycles)) {
       result.mesh = adaptive.mesh();
       return result;

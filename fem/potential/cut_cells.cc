@@ -124,7 +124,7 @@ void CutCells::add(const Magnet& magnet, double relative_permeability, const Sam
     if (!octree_.meets_own(extent.box)) continue;
     Eigen::Index longest = 0;
     const double leaf = octree_.smallest_size(extent.box);
-    if (extent.lengths.maxCoeff(&longest) > sampling.block_size * leaf) {
+    if (extent.lengths.maxCoeff(&longest) > leaf) {
       for (const Magnet::Block& half : halves(block, longest)) stack.push_back(half);
       continue;
     }
@@ -233,7 +233,7 @@ double CutCells::mean_permeability(int cell) const {
                  std::pow(octree_.cubes()[static_cast<std::size_t>(cell)].size, 3);
 }
 
-double CutCells::kink(int cell) const {
+double CutCells::interface_indicator(int cell) const {
   if (!has_permeability(cell)) return 0;
   const Moments& moments = moments_.at(cell);
   const double chi = moments.susceptibility;

@@ -14,12 +14,11 @@ namespace ciliaval::fem::potential {
 
 /// How densely the magnet is sampled.
 struct Sampling {
-  double block_size = 1;         ///< largest length of a block over the edge of the local leaf
-  std::size_t block_points = 4;  ///< points in each direction that a block is known by
+  std::size_t block_points = 4;  ///< points of a block in each direction, by which it is known
   std::size_t piece_points = 2;  ///< Gauss points of its pieces between the faces of leaves
 };
 
-/// What the bodies put into the leaves of an octree that they meet: the integrals
+/// The bodies' integrals over the leaves of an octree,
 ///
 ///     ∫ m·∇φ_i dv   and   ∫ (μ_r − 1) ∇φ_i·∇φ_j dv
 ///
@@ -49,8 +48,8 @@ class CutCells {
   std::vector<int> cells() const;
   bool has_permeability(int cell) const;
   /// χ² f (1 − f) of a leaf: f is the part of it that a permeable body fills and χ = |μ_r − 1| over
-  /// the larger of μ_r and 1. Measures the kink that ψ has inside of the leaf.
-  double kink(int cell) const;
+  /// the larger of μ_r and 1. Measures how far ∇ψ jumps inside of the leaf.
+  double interface_indicator(int cell) const;
 
   /// Calls the function with x (m), (μ_r − 1) dv (m³) and ∇ψ (A/m) at each Gauss point of each own
   /// leaf with a permeability.

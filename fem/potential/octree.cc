@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/potential/octree.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_generator.h>
 #include <mpi.h>
 #include <p4est_base.h>
 #include <sc.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "fem/parallel.h"
@@ -31,20 +32,6 @@ dealii::Point<3> to_point(const Vector3& x) {
   return {x[0], x[1], x[2]};
 }
 
-/// All ranks' keys, in the order of the ranks; none if there is only one.
-std::vector<std::uint64_t> gather(const std::vector<std::uint64_t>& own) {
-  if (rank_count() == 1) return {};
-  const auto ranks = static_cast<std::size_t>(rank_count());
-  std::vector<int> counts(ranks);
-  std::vector<int> starts(ranks, 0);
-  const int count = static_cast<int>(own.size());
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
-  for (std::size_t r = 1; r < ranks; ++r) starts[r] = starts[r - 1] + counts[r - 1];
-  std::vector<std::uint64_t> all(static_cast<std::size_t>(starts.back() + counts.back()));
-  MPI_Allgatherv(own.data(), count, MPI_UINT64_T, all.data(), counts.data(), starts.data(),
-                 MPI_UINT64_T, MPI_COMM_WORLD);
-  return all;
-}
 
 }  // namespace
 
@@ -94,18 +81,16 @@ void Octree::update() {
     own.push_back(key(node));
   }
   for (std::size_t c = 0; c < own.size(); ++c) directory_.emplace(own[c], static_cast<int>(c));
-  for (const Key k : gather(own)) directory_.emplace(k, other_rank);  // leaves the own as they are
+  if (rank_count() == 1) return;
+  for (const std::vector<Key>& keys : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
+    for (const Key k : keys) directory_.emplace(k, other_rank);  // leaves the own as they are
 }
 
 bool Octree::refine(const std::function<bool(const Cube&)>& cut) {
   std::vector<bool> flags;
-  flags.reserve(cubes_.size());
-  double any = 0;
-  for (const Cube& leaf : cubes_) {
-    flags.push_back(cut(leaf));
-    if (flags.back()) any = 1;
-  }
-  if (dealii::Utilities::MPI::sum(any, MPI_COMM_WORLD) == 0) return false;
+  for (const Cube& leaf : cubes_) flags.push_back(cut(leaf));
+  const int any = std::find(flags.begin(), flags.end(), true) != flags.end() ? 1 : 0;
+  if (dealii::Utilities::MPI::max(any, MPI_COMM_WORLD) == 0) return false;
   refine(flags);
   return true;
 }
@@ -137,7 +122,6 @@ void Octree::refine_largest(const std::vector<double>& indicators, double fracti
     (sum_above(middle) >= fraction * total ? lower : upper) = middle;
   }
   std::vector<bool> flags;
-  flags.reserve(indicators.size());
   for (const double value : indicators) flags.push_back(value > lower);
   refine(flags);
 }

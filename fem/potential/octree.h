@@ -23,8 +23,8 @@ struct Cube {
 };
 
 /// An octree of cubes, spread over the ranks (p4est), with neighbours that differ by at most one
-/// level, and a directory of all its leaves on every rank: what a point lies in is a matter of
-/// arithmetic, and the same on all ranks.
+/// level. Every rank has a directory of all leaves, so that a point is located by arithmetic, to
+/// the same leaf on all ranks; deal.II's search knows the own and ghost leaves only.
 class Octree {
  public:
   using Triangulation = dealii::parallel::distributed::Triangulation<3>;
@@ -40,7 +40,9 @@ class Octree {
   void refine(const std::vector<bool>& flags);
 
   /// Cuts the own leaves that make up the fraction of the sum of the indicators (one ≥ 0 for each
-  /// of cells(), summed over all ranks), the largest first. Collective.
+  /// of cells(), summed over all ranks), the largest first. Collective. deal.II's
+  /// refine_and_coarsen_fixed_fraction() stops its bisection early and may stay below the fraction:
+  /// it cuts other leaves, which gives other numbers (docs/measurements/potential.md).
   void refine_largest(const std::vector<double>& indicators, double fraction);
 
   const Triangulation& triangulation() const { return triangulation_; }

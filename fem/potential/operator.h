@@ -54,7 +54,8 @@ class PotentialOperator : public dealii::Subscriptor {
 };
 
 /// One V-cycle of two levels for a PotentialOperator: Chebyshev's iteration on its degree, and one
-/// cycle of smoothed aggregation (ML) on the trilinear elements of the same octree.
+/// cycle of smoothed aggregation (ML) on the trilinear elements of the same octree. The transfer is
+/// ours: deal.II's MGTwoLevelTransfer is not implemented for locally refined meshes (9.4).
 class PotentialMultigrid {
  public:
   /// The algebraic multigrid of the trilinear elements, shared by the degrees above.

@@ -110,7 +110,6 @@ PotentialSpace::PotentialSpace(const Octree& octree, unsigned int degree)
 
   const std::vector<unsigned int> hierarchic = element.get_poly_space_numbering_inverse();
   std::vector<dealii::types::global_dof_index> indices(static_cast<std::size_t>(nodes_));
-  free_.assign(partitioner_->locally_owned_size(), false);
   entries_start_.push_back(0);
   for (const Octree::CellIterator& cell : octree.cells()) {
     const typename dealii::DoFHandler<3>::active_cell_iterator with_dofs(
@@ -119,10 +118,7 @@ PotentialSpace::PotentialSpace(const Octree& octree, unsigned int degree)
     bool constrained = false;
     for (const unsigned int h : hierarchic) {
       local_.push_back(partitioner_->global_to_local(indices[h]));
-      if (constraints_.is_constrained(indices[h]))
-        constrained = true;
-      else if (local_.back() < free_.size())
-        free_[local_.back()] = true;
+      constrained = constrained || constraints_.is_constrained(indices[h]);
     }
     if (constrained) {
       for (unsigned int row = 0; row < hierarchic.size(); ++row) {
@@ -141,12 +137,13 @@ PotentialSpace::PotentialSpace(const Octree& octree, unsigned int degree)
 }
 
 void PotentialSpace::assign_nodes() {
-  std::vector<bool> assigned(free_.size(), false);
+  std::vector<bool> assigned(partitioner_->locally_owned_size(), false);
   assigned_start_.push_back(0);
   for (std::size_t c = 0; c < octree_.cells().size(); ++c) {
     unsigned int row = 0;
     for (const unsigned int node : own_nodes(static_cast<int>(c))) {
-      if (node < free_.size() && free_[node] && !assigned[node]) {
+      if (node < assigned.size() && !assigned[node] &&
+          !constraints_.is_constrained(partitioner_->local_to_global(node))) {
         assigned_.push_back({row, node});
         assigned[node] = true;
       }
@@ -211,15 +208,6 @@ void PotentialSpace::write(int cell, const Eigen::Ref<const Eigen::VectorXd>& u,
   }
 }
 
-void PotentialSpace::copy_free(const PotentialVector& complete, PotentialVector& free) const {
-  for (unsigned int i = 0; i < partitioner_->locally_owned_size(); ++i)
-    free.local_element(i) = free_[i] ? complete.local_element(i) : 0;
-}
-
-void PotentialSpace::add_free_values(const PotentialVector& free, PotentialVector& complete) const {
-  for (unsigned int i = 0; i < partitioner_->locally_owned_size(); ++i)
-    if (free_[i]) complete.local_element(i) += free.local_element(i);
-}
 
 PotentialVector PotentialSpace::boundary_values(
     const std::function<double(const Vector3&)>& psi) const {

@@ -21,8 +21,8 @@ namespace ciliaval::fem::potential {
 using PotentialVector = dealii::LinearAlgebra::distributed::Vector<double>;
 
 /// Continuous Lagrange elements of a degree on an octree, nodes at Gauss–Lobatto points, first
-/// index fastest in a cell. *Free* nodes are those that neither hang nor lie on the outer boundary;
-/// a *complete* vector also holds the values of the others.
+/// index fastest in a cell. *Free* nodes neither hang nor lie on the outer boundary; a vector of
+/// free nodes is zero at the others, a *complete* vector holds their values too.
 class PotentialSpace {
  public:
   PotentialSpace(const Octree& octree, unsigned int degree);
@@ -37,7 +37,7 @@ class PotentialSpace {
   /// Hanging nodes, and zero on the boundary.
   const dealii::AffineConstraints<double>& constraints() const { return constraints_; }
 
-  /// Every own free node once, with one of the leaves that it belongs to.
+  /// Each own free node belongs to one of its leaves here.
   struct Assigned {
     unsigned int row;   ///< node of the leaf
     unsigned int node;  ///< local index in a vector
@@ -69,10 +69,6 @@ class PotentialSpace {
 
   /// Sets a complete vector's values at the nodes of a cell, this rank's own.
   void write(int cell, const Eigen::Ref<const Eigen::VectorXd>& u, PotentialVector& complete) const;
-  /// The free nodes' values of a complete vector, zero elsewhere.
-  void copy_free(const PotentialVector& complete, PotentialVector& free) const;
-  /// Adds the values of the free nodes, this rank's own.
-  void add_free_values(const PotentialVector& free, PotentialVector& complete) const;
 
  private:
   struct Entry {
@@ -97,7 +93,6 @@ class PotentialSpace {
   std::vector<unsigned int> local_;         ///< nodes of each cell
   std::vector<std::size_t> entries_start_;  ///< of each cell with constrained nodes
   std::vector<Entry> entries_;
-  std::vector<bool> free_;  ///< of this rank's nodes
   std::vector<std::size_t> assigned_start_;
   std::vector<Assigned> assigned_;
 };

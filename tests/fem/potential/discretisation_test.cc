@@ -69,7 +69,7 @@ Solved solve_for(const Function& f, const PotentialSpace& space, double toleranc
   Solved result;
   result.iterations = solve(A, multigrid, load, tolerance, x);
   psi.zero_out_ghost_values();
-  space.add_free_values(x, psi);
+  psi += x;
   space.complete(psi);
   result.psi = psi;
   return result;
@@ -206,7 +206,7 @@ TEST(CutCells, GaussWeightsGiveTheSumsOverTheSamples) {
   const Magnet magnet(test::paper_cilium(), test::arc(60), MagnetPushForward::F);
   Octree octree(Vector3(1e-3, 0, 9e-3), 0.1);  // one leaf, so large that no block is cut
   CutCells bodies(octree, 3);
-  const Sampling sampling{1, 3, 2};
+  const Sampling sampling{3, 2};
   bodies.add(magnet, 1.4, sampling);
   const PotentialSpace space(octree, 3);
   const BlockCut cut(sampling.block_points, sampling.piece_points);
