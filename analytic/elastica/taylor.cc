@@ -26,28 +26,12 @@ std::array<double, sizeof...(Series)> horner(double t, const Series&... series) 
   return sums;
 }
 
-constexpr std::array<double, order + 1> reciprocal = [] {
-  std::array<double, order + 1> values{};
-  for (std::size_t k = 1; k <= order; ++k) values[k] = 1 / static_cast<double>(k);
-  return values;
-}();
-
-/// A series kept from its last coefficient to its first, so that a product of two series reads both
-/// forwards.
-class Backward {
- public:
-  double& operator[](std::size_t k) { return coefficients_[order - k]; }
-  const double* from(std::size_t k) const { return &coefficients_[order - k]; }
-
- private:
-  std::array<double, order + 1> coefficients_{};
-};
-
 /// Σ_{j ≤ k} a_j b_{k−j}, the coefficient k of a product.
-double product(const std::array<double, order + 1>& a, const Backward& b, std::size_t k) {
+double product(const std::array<double, order + 1>& a, const std::array<double, order + 1>& b,
+               std::size_t k) {
   const auto n = static_cast<Eigen::Index>(k + 1);
   return Eigen::Map<const Eigen::VectorXd>(a.data(), n)
-      .dot(Eigen::Map<const Eigen::VectorXd>(b.from(k), n));
+      .dot(Eigen::Map<const Eigen::VectorXd>(b.data(), n).reverse());
 }
 
 }  // namespace
@@ -89,8 +73,8 @@ TaylorStep TaylorStep::straight(PlanarState start, ForceLaw law, double target) 
 
 void TaylorStep::expand(ForceLaw law) {
   const double tau = width_;
-  Backward sine;
-  Backward cosine;
+  Series sine{};
+  Series cosine{};
   Series rate{};  // of θ: (k + 1) θ_{k+1}
   sine[0] = std::sin(start_.theta);
   cosine[0] = std::sin(start_.phi);
@@ -101,7 +85,7 @@ void TaylorStep::expand(ForceLaw law) {
   force_.fill(0);
   force_[0] = start_.force;
   for (std::size_t k = 0; k < order; ++k) {
-    const double over = reciprocal[k + 1];
+    const double over = 1 / static_cast<double>(k + 1);
     const double scale = tau * over;
     rate[k] = tau * flexibility_ * moment_[k];
     theta_[k + 1] = over * rate[k];

@@ -19,44 +19,27 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-EndDiscs::EndDiscs(std::span<const RodEnd> ends) {
-  for (const RodEnd& end : ends)
-    discs_.push_back(
-        {end.section, vacuum_permeability * end.magnetization_jump, end.section.centre.norm()});
-}
-
-sources::FieldValue EndDiscs::field(const Vector3& x) const {
-  const double x_norm = x.norm();
-  Vector3 B = Vector3::Zero();
-  double error = 0;
-  for (const Disc& disc : discs_) {
-    const double R = disc.circle.radius;
-    const double rounding = 4 * epsilon * (x_norm + disc.centre_norm) + epsilon * R;
-    const Vector3 offset = x - disc.circle.centre;
-    const double zeta = offset.dot(disc.circle.normal) + 0.0;  // turns −0 into +0
-    const Vector3 radial = offset - zeta * disc.circle.normal;
-    const double rho2 = radial.squaredNorm();
-    const double a2 = (rho2 + zeta * zeta) / (R * R);
-    sources::DiscField H{};
-    double gradient_over_strength = 0;
-    if (a2 > 9) {
-      H = sources::far_disc_field(zeta / R, a2);
-    } else {
-      const double rho = std::sqrt(rho2);
-      const double to_the_rim = std::hypot(rho - R, zeta);
-      if (to_the_rim <= 2 * rounding) throw_on_the_rim(x);
-      H = sources::near_disc_field(rho / R, zeta / R);
-      gradient_over_strength = 1 / to_the_rim;
-    }
-    const Vector3 share =
-        disc.strength * (H.radial_over_rho / R * radial + H.axial * disc.circle.normal);
-    const double size = share.norm();
-    B += share;
+sources::FieldValue field_of_end_discs(std::span<const RodEnd> ends, const Vector3& x) {
+  sources::FieldValue sum;
+  for (const RodEnd& end : ends) {
+    const sources::Circle& circle = end.section;
+    const double R = circle.radius;
+    const double strength = vacuum_permeability * end.magnetization_jump;
+    const double rounding = sources::rounding_of_offset(x, circle.centre) + epsilon * R;
+    const Vector3 offset = x - circle.centre;
+    const double zeta = offset.dot(circle.normal) + 0.0;  // turns −0 into +0
+    const Vector3 radial = offset - zeta * circle.normal;
+    const double rho = radial.norm();
+    const double to_the_rim = std::hypot(rho - R, zeta);
+    if (to_the_rim <= 2 * rounding) throw_on_the_rim(x);
+    const sources::DiscField H = sources::charged_disc_field(rho / R, zeta / R);
+    const Vector3 B = strength * (H.radial_over_rho / R * radial + H.axial * circle.normal);
+    const double distance = offset.norm();
     const double gradient =
-        a2 > 9 ? 4 * size / (R * std::sqrt(a2)) : std::abs(disc.strength) * gradient_over_strength;
-    error += 40 * epsilon * size + gradient * rounding;
+        distance > 3 * R ? 4 * B.norm() / distance : std::abs(strength) / to_the_rim;
+    sum += {B, Vector3::Constant(40 * epsilon * B.norm() + gradient * rounding)};
   }
-  return {B, Vector3::Constant(error)};
+  return sum;
 }
 
 void require_off_the_rims(std::span<const RodEnd> ends, const Vector3& x) {

@@ -2,32 +2,17 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "analytic/rod/rod_magnet.h"
 #include "analytic/sources/field_points.h"
 
 namespace ciliaval::analytic::rod {
 
-/// The uniformly charged sections where the magnetisation jumps: B = μ₀ Σ σ H(disc), all of the
-/// wedge's field outside the magnet.
-class EndDiscs {
- public:
-  explicit EndDiscs(std::span<const RodEnd> ends);
-
-  /// B (T) of the discs at x and its rounding error: 40 ε|B| of the kernel, and the rounding of the
-  /// offset times the gradient, at most μ₀σ/(2π·distance from the rim) within three radii and
-  /// 4|B|/distance beyond. Throws InputError on a rim, where B diverges.
-  sources::FieldValue field(const Vector3& x) const;
-
- private:
-  struct Disc {
-    sources::Circle circle;
-    double strength;     ///< μ₀σ, T
-    double centre_norm;  ///< |r|, m
-  };
-  std::vector<Disc> discs_;
-};
+/// B (T) at x of the uniformly charged sections where the magnetisation jumps, μ₀ Σ σ H(disc): all
+/// of the wedge's field outside the magnet. Its rounding error: 40 ε|B| of the kernel, and the
+/// rounding of the offset times the gradient, at most μ₀σ/(2π·distance from the rim) within three
+/// radii and 4|B|/distance beyond. Throws InputError on a rim, where B diverges.
+sources::FieldValue field_of_end_discs(std::span<const RodEnd> ends, const Vector3& x);
 
 /// Throws InputError if x is on the rim of one of the sections, where B diverges.
 void require_off_the_rims(std::span<const RodEnd> ends, const Vector3& x);

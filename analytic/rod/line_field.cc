@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <cmath>
-#include <limits>
-#include <numbers>
 #include <span>
-#include <vector>
 
 #include "analytic/rod/field_models.h"
 #include "analytic/rod/rod_magnet.h"
@@ -16,41 +12,18 @@
 namespace ciliaval::analytic::rod {
 namespace {
 
-/// A pole q = πR²(M below − M above) at an end of the magnet.
-struct Pole {
-  Vector3 position;      ///< m
-  double strength;       ///< μ₀q/4π, T·m²
-  double position_norm;  ///< m
-};
-
-std::vector<Pole> poles_of(const RodMagnet& magnet, double area) {
-  std::vector<Pole> poles;
-  for (const RodEnd& end : magnet.ends)
-    poles.push_back({end.section.centre,
-                     vacuum_permeability / (4 * std::numbers::pi) * area * end.magnetization_jump,
-                     end.section.centre.norm()});
-  return poles;
-}
-
-/// B = Σ μ₀q a/(4πa³), |B| of each to 8 ε and the rounding of the offset times 4|B|/a.
-sources::FieldValue field_of_poles(std::span<const Pole> poles, const Vector3& x) {
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  const double x_norm = x.norm();
-  Vector3 B = Vector3::Zero();
-  double error = 0;
-  for (const Pole& pole : poles) {
-    const Vector3 offset = x - pole.position;
-    const double rounding = 4 * epsilon * (x_norm + pole.position_norm);
-    const double a = offset.norm();
-    if (a <= rounding)
+/// B of a pole q = πR²(M below − M above) at each end of the magnet.
+sources::FieldValue field_of_poles(const RodMagnet& magnet, double area, const Vector3& x) {
+  sources::FieldValue sum;
+  for (const RodEnd& end : magnet.ends) {
+    const Vector3& pole = end.section.centre;
+    if ((x - pole).norm() <= sources::rounding_of_offset(x, pole))
       throw InputError("the field of the model `line` diverges at its pole " +
                        sources::to_string(x) + ": move the point, or take the model `volume`");
-    const double inverse = 1 / a;
-    const double size = pole.strength * inverse * inverse;
-    B += size * inverse * offset;
-    error += std::abs(size) * (8 * epsilon + 4 * rounding * inverse);
+    sum += sources::with_rounding(sources::pole_field(area * end.magnetization_jump, x - pole), x,
+                                  pole);
   }
-  return {B, Vector3::Constant(error)};
+  return sum;
 }
 
 /// ∫ dB over the dipoles M πR² dr (F) or M πR² d₃ dS (R) of the centreline.
@@ -88,11 +61,9 @@ Field LineField::field(const Cilium& cilium, const Deformation& deformation,
   if (options_.method == Method::uniform) return field_of_uniform_line(magnet, options_, points);
   const bool closed_form =
       options_.method == Method::closed_form && options_.push_forward == sources::PushForward::F;
-  if (closed_form) {
-    const std::vector<Pole> poles = poles_of(magnet, cilium.area());
-    return sources::field_at(points, 4096,
-                             [&](const Vector3& x) { return field_of_poles(poles, x); });
-  }
+  if (closed_form)
+    return sources::field_at(
+        points, 4096, [&](const Vector3& x) { return field_of_poles(magnet, cilium.area(), x); });
   return sources::field_at(points, 4, [&](const Vector3& x) {
     return field_of_dipoles(magnet, cilium.area(), options_, x);
   });

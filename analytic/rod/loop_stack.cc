@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "analytic/rod/loop_stack.h"
 
-#include <Eigen/Core>
-#include <Eigen/StdVector>
 #include <algorithm>
 #include <array>
 #include <boost/container/small_vector.hpp>
@@ -24,34 +22,24 @@ namespace ciliaval::analytic::rod {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr int lanes = 4;
-using Lanes = Eigen::Array<double, lanes, 1>;
-
-/// Some loops side by side, in radii, so that one pass of the arithmetic-geometric mean, which
-/// waits for one square root after the other, is shared.
-struct Loops {
-  std::array<Lanes, 3> centre;  ///< from the middle of their part
-  std::array<Lanes, 3> normal;
-  Lanes strength;  ///< μ₀ M dS over the radius, T
+/// Lengths in radii.
+struct Loop {
+  Vector3 centre;  ///< from the middle of its part
+  Vector3 normal;
+  double strength;  ///< μ₀ M dS over the radius, T
 };
 
 /// Σ strength·H at the offset x (in radii) from the middle of the loops' part.
-Vector3 field_of(std::span<const Loops> all, const Vector3& x) {
-  std::array<Lanes, 3> B{Lanes::Zero(), Lanes::Zero(), Lanes::Zero()};
-  for (const Loops& loops : all) {
-    const Lanes ox = x[0] - loops.centre[0];
-    const Lanes oy = x[1] - loops.centre[1];
-    const Lanes oz = x[2] - loops.centre[2];
-    const Lanes zeta = ox * loops.normal[0] + oy * loops.normal[1] + oz * loops.normal[2];
-    const std::array<Lanes, 3> radial{ox - zeta * loops.normal[0], oy - zeta * loops.normal[1],
-                                      oz - zeta * loops.normal[2]};
-    const Lanes rho =
-        (radial[0] * radial[0] + radial[1] * radial[1] + radial[2] * radial[2]).sqrt();
-    const sources::LoopField<Lanes> H = sources::loop_field(rho, zeta);
-    for (std::size_t i = 0; i < 3; ++i)
-      B[i] += loops.strength * (H.radial_over_rho * radial[i] + H.axial * loops.normal[i]);
+Vector3 field_of(std::span<const Loop> loops, const Vector3& x) {
+  Vector3 B = Vector3::Zero();
+  for (const Loop& loop : loops) {
+    const Vector3 offset = x - loop.centre;
+    const double zeta = offset.dot(loop.normal);
+    const Vector3 radial = offset - zeta * loop.normal;
+    const sources::LoopField H = sources::current_loop_field(radial.norm(), zeta);
+    B += loop.strength * (H.radial_over_rho * radial + H.axial * loop.normal);
   }
-  return {B[0].sum(), B[1].sum(), B[2].sum()};
+  return B;
 }
 
 std::size_t level_of(std::size_t order) {
@@ -94,10 +82,7 @@ class LoopStack::Part {
 
   /// The error (m) of the distance between a loop and a point at the offset a, as far as it differs
   /// from loop to loop.
-  double rounding(const Vector3& a) const {
-    const double size = a.norm() + magnet_.radius;
-    return 2 * epsilon * size;
-  }
+  double rounding(const Vector3& a) const { return 2 * epsilon * (a.norm() + magnet_.radius); }
 
   const std::array<std::unique_ptr<Part>, 2>& halves() const {
     std::call_once(split_, [&] {
@@ -107,7 +92,7 @@ class LoopStack::Part {
   }
 
   /// The loops at the nodes of a rule.
-  std::span<const Loops> loops(std::size_t order) const {
+  std::span<const Loop> loops(std::size_t order) const {
     const std::size_t level = level_of(order);
     std::call_once(made_[level], [&] { loops_[level] = make_loops(order); });
     return loops_[level];
@@ -135,28 +120,20 @@ class LoopStack::Part {
     return dS * sum;
   }
 
-  std::vector<Loops> make_loops(std::size_t order) const {
+  std::vector<Loop> make_loops(std::size_t order) const {
     const QuadratureRule& rule = sources::unit_gauss_legendre(order);
     const double R = magnet_.radius;
-    std::vector<Loops> all((order + lanes - 1) / lanes);
-    for (std::size_t i = 0; i < lanes * all.size(); ++i) {
-      const std::size_t node = std::min(i, order - 1);  // the last ones only fill up
-      const double dS = (rule.nodes[node] - 0.5) * extent_;
+    std::vector<Loop> loops;
+    for (std::size_t i = 0; i < order; ++i) {
+      const double dS = (rule.nodes[i] - 0.5) * extent_;
       const CentrelinePoint point = at(magnet_, stretch_, middle_S_ + dS);
       // The loops of a long part are too far from any point for the last bits of r to matter.
-      const Vector3 centre = (is_short_ ? offset(dS) : point.position - middle_.position) / R;
-      const Vector3 normal = point.normal();
-      Loops& loops = all[i / lanes];
-      const auto lane = static_cast<Eigen::Index>(i % lanes);
-      for (std::size_t d = 0; d < 3; ++d) {
-        loops.centre[d][lane] = centre[static_cast<Eigen::Index>(d)];
-        loops.normal[d][lane] = normal[static_cast<Eigen::Index>(d)];
-      }
-      loops.strength[lane] = i < order ? vacuum_permeability * stretch_.magnetization *
-                                             rule.weights[node] * extent_ / R
-                                       : 0;
+      const Vector3 centre = is_short_ ? offset(dS) : Vector3(point.position - middle_.position);
+      loops.push_back(
+          {centre / R, point.normal(),
+           vacuum_permeability * stretch_.magnetization * rule.weights[i] * extent_ / R});
     }
-    return all;
+    return loops;
   }
 
   const RodMagnet& magnet_;
@@ -170,7 +147,7 @@ class LoopStack::Part {
   mutable std::once_flag split_;
   mutable std::array<std::unique_ptr<Part>, 2> halves_;
   mutable std::array<std::once_flag, std::size(sources::quadrature_orders)> made_;
-  mutable std::array<std::vector<Loops>, std::size(sources::quadrature_orders)> loops_;
+  mutable std::array<std::vector<Loop>, std::size(sources::quadrature_orders)> loops_;
 };
 
 LoopStack::LoopStack(const RodMagnet& magnet) : magnet_(magnet) {

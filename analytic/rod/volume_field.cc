@@ -18,10 +18,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// B = μ₀ Σ σ H(disc) + μ₀ m of the wedge's reference charge on the end sections.
 Field field_of_discs(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
-  const EndDiscs discs(magnet.ends);
   const RodInterior interior(magnet);
   return sources::field_at(points, 256, [&](const Vector3& x) {
-    sources::FieldValue sum = discs.field(x);
+    sources::FieldValue sum = field_of_end_discs(magnet.ends, x);
     if (const auto m = interior.magnetization_at(x)) {
       const Vector3 inside = vacuum_permeability * *m;
       sum += {inside, Vector3::Constant(40 * epsilon * inside.norm())};

@@ -3,24 +3,12 @@
 
 #include <cstdio>
 #include <map>
-#include <mutex>
 #include <string>
-#include <vector>
 
 namespace ciliaval::analytic::sources {
 
 const QuadratureRule& unit_gauss_legendre(std::size_t n) {
-  constexpr std::size_t kept_without_lock = 64;
-  static const std::vector<QuadratureRule> small = [] {
-    std::vector<QuadratureRule> rules(1);
-    for (std::size_t order = 1; order < kept_without_lock; ++order)
-      rules.push_back(gauss_legendre(order, 0, 1));
-    return rules;
-  }();
-  if (n < kept_without_lock) return small.at(n);
-  static std::mutex mutex;
-  static std::map<std::size_t, QuadratureRule> rules;  // nodes of a map never move
-  const std::lock_guard lock(mutex);
+  thread_local std::map<std::size_t, QuadratureRule> rules;  // whose entries never move
   auto rule = rules.find(n);
   if (rule == rules.end()) rule = rules.emplace(n, gauss_legendre(n, 0, 1)).first;
   return rule->second;

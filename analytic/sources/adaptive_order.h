@@ -11,7 +11,7 @@
 
 namespace ciliaval::analytic::sources {
 
-/// The n-point Gauss–Legendre rule on [0, 1], computed once for each n.
+/// The n-point Gauss–Legendre rule on [0, 1], computed once for each n by each thread.
 const QuadratureRule& unit_gauss_legendre(std::size_t n);
 
 /// The orders tried one after the other by `integrate_adaptively`.

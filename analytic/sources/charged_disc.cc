@@ -73,8 +73,7 @@ double axial_closed_form(double rho, double zeta, double s, double kc, double K)
   return (rho < 1 ? std::copysign(0.5, zeta) : 0.0) - smooth;
 }
 
-}  // namespace
-
+/// Beyond three radii: the series at a² = ρ² + ζ².
 DiscField far_disc_field(double zeta, double a2) {
   const double inverse = 1 / a2;
   const double u2 = zeta * zeta * inverse;
@@ -103,18 +102,20 @@ DiscField far_disc_field(double zeta, double a2) {
   return {radial * over_a, axial * zeta * over_a};
 }
 
+/// Up to three radii: the elliptic integrals.
 DiscField near_disc_field(double rho, double zeta) {
   const double s2 = zeta * zeta + (1 + rho) * (1 + rho);
   const double s = std::sqrt(s2);
   const double kc = std::sqrt((zeta * zeta + (1 - rho) * (1 - rho)) / s2);
-  const CompleteElliptic<double> elliptic = complete_elliptic(kc, 4 * rho / s2);
+  const CompleteElliptic elliptic = complete_elliptic(kc, 4 * rho / s2);
   return {4 * elliptic.C / (pi * s2 * s), axial_closed_form(rho, zeta, s, kc, elliptic.K)};
 }
 
-MeridianVector charged_disc_field(double rho, double zeta) {
+}  // namespace
+
+DiscField charged_disc_field(double rho, double zeta) {
   const double a2 = rho * rho + zeta * zeta;
-  const DiscField H = a2 > 9 ? far_disc_field(zeta, a2) : near_disc_field(rho, zeta);
-  return {rho * H.radial_over_rho, H.axial};
+  return a2 > 9 ? far_disc_field(zeta, a2) : near_disc_field(rho, zeta);
 }
 
 }  // namespace ciliaval::analytic::sources

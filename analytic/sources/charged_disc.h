@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include "analytic/sources/circle.h"
-
 namespace ciliaval::analytic::sources {
+
+/// H_ρ/ρ, which has no pole on the axis, and H_ζ of a disc.
+struct DiscField {
+  double radial_over_rho;
+  double axial;
+};
 
 /// Field H of a disc of unit radius with unit magnetic surface charge, at the distance ρ ≥ 0 from
 /// its axis and the height ζ above its plane (in radii). With s² = ζ² + (1+ρ)²,
@@ -16,15 +20,6 @@ namespace ciliaval::analytic::sources {
 ///   H_ζ = ½ Σ_{k≥1} binom(½, k)(2k−1) P_{2k−1}(u)/a^{2k}.
 /// Error: a few ε times |H| (below 40 ε just inside three radii). On the disc ζ = +0 and ζ = −0 are
 /// the limits from its two sides. Not finite on the rim.
-MeridianVector charged_disc_field(double rho, double zeta);
-
-/// H_ρ/ρ, which has no pole on the axis, and H_ζ.
-struct DiscField {
-  double radial_over_rho;
-  double axial;
-};
-/// The same field at a² = ρ² + ζ² ≤ 9, by elliptic integrals, and at a² > 9, by its series.
-DiscField near_disc_field(double rho, double zeta);
-DiscField far_disc_field(double zeta, double a2);
+DiscField charged_disc_field(double rho, double zeta);
 
 }  // namespace ciliaval::analytic::sources

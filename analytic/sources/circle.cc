@@ -3,25 +3,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace ciliaval::analytic::sources {
+namespace {
 
-CylindricalPoint cylindrical(const Circle& circle, const Vector3& x) {
+/// Distance from the axis and height above the plane, m.
+std::pair<double, double> cylindrical(const Circle& circle, const Vector3& x) {
   const Vector3 offset = x - circle.centre;
-  const double zeta = offset.dot(circle.normal) + 0.0;  // turns −0 into +0
-  const Vector3 radial = offset - zeta * circle.normal;
-  const double rho = radial.norm();
-  return {rho, zeta, rho > 0 ? Vector3(radial / rho) : Vector3(Vector3::Zero())};
+  const double zeta = offset.dot(circle.normal);
+  return {(offset - zeta * circle.normal).norm(), zeta};
 }
 
+}  // namespace
+
 double distance_from_line(const Circle& circle, const Vector3& x) {
-  const CylindricalPoint point = cylindrical(circle, x);
-  return std::hypot(point.rho - circle.radius, point.zeta);
+  const auto [rho, zeta] = cylindrical(circle, x);
+  return std::hypot(rho - circle.radius, zeta);
 }
 
 double distance_from_disc(const Circle& circle, const Vector3& x) {
-  const CylindricalPoint point = cylindrical(circle, x);
-  return std::hypot(std::max(point.rho - circle.radius, 0.0), point.zeta);
+  const auto [rho, zeta] = cylindrical(circle, x);
+  return std::hypot(std::max(rho - circle.radius, 0.0), zeta);
 }
 
 }  // namespace ciliaval::analytic::sources

@@ -12,21 +12,6 @@ struct Circle {
   double radius = 0;                  ///< m
 };
 
-/// A vector in the meridian plane through the axis of a circle and a point.
-struct MeridianVector {
-  double radial;  ///< along e_ρ, away from the axis
-  double axial;   ///< along the normal
-};
-
-/// A point in the cylindrical coordinates of a circle.
-struct CylindricalPoint {
-  double rho;     ///< distance from the axis, m
-  double zeta;    ///< height above the plane, m; never −0, so that 0 means the normal's side
-  Vector3 e_rho;  ///< unit vector away from the axis; zero on the axis
-};
-
-CylindricalPoint cylindrical(const Circle& circle, const Vector3& x);
-
 /// Distance (m) of a point from the circle's line.
 double distance_from_line(const Circle& circle, const Vector3& x);
 /// Distance (m) of a point from the flat disc that the circle bounds.

@@ -33,4 +33,25 @@ double bulirsch_cel(double kc, double p, double c, double s) {
   return std::numbers::pi / 2 * (s + c * mean) / (mean * (mean + root_p));
 }
 
+CompleteElliptic complete_elliptic(double kc, double m) {
+  // t = c_n/m, n = 1, 2, …: c₁ = (1 − kc)/2 = m/(2(1 + kc)), c_{n+1} = c_n²/(4a_{n+1}).
+  double a = (1 + kc) / 2;
+  double b = std::sqrt(kc);
+  double t = 0.25 / a;
+  double weight = 2;
+  double sum = weight * t * t;
+  while (m * t > half_precision * a) {
+    const double arithmetic = (a + b) / 2;
+    b = std::sqrt(a * b);
+    a = arithmetic;
+    t = m * t * t / (4 * a);
+    weight *= 2;
+    sum += weight * t * t;
+  }
+  const double K = std::numbers::pi / (a + b);
+  const double C = K * sum;
+  const double D = (K + m * C) / 2;
+  return {K, K - m * D, D, C};
+}
+
 }  // namespace ciliaval::analytic::sources

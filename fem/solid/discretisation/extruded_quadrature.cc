@@ -12,15 +12,6 @@
 namespace ciliaval::fem::solid::discretisation {
 namespace {
 
-/// Products of three functions of ξ and three of η, as the nine plane polynomials are numbered.
-Eigen::Matrix<double, 9, 1> product(const Eigen::Vector3d& of_xi, const Eigen::Vector3d& of_eta) {
-  return (of_xi * of_eta.transpose()).reshaped<Eigen::ColMajor>();
-}
-
-Eigen::Matrix<double, 9, 1> plane_values(double xi, double eta) {
-  return product(quadratic_basis(xi), quadratic_basis(eta));
-}
-
 /// The third local coordinate must run along Z: each triple of nodes above one another.
 void require_straight(const SolidElement& element, const ExtrudedCell& cell) {
   for (Eigen::Index a = 0; a < element_nodes; ++a) {
@@ -50,10 +41,9 @@ ExtrudedQuadrature::ExtrudedQuadrature(const SolidSpace& space, Extent extent) :
   std::array<Eigen::Matrix<double, 9, section_points>, 2> derivatives;  // by ξ and η
   for (int q = 0; q < section_points; ++q) {
     const dealii::Point<2>& x = section.point(static_cast<unsigned int>(q));
-    values_.col(q) = plane_values(x[0], x[1]);
-    derivatives[0].col(q) = product(quadratic_derivative(x[0]), quadratic_basis(x[1]));
-    derivatives[1].col(q) = product(quadratic_basis(x[0]), quadratic_derivative(x[1]));
-    points_.row(q) << x[0], x[1];
+    values_.col(q) = plane_product(quadratic_basis(x[0]), quadratic_basis(x[1]));
+    derivatives[0].col(q) = plane_product(quadratic_derivative(x[0]), quadratic_basis(x[1]));
+    derivatives[1].col(q) = plane_product(quadratic_basis(x[0]), quadratic_derivative(x[1]));
   }
   double volume = 0;
   double lowest = std::numeric_limits<double>::infinity();

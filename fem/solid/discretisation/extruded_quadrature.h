@@ -30,10 +30,15 @@ struct ExtrudedCell {
   double top = 0;                           ///< Z at ζ = 1, m
 };
 
-/// Quadratic Lagrange polynomials on 0, ½, 1: the element's along an extrusion line.
+/// Quadratic Lagrange polynomials on 0, ½, 1 and their derivatives: the element's along a line.
 Eigen::Vector3d quadratic_basis(double zeta);
-/// Their derivatives.
 Eigen::Vector3d quadratic_derivative(double zeta);
+
+/// Products of three functions of ξ and three of η, in the order of an element's plane of nodes.
+inline Eigen::Matrix<double, 9, 1> plane_product(const Eigen::Vector3d& of_xi,
+                                                 const Eigen::Vector3d& of_eta) {
+  return (of_xi * of_eta.transpose()).reshaped();
+}
 
 /// Whether the mesh is the whole body or the half Y ≥ 0 of one that its plane Y = 0 mirrors.
 enum class Extent { whole, half };
@@ -51,13 +56,10 @@ class ExtrudedQuadrature {
   double height() const { return height_; }  ///< Z of the uppermost plane, m
   /// N_a(ξ, η) at section point q in the plane of the nodes a = 0…8: row a, column q.
   const Eigen::Matrix<double, 9, section_points>& section_values() const { return values_; }
-  /// (ξ, η) of the section points: row q.
-  const Eigen::Matrix<double, section_points, 2>& section_coordinates() const { return points_; }
 
  private:
   std::vector<ExtrudedCell> cells_;
   Eigen::Matrix<double, 9, section_points> values_;
-  Eigen::Matrix<double, section_points, 2> points_;
   Extent extent_;
   double area_ = 0;
   double height_ = 0;

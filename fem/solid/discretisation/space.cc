@@ -22,25 +22,6 @@ namespace {
 
 using dealii::types::global_dof_index;
 
-/// A displacement field as deal.II wants it.
-class DisplacementFunction : public dealii::Function<3> {
- public:
-  explicit DisplacementFunction(const std::function<Vector3(const Vector3&)>& field)
-      : Function<3>(3), field_(field) {}
-  void vector_value(const dealii::Point<3>& X, dealii::Vector<double>& value) const override {
-    const Vector3 u = field_ ? field_(Vector3(X[0], X[1], X[2])) : Vector3::Zero();
-    for (int c = 0; c < 3; ++c) value[static_cast<global_dof_index>(c)] = u[c];
-  }
-  double value(const dealii::Point<3>& X, unsigned int component) const override {
-    dealii::Vector<double> u(3);
-    vector_value(X, u);
-    return u[component];
-  }
-
- private:
-  const std::function<Vector3(const Vector3&)>& field_;
-};
-
 /// Where the nodes of an element lie in the unit cell, lexicographic.
 dealii::Quadrature<3> unit_nodes() {
   std::vector<dealii::Point<3>> points;
@@ -53,11 +34,17 @@ dealii::Quadrature<3> unit_nodes() {
 std::map<global_dof_index, double> boundary_values(const SolidSpace& space,
                                                    const DirichletCondition& condition) {
   dealii::ComponentMask mask(3, false);
-  for (unsigned int c = 0; c < 3; ++c) mask.set(c, condition.components[c]);
+  std::vector<std::function<double(const dealii::Point<3>&)>> components;
+  for (unsigned int c = 0; c < 3; ++c) {
+    mask.set(c, condition.components[c]);
+    components.emplace_back([&condition, c](const dealii::Point<3>& X) {
+      return condition.displacement ? condition.displacement(Vector3(X[0], X[1], X[2]))[c] : 0.0;
+    });
+  }
   std::map<global_dof_index, double> values;
   dealii::VectorTools::interpolate_boundary_values(
       space.mapping(), space.dof_handler(), condition.boundary,
-      DisplacementFunction(condition.displacement), values, mask);
+      dealii::FunctionFromFunctionObjects<3>(components), values, mask);
   return values;
 }
 

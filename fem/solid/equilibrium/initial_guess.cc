@@ -24,21 +24,12 @@ struct PlaneBasis {
   Eigen::Matrix<double, 9, 2> derivatives;
 
   explicit PlaneBasis(const Eigen::Vector2d& at) {
-    const auto derivative = [](double x) {
-      return Eigen::Vector3d(4 * x - 3, 4 - 8 * x, 4 * x - 1);
-    };
     const Eigen::Vector3d a = quadratic_basis(at[0]);
     const Eigen::Vector3d b = quadratic_basis(at[1]);
-    values = (a * b.transpose()).reshaped<Eigen::ColMajor>();
-    derivatives.col(0) = (derivative(at[0]) * b.transpose()).reshaped<Eigen::ColMajor>();
-    derivatives.col(1) = (a * derivative(at[1]).transpose()).reshaped<Eigen::ColMajor>();
+    values = plane_product(a, b);
+    derivatives.col(0) = plane_product(quadratic_derivative(at[0]), b);
+    derivatives.col(1) = plane_product(a, quadratic_derivative(at[1]));
   }
-};
-
-/// A point of a section: its cell and the local coordinates there.
-struct SectionPoint {
-  std::size_t cell = 0;
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();
 };
 
 /// Finds points in the elements of an extruded mesh: the layer by Z, the cell by (X, Y).
@@ -59,10 +50,10 @@ class Locator {
     if (next != layers_.begin()) --next;
     const auto& [bottom, layer] = *next;
     const double zeta = (X.z() - bottom) / (layer.top - bottom);
-    const SectionPoint point = find_in(layer, X.head<2>());
+    const auto [cell, at] = find_in(layer, X.head<2>());
     if (!(zeta > -1e-6 && zeta < 1 + 1e-6))
       throw InputError("a state was asked for at a height outside its mesh");
-    return {layer.elements[point.cell], Vector3(point.at[0], point.at[1], zeta)};
+    return {layer.elements[cell], Vector3(at[0], at[1], zeta)};
   }
 
  private:
@@ -72,12 +63,14 @@ class Locator {
     std::vector<PlaneNodes> sections;
   };
 
-  static SectionPoint find_in(const Layer& layer, const Eigen::Vector2d& XY) {
+  /// The cell of the section, and (ξ, η) there.
+  static std::pair<std::size_t, Eigen::Vector2d> find_in(const Layer& layer,
+                                                         const Eigen::Vector2d& XY) {
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < layer.sections.size(); ++i)
       order.emplace_back((layer.sections[i].col(4) - XY).squaredNorm(), i);
     std::sort(order.begin(), order.end());
-    SectionPoint best;
+    std::pair<std::size_t, Eigen::Vector2d> best;
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [distance, i] : order) {
       const Eigen::Vector2d at = local(layer.sections[i], XY);
@@ -109,12 +102,8 @@ class Locator {
   std::map<double, Layer> layers_;  ///< by the Z of their lower planes
 };
 
-double pressure_at(const SolidElement& element, const PressureVector& pressure, const Vector3& X) {
-  return pressure.dot(element.pressure_basis(X));
-}
-
-/// Fills a state: displacement(X) at the nodes, pressure(X) projected on each element's linear
-/// functions. `segment` is the element's.
+/// displacement(X, segment) at the nodes, pressure(X, segment) projected on each element's linear
+/// functions; `segment` is the element's.
 template <typename Displacement, typename Pressure>
 SolidState filled(const SolidSpace& space, const Displacement& displacement,
                   const Pressure& pressure) {
@@ -179,7 +168,7 @@ SolidState interpolated(const SolidSpace& from, const ExtrudedQuadrature& quadra
   };
   const auto pressure = [&](const Vector3& X, std::size_t) {
     const std::size_t e = locator.find(X).first;
-    return pressure_at(from.elements()[e], state.pressure[e], X);
+    return state.pressure[e].dot(from.elements()[e].pressure_basis(X));
   };
   return filled(to, displacement, pressure);
 }

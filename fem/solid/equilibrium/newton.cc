@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/equilibrium/newton.h"
 
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -50,31 +50,6 @@ double relative_residual(const InternalForces& internal, const Vector<double>& e
   return norm > 0 ? norm / scale : 0;
 }
 
-/// The pattern of the tangent: all unknowns of nodes that share a cell. Found by nodes, of which
-/// there are a third of the rows and a ninth of the entries.
-dealii::DynamicSparsityPattern coupled_nodes(const SolidSpace& space) {
-  std::vector<std::vector<Row>> neighbours(space.unknowns() / node_unknowns);
-  for (const SolidElement& element : space.elements()) {
-    std::array<Row, element_nodes> nodes{};
-    for (std::size_t a = 0; a < element_nodes; ++a) nodes[a] = element.dofs[a] / node_unknowns;
-    for (const Row node : nodes)
-      neighbours[node].insert(neighbours[node].end(), nodes.begin(), nodes.end());
-  }
-  dealii::DynamicSparsityPattern pattern(space.unknowns());
-  std::vector<Row> columns;
-  for (Row node = 0; node < neighbours.size(); ++node) {
-    std::vector<Row>& own = neighbours[node];
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
-    columns.clear();
-    for (const Row neighbour : own)
-      for (Row k = 0; k < node_unknowns; ++k) columns.push_back(node_unknowns * neighbour + k);
-    for (Row k = 0; k < node_unknowns; ++k)
-      pattern.add_entries(node_unknowns * node + k, columns.begin(), columns.end(), true);
-  }
-  return pattern;
-}
-
 /// Relative residual of the linear systems. An iteration of Newton's method then reduces the
 /// residual by no more than this factor: its quadratic convergence is kept down to there, and one
 /// or two iterations more reach the tolerance.
@@ -111,7 +86,9 @@ Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constr
     : space_(space),
       constraints_(std::move(constraints)),
       size_(dealii::GridTools::diameter(space.dof_handler().get_triangulation())) {
-  sparsity_.copy_from(coupled_nodes(space));
+  dealii::DynamicSparsityPattern pattern(space.unknowns());
+  dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), pattern);
+  sparsity_.copy_from(pattern);
   matrix_.reinit(sparsity_);
   solver_ = std::make_unique<LinearSolver>(space, constraints_, sparsity_, solver, communicator);
   for (std::size_t e = 0; e < space.elements().size(); ++e) {

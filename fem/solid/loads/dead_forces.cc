@@ -9,23 +9,6 @@
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
-namespace {
-
-Vector3 vector(const dealii::Tensor<1, 3>& t) {
-  return {t[0], t[1], t[2]};
-}
-
-/// forces_a += N_a f at point q.
-template <typename Values>
-void add_at_point(const SolidSpace& space, const SolidElement& element, const Values& values,
-                  unsigned int q, const Vector3& f, dealii::Vector<double>& forces) {
-  for (unsigned int a = 0; a < element_nodes; ++a)
-    for (unsigned int c = 0; c < 3; ++c)
-      forces[element.dofs[c * element_nodes + space.lexicographic()[a]]] +=
-          values.shape_value(a, q) * f[c];
-}
-
-}  // namespace
 
 dealii::Vector<double> body_force(const SolidSpace& space,
                                   const std::function<Vector3(const Vector3& X)>& b) {
@@ -36,33 +19,13 @@ dealii::Vector<double> body_force(const SolidSpace& space,
   dealii::Vector<double> forces(space.unknowns());
   for (const SolidElement& element : space.elements()) {
     values.reinit(element.cell);
-    for (unsigned int q = 0; q < gauss.size(); ++q)
-      add_at_point(space, element, values, q, values.JxW(q) * b(vector(values.quadrature_point(q))),
-                   forces);
-  }
-  return forces;
-}
-
-dealii::Vector<double> traction(
-    const SolidSpace& space, dealii::types::boundary_id boundary,
-    const std::function<Vector3(const Vector3& X, const Vector3& N)>& t) {
-  const dealii::QGauss<2> gauss(element_degree + 2);
-  dealii::FEFaceValues<3> values(space.mapping(), space.scalar_element(), gauss,
-                                 dealii::update_values | dealii::update_JxW_values |
-                                     dealii::update_quadrature_points |
-                                     dealii::update_normal_vectors);
-  dealii::Vector<double> forces(space.unknowns());
-  for (const SolidElement& element : space.elements()) {
-    for (const unsigned int face : element.cell->face_indices()) {
-      if (!element.cell->face(face)->at_boundary() ||
-          element.cell->face(face)->boundary_id() != boundary)
-        continue;
-      values.reinit(element.cell, face);
-      for (unsigned int q = 0; q < gauss.size(); ++q)
-        add_at_point(
-            space, element, values, q,
-            values.JxW(q) * t(vector(values.quadrature_point(q)), vector(values.normal_vector(q))),
-            forces);
+    for (unsigned int q = 0; q < gauss.size(); ++q) {
+      const dealii::Point<3>& X = values.quadrature_point(q);
+      const Vector3 f = values.JxW(q) * b(Vector3(X[0], X[1], X[2]));
+      for (unsigned int a = 0; a < element_nodes; ++a)
+        for (unsigned int c = 0; c < 3; ++c)
+          forces[element.dofs[c * element_nodes + space.lexicographic()[a]]] +=
+              values.shape_value(a, q) * f[c];
     }
   }
   return forces;

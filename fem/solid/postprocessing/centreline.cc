@@ -70,7 +70,6 @@ struct Station {
   }
 };
 
-/// What the centreline is made from.
 struct Extraction {
   const SolidSpace& space;
   const ExtrudedQuadrature& quadrature;
@@ -79,7 +78,6 @@ struct Extraction {
 
   /// The layers of the mesh from base to tip.
   std::vector<Layer> layers() const;
-  Layer uppermost_layer() const;
   Station station(const Layer& layer, double zeta) const;
   Wrench top_wrench(const Layer& layer) const;
   std::vector<double> breaks(const Layer& layer) const;
@@ -112,19 +110,8 @@ std::vector<Layer> Extraction::layers() const {
   for (std::size_t e = 0; e < space.elements().size(); ++e)
     add_cell(by_bottom[quadrature.cells()[e].bottom], e);
   std::vector<Layer> result;
-  result.reserve(by_bottom.size());
   for (auto& [bottom, layer] : by_bottom) result.push_back(std::move(layer));
   return result;
-}
-
-Layer Extraction::uppermost_layer() const {
-  const auto& cells = quadrature.cells();
-  const auto highest = std::max_element(
-      cells.begin(), cells.end(), [](const auto& a, const auto& b) { return a.bottom < b.bottom; });
-  Layer layer;
-  for (std::size_t e = 0; e < cells.size(); ++e)
-    if (cells[e].bottom == highest->bottom) add_cell(layer, e);
-  return layer;
 }
 
 Station Extraction::station(const Layer& layer, double zeta) const {
@@ -145,9 +132,9 @@ Station Extraction::station(const Layer& layer, double zeta) const {
   return result;
 }
 
-/// What the part above the layer exerts on it: at the nodes a of its upper plane, Σ (f_a − ∫ N_a b
-/// dV) over the layer's own cells. In equilibrium forces and moments balance to the solver's
-/// tolerance, since rigid motions are in the element's space.
+/// Force and moment that the part above exerts on the layer: at the nodes a of its upper plane,
+/// Σ (f_a − ∫ N_a b dV) over the layer's own cells. In equilibrium they balance the load to the
+/// solver's tolerance, since rigid motions are in the element's space.
 Wrench Extraction::top_wrench(const Layer& layer) const {
   Wrench result;
   for (const std::size_t e : layer.cells) {
@@ -166,8 +153,8 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
   return result;
 }
 
-/// ζ of the ends of the layer's pieces. The part where a contact kernel meets a line is divided
-/// into pieces of at most half its height; below and above it n is constant.
+/// ζ of the ends of the layer's pieces. Where a contact kernel meets a line, pieces are at most
+/// half its height; below and above it n is constant.
 std::vector<double> Extraction::breaks(const Layer& layer) const {
   std::vector<double> result{0, 1};
   if (!load.per_height || !load.per_height->support) return result;
@@ -248,7 +235,6 @@ Centreline centreline(const SolidSpace& space, const ExtrudedQuadrature& quadrat
   const Extraction extraction{space, quadrature, state, load};
   const std::vector<Layer> layers = extraction.layers();
   std::vector<Wrench> tops;
-  tops.reserve(layers.size());
   for (const Layer& layer : layers) tops.push_back(extraction.top_wrench(layer));
   return centreline(extraction, layers, tops);
 }
@@ -257,7 +243,7 @@ Vector3 tip_position(const SolidSpace& space, const ExtrudedQuadrature& quadratu
                      const SolidState& state) {
   const SpreadLoad none;
   const Extraction extraction{space, quadrature, state, none};
-  const Station tip = extraction.station(extraction.uppermost_layer(), 1);
+  const Station tip = extraction.station(extraction.layers().back(), 1);
   return tip.x / tip.area;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
@@ -50,6 +52,37 @@ void for_each_node(const discretisation::SolidSpace& space, const Visit& visit) 
       visit(Vector3(X[0], X[1], X[2]), element, space.lexicographic()[a]);
     }
   }
+}
+
+/// Nodal forces ∫ N_a t(X, N) dA of a traction t, N/m², on a part of the boundary with the outward
+/// normal N.
+inline dealii::Vector<double> traction(
+    const discretisation::SolidSpace& space, dealii::types::boundary_id boundary,
+    const std::function<Vector3(const Vector3& X, const Vector3& N)>& t) {
+  const dealii::QGauss<2> gauss(discretisation::element_degree + 2);
+  dealii::FEFaceValues<3> values(space.mapping(), space.scalar_element(), gauss,
+                                 dealii::update_values | dealii::update_JxW_values |
+                                     dealii::update_quadrature_points |
+                                     dealii::update_normal_vectors);
+  const auto vector = [](const dealii::Tensor<1, 3>& x) { return Vector3(x[0], x[1], x[2]); };
+  dealii::Vector<double> forces(space.unknowns());
+  for (const discretisation::SolidElement& element : space.elements()) {
+    for (const unsigned int face : element.cell->face_indices()) {
+      if (!element.cell->face(face)->at_boundary() ||
+          element.cell->face(face)->boundary_id() != boundary)
+        continue;
+      values.reinit(element.cell, face);
+      for (unsigned int q = 0; q < gauss.size(); ++q) {
+        const Vector3 f =
+            values.JxW(q) * t(vector(values.quadrature_point(q)), vector(values.normal_vector(q)));
+        for (unsigned int a = 0; a < discretisation::element_nodes; ++a)
+          for (unsigned int c = 0; c < 3; ++c)
+            forces[element.dofs[c * discretisation::element_nodes + space.lexicographic()[a]]] +=
+                values.shape_value(a, q) * f[c];
+      }
+    }
+  }
+  return forces;
 }
 
 /// Solves with Dirichlet conditions and dead nodal forces, in `steps` equal steps of both. `guess`
