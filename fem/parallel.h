@@ -18,18 +18,16 @@ void start_mpi();
 /// not start MPI.
 bool launched_on_several_ranks();
 
-/// Number of this rank, and of all ranks: 0 and 1 unless MPI was started. Those of the whole
-/// program unless a communicator is given.
+/// Number of this rank, and of all ranks: 0 and 1 unless MPI was started.
 int rank(MPI_Comm communicator = MPI_COMM_WORLD);
 int rank_count(MPI_Comm communicator = MPI_COMM_WORLD);
 
-/// Ends all ranks with the exit code, if there are several: after a failure of one rank alone, for
-/// which the others would wait forever.
+/// Ends all ranks with the exit code, if there are several, after a failure of one rank alone.
 void abort_all_ranks(int exit_code);
 
-/// For a rank that has caught an exception in work that all ranks share. Returns if all of them
-/// have caught one, within some seconds, or if there is only one rank; otherwise the others still
-/// wait for this rank in that work: throws RankFailure with the message.
+/// For a rank that has caught an exception in work that all ranks share. Returns if there is only
+/// one rank or if all catch one within some seconds. Otherwise the others still wait for this rank
+/// in that work: throws RankFailure with the message.
 void require_failure_of_all_ranks(const std::string& message);
 
 /// Rank 0's value, on all ranks of the program, which sleep until it comes. Collective.

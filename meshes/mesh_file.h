@@ -5,8 +5,7 @@
 
 namespace ciliaval::meshes {
 
-/// A mesh that a user brings (docs/guide/meshes.md): a Gmsh file, and what its coordinates are in,
-/// for Gmsh files have no units.
+/// A user's mesh (docs/guide/meshes.md): a Gmsh file, which has no units, and its unit.
 struct MeshFile {
   std::filesystem::path path;
   double unit = 1;  ///< length of the file's unit, m: 1e-3 for a file in mm

@@ -8,6 +8,17 @@
 #include "problem/error.h"
 
 namespace ciliaval {
+namespace {
+
+/// q and −q are the same rotation; interpolation needs neighbours on the same side.
+void align_signs(std::vector<SectionState>& states) {
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    Quaternion& q = states[i].rotation;
+    if (q.dot(states[i - 1].rotation) < 0) q.coeffs() = -q.coeffs();
+  }
+}
+
+}  // namespace
 
 double CentrelinePoint::theta() const {
   const Vector3 d3 = normal();
@@ -30,11 +41,7 @@ Centreline::Centreline(std::vector<Piece> pieces) : pieces_(std::move(pieces)) {
       throw InputError("the pieces of a centreline do not join");
     if (breaks_.empty()) breaks_.push_back(piece.S.front());
     breaks_.push_back(piece.S.back());
-    // q and −q are the same rotation; interpolation needs neighbours on the same side.
-    for (std::size_t i = 1; i < piece.states.size(); ++i) {
-      Quaternion& q = piece.states[i].rotation;
-      if (q.dot(piece.states[i - 1].rotation) < 0) q.coeffs() = -q.coeffs();
-    }
+    align_signs(piece.states);
     const LagrangeBasis& basis = bases_.emplace_back(piece.S);
     std::vector<Vector3>& derivatives = derivatives_.emplace_back();
     for (std::size_t j = 0; j < basis.size(); ++j) {
@@ -96,6 +103,18 @@ CentrelinePoint Centreline::node(std::size_t piece, std::size_t i) const {
   point.rotation.normalize();
   point.derivative = derivatives_[piece][i];
   return point;
+}
+
+void differentiate_rotation(Centreline::Piece& piece) {
+  std::vector<SectionState>& states = piece.states;
+  align_signs(states);
+  const LagrangeBasis basis(piece.S);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    Quaternion derivative(0, 0, 0, 0);
+    for (std::size_t j = 0; j < states.size(); ++j)
+      derivative.coeffs() += basis.slope(j, i) * states[j].rotation.coeffs();
+    states[i].curvature = 2 * (derivative * states[i].rotation.conjugate()).vec();
+  }
 }
 
 Centreline straight_centreline(const std::vector<double>& breaks) {

@@ -29,9 +29,8 @@ struct CentrelinePoint : SectionState {
   Vector3 derivative = Vector3::UnitZ();  ///< dr/dS; not parallel to d₃ under shear, not of unit
                                           ///< length under extension
 
-  Vector3 normal() const {
-    return rotation * Vector3::UnitZ();
-  }                                  ///< d₃, the unit normal of the section
+  /// d₃, the unit normal of the section.
+  Vector3 normal() const { return rotation * Vector3::UnitZ(); }
   double theta() const;              ///< angle of d₃ from +z, rad
   double bending_curvature() const;  ///< |κ − (κ·d₃)d₃|, 1/m
 };
@@ -55,7 +54,7 @@ class Centreline {
   const std::vector<double>& breaks() const { return breaks_; }
   double length() const { return breaks_.empty() ? 0 : breaks_.back(); }
 
-  /// State at the material point S, clamped to [0, L]; at a break, that of the upper piece. Throws
+  /// State at the material point S, clamped to [0, L]; at a break, the upper piece's. Throws
   /// InputError if S is NaN or the centreline is empty.
   CentrelinePoint at(double S) const;
   /// State at S by the interpolation of one piece: for one-sided values at breaks.
@@ -70,6 +69,10 @@ class Centreline {
   std::vector<std::vector<Vector3>> derivatives_;  ///< dr/dS at the nodes of each piece
   std::vector<double> breaks_;
 };
+
+/// Sets the curvature at the nodes of a piece, κ = 2 vec(q′ q̄), from the interpolation of the
+/// nodes' rotations q, whose signs it aligns.
+void differentiate_rotation(Centreline::Piece& piece);
 
 /// The undeformed centreline r = S e_z of the given length, broken at `breaks` (which include 0 and
 /// L).

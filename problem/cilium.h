@@ -16,12 +16,10 @@ struct Segment {
   double magnetization =
       0;  ///< M = B_r/μ₀ along the reference axis, base to tip positive, A/m; 0: not magnetic
 
-  double shear_modulus() const {
-    return young_modulus / (2 * (1 + poisson_ratio));
-  }  ///< μ = E/(2(1+ν)), Pa
-  double bulk_modulus() const {
-    return young_modulus / (3 * (1 - 2 * poisson_ratio));
-  }  ///< K = E/(3(1−2ν)), Pa
+  /// μ = E/(2(1+ν)), Pa.
+  double shear_modulus() const { return young_modulus / (2 * (1 + poisson_ratio)); }
+  /// K = E/(3(1−2ν)), Pa.
+  double bulk_modulus() const { return young_modulus / (3 * (1 - 2 * poisson_ratio)); }
 };
 
 /// A straight circular cylinder that stands on z = 0, clamped there, axis +z; segments from base to

@@ -8,16 +8,15 @@
 
 namespace ciliaval {
 
-/// What every mechanics model hands back: the centreline and, from a solid model, the body. Models
-/// are compared at common material points S of the centreline, never mesh point against mesh point.
+/// The shape that every mechanics model hands back: the centreline and, from a solid model, the
+/// body. Models are compared at common material points S, never mesh point against mesh point.
 struct Deformation {
   Centreline centreline;
   std::shared_ptr<const SolidBody> body;  ///< null for rods
 };
 
 /// The deformation turned as a whole, reference and current configuration, by the angle (rad) about
-/// the z axis: that of a cilium whose load and mesh are turned by it. Section rotations become
-/// Q Λ Qᵀ, stresses Q σ Qᵀ.
+/// the z axis. Section rotations become Q Λ Qᵀ, stresses Q σ Qᵀ.
 Deformation turned(const Deformation& deformation, double angle);
 
 }  // namespace ciliaval

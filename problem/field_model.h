@@ -35,8 +35,8 @@ class FieldModel {
   virtual bool pointwise() const { return true; }
 
   /// B of the deformed magnet at the points (m). Inside the magnet it is B, not μ₀H. Throws
-  /// InputError where B diverges (the end face's rim; a dipole) or if the deformation lacks what
-  /// the model needs, SolverError if the accuracy asked cannot be reached.
+  /// InputError where B diverges (the end face's rim; a dipole) or if the deformation lacks the
+  /// body, SolverError if the accuracy asked cannot be reached.
   virtual Field field(const Cilium& cilium, const Deformation& deformation,
                       std::span<const Vector3> points) const = 0;
 };

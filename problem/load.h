@@ -36,8 +36,8 @@ struct LoadStatement {
   double (*magnitude)(std::span<const double> values, const Cilium& cilium) = nullptr;
 };
 
-/// What a load type is called and which parameters it has: the one declaration from which case
-/// files, results, studies, tables and checkpoints take them.
+/// Name and parameters of a load type: the one declaration from which case files, results, studies,
+/// tables and checkpoints take them.
 struct LoadType {
   std::string_view name;
   std::vector<LoadParameter> parameters;  ///< the magnitude first, the azimuth last
@@ -88,12 +88,11 @@ struct DeadLoad {
   double azimuth = 0;           ///< φ, rad
 };
 
-/// Displacement control of the contact point (the test bench): whatever point of the cilium is at
-/// the current height z = h is pushed aside to the deflection δ along e. The contact force is that
-/// of ContactLoad, horizontal and at z = h; its amount is a result (MechanicsStep::applied_force).
-///
-/// Any δ is valid. A δ that the cilium cannot reach is a slip-off, not an error of the input: each
-/// model finds the δ at which the cilium lets go (MechanicsStep::slip_off_displacement).
+/// Displacement control of the contact point (the test bench): the point of the cilium at the
+/// current height z = h is pushed aside to the deflection δ along e. The contact force is as of a
+/// ContactLoad; its amount is a result (MechanicsStep::applied_force). A δ that the cilium cannot
+/// reach is a slip-off, not an error of the input: each model finds the δ at which the cilium lets
+/// go (MechanicsStep::slip_off_displacement).
 struct ProbeLoad {
   static const LoadType& type();
   double displacement = 0;  ///< δ, m
@@ -145,7 +144,7 @@ class Load {
 /// Loads that the cilium bears one after the other, all of one type.
 using LoadPath = std::vector<Load>;
 
-/// Every load type, those of this file first.
+/// Every load type, first the types of this file.
 std::span<const LoadType* const> load_types();
 /// Adds a type that a program brings along. It must live as long as the program.
 void add_load_type(const LoadType& type);

@@ -39,8 +39,7 @@ struct Range {
   }
 };
 
-/// A quantity or number that a case file states: the one place that says where it stands, what it
-/// may be, what it is if it is left out, and what it means.
+/// A quantity or number of a case file: its place, range, default and meaning.
 struct QuantityKey {
   std::string_view table;  ///< "cilium.segment"
   std::string_view name;   ///< "length"

@@ -32,17 +32,17 @@ inline Vector3 source_field(const Vector3& moment, const Vector3& offset) {
 }
 
 /// B of sources spread over smooth patches ξ ∈ [0,1]^dim, by tensor Gauss–Legendre quadrature.
-/// A patch is cut into 2^dim boxes as long as its middle is nearer to the field point than 1.5
-/// times its half-diameter; then the order is raised box by box (`integrate_adaptively`). Points
-/// and strengths of uncut patches are kept for the next field point, up to order 8. Several threads
-/// may ask at once.
+/// A patch is halved as long as its middle is nearer to the field point than 1.5 times its
+/// half-diameter; then each box has its adaptive order (`integrate_adaptively`). Points and
+/// strengths of uncut patches are kept for the next field point, up to order 8. Several threads may
+/// ask at once.
 template <int dim, class Strength>
 class PatchIntegral {
  public:
   using Coordinates = std::array<double, dim>;
   using Source = std::function<PatchPoint<Strength>(std::size_t patch, const Coordinates& xi)>;
 
-  /// `name` is what a message calls the integral.
+  /// `name`: of the integral, in messages.
   PatchIntegral(std::size_t patches, Source source, std::string name)
       : source_(std::move(source)), name_(std::move(name)), kept_(patches) {
     for (std::size_t i = 0; i < patches; ++i) {

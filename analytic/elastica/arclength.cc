@@ -258,11 +258,11 @@ PlanarState look_up(const std::vector<TaylorStep>& steps, double S, double a, do
   return above->at(S);
 }
 
-/// What two integrations with different steps say of the error.
+/// The error, from two integrations with different steps.
 struct ErrorEstimate {
   double position = 0;  ///< of the tip, over the length
   double angle = 0;     ///< relative
-  double rounding = 0;  ///< what the last bits of the load and of S make of either
+  double rounding = 0;  ///< of either, by the last bits of the load and of S
 };
 
 ErrorEstimate difference(const PlanarState& a, const PlanarState& b, double angle) {

@@ -33,7 +33,7 @@ struct CheckPoints {
   }
 };
 
-/// What is interpolated: w, z, the two quaternion components, θ', M and H.
+/// The interpolated values: w, z, the two quaternion components, θ', M and H.
 std::array<double, 7> components(const PlanarState& s) {
   return {s.w, s.z, std::sin(s.theta / 2), std::cos(s.theta / 2), s.curvature, s.moment, s.force};
 }
@@ -90,8 +90,8 @@ class CentrelineBuilder {
         scale[c] = std::max(scale[c], std::abs(values[i][c]));
     }
     for (std::size_t c = 0; c < scale.size(); ++c) {
-      // κL, M and H are relative to 1 or more: less bends nothing. And the last bits of S move a
-      // value by its slope: no interpolation resolves that.
+      // κL, M and H are relative to 1 or more. The last bits of S move a value by its slope: no
+      // interpolation resolves that.
       double slope = 0;
       for (std::size_t i = 0; i + 1 < node_count; ++i)
         slope = std::max(slope,

@@ -86,7 +86,7 @@ PlanarProbe sinking_force(PlanarProblem problem, double height, double guess,
   return {problem.load, std::move(shape)};
 }
 
-/// What a relative change of the load makes of δ near 90°, h change/cos²θ_c.
+/// Change of δ near 90° by a relative change of the load: h change/cos²θ_c.
 double uncertainty(const PlanarShape& shape, double height, double change) {
   const double cosine = std::sin(state_below(shape, shape.contact.value()).phi);
   return change * height / (cosine * cosine);
@@ -134,8 +134,7 @@ std::optional<PlanarProbe> probe_by_load(PlanarProblem problem, double deflectio
       try {
         shape = solver(problem);
       } catch (const SolverError&) {
-        // So near to 90° that not even the shape is told to the tolerance: beyond what is sought,
-        // or what is sought cannot be found by its load.
+        // So near to 90° that even the shape misses the tolerance: counts as slipped off.
       }
     }
     if (!shape) return slipped_off;

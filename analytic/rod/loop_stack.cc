@@ -70,7 +70,7 @@ class LoopStack::Part {
 
   const RodStretch& stretch() const { return stretch_; }
   double length() const { return extent_ * middle_.derivative.norm(); }
-  /// r at the middle, from that of the whole; of a whole stretch, r itself.
+  /// r at the middle less r at the whole's middle; of a whole stretch, r itself.
   const Vector3& from_whole() const { return from_whole_; }
 
   /// The distance (m) of the middle section's edge from a point at the offset a from its centre.
@@ -108,9 +108,8 @@ class LoopStack::Part {
         middle_(at(magnet, stretch, middle_S)),
         normal_(middle_.normal()) {}
 
-  /// r at ΔS from the middle, less r there, by integration of dr/dS, with the digits of the small
-  /// difference: the loops beside a point that is close to the mantle must not shift against each
-  /// other.
+  /// r at ΔS from the middle, less r there, by integration of dr/dS: the loops beside a point close
+  /// to the mantle must not shift against each other by rounding.
   Vector3 offset(double dS) const {
     const std::size_t nodes = magnet_.centreline.pieces()[stretch_.piece].S.size();
     const QuadratureRule& rule = sources::unit_gauss_legendre(nodes / 2 + 1);

@@ -11,9 +11,9 @@ namespace ciliaval::analytic::rod {
 
 /// The flat slices of the paper's Eq. 8–9 as current loops: each slice of thickness dS and
 /// magnetisation M d₃ is a current M dS around its edge, so that B = μ₀ ∫ M H(loop at S) dS, inside
-/// the magnet as well. The integral is Gauss–Legendre on parts that are bisected towards the field
-/// point, their orders raised one by one. Parts and their loops depend on the deformation alone:
-/// each is made when the first point asks for it and kept; several threads may ask at once.
+/// the magnet as well. The integral is Gauss–Legendre of adaptive order on parts that are bisected
+/// towards the field point. Parts and their loops depend on the deformation alone: each is made for
+/// the first point that needs it and kept; several threads may ask at once.
 class LoopStack {
  public:
   explicit LoopStack(const RodMagnet& magnet);
@@ -21,9 +21,9 @@ class LoopStack {
   LoopStack(const LoopStack&) = delete;
   LoopStack& operator=(const LoopStack&) = delete;
 
-  /// B (T) at x, the estimate of its error not above tolerance·|B|: the change of the last raising
-  /// of the orders plus what the rounding of the positions makes. Throws InputError on the rim of
-  /// an end face, SolverError on the mantle or if the tolerance cannot be reached.
+  /// B (T) at x, the estimate of its error not above tolerance·|B|: the change from the last orders
+  /// but one plus the rounding of the positions. Throws InputError on the rim of an end face,
+  /// SolverError on the mantle or if the tolerance cannot be reached.
   sources::FieldValue field(const Vector3& x, double tolerance) const;
 
  private:

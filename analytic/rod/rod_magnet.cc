@@ -12,8 +12,8 @@
 namespace ciliaval::analytic::rod {
 namespace {
 
-/// The stretches of one segment. Interfaces and breaks are sums of the same lengths, perhaps in
-/// another order: what is shorter than their rounding error is no stretch.
+/// The stretches of one segment. Interfaces and breaks may differ by rounding, which makes no
+/// stretch.
 void append_stretches(RodMagnet& magnet, std::size_t segment, double begin, double end, double M) {
   const std::vector<double>& breaks = magnet.centreline.breaks();
   const double rounding = 1e-12 * magnet.centreline.length();
@@ -169,8 +169,8 @@ std::vector<RodInterior::Line> RodInterior::sample() const {
     if (!continues) lines.emplace_back();
     append_samples(i, lines.back());
     if (i > 0 && magnet_.stretches[i - 1].segment + 1 == segment) {
-      // An interface's section is that of the segment below, so that a point on it is on the same
-      // side for the disc and for both segments.
+      // An interface has the lower segment's section, so that a point on it is on the same side for
+      // the disc and for both segments.
       const Sample& below = lines[lines.size() - 2].back();
       lines.back().front().position = below.position;
       lines.back().front().normal = below.normal;

@@ -36,10 +36,10 @@ struct RodMagnet {
   double radius = 0;  ///< m
   const Centreline& centreline;
   std::vector<RodStretch> stretches{};  ///< from base to tip
-  std::vector<RodEnd> ends{};           ///< those with a jump
+  std::vector<RodEnd> ends{};           ///< with a jump
 };
 
-/// Throws InputError if the cilium has no segments, or its length is not that of the centreline.
+/// Throws InputError if the cilium has no segments, or is not as long as the centreline.
 RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation);
 
 /// The state at S on a stretch, by the interpolation of the stretch's own piece.
@@ -63,8 +63,8 @@ std::optional<std::vector<RodStretch>> graded_stretches(
 /// than its radius), so that the rod is no body.
 void require_body(const RodMagnet& magnet);
 
-/// The inside of the magnetic segments. What the search needs is made at the first point that is
-/// near enough to be inside; several threads may ask at once.
+/// The inside of the magnetic segments. The search is prepared at the first point that is near
+/// enough; several threads may ask at once.
 class RodInterior {
  public:
   explicit RodInterior(const RodMagnet& magnet);

@@ -65,7 +65,7 @@ void append_slices(const RodMagnet& magnet, std::span<const RodStretch> segment,
   }
 }
 
-/// B(n), and what it differs from B(n/2) (of n = 1: B(2)) as the uncertainty.
+/// B(n), and its difference from B(n/2) (of n = 1: B(2)) as the uncertainty.
 template <class Sum>
 Field field_of_sums(std::span<const Vector3> points, std::size_t grain, const Sum& sum,
                     const Sum& other) {

@@ -17,7 +17,7 @@ const QuadratureRule& unit_gauss_legendre(std::size_t n);
 /// The orders tried one after the other by `integrate_adaptively`.
 inline constexpr std::size_t quadrature_orders[] = {4, 6, 8, 12, 16, 24, 36, 54};
 
-/// What `integrate_adaptively` is asked.
+/// The demand on `integrate_adaptively`.
 struct AdaptiveOrder {
   double tolerance;                      ///< relative to |B|
   std::size_t highest_order;             ///< one of `quadrature_orders`
@@ -36,13 +36,12 @@ inline void require_tolerance(const FieldValue& value, const AdaptiveOrder& aske
     throw_tolerance_missed(asked, reached / value.B.norm());
 }
 
-/// `other_part` plus the sum of the integrals over `parts`, where `contribution(part, n)` is that
-/// of one part by a rule of order n. Each part's order is raised by itself until the sum of the
-/// differences between each part's last two orders is below tolerance·|B|; that sum is the estimate
-/// returned. It is the error of the last order but one: for a smooth integrand it bounds the error
-/// with room to spare. A part starts with the orders of the levels `first_level(part)` − 1 and
-/// `first_level(part)`: a good guess saves the lower ones, a bad one costs time alone. Throws
-/// SolverError if the tolerance is missed at the highest order.
+/// Adaptive Gauss order: `other_part` plus the sum of the integrals over `parts`, where
+/// `contribution(part, n)` is the integral over one part by a rule of order n. The parts' orders
+/// are raised one by one until the sum of the differences between each part's last two orders is
+/// below tolerance·|B|. That sum, the error of the last orders but one, is the estimate returned. A
+/// part starts with the orders of the levels `first_level(part)` − 1 and `first_level(part)`.
+/// Throws SolverError if the tolerance is missed at the highest order.
 template <class Parts, class Contribution, class FirstLevel>
 FieldValue integrate_adaptively(const Parts& parts, Contribution contribution,
                                 const AdaptiveOrder& asked, FirstLevel first_level) {

@@ -35,10 +35,9 @@ void require_finite(const FieldValue& value, const Vector3& x);
 void for_ranges(std::size_t count, std::size_t longest,
                 const std::function<void(std::size_t begin, std::size_t end)>& work);
 
-/// `field(x)`, a FieldValue, at each of the points, which are dealt out to threads `grain` at a
-/// time: as many as take some 50 µs, or waking a thread costs more than it saves. `field` must bear
-/// to be called by several threads at once. Throws InputError if a point is not finite, SolverError
-/// if a result is not; of several errors that of the first point.
+/// `field(x)`, a FieldValue, at each of the points, dealt out to threads `grain` (some 50 µs of
+/// work) at a time; several threads call `field` at once. Throws InputError if a point is not
+/// finite, SolverError if a result is not; of several errors the first point's.
 template <class PointField>
 Field field_at(std::span<const Vector3> points, std::size_t grain, const PointField& field) {
   Field result;

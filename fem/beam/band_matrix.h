@@ -36,7 +36,7 @@ class BandMatrix {
 
  private:
   std::size_t half_bandwidth_ = 0;
-  /// Column by column (i, j) at row 2 k + i − j; the first k rows are for what pivoting fills.
+  /// Column by column (i, j) at row 2 k + i − j; pivoting fills the first k rows.
   Eigen::MatrixXd entries_;
   std::vector<dealii::types::blas_int> pivots_;
 };

@@ -8,7 +8,6 @@
 #include "problem/cilium.h"
 #include "problem/load.h"
 
-// The cilium as a beam: where its elements end and what its loads are there.
 namespace ciliaval::fem::beam {
 
 /// A system whose vertex `loaded` carries the point load, if the load is one.

@@ -13,12 +13,11 @@
 namespace ciliaval::fem::beam {
 namespace {
 
-/// A contact this near to the end of a segment (relative to L) is at the end: no force can be told
-/// from the last bit of a height.
+/// A contact this near to the end of a segment (relative to L) is at the end.
 constexpr double at_end = 1e-12;
 
-/// Of the increment where the force at the end of a segment is found. Its error is the square; what
-/// is left of z − h by rounding moves a small force by much more than the tolerance.
+/// Tolerance of the increment where the force at the end of a segment is found. The error is its
+/// square; the rounding of z − h moves a small force by much more than the usual tolerance.
 constexpr double force_tolerance = 1e-8;
 
 /// Iterations without any progress after which a load is given up.
@@ -83,10 +82,9 @@ std::optional<TipLoaded> tip_loaded(CiliumBeam& beam, const TipLoaded& from, dou
   return report.converged ? std::optional(std::move(to)) : std::nullopt;
 }
 
-/// The dead force at the tip that brings it down to a height, with its equilibrium: bracketed and
-/// bisected until Newton's method with the force for the unknown converges inside the bracket. It
-/// takes many iterations, but never meets the contact point that runs away where θ comes near 90°.
-/// None if a dead force does not converge.
+/// The dead force at the tip that brings it down to a height: bracketed and bisected until Newton's
+/// method with the force for the unknown converges inside the bracket. Slow, but safe where θ comes
+/// near 90° and the contact point runs away. None if a dead force does not converge.
 struct SunkTip {
   double force = 0;       ///< N
   double deflection = 0;  ///< m
@@ -126,8 +124,7 @@ std::optional<SunkTip> force_that_sinks_the_tip(const Cilium& cilium, const Beam
   return std::nullopt;
 }
 
-/// A force of the order of the one that pushes the point at h aside by δ: 3 EI δ/h³ of a uniform
-/// cilium of the softest material.
+/// The force for the deflection δ at h of a uniform cilium of the softest material, 3 EI δ/h³.
 double estimated_force(const System& system, double displacement, double height) {
   const double slenderness = system.length_scale() / height;
   return 3 * system.force_scale() * displacement / height * slenderness * slenderness;
@@ -201,7 +198,7 @@ bool ContactSolver::find_force(Loaded& trial, MechanicsStep& step) {
 double ContactSolver::first_increment() const {
   const double height = contact_height(*last_).value();
   if (last_->is<ProbeLoad>()) return height / 2;
-  // sin θ = F h²/(2EI) of a uniform cilium of the softest material: twice what it bears.
+  // Twice the slip-off force of a uniform cilium of the softest material, sin θ = F h²/(2EI).
   return 4 * beam_->system.force_scale() * std::pow(cilium_.length() / height, 2);
 }
 
@@ -262,7 +259,7 @@ ContactSolver::Leg ContactSolver::follow(const Load& load, MechanicsStep& step,
 
 void ContactSolver::enter_next_segment() {
   entry_magnitude_ = magnitude(*last_);
-  // The elements of no length above the vertex become those below it: same nodes, now loaded.
+  // The elements of no length above the vertex become elements below it: same nodes, now loaded.
   const std::size_t p = options_.degree;
   const std::size_t contact = beam_->loaded * p;
   const std::size_t n = std::size_t{1} << options_.refinement;

@@ -10,12 +10,11 @@
 namespace ciliaval::fem::beam {
 
 /// Horizontal force that stays at height h while the cilium slides under it. The point of contact
-/// is a vertex that moves along the cilium: its height is h, and its arc length s_c is the unknown
-/// that goes with that equation in Newton's method. Of a contact load the force is given; of a
-/// probe the deflection δ of that vertex is, one equation more, and the force one unknown more. The
-/// vertex starts in the segment that holds h. Where it comes to the end of its segment, the force
-/// with which that end is at h is found, and the same equilibrium goes on with the vertex at the
-/// lower end of the next segment. Of the last segment that is the slip-off.
+/// is a vertex that moves along the cilium: z = h is one more equation of Newton's method, and its
+/// arc length s_c one more unknown. A contact load gives the force; a probe gives the deflection δ
+/// of the vertex, and the force is a second unknown. The vertex starts in the segment that holds h.
+/// At the end of its segment the force is found with which that end is at h, and the vertex goes on
+/// at the lower end of the next segment. At the end of the last segment the contact slips off.
 class ContactSolver {
  public:
   ContactSolver(Cilium cilium, BeamOptions options)
@@ -44,20 +43,20 @@ class ContactSolver {
 
   /// The unloaded cilium with the vertex at S = h.
   void stand_straight(const Load& load);
-  /// Raises or lowers the magnitude to that of `load` or to that at the segment's end.
+  /// Raises or lowers the magnitude to the load's, or to its value at the segment's end.
   Leg follow(const Load& load, MechanicsStep& step, const PathProgress& progress);
   /// Newton's method with s_c for the unknown, and of a probe the force; false if it fails.
   bool find_arclength(Loaded& trial, double magnitude, MechanicsStep& step,
                       const PathProgress& progress);
-  /// Newton's method with the force for the unknown and s_c given by the state's shift. The force
-  /// is the first guess and the result; false if it fails.
+  /// Newton's method with the force for the unknown, which is also the guess, and s_c given by the
+  /// state's shift; false if it fails.
   bool find_force(Loaded& trial, MechanicsStep& step);
-  /// The same from a state near the end of the host to that end; false if it fails or the magnitude
-  /// is not between `from` and `aim`.
+  /// The same at the end of the host; false if it fails or the magnitude is not between `from` and
+  /// `aim`.
   bool go_to_end(Loaded crossing, double from, double aim, MechanicsStep& step);
   /// Whether the equilibrium that is there can be followed to the load.
   bool goes_on(const Load& load) const;
-  /// Of the magnitude, that Newton's method may take from the straight cilium.
+  /// First increment of the magnitude from the straight cilium.
   double first_increment() const;
   /// The force or the displacement of an equilibrium, whichever the load prescribes.
   double magnitude_of(const Loaded& trial) const;

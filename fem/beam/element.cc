@@ -18,8 +18,8 @@ struct Interpolation {
   Interpolation(const ReferenceElement& reference, std::span<const Vector3> position,
                 std::span<const Quaternion> rotation, std::size_t g) {
     for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
-      const double N = reference.values(static_cast<Index>(g), static_cast<Index>(a));
-      const double D = reference.derivatives(static_cast<Index>(g), static_cast<Index>(a));
+      const double N = reference.N(g, a);
+      const double D = reference.D(g, a);
       r += N * position[a];
       t += D * position[a];
       p += N * rotation[a].coeffs();
@@ -45,8 +45,8 @@ void add_residual(const ReferenceElement& reference, const ElementData& data, st
   const double h = data.length;
   const Vector3 load = h * data.force_per_length + x.t[2] * data.force_per_height;
   for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
-    const double N = w * reference.values(static_cast<Index>(g), static_cast<Index>(a));
-    const double D = w * reference.derivatives(static_cast<Index>(g), static_cast<Index>(a));
+    const double N = w * reference.N(g, a);
+    const double D = w * reference.D(g, a);
     residual.segment<3>(node_row(a)) += D * f.t - N * load;
     gradient[a] += N * f.p + D * f.s;
   }
@@ -57,7 +57,7 @@ void add_residual(const ReferenceElement& reference, const ElementData& data, st
       w * (strain.kappa - data.kappa0[g] - h * data.section.moment_compliance.cwiseProduct(m));
 }
 
-/// Adds one Gauss point's part of the tangent but for the curvature of the rotation update.
+/// Adds one Gauss point's part of the tangent, without the curvature of the rotation update.
 void add_tangent(const ReferenceElement& reference, const ElementData& data, std::size_t g,
                  const Strain& strain, const StressPower& f, const std::vector<Matrix43>& E,
                  Eigen::MatrixXd& K) {
@@ -65,12 +65,12 @@ void add_tangent(const ReferenceElement& reference, const ElementData& data, std
   const Index row = point_row(reference, g);
   for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
     const Index ra = node_row(a);
-    const double Na = reference.values(static_cast<Index>(g), static_cast<Index>(a));
-    const double Da = reference.derivatives(static_cast<Index>(g), static_cast<Index>(a));
+    const double Na = reference.N(g, a);
+    const double Da = reference.D(g, a);
     for (std::size_t b = 0; b < reference.n_nodes(); ++b) {
       const Index rb = node_row(b);
-      const double Nb = reference.values(static_cast<Index>(g), static_cast<Index>(b));
-      const double Db = reference.derivatives(static_cast<Index>(g), static_cast<Index>(b));
+      const double Nb = reference.N(g, b);
+      const double Db = reference.D(g, b);
       const Matrix4 H = Na * Nb * f.pp + Na * Db * f.sp.transpose() + Da * Nb * f.sp;
       K.block<3, 3>(ra + 3, rb + 3) += w * E[a].transpose() * H * E[b];
       K.block<3, 3>(ra, rb + 3) += w * Da * Nb * f.tp * E[b];
@@ -165,9 +165,7 @@ Eigen::VectorXd element_length_derivative(const ReferenceElement& reference,
   for (std::size_t g = 0; g < reference.n_points(); ++g) {
     const double w = reference.weights[g];
     for (std::size_t a = 0; a < reference.n_nodes(); ++a)
-      derivative.segment<3>(node_row(a)) -=
-          w * reference.values(static_cast<Index>(g), static_cast<Index>(a)) *
-          data.force_per_length;
+      derivative.segment<3>(node_row(a)) -= w * reference.N(g, a) * data.force_per_length;
     const Index row = point_row(reference, g);
     derivative.segment<3>(row) =
         -w * (Vector3::UnitZ() + data.section.force_compliance.cwiseProduct(state.force[g]));

@@ -17,6 +17,12 @@ struct ReferenceElement {
   Eigen::MatrixXd values;       ///< N_a(ξ_g), row g, column a
   Eigen::MatrixXd derivatives;  ///< dN_a/dξ(ξ_g)
 
+  double N(std::size_t g, std::size_t a) const {
+    return values(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(a));
+  }
+  double D(std::size_t g, std::size_t a) const {
+    return derivatives(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(a));
+  }
   std::size_t n_nodes() const { return nodes.size(); }
   std::size_t n_points() const { return points.size(); }
   /// Unknowns of an element: (r, θ) at each node, then (n, m) at each Gauss point.
@@ -25,7 +31,7 @@ struct ReferenceElement {
   }
 };
 
-/// What an element is apart from its state.
+/// The constants of an element.
 struct ElementData {
   double length = 0;  ///< h, reference arc length, m; 0 is allowed
   Section section;

@@ -19,8 +19,8 @@ struct NewtonOptions {
   std::optional<double> increment_tolerance = {};
 };
 
-/// Increments of one load, attempted or reached, after which it is given up: with few iterations
-/// and many cutbacks the increments may be ever so small, and all converge.
+/// Increments of one load after which it is given up: with few iterations and many cutbacks they
+/// may be ever so small, and all converge.
 inline constexpr int most_increments = 1000;
 /// Says so, and which option helps.
 std::string too_many_increments(unsigned int max_iterations);
@@ -37,7 +37,7 @@ struct Condition {
 /// z = height at a vertex.
 Condition at_height(std::size_t vertex, double height, Condition::Unknown unknown);
 
-/// What Newton's method did: dimensionless maximum norms, one for each iteration.
+/// The course of Newton's method: dimensionless maximum norms, one for each iteration.
 struct NewtonReport {
   bool converged = false;
   std::vector<double> residuals;   ///< before the iteration's update
@@ -51,12 +51,12 @@ std::string describe(const NewtonReport& report);
 /// Newton's method with the consistent tangent from the given state. Converged: the strain
 /// equations hold to tolerance × L, the equilibrium equations to tolerance × the section forces,
 /// and the last increment is below tolerance × L, tolerance rad and tolerance × the section forces;
-/// that of a condition's unknown may also be what the rounding of r leaves open. Each condition has
-/// an unknown of its own. The state is left as it was unless that is reached.
+/// the increment of a condition's unknown may also be rounding error. Each condition has an unknown
+/// of its own. Unless it converges, the state is left as it was.
 NewtonReport newton(System& system, State& state, const Loads& loads, const NewtonOptions& options,
                     std::span<const Condition> conditions = {});
 
-/// What a load path did.
+/// The course of a load path.
 struct PathReport {
   bool converged = false;
   double reached = 0;  ///< fraction t of the path that the state has reached, 1 if converged

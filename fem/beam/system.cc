@@ -49,8 +49,7 @@ void require_valid(const Mesh& mesh) {
     throw InputError("a moving mesh needs a velocity for every vertex");
 }
 
-/// Where the mesh moves, the length derivative of the residual takes Γ₀ = e₃ and K₀ = 0 for
-/// granted.
+/// element_length_derivative() holds for Γ₀ = e₃ and K₀ = 0 only.
 void require_straight_where_moving(const Mesh& mesh, const ReferenceCurve& curve) {
   for (std::size_t e = 0; e < mesh.n_elements() && !mesh.velocities.empty(); ++e) {
     if (mesh.velocities[e] == mesh.velocities[e + 1] && mesh.velocities[e] == 0) continue;
@@ -195,13 +194,9 @@ double System::potential_energy(const State& state, const Loads& loads) const {
 
 void System::add_point_loads(const Loads& loads, double factor, Eigen::VectorXd& residual) const {
   for (const PointLoad& load : loads.points) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto i = static_cast<Index>(c);
-      const std::size_t node = vertex_node(load.vertex);
-      residual[static_cast<Index>(node_unknown(node, c))] -= factor * load.force[i] / force_scale_;
-      residual[static_cast<Index>(node_unknown(node, 3 + c))] -=
-          factor * load.moment[i] / (force_scale_ * length_scale_);
-    }
+    const auto row = static_cast<Index>(node_unknown(vertex_node(load.vertex), 0));
+    residual.segment<3>(row) -= factor * load.force / force_scale_;
+    residual.segment<3>(row + 3) -= factor * load.moment / (force_scale_ * length_scale_);
   }
 }
 
@@ -283,23 +278,16 @@ Eigen::VectorXd System::solve(const Eigen::VectorXd& right_hand_side) const {
 }
 
 void System::update(State& state, const Eigen::VectorXd& increment) const {
-  const auto block = [&](std::size_t first) {
-    return [&increment, first](const auto& unknown) {
-      Vector3 values;
-      for (std::size_t c = 0; c < 3; ++c)
-        values[static_cast<Index>(c)] = increment[static_cast<Index>(unknown(first + c))];
-      return values;
-    };
-  };
   for (std::size_t j = 0; j < state.position.size(); ++j) {
-    const auto unknown = [&](std::size_t c) { return node_unknown(j, c); };
-    state.position[j] += length_scale_ * block(0)(unknown);
-    state.rotation[j] = (exponential(block(3)(unknown)) * state.rotation[j]).normalized();
+    const auto row = static_cast<Index>(node_unknown(j, 0));
+    state.position[j] += length_scale_ * increment.segment<3>(row);
+    state.rotation[j] =
+        (exponential(increment.segment<3>(row + 3)) * state.rotation[j]).normalized();
   }
   for (std::size_t k = 0; k < state.force.size(); ++k) {
-    const auto unknown = [&](std::size_t c) { return point_unknown(k, c); };
-    state.force[k] += force_scale_ * block(0)(unknown);
-    state.moment[k] += force_scale_ * length_scale_ * block(3)(unknown);
+    const auto row = static_cast<Index>(point_unknown(k, 0));
+    state.force[k] += force_scale_ * increment.segment<3>(row);
+    state.moment[k] += force_scale_ * length_scale_ * increment.segment<3>(row + 3);
   }
 }
 
@@ -325,11 +313,8 @@ void System::prescribe(State& state, const Loads& loads) const {
 }
 
 Vector3 System::reaction(const Eigen::VectorXd& residual, std::size_t vertex) const {
-  Vector3 force;
-  for (std::size_t c = 0; c < 3; ++c)
-    force[static_cast<Index>(c)] =
-        force_scale_ * residual[static_cast<Index>(node_unknown(vertex_node(vertex), c))];
-  return force;
+  return force_scale_ *
+         residual.segment<3>(static_cast<Index>(node_unknown(vertex_node(vertex), 0)));
 }
 
 }  // namespace ciliaval::fem::beam

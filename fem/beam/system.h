@@ -54,7 +54,7 @@ struct PrescribedDisplacement {
   Vector3 rotation = Vector3::Zero();
 };
 
-/// All that is applied to the beam and can be ramped.
+/// The loads of the beam, which can be ramped.
 struct Loads {
   std::vector<PointLoad> points;               ///< several on one vertex add up
   std::vector<Vector3> force_per_length;       ///< dead, N/m, one for each element; empty: none
@@ -99,7 +99,7 @@ class System {
 
   /// Π(state) less the work of the dead loads, J; force_per_height has no potential.
   double potential_energy(const State& state, const Loads& loads) const;
-  /// Dimensionless residual with all rows; those of supports hold the reactions (+ on the beam).
+  /// Dimensionless residual; the rows of supports hold the reactions (+ on the beam).
   Eigen::VectorXd residual(const State& state, const Loads& loads) const;
   /// Dimensionless tangent without supports, dense: for tests and small systems.
   Eigen::MatrixXd tangent(const State& state, const Loads& loads) const;

@@ -166,7 +166,7 @@ Deformation CalculixMesh::deformation(const Cilium& cilium,
           std::make_shared<const SolidBody>(solid_body(*space_, *quadrature_, cilium, at))};
 }
 
-/// The last lines of a log that say what went wrong, in one line; empty if none do.
+/// The last error in a log, or its last lines, in one line.
 std::string complaint(const fs::path& log) {
   std::ifstream in(log);
   std::vector<std::string> lines;
@@ -222,7 +222,7 @@ int iterations(const fs::path& file) {
   return sum;
 }
 
-/// What a run of CalculiX leaves.
+/// The result of a run of CalculiX.
 struct Solution {
   std::string failure;  ///< why there is none
   int iterations = 0;

@@ -27,7 +27,7 @@ constexpr double solver_tolerance = 1e-8;   ///< residual of ψ
 constexpr double dual_tolerance = 1e-4;     ///< of the duals, which only choose the leaves to cut
 constexpr double ball_over_distance = 0.7;  ///< radius of a sensor's ball over its distance
 constexpr double finest_over_extent = 1.0 / 4096;  ///< finest leaf over the radius of the bodies
-constexpr double refined_fraction = 0.7;  ///< of the indicators' sum, whose leaves are cut
+constexpr double refined_fraction = 0.7;           ///< of the indicators' sum, whose leaves are cut
 
 /// The sphere that holds all bodies and points, and the sensors' balls.
 struct Layout {
@@ -130,7 +130,7 @@ Source source_of(const Magnet& magnet, const Vector3& centre, double distance) {
   return source;
 }
 
-/// ψ in a space, with what belongs to it.
+/// ψ in a space, with its operator and its solver.
 struct Solution {
   PotentialSpace space;
   PotentialOperator matrix;
@@ -275,9 +275,9 @@ void Adaptive::update_induced() {
 }
 
 /// A harmonic function that is at most δ on the boundary has a gradient of at most 3δ/d at the
-/// distance d from it (mean-value property). δ holds the magnet's higher multipoles, of the induced
-/// moments the change by the last mesh and the higher multipoles, at most |m| a²/(πL⁴) for bodies
-/// within a radius a.
+/// distance d from it (mean-value property). δ holds the magnet's higher multipoles, and of the
+/// induced moments the last mesh's change and the higher multipoles, at most |m| a²/(πL⁴) for
+/// bodies within a radius a.
 double Adaptive::truncation() const {
   const double L = half_width_;
   const double delta = source_.rest + induced_change_ / (4 * std::numbers::pi * L * L) +
@@ -322,9 +322,9 @@ PotentialCycle Adaptive::solve() {
   return cycle;
 }
 
-/// Loads of the dual problems: the three components at one point, over |B| there; at more points
-/// three sums over all of them with signs that change from point to point, whose dual solutions
-/// have, in the mean over the signs, the squares of all duals together.
+/// Loads of the dual problems: the three components at one point, over |B| there. With more points
+/// three sums over all of them with random signs: in the mean over the signs, the squares of their
+/// solutions are the sums of the squares of all duals.
 std::vector<std::vector<Vector3>> Adaptive::dual_directions() const {
   std::vector<std::vector<Vector3>> result;
   for (int d = 0; d < 3; ++d) {
@@ -430,8 +430,8 @@ Vector3 PotentialCycle::estimate(std::size_t point) const {
 
 namespace {
 
-/// Whether B has moved from the last mesh but one by no more than the two estimates together, as it
-/// must if both hold: a single small estimate may be luck.
+/// Whether B has moved from the last mesh but one by no more than the two estimates together: a
+/// single small estimate may be luck.
 bool agrees_with_last(const std::vector<PotentialCycle>& cycles) {
   if (cycles.size() < 2) return false;
   const PotentialCycle& last = cycles.back();

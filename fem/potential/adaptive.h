@@ -47,8 +47,8 @@ struct PotentialResult {
 };
 
 /// Refines until the estimates are below the tolerance. Collective. Throws InputError if a point is
-/// not finite or too close to a body, a permeability is not positive or two bodies meet;
-/// SolverError if the tolerance is not reached.
+/// not finite, in a body or too close to one, a permeability is not positive or two bodies meet;
+/// SolverError if the tolerance is not reached with the unknowns allowed.
 PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control);
 
 }  // namespace ciliaval::fem::potential

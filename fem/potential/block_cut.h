@@ -25,8 +25,8 @@ struct PlaneGrid {
 /// a of the pieces b is cut wherever a plane meets one of the two edges along b of that section;
 /// and for each b the line along c is cut by the planes. Between cuts the integrals over what is
 /// inside are smooth functions of a and b, polynomials of degrees 2 and 1 if the block is a
-/// parallelepiped: two points for each piece do. What is missed is a plane that meets a face of the
-/// block, but none of its edges.
+/// parallelepiped: two points for each piece do. A plane that meets a face of the block, but none
+/// of its edges, is missed.
 class BlockCut {
  public:
   static constexpr std::size_t most_points = 6;

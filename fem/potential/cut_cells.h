@@ -22,10 +22,9 @@ struct Sampling {
 ///
 ///     ∫ m·∇φ_i dv   and   ∫ (μ_r − 1) ∇φ_i·∇φ_j dv
 ///
-/// as sums over the bodies' own quadrature points x_q, wherever these lie in the leaves. The
-/// integrands are polynomials in each leaf, so that its points can be replaced by those of a Gauss
-/// rule with the weights Σ_q w_q L_g(x_q), L_g the Lagrange polynomials of the rule: the same sums,
-/// to rounding error, at a cost that does not depend on the number of points.
+/// as sums over the bodies' own quadrature points x_q. The integrands are polynomials in each leaf,
+/// so that a Gauss rule with the weights Σ_q w_q L_g(x_q), L_g its Lagrange polynomials, gives the
+/// same sums to rounding error, at a cost that does not depend on the number of points.
 class CutCells {
  public:
   /// For elements of a degree up to `max_degree`.

@@ -18,8 +18,8 @@ struct SensorBall {
 ///
 ///     ∇ψ = ∫ k(|y|) y ψ dv / ∫ k y₁² dv,   k = (1 − |y|²/radius²)⁴,
 ///
-/// whatever ψ's higher derivatives. The mean of a finite-element solution converges twice as fast
-/// as its gradient at a point, and the dual problem has a smooth load.
+/// for any higher derivatives. The mean of a finite-element solution converges twice as fast as its
+/// gradient at a point, and the dual problem has a smooth load.
 class SensorFunctional {
  public:
   SensorFunctional(const PotentialSpace& space, std::vector<SensorBall> balls);

@@ -83,16 +83,16 @@ Magnet::Magnet(std::shared_ptr<const SolidBody> body, MagnetPushForward push_for
       throw InputError("the deformation of the magnet is not finite");
 }
 
-/// With a = x − r the tangent of the fibre is ∂x/∂S = r' + κ × a, J = d₃·∂x/∂S. Volume and moment
-/// are those per dS dr dφ: the section's element is r dr dφ.
+/// ∂x/∂S = r' + κ × (x − r), J = d₃·∂x/∂S. Volume and moment per dS dr dφ: the section's element
+/// is r dr dφ.
 MagnetSample Magnet::on_rod(const RodPart& part, const CentrelinePoint& section, double r,
                             double phi) const {
   const Vector3 offset = on_section(section, r, phi);
-  const Vector3 fibre = section.derivative + section.curvature.cross(offset);
+  const Vector3 tangent = section.derivative + section.curvature.cross(offset);
   const Vector3 normal = section.normal();
-  const double J = normal.dot(fibre);
+  const double J = normal.dot(tangent);
   const Vector3 moment = part.magnetization * r *
-                         (push_forward_ == MagnetPushForward::F ? fibre : Vector3(J * normal));
+                         (push_forward_ == MagnetPushForward::F ? tangent : Vector3(J * normal));
   return {section.position + offset, J * r, moment};
 }
 
@@ -132,8 +132,8 @@ void Magnet::sample(const Block& block, std::size_t n, std::vector<MagnetSample>
   }
 }
 
-/// Positions alone cost a small part of what the samples do: a section is read once for all its
-/// points, and a cell's polynomial is taken at the three coordinates of each direction in turn.
+/// Positions alone: a section is read once for all its points, and a cell's polynomial is taken at
+/// the three coordinates of each direction in turn.
 Magnet::Corners Magnet::corners(const Block& block) const {
   const auto coordinate = [&](std::size_t i, Eigen::Index d) {
     return block.range.min()[d] + static_cast<double>(i) / 2 * block.range.sizes()[d];

@@ -16,9 +16,8 @@
 
 namespace ciliaval::fem::potential {
 
-/// a(ψ, φ) = ∫ μ_r ∇ψ·∇φ of the free nodes, without a matrix: every leaf is a cube, so that its
-/// matrix in vacuum is its edge times that of the unit cube; leaves that a permeable body meets
-/// have their own in addition.
+/// a(ψ, φ) = ∫ μ_r ∇ψ·∇φ of the free nodes, without a matrix: in vacuum a leaf's matrix is its edge
+/// times the unit cube's; a leaf that a permeable body meets has a matrix of its own in addition.
 class PotentialOperator : public dealii::Subscriptor {
  public:
   using value_type = double;

@@ -9,8 +9,8 @@
 namespace ciliaval::fem::potential {
 
 struct PotentialOptions {
-  /// μ_r of the magnetised segments: about 1.05 for composites with NdFeB; 1 is what the dipole
-  /// models assume.
+  /// μ_r of the magnetised segments: about 1.05 for composites with NdFeB; the dipole models
+  /// have 1.
   double relative_permeability = 1.05;
   MagnetPushForward push_forward = MagnetPushForward::F;
   double tolerance = 1e-3;             ///< estimate of the error of B over |B|, at each sensor
@@ -19,12 +19,9 @@ struct PotentialOptions {
 };
 
 /// The field of the deformed magnet, with its recoil permeability, and of permeable plates, by a
-/// scalar potential in all of space (docs/theory/potential.md): finite elements on an octree that
-/// is refined for B at the sensors. Takes the deformation of any mechanics model.
-/// Field::uncertainty is an estimate, not a bound. field() is collective; it starts MPI. Throws
-/// InputError if a sensor lies in the magnet or a plate or too close to them, a plate meets the
-/// magnet or another plate, a permeability is not positive; SolverError if the tolerance is not
-/// reached with the unknowns allowed.
+/// scalar potential in all of space (docs/theory/potential.md): finite elements on an octree,
+/// refined for B at the sensors. Field::uncertainty is an estimate, not a bound. field() is
+/// collective; it starts MPI. Throws as solve_potential().
 class Potential : public FieldModel {
  public:
   explicit Potential(PotentialOptions options = {});

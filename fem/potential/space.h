@@ -53,14 +53,14 @@ class PotentialSpace {
 
   /// Values of a complete vector at the nodes of a cell.
   void read(int cell, const PotentialVector& complete, Eigen::Ref<Eigen::VectorXd> u) const;
-  /// Values at the nodes of a cell of the function that the free nodes alone span.
+  /// The same of a vector of free nodes.
   void read_free(int cell, const PotentialVector& free, Eigen::Ref<Eigen::VectorXd> u) const;
   /// The transpose: adds a cell's residuals to the free nodes'.
   void add_free(int cell, const Eigen::Ref<const Eigen::VectorXd>& r, PotentialVector& free) const;
 
   /// The function's values (A) on the outer boundary, zero at the nodes within; complete.
   PotentialVector boundary_values(const std::function<double(const Vector3&)>& psi) const;
-  /// Sets the hanging nodes' values and those that other ranks hold. Collective.
+  /// Sets the values of hanging nodes and of other ranks' nodes. Collective.
   void complete(PotentialVector& v) const;
 
   /// Adds each cell's share of the squares of the diagonal: Σ_i d_i |∂u_i/∂free|².

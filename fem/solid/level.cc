@@ -21,15 +21,14 @@ using namespace equilibrium;
 using namespace postprocessing;
 namespace {
 
-/// Observed order of the tip in the thickness of the finest layer, to which rings and growth are
-/// tied (docs/theory/solid.md): the singularities at the clamped rim and at the interfaces' rims
-/// govern.
+/// Observed order of the tip in the thickness of the finest layer (docs/theory/solid.md): the
+/// singularities at the rims of the base and of the interfaces govern.
 constexpr double tip_order = 1.5;
 
-/// Corrections of two loads are extrapolated to so many times their distance.
+/// Largest extrapolation of the corrections of two loads, in their distance.
 constexpr double farthest_extrapolation = 3;
 
-/// Says once, of however many levels, that it is not the finest mesh that is solved.
+/// Marks the text of every level but the finest, once.
 Progress coarser_progress(const Progress& progress) {
   if (!progress) return {};
   return [&progress](const std::string& text) {
@@ -44,14 +43,14 @@ void add(SolidState& sum, double factor, const SolidState& state) {
     sum.pressure[e] += factor * state.pressure[e];
 }
 
-/// What separates two levels' states under a load, with the factor that it has in a guess.
+/// The difference of two levels' states under a load, and its factor in a guess.
 struct Correction {
   double factor;
   EquilibriumPair equilibria;
 };
 
-/// Lagrange's polynomial in the load through no correction without load and those known, as far as
-/// they are of this load's place and extrapolated not too far.
+/// Lagrange's polynomial in the load through the known corrections and zero at no load. Corrections
+/// of another place are left out, and far extrapolations.
 std::vector<Correction> corrections(const Load& load, std::span<const EquilibriumPair> behind) {
   const auto usable = [&load](const EquilibriumPair& pair) {
     return same_place(pair.own->load, load) && same_place(pair.coarse->load, load) &&
@@ -70,7 +69,7 @@ std::vector<Correction> corrections(const Load& load, std::span<const Equilibriu
   return {{std::clamp(F / F1, -farthest_extrapolation, farthest_extrapolation), behind[0]}};
 }
 
-/// The pairs that two levels go on from, the last one first; at most two.
+/// The last two pairs of equilibria of two levels, the last one first.
 std::vector<EquilibriumPair> pairs(const LoadPathState* own, const LoadPathState* coarse) {
   if (own == nullptr || coarse == nullptr) return {};
   std::vector<EquilibriumPair> result{{&own->current, &coarse->current}};

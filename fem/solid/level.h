@@ -36,8 +36,8 @@ struct EquilibriumPair {
   const equilibrium::Equilibrium* coarse;
 };
 
-/// The discretised cilium on one mesh, in the frame of that mesh, with its solvers, which are made
-/// with the first load. Its members refer to one another: it stays where it is made.
+/// The discretised cilium on one mesh, in that mesh's frame, with its solvers, which are made with
+/// the first load.
 class Level {
  public:
   /// `coarser` gives the initial guesses, and with its own tip the estimate of the error; without
@@ -46,8 +46,8 @@ class Level {
   Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
         std::span<const material::Hyperelastic> materials, const LevelOptions& options,
         Level* coarser);
-  /// On the user's mesh, which is whole: loads of any azimuth, no coarser level and no estimate of
-  /// the error. Throws as meshes::gmsh::read_gmsh().
+  /// On the user's mesh, which is whole and has no coarser level. Throws as
+  /// meshes::gmsh::read_gmsh().
   Level(const Cilium& cilium, const meshes::MeshFile& mesh,
         std::span<const material::Hyperelastic> materials, const LevelOptions& options);
   Level(const Level&) = delete;
@@ -58,7 +58,7 @@ class Level {
   equilibrium::LoadPathOutcome advance(const Load& load, const Progress& progress,
                                        const std::function<void()>& on_equilibrium = {});
 
-  /// What the level goes on from; null before the first load.
+  /// The state of the load path; null before the first load.
   const equilibrium::LoadPathState* state() const { return solver_ ? &solver_->state() : nullptr; }
   /// Without a state, goes back to before the first load. Throws CheckpointError if it is not the
   /// state of a mesh of this size.
@@ -71,24 +71,23 @@ class Level {
   Deformation undeformed(double azimuth) const;
 
   /// Estimated error of the tip's position, m: its distance from the coarser level's tip, by
-  /// Richardson's rule for the order 1.5 of the finest layer's thickness
-  /// (docs/theory/solid.md). Empty without a coarser level or if that is not at the same load.
+  /// Richardson's rule for the order 1.5 of the finest layer's thickness (docs/theory/solid.md).
+  /// Empty unless there is a coarser level at the same load.
   std::optional<double> tip_uncertainty() const;
 
   double applied_force() const { return solver().current().applied_force; }
   std::size_t unknowns() const { return space_->unknowns(); }
 
  private:
-  /// What all constructors end with: the space on the triangulation and its mapping.
+  /// The space on the triangulation and its mapping.
   void discretise(discretisation::Extent extent, std::span<const material::Hyperelastic> materials);
   equilibrium::Newton& newton();
   void start_from_rest(const Load& first);
-  /// From the coarser level, which it brings into equilibrium with the load; without one, from the
-  /// beam.
+  /// From the coarser level, which it solves under the load; without one, from the beam.
   equilibrium::Guess initial_guess(const Load& load, const Progress& progress) const;
-  /// The coarser level's equilibrium with the load, interpolated, and corrected by the
-  /// levels' difference under two loads behind (the nearest first), which changes less than the
-  /// states do, and smoothly with the load.
+  /// The coarser level's equilibrium with the load, interpolated, and corrected by the levels'
+  /// difference under the last two loads (the nearest first), which is small and smooth in the
+  /// load.
   equilibrium::Guess guess(const Load& load, const equilibrium::Equilibrium& coarse,
                            std::span<const EquilibriumPair> behind) const;
   /// The beam's solution, if the options say so.

@@ -26,7 +26,7 @@ using namespace material;
 namespace {
 
 /// Meshes from coarse to fine. From one to the next the layers at the clamped end and at the
-/// interfaces and the cells under the mantle halve, and the others shrink as far as they matter.
+/// interfaces and the cells under the mantle halve.
 struct MeshLevel {
   unsigned int square_cells;
   unsigned int rings;
@@ -63,9 +63,8 @@ std::vector<Hyperelastic> materials(const Cilium& cilium, const SolidOptions& op
   return result;
 }
 
-/// Force scale under which a residual is rounding error: J − 1 carries a few ε, which the bulk
-/// modulus turns into forces of some ε K A on a section; Newton's method asks for 1e-6 of the
-/// scale.
+/// Force scale under which a residual is rounding error: J − 1 carries a few ε, which makes forces
+/// of some ε K A on a section.
 double least_force(const Cilium& cilium) {
   double stiffest = 0;
   for (const Segment& segment : cilium.segments)
@@ -99,7 +98,7 @@ meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidO
   return mesh;
 }
 
-/// The meshes from the coarsest to that of the refinement asked for; a user's mesh alone.
+/// The meshes from the coarsest to the refinement asked for; a user's mesh alone.
 std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const LoadPath& path,
                                                 const SolidOptions& options,
                                                 MPI_Comm communicator) {

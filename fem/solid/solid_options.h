@@ -8,7 +8,7 @@
 
 namespace ciliaval::fem::solid {
 
-/// What Newton's method starts from on the coarsest mesh.
+/// Start of Newton's method on the coarsest mesh.
 enum class InitialGuess {
   beam,  ///< the beam's solution at the same load
   none   ///< the last equilibria: the straight cilium at first

@@ -51,8 +51,7 @@ std::string surface_element(const UserMesh& mesh, const GmshElement& element, un
                      element.tag, boundary_names()[id], x[0], x[1], x[2]);
 }
 
-/// The boundary face with these four vertices; none if they are those of an inner face, throws if
-/// of none.
+/// The boundary face with these four vertices; empty for an inner face, throws if there is no face.
 std::optional<Face> find_face(const UserMesh& mesh, const Extrusion& extrusion,
                               const std::map<Extrusion::Edge, std::size_t>& mantle,
                               const GmshElement& element, unsigned int id) {

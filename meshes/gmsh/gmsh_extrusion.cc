@@ -31,7 +31,7 @@ std::array<std::size_t, 8> corners(const std::vector<std::size_t>& nodes, std::s
   return result;
 }
 
-/// What the file's unit would be if `length` (in it) were that of the cilium.
+/// The file's unit if `length` (in it) is the cilium's.
 std::string unit_advice(const UserMesh& mesh, double length) {
   static constexpr std::array<std::pair<double, std::string_view>, 6> units{
       {{1, "m"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "um"}, {1e-9, "nm"}, {0.0254, "inch"}}};
@@ -72,8 +72,8 @@ void check_height(const UserMesh& mesh) {
         fmt::format("the mesh stands on Z = {:.6g}: move it so that its base is Z = 0", low[2]));
 }
 
-/// Values that differ by no more than the tolerance become one; near an interface of the cilium
-/// they become that.
+/// Values that differ by no more than the tolerance become one; a plane near an interface of the
+/// cilium moves there.
 std::vector<double> find_planes(const UserMesh& mesh, std::vector<double> heights) {
   std::sort(heights.begin(), heights.end());
   std::vector<double> planes;
@@ -225,7 +225,7 @@ std::vector<std::size_t> turned(const std::vector<std::size_t>& nodes, const Fra
   return result;
 }
 
-/// Throws what keeps the cell from being a part of an extrusion.
+/// Throws the reason why the cell is no part of an extrusion.
 [[noreturn]] void fail_not_extruded(const UserMesh& mesh, const Extrusion& extrusion, std::size_t e,
                                     const std::array<std::size_t, 8>& vertex) {
   std::set<std::size_t> planes;

@@ -26,8 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Gmsh would run a file that is not a mesh as a script, so that only what begins and ends as a
-/// mesh comes before it.
+/// Gmsh would run a file that is not a mesh as a script: the file must begin and end as a mesh.
 void require_mesh_file(const fs::path& path) {
   const std::string name = path.string();
   std::error_code error;
@@ -126,7 +125,7 @@ std::vector<Block> read_blocks(int dimension, const std::vector<int>& entities) 
   return blocks;
 }
 
-/// Volumes: all; surfaces: those of the physical groups.
+/// All volumes, or the surfaces of the physical groups.
 std::vector<int> entities_of(int dimension, const GmshFile& file) {
   std::vector<int> entities;
   if (dimension == 3) {

@@ -36,13 +36,13 @@ struct GmshGroup {
   }
 };
 
-/// What CiliaVal uses of a Gmsh file.
+/// The used content of a Gmsh file.
 struct GmshFile {
   std::vector<std::size_t> node_tags;   ///< numbers of the nodes in the file
   std::vector<dealii::Point<3>> nodes;  ///< in the file's unit
   bool quadratic = false;               ///< 27 and 9 nodes in each element, else 8 and 4
   std::vector<GmshElement> hexahedra;
-  std::vector<GmshElement> quadrilaterals;  ///< those of the physical surfaces
+  std::vector<GmshElement> quadrilaterals;  ///< of the physical surfaces
   std::vector<GmshGroup> groups;            ///< of dimension 2 and 3
 
   template <typename Archive>
@@ -63,7 +63,7 @@ struct GmshElementType {
   std::vector<std::size_t> lexicographic;
 };
 
-/// That of the hexahedron (dimension 3) or quadrilateral (2), from Gmsh's own table, inside
+/// The hexahedron's (dimension 3) or quadrilateral's (2) from Gmsh's own table; inside
 /// in_gmsh_process().
 GmshElementType gmsh_element_type(int dimension, bool quadratic);
 

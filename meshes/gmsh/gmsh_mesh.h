@@ -16,10 +16,10 @@ namespace ciliaval::meshes::gmsh {
 /// "base", "mantle", "tip" by boundary id: the names of the physical surfaces.
 const std::vector<std::string>& boundary_names();
 
-/// What comes with the triangulation of a user's mesh.
+/// The companions of the triangulation of a user's mesh.
 struct GmshMesh {
   std::unique_ptr<dealii::MappingQCache<3>> mapping;  ///< quadratic, of the curved cells
-  std::vector<std::string> remarks;  ///< what is odd or poor but can be used, a sentence each
+  std::vector<std::string> remarks;                   ///< odd or poor but usable, a sentence each
 };
 
 /// Reads a Gmsh mesh of the cilium (docs/guide/meshes.md): hexahedra extruded along Z from Z = 0 to
@@ -29,8 +29,7 @@ struct GmshMesh {
 /// 1e-5 d of an exact extrusion and of the segments' ends are moved there. Second-order nodes are
 /// honoured; the mantle of a first-order mesh becomes a cylinder whose section has the area πR².
 /// The triangulation must be empty, and outlive the mapping. Throws FileError if the file cannot be
-/// read as a mesh, and InputError with the place, the reason and what to do if the mesh does not
-/// suit the cilium.
+/// read as a mesh, InputError if the mesh does not suit the cilium.
 GmshMesh read_gmsh(const MeshFile& source, const Cilium& cilium,
                    dealii::Triangulation<3>& triangulation);
 

@@ -19,7 +19,7 @@ struct UserMesh {
   const Cilium& cilium;
   GmshFile file;
   std::vector<std::size_t> segments;  ///< of the hexahedra
-  std::vector<std::string> remarks;   ///< what is odd but no fault
+  std::vector<std::string> remarks;   ///< oddities that are no faults
 
   /// Two positions nearer than this are the same, m.
   double tolerance() const { return 1e-5 * cilium.diameter; }

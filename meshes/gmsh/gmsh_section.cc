@@ -152,8 +152,8 @@ double angle(const Extrusion& extrusion, const Edge& e) {
   return std::atan2(std::abs(cross(a, b)), a * b);
 }
 
-/// The rim is one closed curve, once around the axis: its arcs, all without a neighbour, add up to
-/// a turn, and each of its columns ends two of them.
+/// The rim is one closed curve, once around the axis: each of its columns ends two arcs, and the
+/// arcs add up to a turn.
 void check_closed(const UserMesh& mesh, const Extrusion& extrusion, const Section& section) {
   std::map<std::size_t, int> ends;
   double turn = 0;
@@ -175,8 +175,8 @@ void check_closed(const UserMesh& mesh, const Extrusion& extrusion, const Sectio
                     turn / (2 * std::numbers::pi)));
 }
 
-/// Curved nodes of a first-order section. The factor by which the rim's nodes lie outside R is that
-/// of cylinder_mesh.cc for unequal arcs: Σ sin β (1 + (1 − cos β)/3) f² = Σ β, β half an arc.
+/// Curved nodes of a first-order section. The rim's nodes lie outside R by the factor f of
+/// node_radius() for unequal arcs: Σ sin β (1 + (1 − cos β)/3) f² = Σ β, β half an arc.
 void curve(const UserMesh& mesh, Extrusion& extrusion, Section& section,
            const std::map<Edge, std::vector<std::size_t>>& quads_of_edge) {
   double sector = 0;
@@ -200,8 +200,8 @@ void curve(const UserMesh& mesh, Extrusion& extrusion, Section& section,
   }
 }
 
-/// Curved nodes of a second-order section, from the lower face of the lowest layer; those of all
-/// others must be above them, half-way up or on a plane.
+/// Curved nodes of a second-order section, from the lower face of the lowest layer. All other nodes
+/// must be above them, half-way up or on a plane.
 void take_nodes(const UserMesh& mesh, const Extrusion& extrusion, Section& section) {
   section.centres.resize(extrusion.quads.size());
   const auto place = [&](const Extrusion::Cell& cell, std::size_t i) -> Point<2>& {

@@ -11,7 +11,7 @@
 
 #include "compare/input/csv.h"
 #include "compare/input/external/background.h"
-#include "problem/curvature.h"
+#include "problem/centreline.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
 

@@ -21,8 +21,7 @@ using NodalVectors = Eigen::Matrix<double, element_nodes, 3>;
 using Gradients = Eigen::Map<const Eigen::Matrix<double, element_nodes, 3 * element_points>>;
 using GlobalDofs = std::vector<dealii::types::global_dof_index>;
 
-/// One element's share, as it goes from the parallel worker to the serial copier, which takes the
-/// shares in the order of the cells.
+/// One element's share, from the parallel worker to the serial copier.
 struct ForceShare {
   std::size_t index = 0;
   bool admissible = true;

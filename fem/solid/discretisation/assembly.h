@@ -24,8 +24,7 @@ struct PressureEquation {
   PressureVector correction = PressureVector::Zero();                  ///< C⁻¹ R_p, Pa
 };
 
-/// Internal forces of a state. Rows of constrained degrees of freedom are kept: they are the
-/// reactions.
+/// Internal forces of a state. The rows of constrained degrees of freedom hold the reactions.
 struct InternalForces {
   dealii::Vector<double> forces;     ///< ∫ P : ∇N dV, N
   dealii::Vector<double> condensed;  ///< forces + Gᵀ C⁻¹ R_p: with p eliminated, N
@@ -46,8 +45,8 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
                        const PressureEquation& equation, dealii::FullMatrix<double>& matrix);
 
 /// Adds element_stiffness() of the given cells (indices of space.elements()) to the matrix, of all
-/// if none are given. The cells are computed in parallel and added in their order, so that the
-/// result does not depend on the number of threads; the same holds for internal_forces().
+/// if none are given. As in internal_forces(), threads compute the cells and one adds them in their
+/// order, so that the result does not depend on the number of threads.
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
                    const dealii::AffineConstraints<double>& constraints,
                    dealii::SparseMatrix<double>& matrix, std::span<const std::size_t> cells = {});
@@ -56,8 +55,8 @@ void add_stiffness(const SolidSpace& space, const SolidState& state, const Inter
 void advance(const SolidSpace& space, const InternalForces& internal,
              const dealii::Vector<double>& increment, SolidState& state);
 
-/// The pressure p = K π(J − 1) that belongs to a displacement, π the projection onto the element's
-/// linear functions. Makes a state from a displacement alone.
+/// Sets the pressure p = K π(J − 1) of a displacement, π the projection onto the element's linear
+/// functions.
 void project_pressure(const SolidSpace& space, SolidState& state);
 
 }  // namespace ciliaval::fem::solid::discretisation

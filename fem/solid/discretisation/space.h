@@ -21,8 +21,7 @@
 namespace ciliaval::fem::solid::discretisation {
 
 /// The element: displacement in Q2, pressure discontinuous and linear in X on each cell (Q2–P1,
-/// which satisfies the inf–sup condition). The pressure lives in the element alone and is
-/// condensed.
+/// which satisfies the inf–sup condition) and condensed.
 inline constexpr int element_degree = 2;
 inline constexpr int element_nodes = 27;  ///< nodes, lexicographic: first local coordinate fastest
 inline constexpr int element_dofs = 81;   ///< displacement degrees of freedom, 27·component + node
@@ -32,7 +31,7 @@ inline constexpr int element_pressures = 4;
 using PressureVector = Eigen::Matrix<double, element_pressures, 1>;
 using PressureMatrix = Eigen::Matrix<double, element_pressures, element_pressures>;
 
-/// What assembly needs of one cell, computed once in the reference configuration.
+/// The data of one cell for assembly, computed once in the reference configuration.
 struct SolidElement {
   dealii::Triangulation<3>::active_cell_iterator cell;
   std::array<dealii::types::global_dof_index, element_dofs> dofs;
@@ -60,7 +59,7 @@ struct SolidState {
 /// nodes, and linear fields are in the space.
 class SolidSpace {
  public:
-  /// `materials[i]` is that of the cells with material id i. Throws InputError if one is missing.
+  /// The cells with material id i have `materials[i]`. Throws InputError if one is missing.
   SolidSpace(const dealii::Triangulation<3>& triangulation, const dealii::Mapping<3>& mapping,
              std::span<const material::Hyperelastic> materials);
 
@@ -96,7 +95,7 @@ Eigen::Matrix<double, element_nodes, 3> nodal_displacements(
 /// Displacement prescribed on a part of the boundary.
 struct DirichletCondition {
   dealii::types::boundary_id boundary = 0;
-  std::array<bool, 3> components{true, true, true};         ///< which of them are prescribed
+  std::array<bool, 3> components{true, true, true};         ///< the prescribed ones
   std::function<Vector3(const Vector3& X)> displacement{};  ///< empty: zero
 };
 

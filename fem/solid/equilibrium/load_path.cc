@@ -15,11 +15,11 @@ using namespace discretisation;
 using namespace loads;
 namespace {
 
-/// What is left of a step that failed.
+/// A step that failed is shortened to this part.
 constexpr double cut_factor = 0.25;
 
-/// Cuts of steps that turn the material inside out in one iteration: the load is too large by far
-/// (4¹⁰ times, at most), each takes a single factorisation, and they do not count as max_cutbacks.
+/// Cuts of steps that turn the material inside out in one iteration. They do not count as
+/// max_cutbacks: each takes a single factorisation.
 constexpr unsigned int max_overshoots = 10;
 
 std::string number(double value) {
@@ -34,7 +34,6 @@ std::string history(const std::vector<double>& residuals) {
   return text;
 }
 
-/// "0.004 N"
 std::string with_unit(const Load& load) {
   return number(magnitude(load)) + " " + std::string(magnitude_unit(load));
 }

@@ -24,13 +24,13 @@ struct Equilibrium {
   double applied_force = 0;  ///< on the whole body along e, N
 };
 
-/// What a cheaper model knows about a load: a state near the equilibrium, or the magnitude below
-/// the load's with which it slipped off. Empty if it knows neither.
+/// A cheaper model's answer to a load: a state near the equilibrium, or the magnitude below the
+/// load's with which it slipped off, or neither.
 struct Guess {
   std::optional<discretisation::SolidState> state;
   double applied_force = 0;          ///< with the state, N
   std::optional<double> slip_off{};  ///< N, or m of a probe
-  bool lost = false;  ///< it failed, and costs more than it gives on the rest of the way
+  bool lost = false;                 ///< it failed: do not ask it again on this way
 };
 using InitialGuessSource = std::function<Guess(const Load&, const Progress&)>;
 /// The solver, made when it is first asked for.
@@ -64,7 +64,7 @@ struct Ramp {
   bool unguided = false;        ///< the initial guess is lost
 };
 
-/// All that the following of a load path goes on from.
+/// The state of a load path.
 struct LoadPathState {
   Equilibrium current;
   std::optional<Equilibrium> previous;
@@ -74,12 +74,10 @@ struct LoadPathState {
 };
 
 /// Follows a load path from equilibrium to equilibrium. A load is tried from the initial guess,
-/// where there is one; else, or if Newton's method fails, a load at the place (height, section) of
-/// the last one is reached from it, at once from a linear extrapolation of the last two equilibria
-/// or in steps that are cut to a quarter where they fail and doubled after each success; steps that
-/// overshoot at once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new place it
-/// starts from the straight solid: on the way from one place to another the cilium might slip off
-/// under loads that nobody asked for.
+/// then from a linear extrapolation of the last two equilibria at the same place (height, section).
+/// A step that fails is cut to a quarter, and doubled after each success; a step that overshoots at
+/// once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new place it starts from the
+/// straight solid: on the way from place to place the cilium might slip off.
 class LoadPathSolver {
  public:
   /// Starts from the straight solid under no load of the path's type. The space and the quadrature
@@ -89,8 +87,8 @@ class LoadPathSolver {
                  const Load& first, LoadPathOptions options, InitialGuessSource initial_guess = {});
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
-  /// a load fully applied. Calls `on_equilibrium` after each one on the way: from the state()
-  /// that is there at that time, the same advance() finds the same bits.
+  /// a load fully applied. Calls `on_equilibrium` after each equilibrium on the way: advance() goes
+  /// on from that state() with the same bits.
   LoadPathOutcome advance(const Load& target, const Progress& progress = {},
                           const std::function<void()>& on_equilibrium = {});
 
@@ -105,15 +103,14 @@ class LoadPathSolver {
   Attempt attempt_from(Equilibrium start, int& iterations, const Progress& progress);
   Equilibrium predicted(const Load& load) const;
   Guess guess_for(const Load& load, const Progress& progress) const;
-  /// The magnitude to try before the load's: the one guessed for the slip-off or, when that is
-  /// borne, a little more.
+  /// The magnitude to try before the load's: the guessed slip-off or, once borne, a little more.
   std::optional<double> toward_slip_off(const Guess& guess, const Load& load) const;
   void accept(Attempt&& attempt);
-  /// Makes the ramp's step shorter. False if it has been cut too often.
+  /// Shortens the ramp's step. False if it has been cut too often.
   bool cut(Ramp& ramp, bool overshot) const;
   LoadPathOutcome follow_ramp(const Progress& progress,
                               const std::function<void()>& on_equilibrium);
-  /// Narrows the bracket between the current load and the one that slipped.
+  /// Narrows the bracket between the current load and the slipped one.
   LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
   void restart(const Load& load);
 

@@ -25,9 +25,7 @@ using dealii::Vector;
 /// Residual beyond which an iteration is given up, relative to the force scale.
 constexpr double divergence = 1e12;
 /// Residual below which the increment alone decides. u carries ε|u|, which the stiffness K/h of the
-/// volume change turns into nodal forces; thin layers make them large, and fine meshes spread the
-/// load over many small nodal forces. For the paper's cilium on the default mesh the residual stays
-/// at some 1e-9 of the load with ν = 0.49, but at 1.5e-6 with ν = 0.4999.
+/// volume change turns into nodal forces: with ν = 0.4999 the residual stays at 1.5e-6 of the load.
 constexpr double rounding_level = 1e-4;
 
 /// The residual at the free degrees of freedom, relative to the force scale.
@@ -50,17 +48,14 @@ double relative_residual(const InternalForces& internal, const Vector<double>& e
   return norm > 0 ? norm / scale : 0;
 }
 
-/// Relative residual of the linear systems. An iteration of Newton's method then reduces the
-/// residual by no more than this factor: its quadratic convergence is kept down to there, and one
-/// or two iterations more reach the tolerance.
+/// Relative residual of the linear systems: Newton's quadratic convergence is kept down to there.
 constexpr double step_reduction = 1e-6;
 /// … where only the size of the solution is asked for.
 constexpr double estimate_reduction = 1e-3;
 /// Part of the last increment below which the next one is taken as the last tangent gives it.
 constexpr double chord_reduction = 1e-2;
-/// Residual up to which the last tangent is tried after increments that shrink fast: with quadratic
-/// convergence each ratio of increments is the square of its predecessor. From a beam's guess,
-/// which is far off in stiff directions, the last tangent would fail.
+/// Residual up to which the last tangent is tried after increments that shrink fast. From a beam's
+/// guess, which is far off in stiff directions, it would fail.
 constexpr double chord_residual = 1e-2;
 constexpr double fast_reduction = 0.1;
 

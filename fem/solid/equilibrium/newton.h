@@ -45,17 +45,17 @@ struct NewtonResult {
 using NewtonProgress = std::function<void(int, double)>;
 
 /// Newton's method for internal(u, p) = external(u), p condensed, with a LinearSolver for the
-/// unsymmetric tangent. It holds the matrix and its sparsity from one solution to the next. On
-/// several ranks all functions are collective, and all ranks hold the same states, bit by bit.
+/// unsymmetric tangent. All functions are collective; all ranks hold the same states, bit by bit.
 ///
 /// The force scale of the residual is the l₂ norm of the nodal external forces or, if they vanish,
-/// of the reactions at the constrained degrees of freedom. Once the residual is below the
-/// tolerance, or below 1e-4, where rounding errors may keep it, the increment that the last
-/// tangent gives for it estimates the error of the displacement that is left; when that is below
-/// the tolerance, it is added, and the state has converged. An increment of the last tangent that
-/// is a hundredth of the increment before it replaces that of a new tangent. It is tried at
-/// residuals below the same bound, and below 1e-2 where the last increment was at most a tenth of
-/// its predecessor.
+/// of the reactions at the constrained degrees of freedom. Stopping rule: once the residual is
+/// below the tolerance, or below 1e-4, where rounding errors may keep it, the last tangent's
+/// increment for it estimates the error of the displacement. If that is below the tolerance, it is
+/// added, and the state has converged.
+///
+/// An increment of the last tangent also spares a new tangent if it is at most a hundredth of the
+/// increment before. It is tried at residuals below the same bound, and below 1e-2 where the last
+/// increment was at most a tenth of its predecessor.
 class Newton {
  public:
   Newton(const discretisation::SolidSpace& space, dealii::AffineConstraints<double> constraints,

@@ -14,7 +14,7 @@ namespace ciliaval::fem::solid::loads {
 dealii::Vector<double> body_force(const discretisation::SolidSpace& space,
                                   const std::function<Vector3(const Vector3& X)>& b);
 
-/// The given nodal forces, whatever the displacement.
+/// The given nodal forces at any displacement.
 ExternalForces dead_forces(dealii::Vector<double> forces);
 
 /// Σ_a f_a: the resultant of nodal forces, N.

@@ -29,7 +29,7 @@ struct UnknownForce {
   double amplitude = 0;  ///< F: the guess, and the result
 };
 
-/// The load as far as it is spread over the solid (all but a section load); e in any case.
+/// The load as spread over the solid; of a section load the direction e alone.
 SpreadLoad spread_load(const Load& load, double area, double kernel_width);
 
 /// The load's nodal forces as a function of the displacement (docs/theory/solid.md).

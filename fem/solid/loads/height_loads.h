@@ -17,7 +17,7 @@
 namespace ciliaval::fem::solid::loads {
 
 /// A horizontal force per reference area and current height: g(z), its derivative, and the interval
-/// outside which it vanishes (at whose ends g must vanish).
+/// outside of which and at whose ends it vanishes.
 struct HeightDensity {
   std::function<double(double z)> value;       ///< g, Pa/m
   std::function<double(double z)> derivative;  ///< dg/dz
@@ -38,8 +38,8 @@ struct SpreadLoad {
 };
 
 /// Calls add(ζ, f) at quadrature points of the part from ≤ ζ ≤ to of an extrusion line, f the force
-/// per reference area there (Pa), along e, weight included. `z` holds the current heights of the
-/// line at ζ = 0, ½, 1, `length` its reference length.
+/// per reference area (Pa) along e, weight included. `z` holds the line's current heights at
+/// ζ = 0, ½, 1, `length` is its reference length.
 void integrate_load(const SpreadLoad& load, const Eigen::Vector3d& z, double length, double from,
                     double to, const std::function<void(double zeta, double force)>& add);
 

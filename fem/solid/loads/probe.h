@@ -14,10 +14,9 @@ namespace ciliaval::fem::solid::loads {
 ///
 ///   ū = N/D,   N = ∫ dA ∫ k(z − h) z_ζ (u·e) dζ,   D = ∫ dA ∫ k(z − h) z_ζ dζ,
 ///
-/// m. On extrusion lines that span the kernel ∫ k dz = 1, so that D is the section's area and ū the
-/// mean over the horizontal section at z = h and over the kernel. It differs from the centreline's
-/// deflection there, which the rods prescribe, by the second order of the kernel's width and the
-/// radius in the curvature: 0.065 w² κ/cos³θ along a line of curvature κ and slope θ
+/// m. Where the lines span the kernel, D is the section's area and ū the mean over the horizontal
+/// section at z = h and over the kernel. It differs from the centreline's deflection there, which
+/// the rods prescribe, by 0.065 w² κ/cos³θ along a line of curvature κ and slope θ
 /// (docs/theory/solid.md). `kernel` is contact_density() of any force. Where `gradient` is not
 /// null, ∂ū/∂u is added to it:
 ///

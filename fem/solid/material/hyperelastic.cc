@@ -7,7 +7,7 @@
 namespace ciliaval::fem::solid::material {
 namespace {
 
-/// What stress and tangent share.
+/// Terms that stress and tangent share.
 struct Kinematics {
   double J;
   Matrix3 H;        ///< F⁻ᵀ

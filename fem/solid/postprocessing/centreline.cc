@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "fem/solid/discretisation/assembly.h"
-#include "problem/curvature.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::postprocessing {

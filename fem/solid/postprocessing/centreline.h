@@ -19,14 +19,13 @@ namespace ciliaval::fem::solid::postprocessing {
 ///   κ = 2 vec(q′ q̄), q the quaternion of Λ, by its interpolation on the layer,
 ///   n, m = force and moment about r that the part above exerts on the part below.
 ///
-/// At the upper plane of a layer n and m are made of the internal nodal forces of its own cells,
-/// less their share of the spread load; below it the load between is added, integrated along Z. So
-/// n and m balance the load to the solver's tolerance on every mesh, next to a clamped edge too,
-/// where stresses would not. r is the element's own quadratic, so that it is exact and continuous
-/// from layer to layer. Where a contact kernel lies in a layer, the layer is divided: one piece
-/// below it, pieces of at most half its height inside, one above. Of a half body the image in y = 0
-/// is added to all integrals. `load` is the load of the state; the default is none, or a section
-/// load. Throws SolverError if det F ≤ 0 in the state.
+/// At the upper plane of a layer n and m are the internal nodal forces of its own cells, less their
+/// share of the spread load; below it the load between is added, integrated along Z. So n and m
+/// balance the load to the solver's tolerance on every mesh, where stresses would not. r is the
+/// element's own quadratic, exact and continuous from layer to layer. Where a contact kernel lies
+/// in a layer, the layer is divided: one piece below it, pieces of at most half its height inside,
+/// one above. A half body is completed by its image in y = 0. `load` is the load of the state; the
+/// default is none, or a section load. Throws SolverError if det F ≤ 0 in the state.
 Centreline centreline(const discretisation::SolidSpace& space,
                       const discretisation::ExtrudedQuadrature& quadrature,
                       const discretisation::SolidState& state, const loads::SpreadLoad& load = {});
@@ -42,9 +41,8 @@ struct PlaneForce {
   Vector3 force = Vector3::Zero();  ///< N
 };
 
-/// The same centreline where the displacement alone is known, not the stress that goes with it
-/// (another program's solution): n and m are by statics the loads above the section, on the
-/// deformed body. `state.pressure` is not used.
+/// The same centreline from the displacement alone (another program's solution): n and m are by
+/// statics the loads above the section, on the deformed body. `state.pressure` is not used.
 Centreline centreline_by_statics(const discretisation::SolidSpace& space,
                                  const discretisation::ExtrudedQuadrature& quadrature,
                                  const discretisation::SolidState& state,

@@ -46,7 +46,7 @@ void BlockCsr<Number>::update(const dealii::SparseMatrix<double>& matrix) {
                          first / node_unknowns) -
         nodes_.begin());
     for (Row k = 0; k < node_unknowns; ++k) {
-      // The columns are sorted, but for the diagonal, which deal.II stores first.
+      // deal.II stores the diagonal first, then the columns in order.
       std::size_t block = starts_[i];
       for (auto entry = matrix.begin(first + k); entry != matrix.end(first + k); ++entry) {
         const bool diagonal = entry->column() == first + k;
@@ -63,7 +63,7 @@ template <typename Number>
 void BlockCsr<Number>::vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const {
   const double* const X = x.begin();
   for_each(starts_.size() - 1, 64, [&](std::size_t i) {
-    // Nine sums: no addition waits for another.
+    // Nine sums, so that no addition waits for another.
     std::array<double, node_unknowns * node_unknowns> sums{};
     for (std::size_t block = starts_[i]; block < starts_[i + 1]; ++block) {
       const Number* const value = values_.data() + node_unknowns * node_unknowns * block;

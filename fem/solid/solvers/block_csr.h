@@ -23,17 +23,15 @@ void for_each(std::size_t count, std::size_t grain, const auto& work) {
       static_cast<unsigned int>(grain));
 }
 
-/// A copy of this rank's own rows of a matrix, in blocks of 3 × 3: the unknowns of a node stand
-/// together and are coupled with those of the same nodes, so that one column is kept for nine
-/// values. In single precision, for a preconditioner, that is 4.4 bytes a value to read, of the
-/// matrix itself 12.
+/// Block CSR of this rank's rows of a matrix, with blocks of 3 × 3, the unknowns of a node: one
+/// column index serves nine values. Single precision reads 4.4 bytes a value, the matrix itself 12.
 template <typename Number>
 class BlockCsr {
  public:
   /// The rows of whole nodes.
   BlockCsr(RowRange rows, MPI_Comm communicator) : rows_(rows), communicator_(communicator) {}
-  /// The matrix must be complete in the own rows, and its pattern always the same. Throws
-  /// SolverError if the pattern is not one of nodes.
+  /// The matrix must be complete in these rows, its pattern always the same. Throws SolverError if
+  /// the pattern does not couple whole nodes.
   void update(const dealii::SparseMatrix<double>& matrix);
   /// y = A x; vectors whole on every rank. Collective.
   void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const;

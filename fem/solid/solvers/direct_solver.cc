@@ -18,13 +18,13 @@ namespace {
 
 using dealii::SparsityPattern;
 
-// MUMPS's names of its jobs (users' guide 5.5, section 5.1) …
+// MUMPS's jobs (users' guide 5.5, section 5.1) …
 constexpr int start = -1;
 constexpr int end = -2;
 constexpr int analyse_pattern = 1;
 constexpr int factorize_matrix = 2;
 constexpr int solve_system = 3;
-// … and of its error codes (section 8).
+// … and error codes (section 8).
 constexpr int main_workspace_too_small = -9;
 constexpr int singular = -10;
 constexpr int integer_workspace_too_small = -8;
@@ -86,11 +86,9 @@ struct DirectSolver::Mumps {
     for (const std::size_t output : {1, 2, 3}) option(output) = -1;
     option(4) = 0;
     option(6) = 0;  // no columns permuted to large diagonals: a stiffness matrix has them
-    option(8) = 0;  // no scaling: it costs time and gains nothing here
-    // Each rank gives its own entries; one rank alone gives them as a whole, which is faster.
-    option(18) = alone ? 0 : 3;
-    // The pattern is analysed node by node, which is faster and keeps the number of operations.
-    option(15) = -static_cast<MUMPS_INT>(node_unknowns);
+    option(8) = 0;  // no scaling: it gains nothing
+    option(18) = alone ? 0 : 3;                           // each rank gives its own entries
+    option(15) = -static_cast<MUMPS_INT>(node_unknowns);  // the pattern is analysed node by node
     option(14) = first_margin;
   }
   Mumps(const Mumps&) = delete;

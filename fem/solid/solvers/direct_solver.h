@@ -20,9 +20,8 @@ class DirectSolver {
     general,        ///< A = LU
     symmetric_part  ///< (A + Aᵀ)/2 = LDLᵀ: half the work and memory
   };
-  /// The matrix is the sum over the ranks of the rows `rows` of their matrices, all with this
-  /// pattern, which must be symmetric and couple whole nodes (node_unknowns). Starts MPI if need
-  /// be.
+  /// Each rank gives the rows `rows` of its matrix; equal rows add up. The pattern must be
+  /// symmetric and couple whole nodes (node_unknowns). Starts MPI if need be.
   DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, RowRange rows,
                MPI_Comm communicator);
   ~DirectSolver();

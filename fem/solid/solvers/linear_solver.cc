@@ -20,7 +20,10 @@ constexpr unsigned int restart = 60;  ///< vectors of GMRES
 /// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
 constexpr unsigned int max_with_old_factors = 20;
 
-/// The matrix on one rank, its own rows on several.
+/// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
+constexpr dealii::types::global_dof_index direct_unknowns = 100000;
+
+/// The matrix on one rank, block CSR of the rank's rows on several.
 struct Product {
   const dealii::SparseMatrix<double>& matrix;
   const BlockCsr<double>& own;
@@ -42,11 +45,6 @@ struct Factors {
 
 }  // namespace
 
-SolverKind chosen(SolverKind kind, dealii::types::global_dof_index unknowns) {
-  if (kind != SolverKind::automatic) return kind;
-  return unknowns > direct_unknowns ? SolverKind::iterative : SolverKind::direct;
-}
-
 LinearSolver::LinearSolver(const SolidSpace& space,
                            const dealii::AffineConstraints<double>& constraints,
                            const dealii::SparsityPattern& pattern, SolverKind kind,
@@ -54,7 +52,8 @@ LinearSolver::LinearSolver(const SolidSpace& space,
     : communicator_(communicator),
       rows_(own_range(communicator, space.unknowns())),
       own_(rows_, communicator) {
-  if (chosen(kind, space.unknowns()) == SolverKind::iterative)
+  if (kind == SolverKind::iterative ||
+      (kind == SolverKind::automatic && space.unknowns() > direct_unknowns))
     multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_, communicator);
   else
     direct_ =
@@ -91,8 +90,7 @@ std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
                                        dealii::Vector<double>& solution, double reduction,
                                        unsigned int max_iterations) const {
   using Vector = dealii::Vector<double>;
-  // The flexible variant: the multigrid rounds to single precision, so that it is not quite linear,
-  // which the stiffness of the volume would amplify when the solution is put together.
+  // Flexible, for the multigrid rounds to single precision and is not quite linear.
   using Solver = dealii::SolverFGMRES<Vector>;
   dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
   Solver solver(control, Solver::AdditionalData(restart));

@@ -17,16 +17,9 @@
 
 namespace ciliaval::fem::solid::solvers {
 
-/// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
-inline constexpr dealii::types::global_dof_index direct_unknowns = 100000;
-
-/// What `automatic` is for this number of unknowns; any other kind as it is.
-SolverKind chosen(SolverKind kind, dealii::types::global_dof_index unknowns);
-
-/// Solves systems with the solid's tangent, which may be unsymmetric: by sparse LU (MUMPS), or by
-/// GMRES preconditioned from the right by one multigrid cycle. Vectors are whole on every rank, the
-/// work is shared by rows over the ranks of the communicator. All functions are collective and
-/// throw SolverError on failure, the same on all ranks.
+/// Solves systems with the solid's unsymmetric tangent: by sparse LU (MUMPS), or by GMRES
+/// preconditioned from the right by one multigrid cycle. Vectors are whole on every rank; the ranks
+/// share the work by rows. All functions are collective and throw SolverError on all ranks.
 class LinearSolver {
  public:
   /// The pattern must outlive it. The constraints may only set unknowns to zero.
@@ -40,13 +33,12 @@ class LinearSolver {
 
   /// Factorises, or prepares the multigrid. The matrix must stay as it is until the next call.
   void prepare(const dealii::SparseMatrix<double>& matrix);
-  /// For a matrix near the last one, as in an iteration of Newton's method: GMRES solves it with
-  /// the factors or the multigrid of the last one, as long as it converges fast.
+  /// For a matrix near the last one, as in an iteration of Newton's method: its factors or its
+  /// multigrid precondition GMRES, as long as that converges fast.
   void prepare_near_last(const dealii::SparseMatrix<double>& matrix);
 
   /// Any number of right-hand sides with the matrix last prepared. GMRES ends with
-  /// ‖b − Ax‖₂ ≤ reduction ‖b‖₂. Returns the number of iterations; 1 for
-  /// the matrix's own LU.
+  /// ‖b − Ax‖₂ ≤ reduction ‖b‖₂. Returns the number of iterations; 1 for the matrix's own LU.
   int solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution, double reduction);
 
  private:
@@ -59,10 +51,10 @@ class LinearSolver {
   MPI_Comm communicator_;
   RowRange rows_;
   const dealii::SparseMatrix<double>* matrix_ = nullptr;
-  BlockCsr<double> own_;  ///< of the matrix, on several ranks
+  BlockCsr<double> own_;  ///< this rank's rows of the matrix, on several ranks
   std::unique_ptr<DirectSolver> direct_;
   std::unique_ptr<Multigrid> multigrid_;
-  bool current_ = false;    ///< factors or multigrid are those of the matrix
+  bool current_ = false;    ///< factors or multigrid belong to the matrix
   unsigned int usual_ = 0;  ///< iterations that the multigrid took with its own matrix
 };
 

@@ -18,7 +18,7 @@ using dealii::Vector;
 using dealii::types::global_dof_index;
 
 /// Chebyshev iteration: polynomial degree, and the part of the spectrum that it damps, from the
-/// largest eigenvalue down (docs/theory/solid.md has the iterations of other values).
+/// largest eigenvalue down (docs/theory/solid.md).
 constexpr int smoother_degree = 2;
 constexpr double smoother_range = 10;
 constexpr double safety = 1.05;  ///< tangents of compressed cells are not quite positive

@@ -17,8 +17,8 @@
 
 namespace ciliaval::fem::solid::solvers {
 
-/// Two levels: on the Q2 space a Chebyshev iteration over the vertex patches before and after, on
-/// the trilinear functions of the same mesh the Galerkin matrix PᵀAP, factorised. P is the
+/// Two levels: a Chebyshev iteration over vertex-patch Schwarz on the Q2 space, before and after;
+/// the factorised Galerkin matrix PᵀAP on the trilinear functions of the same mesh, P the
 /// inclusion.
 class Multigrid {
  public:
@@ -27,7 +27,7 @@ class Multigrid {
             const dealii::AffineConstraints<double>& constraints, RowRange rows,
             MPI_Comm communicator);
 
-  /// For a matrix that is complete in the own rows. Throws SolverError.
+  /// For a matrix that is complete in this rank's rows. Throws SolverError.
   void update(const dealii::SparseMatrix<double>& matrix);
 
   /// One cycle from zero. Collective.
@@ -40,7 +40,7 @@ class Multigrid {
   };
   void make_prolongation(const discretisation::SolidSpace& space,
                          const dealii::AffineConstraints<double>& constraints);
-  /// Those that the own rows of the matrix add to, and on rank 0 the fixed ones.
+  /// The coarse rows that this rank adds to; on rank 0 also the constrained ones.
   RowRange own_coarse_rows() const;
   void add_coarse_row(const dealii::SparseMatrix<double>& matrix, Row row);
   void smooth(dealii::Vector<double>& x, const dealii::Vector<double>& b, bool from_zero) const;

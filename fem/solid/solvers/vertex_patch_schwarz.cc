@@ -84,7 +84,7 @@ void VertexPatchSchwarz::update(const SparseMatrix<double>& matrix) {
     const auto size = last - first;
     Eigen::MatrixXd block = Eigen::MatrixXd::Zero(size, size);
     for (auto row = first; row != last; ++row) {
-      auto column = first;  // both are sorted, but for the diagonal, which deal.II stores first
+      auto column = first;  // both are sorted; deal.II stores the diagonal first
       for (auto entry = matrix.begin(*row); entry != matrix.end(*row); ++entry) {
         if (entry->column() == *row) {
           block(row - first, row - first) = entry->value();

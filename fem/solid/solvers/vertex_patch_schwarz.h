@@ -25,11 +25,10 @@ std::size_t element_dof(int component, int node);
 double trilinear(std::size_t corner, int node);
 
 /// The additive Schwarz method on vertex patches. The patch of a vertex holds the nodes inside the
-/// cells around it (27 for an inner vertex of Q2: its own, those of its edges, faces and cells),
-/// and there the matrix is inverted exactly. A patch is large enough to hold displacements that
-/// keep the volume, so that the method does not slow down with K/μ (Schöberl, Numer. Math. 84,
-/// 1999). Every cell meets eight patches: the preconditioned matrix, if it is positive definite,
-/// has no eigenvalue beyond 8.
+/// cells around it (27 for an inner vertex of Q2); there the matrix is inverted exactly. A patch
+/// can hold displacements that keep the volume, so that the method does not slow down with K/μ
+/// (Schöberl, Numer. Math. 84, 1999). Every cell meets eight patches: the preconditioned matrix, if
+/// it is positive definite, has no eigenvalue beyond 8.
 class VertexPatchSchwarz {
  public:
   static constexpr double largest_eigenvalue = 8;
@@ -37,7 +36,7 @@ class VertexPatchSchwarz {
   VertexPatchSchwarz(const discretisation::SolidSpace& space,
                      const dealii::AffineConstraints<double>& constraints, RowRange rows,
                      MPI_Comm communicator);
-  /// Inverts the matrix on the patches of the vertices whose first row is own; single precision.
+  /// Inverts the matrix on the patches of this rank's vertices, in single precision.
   void update(const dealii::SparseMatrix<double>& matrix);
   /// z = Σ Rᵀ A⁻¹ R r over the patches of all ranks. Collective.
   void vmult(dealii::Vector<double>& z, const dealii::Vector<double>& r) const;
