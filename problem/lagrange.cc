@@ -58,6 +58,12 @@ void LagrangeBasis::values_and_derivatives(double x, std::span<double> values,
     for (std::size_t i = 0; i < n; ++i) derivatives[i] += values[j] * differentiation_[j * n + i];
 }
 
+LagrangeValues::LagrangeValues(const LagrangeBasis& basis, double x) : value{}, derivative{} {
+  const std::size_t n = basis.size();
+  if (n > value.size()) throw InputError("an interpolation has at most 16 nodes here");
+  basis.values_and_derivatives(x, std::span(value).first(n), std::span(derivative).first(n));
+}
+
 std::vector<double> chebyshev_points(std::size_t n, double a, double b) {
   if (n < 2) throw InputError("Chebyshev points of the second kind: at least two");
   std::vector<double> points(n);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,14 @@ class LagrangeBasis {
   std::vector<double> nodes_;
   std::vector<double> weights_;
   std::vector<double> differentiation_;  ///< D_ji = ℓ_i'(x_j), row j
+};
+
+/// Values and derivatives of the polynomials at one point, on the stack: at most 16 nodes.
+struct LagrangeValues {
+  std::array<double, 16> value;
+  std::array<double, 16> derivative;
+  /// Throws InputError if there are more nodes.
+  LagrangeValues(const LagrangeBasis& basis, double x);
 };
 
 /// n ≥ 2 Chebyshev points of the second kind on [a, b], increasing, both ends included exactly.

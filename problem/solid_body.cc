@@ -1,36 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "problem/solid_body.h"
 
-#include <array>
-#include <span>
-
-#include "problem/error.h"
-
 namespace ciliaval {
-namespace {
-
-constexpr std::size_t max_nodes = 16;
-
-/// Values and derivatives of the one-dimensional basis at a coordinate, on the stack.
-struct Shape {
-  std::array<double, max_nodes> value;
-  std::array<double, max_nodes> derivative;
-
-  Shape(const LagrangeBasis& basis, double x) : value{}, derivative{} {
-    if (basis.size() > max_nodes)
-      throw InputError("a solid cell has at most 16 nodes along an edge");
-    basis.values_and_derivatives(x, std::span(value).first(basis.size()),
-                                 std::span(derivative).first(basis.size()));
-  }
-};
-
-}  // namespace
 
 SolidPoint evaluate(const LagrangeBasis& nodes, const SolidCell& cell, const Vector3& xi) {
   const std::size_t n = nodes.size();
-  const Shape a(nodes, xi[0]);
-  const Shape b(nodes, xi[1]);
-  const Shape c(nodes, xi[2]);
+  const LagrangeValues a(nodes, xi[0]);
+  const LagrangeValues b(nodes, xi[1]);
+  const LagrangeValues c(nodes, xi[2]);
   SolidPoint point{Vector3::Zero(), Vector3::Zero(), Matrix3::Zero(), Matrix3::Zero()};
   Matrix3 current_gradient = Matrix3::Zero();
   std::size_t node = 0;
@@ -54,8 +31,8 @@ SolidPoint evaluate(const LagrangeBasis& nodes, const SolidCell& cell, const Vec
 
 FacePoint evaluate(const LagrangeBasis& nodes, const ChargedFace& face, double xi, double eta) {
   const std::size_t n = nodes.size();
-  const Shape a(nodes, xi);
-  const Shape b(nodes, eta);
+  const LagrangeValues a(nodes, xi);
+  const LagrangeValues b(nodes, eta);
   FacePoint point{Vector3::Zero(), Vector3::Zero()};
   Vector3 along_xi = Vector3::Zero();
   Vector3 along_eta = Vector3::Zero();

@@ -2,9 +2,7 @@
 #include "analytic/elastica/arclength.h"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -26,25 +24,6 @@ struct Accuracy {
   double tolerance;  ///< of the last terms of a step
   double fraction;   ///< of the longest step
 };
-
-/// Root of a function in [a, b], at whose ends it has the values f_a and f_b of opposite sign, to
-/// the last digits (absolute below 1).
-template <class Function>
-double root(const Function& function, double a, double b, double f_a, double f_b) {
-  if (f_a == 0) return a;
-  if (f_b == 0) return b;
-  if (a > b) {
-    std::swap(a, b);
-    std::swap(f_a, f_b);
-  }
-  const auto close = [](double left, double right) {
-    return right - left <= 8 * epsilon * std::max(1.0, std::abs(left));
-  };
-  std::uintmax_t evaluations = 200;
-  const auto [left, right] =
-      boost::math::tools::toms748_solve(function, a, b, f_a, f_b, close, evaluations);
-  return std::midpoint(left, right);
-}
 
 // ------------------------------------------------------------------------------------- contact
 
@@ -353,22 +332,9 @@ std::optional<PlanarShape> solve_arclength(const PlanarProblem& problem, double 
 
 double slip_off_arclength(const PlanarProblem& problem, double tolerance) {
   const Accuracy accuracy = step_accuracy(tolerance);
-  const auto above = [&](double log_load) {
+  return slip_off_load(problem, [&](double log_load) {
     return tip_above_contact(problem, std::exp(log_load), accuracy);
-  };
-  // As stiff all over as its stiffest segment, the cilium lies level at h for PL²/EI = 2/h².
-  double b = std::log(2.01 / (problem.point * problem.point));
-  double f_b = above(b);
-  double step = 0.25;
-  for (int k = 0; k < 60; ++k) {
-    const double a = b - step;
-    const double f_a = above(a);
-    if (f_a > 0) return std::exp(root(above, a, b, f_a, f_b));
-    b = a;
-    f_b = f_a;
-    step *= 1.5;
-  }
-  throw SolverError("elastica: no slip-off force found");
+  });
 }
 
 }  // namespace ciliaval::analytic::elastica

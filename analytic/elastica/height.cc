@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <boost/math/quadrature/tanh_sinh.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -22,16 +20,6 @@ double integral(const auto& integrand, double a, double b) {
   // On the unit interval: tanh-sinh asserts that a, b are many ulps apart.
   return (b - a) *
          rule.integrate([&](double t) { return integrand(a + (b - a) * t); }, 0.0, 1.0, 1e-12);
-}
-
-double root(const auto& function, double a, double b, double f_a, double f_b) {
-  if (f_a == 0) return a;
-  if (f_b == 0) return b;
-  std::uintmax_t evaluations = 200;
-  const auto [left, right] = boost::math::tools::toms748_solve(
-      function, a, b, f_a, f_b,
-      [](double l, double r) { return r - l <= 1e-16 + 1e-15 * std::abs(l); }, evaluations);
-  return std::midpoint(left, right);
 }
 
 /// S̃ of one material above a point where it is known, as a function of the depth u below the height
@@ -211,21 +199,9 @@ std::optional<PlanarShape> solve_height(const PlanarProblem& problem) {
 
 double slip_off_height(const PlanarProblem& problem) {
   require_height_form(problem);
-  const auto excess = [&](double log_load) {
+  return slip_off_load(problem, [&](double log_load) {
     return march(problem, std::exp(log_load), problem.point).excess;
-  };
-  double b = std::log(2.01 / (problem.point * problem.point));
-  double f_b = excess(b);
-  double step = 0.25;
-  for (int k = 0; k < 60; ++k) {
-    const double a = b - step;
-    const double f_a = excess(a);
-    if (f_a < 0) return std::exp(root(excess, a, b, f_a, f_b));
-    b = a;
-    f_b = f_a;
-    step *= 1.5;
-  }
-  throw SolverError("elastica, height form: no slip-off force found");
+  });
 }
 
 }  // namespace ciliaval::analytic::elastica

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -171,6 +173,35 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
         "elastica: the load over the bending stiffness, PL^2/EI, is not finite; check "
         "the units of force, length and Young's modulus");
   return problem;
+}
+
+double root(const std::function<double(double)>& function, double a, double b, double f_a,
+            double f_b) {
+  if (f_a == 0) return a;
+  if (f_b == 0) return b;
+  if (a > b) {
+    std::swap(a, b);
+    std::swap(f_a, f_b);
+  }
+  std::uintmax_t evaluations = 200;
+  const auto [left, right] = boost::math::tools::toms748_solve(
+      function, a, b, f_a, f_b,
+      [](double l, double r) { return r - l <= 1e-16 + 1e-15 * std::abs(l); }, evaluations);
+  return std::midpoint(left, right);
+}
+
+double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess) {
+  double b = std::log(2.01 / (problem.point * problem.point));
+  double f_b = excess(b);
+  double step = 0.25;
+  for (int k = 0; k < 60; ++k, step *= 1.5) {
+    const double a = b - step;
+    const double f_a = excess(a);
+    if ((f_a > 0) != (f_b > 0)) return std::exp(root(excess, a, b, f_a, f_b));
+    b = a;
+    f_b = f_a;
+  }
+  throw SolverError("elastica: no slip-off force found");
 }
 
 void add_break(std::vector<double>& breaks, double S) {

@@ -64,6 +64,16 @@ struct PlanarShape {
   int iterations = 0;             ///< integrations along the whole cilium
 };
 
+/// Root of a function in [a, b], at whose ends it has the values f_a and f_b of opposite sign, to
+/// the last digits.
+double root(const std::function<double(double)>& function, double a, double b, double f_a,
+            double f_b);
+
+/// The load of a contact problem where `excess`, a function of its logarithm, changes sign: the
+/// search goes down from PL²/EI = 2/h², where a cilium as stiff all over as its stiffest segment
+/// lies level at h. Throws SolverError if there is none.
+double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess);
+
 /// Shortest piece: it must have room for its nodes.
 inline constexpr double shortest_piece = 1e-13;
 /// Adds a break, unless one is already there within shortest_piece.

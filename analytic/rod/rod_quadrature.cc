@@ -21,14 +21,7 @@ using Slices = VolumeOptions::Slices;
 }
 
 /// Numbers of nodes along S (of each part), r and φ.
-struct Orders {
-  std::array<std::size_t, 3> n;
-  std::size_t& operator[](std::size_t direction) { return n[direction]; }
-  std::size_t operator[](std::size_t direction) const { return n[direction]; }
-  double nodes() const {
-    return static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
-  }
-};
+using Orders = std::array<std::size_t, 3>;
 
 /// Unit vectors towards the nodes of the trapezoidal rule.
 std::vector<Eigen::Vector2d> directions(std::size_t n) {
@@ -62,7 +55,7 @@ Vector3 slice_field(const CentrelinePoint& point, double radius, Slices slices,
 
 Vector3 rod_field(const RodMagnet& magnet, Slices slices, const std::vector<RodStretch>& parts,
                   const Orders& orders, const Vector3& x) {
-  if (orders.nodes() * static_cast<double>(parts.size()) > 2e7) throw_too_near(x);
+  if (orders[0] * orders[1] * orders[2] * parts.size() > 20'000'000) throw_too_near(x);
   const QuadratureRule& axial = sources::unit_gauss_legendre(orders[0]);
   const QuadratureRule& radial = sources::unit_gauss_legendre(orders[1]);
   const std::vector<Eigen::Vector2d> azimuthal = directions(orders[2]);
@@ -91,7 +84,7 @@ sources::FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodIn
       1e-4 * magnet.radius);
   if (!parts) throw_too_near(x);
   if (parts->empty()) return {};
-  Orders orders{{6, 6, 12}};
+  Orders orders{6, 6, 12};
   while (true) {
     sources::FieldValue value{rod_field(magnet, slices, *parts, orders, x), Vector3::Zero()};
     const double allowed = tolerance * value.B.norm() / 3;
@@ -107,7 +100,7 @@ sources::FieldValue rod_field_by_quadrature(const RodMagnet& magnet, const RodIn
         sources::throw_tolerance_missed({tolerance, 0, "quadrature of the model `volume`", x},
                                         change.norm() / value.B.norm());
     }
-    if (next.n == orders.n) return value;
+    if (next == orders) return value;
     orders = next;
   }
 }

@@ -36,15 +36,20 @@ inline void require_tolerance(const FieldValue& value, const AdaptiveOrder& aske
     throw_tolerance_missed(asked, reached / value.B.norm());
 }
 
+/// Starts every part with the two lowest orders.
+struct LowestLevel {
+  std::size_t operator()(const auto& /*part*/) const { return 1; }
+};
+
 /// Adaptive Gauss order: `other_part` plus the sum of the integrals over `parts`, where
 /// `contribution(part, n)` is the integral over one part by a rule of order n. The parts' orders
 /// are raised one by one until the sum of the differences between each part's last two orders is
 /// below tolerance·|B|. That sum, the error of the last orders but one, is the estimate returned. A
 /// part starts with the orders of the levels `first_level(part)` − 1 and `first_level(part)`.
 /// Throws SolverError if the tolerance is missed at the highest order.
-template <class Parts, class Contribution, class FirstLevel>
+template <class Parts, class Contribution, class FirstLevel = LowestLevel>
 FieldValue integrate_adaptively(const Parts& parts, Contribution contribution,
-                                const AdaptiveOrder& asked, FirstLevel first_level) {
+                                const AdaptiveOrder& asked, FirstLevel first_level = {}) {
   struct State {
     std::size_t level;
     Vector3 value;
@@ -76,14 +81,6 @@ FieldValue integrate_adaptively(const Parts& parts, Contribution contribution,
     }
     if (!raised) throw_tolerance_missed(asked, sum.uncertainty.norm() / sum.B.norm());
   }
-}
-
-/// The same from the two lowest orders on.
-template <class Parts, class Contribution>
-FieldValue integrate_adaptively(const Parts& parts, Contribution contribution,
-                                const AdaptiveOrder& asked) {
-  return integrate_adaptively(parts, contribution, asked,
-                              [](const auto&) { return std::size_t{1}; });
 }
 
 }  // namespace ciliaval::analytic::sources

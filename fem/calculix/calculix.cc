@@ -27,6 +27,7 @@ using meshes::MeshNodes;
 using Coordinates = Eigen::Matrix<double, 20, 3>;
 
 constexpr std::size_t nodes_per_line = 10;
+constexpr int max_increments = 1000;
 constexpr int digits = 12;  ///< CalculiX reads fields of 20 characters
 
 bool is_half(const MeshNodes& mesh) {
@@ -195,7 +196,7 @@ std::vector<Vector3> calculix_forces(const MeshNodes& mesh, const Cilium& cilium
 }
 
 void write_calculix(std::ostream& out, const MeshNodes& mesh, const Cilium& cilium,
-                    const Load& load, const CalculixStepping& options) {
+                    const Load& load, double first_increment) {
   const std::vector<Vector3> forces = calculix_forces(mesh, cilium, load);
   const std::vector<bool> used = calculix_node_set(mesh);
   const auto precision = out.precision(digits);
@@ -209,12 +210,12 @@ void write_calculix(std::ostream& out, const MeshNodes& mesh, const Cilium& cili
     write_list(out, boundary_nodes(mesh, meshes::symmetry_id, used));
     out << "*BOUNDARY\nSYMMETRY, 2, 2\n";
   }
-  out << "*STEP, NLGEOM, INC=" << options.max_increments << "\n*STATIC\n"
-      << options.first_increment << ", 1.\n*CLOAD\n";
+  out << "*STEP, NLGEOM, INC=" << max_increments << "\n*STATIC\n"
+      << first_increment << ", 1.\n*CLOAD\n";
   for (std::size_t i = 0; i < forces.size(); ++i)
     for (int d = 0; d < 3; ++d)
       if (forces[i][d] != 0) out << i + 1 << ", " << d + 1 << ", " << forces[i][d] << "\n";
-  out << "*NODE PRINT, NSET=ALL, FREQUENCY=" << options.max_increments << "\nU\n*END STEP\n";
+  out << "*NODE PRINT, NSET=ALL, FREQUENCY=" << max_increments << "\nU\n*END STEP\n";
   out.precision(precision);
 }
 

@@ -26,17 +26,13 @@ Eigen::Matrix<double, 20, 4> serendipity_functions(const Vector3& at);
 std::vector<Vector3> calculix_forces(const meshes::MeshNodes& mesh, const Cilium& cilium,
                                      const Load& load);
 
-struct CalculixStepping {
-  double first_increment = 1;  ///< of the load; CalculiX cuts it back or lets it grow
-  int max_increments = 1000;
-};
-
 /// Writes the input of a static, geometrically nonlinear run of CalculiX: C3D20R elements, the
 /// neo-Hooke solid U = C₁₀(Ī₁ − 3) + (J − 1)²/D₁ with C₁₀ = μ/2, D₁ = 2/K, the base clamped, no
 /// displacement across a plane of symmetry. Its .dat file then holds the displacements of all
-/// nodes. Azimuth 0 is needed on a half. Throws InputError as calculix_forces() does.
+/// nodes. Azimuth 0 is needed on a half. CalculiX cuts back `first_increment` of the load or lets
+/// it grow. Throws InputError as calculix_forces() does.
 void write_calculix(std::ostream& out, const meshes::MeshNodes& mesh, const Cilium& cilium,
-                    const Load& load, const CalculixStepping& options = {});
+                    const Load& load, double first_increment = 1);
 
 /// Which nodes of the mesh 20-node elements have: not the middles of faces and cells.
 std::vector<bool> calculix_node_set(const meshes::MeshNodes& mesh);

@@ -252,7 +252,7 @@ Solution run(const CalculixMesh& mesh, const Cilium& cilium, const Load& load,
   std::error_code none;
   for (const char* old : {".dat", ".sta"}) fs::remove(file(old), none);  // of an earlier run
   std::ofstream input(file(".inp"));
-  write_calculix(input, mesh.nodes(), cilium, load, {options.first_increment, 1000});
+  write_calculix(input, mesh.nodes(), cilium, load, options.first_increment);
   input.close();
   if (!input)
     throw FileError("cannot write `" + file(".inp").string() +
@@ -275,14 +275,6 @@ Solution run(const CalculixMesh& mesh, const Cilium& cilium, const Load& load,
   return solution;
 }
 
-/// Rank 0's values, on all ranks.
-template <typename Container>
-void broadcast(Container& values) {
-  namespace mpi = dealii::Utilities::MPI;
-  values.resize(mpi::broadcast(MPI_COMM_WORLD, values.size()));
-  mpi::broadcast(values.data(), values.size(), 0, MPI_COMM_WORLD);
-}
-
 /// Rank 0 runs, all ranks have the solution, or all throw SolverError.
 Solution run_on_first_rank(const std::function<Solution()>& work) {
   Solution solution;
@@ -294,9 +286,10 @@ Solution run_on_first_rank(const std::function<Solution()>& work) {
     }
   }
   if (rank_count() > 1) {
-    broadcast(solution.failure);
-    broadcast(solution.displacements);
-    solution.iterations = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, solution.iterations);
+    namespace mpi = dealii::Utilities::MPI;
+    solution.failure = mpi::broadcast(MPI_COMM_WORLD, solution.failure);
+    solution.displacements = mpi::broadcast(MPI_COMM_WORLD, solution.displacements);
+    solution.iterations = mpi::broadcast(MPI_COMM_WORLD, solution.iterations);
   }
   if (!solution.failure.empty()) throw SolverError(solution.failure);
   return solution;

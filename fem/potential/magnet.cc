@@ -62,11 +62,7 @@ Magnet::Magnet(const Cilium& cilium, const Deformation& deformation, MagnetPushF
       rod_.push_back({piece, M});
     }
   }
-  if (blocks_.empty())
-    throw InputError("the potential needs a magnet: no segment of the cilium is magnetised");
-  for (const Block& block : blocks_)
-    if (!extent(block).lengths.allFinite())
-      throw InputError("the deformation of the magnet is not finite");
+  require_usable();
 }
 
 Magnet::Magnet(std::shared_ptr<const SolidBody> body, MagnetPushForward push_forward)
@@ -76,8 +72,12 @@ Magnet::Magnet(std::shared_ptr<const SolidBody> body, MagnetPushForward push_for
     blocks_.push_back({cells_.size(), box_of(0, 1, 0, 1, 0, 1)});
     cells_.push_back(c);
   }
+  require_usable();
+}
+
+void Magnet::require_usable() const {
   if (blocks_.empty())
-    throw InputError("the potential needs a magnet: no cell of the body is magnetised");
+    throw InputError("the potential needs a magnet: no segment of the cilium is magnetised");
   for (const Block& block : blocks_)
     if (!extent(block).lengths.allFinite())
       throw InputError("the deformation of the magnet is not finite");

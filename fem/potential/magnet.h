@@ -72,6 +72,7 @@ class Magnet {
     std::size_t piece;
     double magnetization;
   };
+  void require_usable() const;
   MagnetSample on_rod(const RodPart& part, const CentrelinePoint& section, double r,
                       double phi) const;
   MagnetSample in_cell(const SolidCell& cell, const Vector3& xi) const;

@@ -18,20 +18,12 @@ LagrangeBasis gauss_lobatto(unsigned int degree) {
   return LagrangeBasis(nodes);
 }
 
-struct Line {
-  std::vector<double> value;
-  std::vector<double> derivative;
-  Line(const LagrangeBasis& basis, double x) : value(basis.size()), derivative(basis.size()) {
-    basis.values_and_derivatives(x, value, derivative);
-  }
-};
-
 }  // namespace
 
 Eigen::VectorXd shape_values(const LagrangeBasis& basis, const Vector3& unit) {
-  const Line a(basis, unit[0]);
-  const Line b(basis, unit[1]);
-  const Line c(basis, unit[2]);
+  const LagrangeValues a(basis, unit[0]);
+  const LagrangeValues b(basis, unit[1]);
+  const LagrangeValues c(basis, unit[2]);
   const std::size_t n = basis.size();
   Eigen::VectorXd result(static_cast<Eigen::Index>(n * n * n));
   Eigen::Index node = 0;
@@ -44,9 +36,9 @@ Eigen::VectorXd shape_values(const LagrangeBasis& basis, const Vector3& unit) {
 
 Eigen::Matrix<double, Eigen::Dynamic, 3> shape_gradients(const LagrangeBasis& basis,
                                                          const Vector3& unit) {
-  const Line a(basis, unit[0]);
-  const Line b(basis, unit[1]);
-  const Line c(basis, unit[2]);
+  const LagrangeValues a(basis, unit[0]);
+  const LagrangeValues b(basis, unit[1]);
+  const LagrangeValues c(basis, unit[2]);
   const std::size_t n = basis.size();
   Eigen::Matrix<double, Eigen::Dynamic, 3> result(static_cast<Eigen::Index>(n * n * n), 3);
   Eigen::Index node = 0;
@@ -207,7 +199,6 @@ void PotentialSpace::write(int cell, const Eigen::Ref<const Eigen::VectorXd>& u,
     ++row;
   }
 }
-
 
 PotentialVector PotentialSpace::boundary_values(
     const std::function<double(const Vector3&)>& psi) const {

@@ -107,18 +107,14 @@ void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
   quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, extent);
 }
 
-Newton& Level::newton() {
+void Level::start_from_rest(const Load& first) {
+  if (solver_) return;
   if (!newton_)
     newton_ = std::make_unique<Newton>(
         *space_, increment_constraints(*space_, supports(quadrature_->extent())), options_.solver,
         options_.communicator);
-  return *newton_;
-}
-
-void Level::start_from_rest(const Load& first) {
-  if (solver_) return;
   solver_ = std::make_unique<LoadPathSolver>(
-      *space_, *quadrature_, [this]() -> Newton& { return newton(); }, first, options_.path,
+      *space_, *quadrature_, *newton_, first, options_.path,
       [this](const Load& target, const Progress& report) { return initial_guess(target, report); });
 }
 

@@ -81,7 +81,6 @@ class Level {
  private:
   /// The space on the triangulation and its mapping.
   void discretise(discretisation::Extent extent, std::span<const material::Hyperelastic> materials);
-  equilibrium::Newton& newton();
   void start_from_rest(const Load& first);
   /// From the coarser level, which it solves under the load; without one, from the beam.
   equilibrium::Guess initial_guess(const Load& load, const Progress& progress) const;

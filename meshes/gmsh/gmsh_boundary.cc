@@ -28,9 +28,7 @@ std::map<Face, std::size_t> boundary_faces(const Extrusion& extrusion, const Sec
   std::map<Face, std::size_t> faces;
   std::map<Extrusion::Edge, std::size_t> quad_of_edge;
   for (std::size_t q = 0; q < extrusion.quads.size(); ++q) {
-    const Extrusion::Quad& c = extrusion.quads[q];
-    for (const auto& [a, b] : {std::pair(0, 1), std::pair(1, 3), std::pair(3, 2), std::pair(2, 0)})
-      quad_of_edge[edge(c[static_cast<std::size_t>(a)], c[static_cast<std::size_t>(b)])] = q;
+    for (const auto& [a, b] : edges_of(extrusion.quads[q])) quad_of_edge[edge(a, b)] = q;
     faces[{base_id, {q, 0}}] = extrusion.cell_of.front()[q];
     faces[{tip_id, {q, 0}}] = extrusion.cell_of.back()[q];
   }

@@ -44,6 +44,11 @@ inline Extrusion::Edge edge(std::size_t a, std::size_t b) {
   return a < b ? Extrusion::Edge(a, b) : Extrusion::Edge(b, a);
 }
 
+/// The edges of a quadrilateral, counter-clockwise.
+inline std::array<Extrusion::Edge, 4> edges_of(const Extrusion::Quad& quad) {
+  return {{{quad[0], quad[1]}, {quad[1], quad[3]}, {quad[3], quad[2]}, {quad[2], quad[0]}}};
+}
+
 /// Finds planes, columns and layers and turns the cells upright; mirrored ones get a remark. Throws
 /// InputError if the mesh does not stand on Z = 0, is not as high as the cilium, is not extruded
 /// (the faulty cell is told), has coincident nodes, collapsed, double or missing cells, or if a

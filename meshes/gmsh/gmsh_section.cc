@@ -22,11 +22,6 @@ constexpr double rim_tolerance = 1e-3;   ///< of the rim's nodes from the circle
 constexpr double area_tolerance = 0.02;  ///< of the section, relative
 constexpr double area_remark = 1e-4;
 
-/// The edges of a quadrilateral given lexicographically, counter-clockwise.
-std::array<std::pair<std::size_t, std::size_t>, 4> edges_of(const Quad& quad) {
-  return {{{quad[0], quad[1]}, {quad[1], quad[3]}, {quad[3], quad[2]}, {quad[2], quad[0]}}};
-}
-
 double cross(const Tensor<1, 2>& a, const Tensor<1, 2>& b) {
   return a[0] * b[1] - a[1] * b[0];
 }

@@ -107,7 +107,7 @@ std::optional<Run> calculix_run(const fs::path& folder, unsigned int refinement,
   const meshes::MeshNodes mesh = meshes::mesh_nodes(triangulation, *mapping);
   {
     std::ofstream input(folder / "cilium.inp");
-    write_calculix(input, mesh, paper_cilium(), load, {first_increment, 1000});
+    write_calculix(input, mesh, paper_cilium(), load, first_increment);
   }
   fs::remove(folder / "cilium.dat");  // an earlier run's must not pass for this one's
   const Stopwatch watch;

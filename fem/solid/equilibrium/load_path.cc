@@ -22,6 +22,9 @@ constexpr double cut_factor = 0.25;
 /// max_cutbacks: each takes a single factorisation.
 constexpr unsigned int max_overshoots = 10;
 
+constexpr double force_shortfall = 1e-6;   ///< relative: a contact force short by more slips off
+constexpr double slip_off_bracket = 0.01;  ///< relative width that ends the search for the slip-off
+
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
@@ -57,14 +60,15 @@ struct LoadPathSolver::Attempt {
 };
 
 LoadPathSolver::LoadPathSolver(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
-                               NewtonSource newton, const Load& first, LoadPathOptions options,
+                               Newton& newton, const Load& first, LoadPathOptions options,
                                InitialGuessSource initial_guess)
     : space_(space),
       quadrature_(quadrature),
-      newton_(std::move(newton)),
+      newton_(newton),
       options_(options),
-      initial_guess_(std::move(initial_guess)),
-      now_{{with_magnitude(first, 0), space.undeformed(), 0}, {}, {}, {}} {}
+      initial_guess_(std::move(initial_guess)) {
+  restart(first);
+}
 
 void LoadPathSolver::restart(const Load& load) {
   now_ = {{with_magnitude(load, 0), space_.undeformed(), 0}, {}, {}, {}};
@@ -113,11 +117,11 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   if (const auto probe = load.as<ProbeLoad>()) {
     UnknownForce force = probe_force(space_, quadrature_, *probe, options_.kernel_width,
                                      attempt.equilibrium.applied_force);
-    result = newton_().solve(force, state, options_.newton, report);
+    result = newton_.solve(force, state, options_.newton, report);
     contact_force = force.amplitude;
   } else {
-    result = newton_().solve(external_forces(space_, quadrature_, load, options_.kernel_width),
-                             state, options_.newton, report);
+    result = newton_.solve(external_forces(space_, quadrature_, load, options_.kernel_width), state,
+                           options_.newton, report);
     if (const auto contact = load.as<ContactLoad>()) contact_force = contact->force;
   }
   iterations += result.iterations();
@@ -129,20 +133,16 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   }
   attempt.equilibrium.applied_force =
       whole_force(quadrature_, resultant(space_, result.external)).dot(direction(load));
-  attempt.applied = !contact_height(load) || attempt.equilibrium.applied_force >=
-                                                 contact_force * (1 - options_.force_shortfall);
+  attempt.applied = !contact_height(load) ||
+                    attempt.equilibrium.applied_force >= contact_force * (1 - force_shortfall);
   return attempt;
-}
-
-Guess LoadPathSolver::guess_for(const Load& load, const Progress& progress) const {
-  return initial_guess_ ? initial_guess_(load, progress) : Guess{};
 }
 
 std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const Load& load) const {
   if (!guess.slip_off) return std::nullopt;
   const double now = magnitude(now_.current.load);
   const double borne = *guess.slip_off;
-  const double next = now < borne ? borne : borne * (1 + options_.slip_off_bracket);
+  const double next = now < borne ? borne : borne * (1 + slip_off_bracket);
   if (now < next && next < magnitude(load)) return next;
   return std::nullopt;
 }
@@ -186,12 +186,12 @@ LoadPathOutcome LoadPathSolver::follow_ramp(const Progress& progress,
   while (ramp.reached < 1) {
     double aim = std::min(1.0, ramp.reached + ramp.step);
     Load load = aim == 1 ? ramp.target : interpolate(ramp.start, ramp.target, aim);
-    Guess guess = ramp.unguided ? Guess{} : guess_for(load, progress);
+    Guess guess = ramp.unguided ? Guess{} : initial_guess_(load, progress);
     ramp.unguided = ramp.unguided || guess.lost;
     if (const auto nearer = toward_slip_off(guess, load)) {
       aim = (*nearer - magnitude(ramp.start)) / (magnitude(ramp.target) - magnitude(ramp.start));
       load = with_magnitude(load, *nearer);
-      guess = guess_for(load, progress);
+      guess = initial_guess_(load, progress);
     }
     Attempt result = attempt(load, std::move(guess), ramp.iterations, progress);
     if (result.converged && !result.applied && magnitude(load) <= magnitude(now_.current.load)) {
@@ -230,9 +230,9 @@ LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
   double fraction = 0.5;
   unsigned int cuts = 0;
   while (magnitude(*now_.slipped) - magnitude(now_.current.load) >
-         options_.slip_off_bracket * magnitude(*now_.slipped)) {
+         slip_off_bracket * magnitude(*now_.slipped)) {
     const Load load = interpolate(now_.current.load, *now_.slipped, fraction);
-    Attempt result = attempt(load, guess_for(load, progress), now_.ramp->iterations, progress);
+    Attempt result = attempt(load, initial_guess_(load, progress), now_.ramp->iterations, progress);
     if (result.converged) {
       if (result.applied) {
         accept(std::move(result));

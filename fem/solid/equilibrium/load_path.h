@@ -33,15 +33,11 @@ struct Guess {
   bool lost = false;                 ///< it failed: do not ask it again on this way
 };
 using InitialGuessSource = std::function<Guess(const Load&, const Progress&)>;
-/// The solver, made when it is first asked for.
-using NewtonSource = std::function<Newton&()>;
 
 struct LoadPathOptions {
   NewtonOptions newton;
-  unsigned int max_cutbacks = 5;   ///< cuts of a step to its quarter, in a row
-  double kernel_width = 0.5e-3;    ///< half-width of the contact kernel, m
-  double force_shortfall = 1e-6;   ///< relative; a contact force that falls short by more slips off
-  double slip_off_bracket = 0.01;  ///< relative width at which the search for the slip-off ends
+  unsigned int max_cutbacks = 5;  ///< cuts of a step to its quarter, in a row
+  double kernel_width = 0.5e-3;   ///< half-width of the contact kernel, m
 };
 
 struct LoadPathOutcome {
@@ -80,11 +76,11 @@ struct LoadPathState {
 /// straight solid: on the way from place to place the cilium might slip off.
 class LoadPathSolver {
  public:
-  /// Starts from the straight solid under no load of the path's type. The space and the quadrature
-  /// must outlive it.
+  /// Starts from the straight solid under no load of the path's type. The space, the quadrature and
+  /// the solver must outlive it.
   LoadPathSolver(const discretisation::SolidSpace& space,
-                 const discretisation::ExtrudedQuadrature& quadrature, NewtonSource newton,
-                 const Load& first, LoadPathOptions options, InitialGuessSource initial_guess = {});
+                 const discretisation::ExtrudedQuadrature& quadrature, Newton& newton,
+                 const Load& first, LoadPathOptions options, InitialGuessSource initial_guess);
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
   /// a load fully applied. Calls `on_equilibrium` after each equilibrium on the way: advance() goes
@@ -102,7 +98,6 @@ class LoadPathSolver {
   /// Newton's method from a state and, of a probe, an applied force near the equilibrium.
   Attempt attempt_from(Equilibrium start, int& iterations, const Progress& progress);
   Equilibrium predicted(const Load& load) const;
-  Guess guess_for(const Load& load, const Progress& progress) const;
   /// The magnitude to try before the load's: the guessed slip-off or, once borne, a little more.
   std::optional<double> toward_slip_off(const Guess& guess, const Load& load) const;
   void accept(Attempt&& attempt);
@@ -116,7 +111,7 @@ class LoadPathSolver {
 
   const discretisation::SolidSpace& space_;
   const discretisation::ExtrudedQuadrature& quadrature_;
-  NewtonSource newton_;
+  Newton& newton_;
   LoadPathOptions options_;
   InitialGuessSource initial_guess_;
   LoadPathState now_;
