@@ -2,14 +2,8 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <map>
 #include <optional>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "analytic/body/body_quadrature.h"

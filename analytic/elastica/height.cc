@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <utility>

@@ -8,8 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
-#include <span>
-#include <string>
 #include <utility>
 
 #include "problem/error.h"

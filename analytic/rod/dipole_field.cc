@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <numbers>
 
 #include "analytic/rod/field_models.h"
 #include "analytic/rod/rod_magnet.h"

@@ -11,9 +11,7 @@
 #include <mutex>
 #include <numeric>
 #include <span>
-#include <utility>
 
-#include "analytic/rod/end_discs.h"
 #include "analytic/sources/adaptive_order.h"
 #include "analytic/sources/current_loop.h"
 #include "problem/error.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/beam/beam.h"
 
-#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <sstream>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/beam/cilium_beam.h"
 
-#include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "problem/error.h"
 

@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "problem/error.h"
-
 namespace ciliaval::fem::beam {
 namespace {
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "fem/beam/kinematics.h"
 #include "problem/error.h"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <functional>
 #include <istream>
 #include <numeric>
 #include <optional>
@@ -17,7 +16,7 @@
 #include <system_error>
 #include <variant>
 
-#include "meshes/cylinder/cylinder_mesh.h"
+#include "meshes/boundary_ids.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::calculix {

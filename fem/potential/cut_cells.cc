@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "fem/potential/block_cut.h"
 #include "problem/error.h"

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <map>
-#include <span>
 
 #include "fem/potential/magnet.h"
 #include "fem/potential/octree.h"

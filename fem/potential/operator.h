@@ -8,7 +8,6 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <Eigen/Core>
-#include <memory>
 #include <unordered_map>
 
 #include "fem/potential/cut_cells.h"

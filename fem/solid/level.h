@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/equilibrium/load_path.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "meshes/cylinder/cylinder_mesh.h"
+#include "meshes/boundary_ids.h"
 #include "meshes/gmsh/gmsh_boundary.h"
 #include "problem/error.h"
 

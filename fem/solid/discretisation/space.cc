@@ -9,7 +9,6 @@
 #include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <Eigen/LU>
-#include <cmath>
 #include <map>
 #include <string>
 #include <utility>

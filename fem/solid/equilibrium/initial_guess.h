@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include "fem/solid/discretisation/extruded_quadrature.h"
 #include "fem/solid/discretisation/space.h"
-#include "fem/solid/loads/height_loads.h"
 #include "problem/centreline.h"
 #include "problem/cilium.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <utility>
-#include <variant>
 
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/probe.h"

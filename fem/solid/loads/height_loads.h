@@ -9,7 +9,6 @@
 #include <array>
 #include <functional>
 #include <optional>
-#include <vector>
 
 #include "fem/solid/discretisation/extruded_quadrature.h"
 #include "fem/solid/discretisation/space.h"

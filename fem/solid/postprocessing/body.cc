@@ -2,9 +2,7 @@
 #include "fem/solid/postprocessing/body.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace ciliaval::fem::solid::postprocessing {
