@@ -14,32 +14,29 @@ using Site = LoadParameter::Site;
 constexpr double milli = 1e3;                                     ///< from SI to mN or mm
 constexpr double two_turns = 4 * std::numbers::pi * (1 + 1e-12);  ///< rad, 720 deg included
 
-constexpr LoadParameter force_parameter{{"load",
-                                         "force",
-                                         quantity::force,
-                                         {0, 1e9, false, turn_round},
-                                         "",
-                                         "`contact`, `section`: the horizontal force."},
-                                        ", force {:g} mN",
-                                        milli};
+constexpr LoadParameter parameter(std::string_view name, const Quantity& quantity,
+                                  const Range& range, std::string_view fallback,
+                                  std::string_view doc, std::string_view words,
+                                  double display_factor = 1, double fallback_value = 0,
+                                  Site site = Site::none) {
+  return {
+      {"load", name, quantity, range, fallback, doc}, words, display_factor, fallback_value, site};
+}
 
-constexpr LoadParameter contact_height_parameter{
-    {"load", "height", quantity::length, length_range, "",
-     "`contact`, `probe`: the height z at which the force stays; between the base and the tip."},
-    " at height {:g} mm",
-    milli,
-    0,
-    Site::height};
+constexpr Range any_magnitude{0, 1e9, false, turn_round};
 
-constexpr LoadParameter azimuth_parameter{
-    {"load",
-     "azimuth",
-     quantity::angle,
-     {-two_turns, two_turns, false, "more than two turns is taken for a slip in the unit"},
-     "0 deg",
-     "Direction of the load in the plane, from +x towards +y."},
-    ", azimuth {:g} deg",
-    180 / std::numbers::pi};
+constexpr LoadParameter force_parameter =
+    parameter("force", quantity::force, any_magnitude, "",
+              "`contact`, `section`: the horizontal force.", ", force {:g} mN", milli);
+constexpr LoadParameter contact_height_parameter = parameter(
+    "height", quantity::length, length_range, "",
+    "`contact`, `probe`: the height z at which the force stays; between the base and the tip.",
+    " at height {:g} mm", milli, 0, Site::height);
+constexpr LoadParameter azimuth_parameter =
+    parameter("azimuth", quantity::angle,
+              {-two_turns, two_turns, false, "more than two turns is taken for a slip in the unit"},
+              "0 deg", "Direction of the load in the plane, from +x towards +y.",
+              ", azimuth {:g} deg", 180 / std::numbers::pi);
 
 /// q = ½ρv²C_d d (paper, Eq. 11), N/m, of v, ρ and C_d.
 double drag_per_height(std::span<const double> values, const Cilium& cilium) {
@@ -71,41 +68,21 @@ const LoadType& ContactLoad::type() {
 const LoadType& FlowLoad::type() {
   static const LoadType type{
       "flow",
-      {{{"load",
-         "force_per_height",
-         quantity::force_per_length,
-         {0, 1e9, false, turn_round},
-         "from `velocity`",
-         "`flow`: the force q per unit of current height; this or `velocity`."},
-        ", {:g} N per metre of height"},
+      {parameter("force_per_height", quantity::force_per_length, any_magnitude, "from `velocity`",
+                 "`flow`: the force q per unit of current height; this or `velocity`.",
+                 ", {:g} N per metre of height"),
        azimuth_parameter},
-      LoadStatement{{{{"load",
-                       "velocity",
-                       quantity::velocity,
-                       {0, 1e4, false, turn_round},
-                       "none",
-                       "`flow`: the fluid's velocity v, q = density v^2 drag_coefficient d/2 "
-                       "(paper, Eq. 11)."},
-                      ""},
-                     {{"load",
-                       "density",
-                       quantity::density,
-                       {1e-9, 1e6, false, unit_slip},
-                       "1000 kg/m^3",
-                       "`flow` by `velocity`: the fluid's density."},
-                      "",
-                      1,
-                      1000},
-                     {{"load",
-                       "drag_coefficient",
-                       quantity::number,
-                       {1e-6, 1e6, false, "a drag coefficient is near 1"},
-                       "1",
-                       "`flow` by `velocity`: the drag coefficient C_d."},
-                      "",
-                      1,
-                      1}},
-                    &drag_per_height}};
+      LoadStatement{
+          {parameter("velocity", quantity::velocity, {0, 1e4, false, turn_round}, "none",
+                     "`flow`: the fluid's velocity v, q = density v^2 drag_coefficient d/2 "
+                     "(paper, Eq. 11).",
+                     ""),
+           parameter("density", quantity::density, {1e-9, 1e6, false, unit_slip}, "1000 kg/m^3",
+                     "`flow` by `velocity`: the fluid's density.", "", 1, 1000),
+           parameter("drag_coefficient", quantity::number,
+                     {1e-6, 1e6, false, "a drag coefficient is near 1"}, "1",
+                     "`flow` by `velocity`: the drag coefficient C_d.", "", 1, 1)},
+          &drag_per_height}};
   return type;
 }
 
@@ -113,44 +90,32 @@ const LoadType& SectionLoad::type() {
   static const LoadType type{
       "section",
       {force_parameter,
-       {{"load", "arclength", quantity::length, length_range, "",
-         "`section`: the arc length of the loaded section; not beyond the tip."},
-        " at arc length {:g} mm",
-        milli,
-        0,
-        Site::arclength},
+       parameter("arclength", quantity::length, length_range, "",
+                 "`section`: the arc length of the loaded section; not beyond the tip.",
+                 " at arc length {:g} mm", milli, 0, Site::arclength),
        azimuth_parameter}};
   return type;
 }
 
 const LoadType& DeadLoad::type() {
-  static const LoadType type{"dead",
-                             {{{"load",
-                                "force_per_length",
-                                quantity::force_per_length,
-                                {0, 1e9, false, turn_round},
-                                "",
-                                "`dead`: the force per reference length."},
-                               ", {:g} N per metre of length"},
-                              azimuth_parameter}};
+  static const LoadType type{
+      "dead",
+      {parameter("force_per_length", quantity::force_per_length, any_magnitude, "",
+                 "`dead`: the force per reference length.", ", {:g} N per metre of length"),
+       azimuth_parameter}};
   return type;
 }
 
 const LoadType& ProbeLoad::type() {
   static const LoadType type{
       "probe",
-      {{{"load",
-         "displacement",
-         quantity::length,
-         {0, 100, false,
-          "a displacement is not negative (to turn it round, add 180 deg to the azimuth) and a "
-          "larger one is taken for a slip in the unit"},
-         "",
-         "`probe`: the deflection of the contact point; the force is a result."},
-        ", displacement {:g} mm",
-        milli},
-       contact_height_parameter,
-       azimuth_parameter},
+      {parameter("displacement", quantity::length,
+                 {0, 100, false,
+                  "a displacement is not negative (to turn it round, add 180 deg to the azimuth) "
+                  "and a larger one is taken for a slip in the unit"},
+                 "", "`probe`: the deflection of the contact point; the force is a result.",
+                 ", displacement {:g} mm", milli),
+       contact_height_parameter, azimuth_parameter},
       std::nullopt,
       {{"force",
         "'force' is a result of the load type 'probe', whose 'displacement' is given: leave it out "

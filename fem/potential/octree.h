@@ -47,7 +47,6 @@ class Octree {
 
   const Triangulation& triangulation() const { return triangulation_; }
   const Cube& root() const { return root_; }
-  std::size_t leaf_count() const { return directory_.size(); }
 
   /// This rank's leaves, in deal.II's order.
   const std::vector<CellIterator>& cells() const { return cells_; }
