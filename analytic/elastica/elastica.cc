@@ -18,9 +18,7 @@
 namespace ciliaval::analytic::elastica {
 namespace {
 
-/// Slip-off of the last contact height asked for: the same all along most load paths.
 struct SlipOff {
-  double height = -1;                  ///< h, m
   double force = 0;                    ///< N
   std::optional<double> displacement;  ///< m, for a probe
 };
@@ -39,17 +37,13 @@ double probe_tolerance(const ElasticaOptions& options) {
   return has_height_form(options) ? 1e-9 : 1e-12;
 }
 
-SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options,
-                 const SlipOff& known) {
-  const double height = contact_height(load).value();
-  const bool probes = load.is<ProbeLoad>();
-  if (known.height == height && (known.displacement || !probes)) return known;
-  PlanarProblem problem = planar_problem(cilium, ContactLoad{1, height, 0});
+SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options) {
+  PlanarProblem problem = planar_problem(cilium, ContactLoad{1, contact_height(load).value(), 0});
   const double of_one_newton = problem.load;
   problem.load = has_height_form(options) ? slip_off_height(problem)
                                           : slip_off_arclength(problem, options.tolerance);
-  SlipOff result{height, problem.load / of_one_newton, {}};
-  if (!probes) return result;
+  SlipOff result{problem.load / of_one_newton, {}};
+  if (!load.is<ProbeLoad>()) return result;
   const auto deflection = slip_off_deflection(problem, solver(options), !has_height_form(options),
                                               probe_tolerance(options));
   if (deflection) result.displacement = cilium.length() * *deflection;
@@ -150,16 +144,15 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
 
   MechanicsResult result;
   result.undeformed.centreline = straight_centreline(cilium.interfaces());
-  SlipOff known;
   for (const Load& load : path) {
     const auto begin = std::chrono::steady_clock::now();
     MechanicsStep step;
     step.load = load;
     try {
       if (contact_height(load)) {
-        known = slip_off(cilium, load, options_, known);
-        step.slip_off_force = known.force;
-        if (load.is<ProbeLoad>()) step.slip_off_displacement = known.displacement;
+        const SlipOff limit = slip_off(cilium, load, options_);
+        step.slip_off_force = limit.force;
+        step.slip_off_displacement = limit.displacement;
       }
       solve_step(cilium, options_, step);
     } catch (const SolverError& error) {

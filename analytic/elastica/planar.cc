@@ -129,12 +129,8 @@ class CentrelineBuilder {
   std::vector<Centreline::Piece> pieces_;
 };
 
-struct KindAndPoint {
-  PlanarLoad kind;
-  double point;  // m
-};
-
-KindAndPoint kind_and_point(const Load& load) {
+/// The kind, and h or s, m.
+std::pair<PlanarLoad, double> kind_and_point(const Load& load) {
   if (const auto height = contact_height(load)) return {PlanarLoad::contact, *height};
   if (const auto section = load.as<SectionLoad>()) return {PlanarLoad::section, section->arclength};
   if (load.is<FlowLoad>()) return {PlanarLoad::flow, 0};
@@ -154,9 +150,9 @@ PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
 PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
   const PlanarUnits units = planar_units(cilium, load);
   PlanarProblem problem;
-  const KindAndPoint where = kind_and_point(load);
-  problem.kind = where.kind;
-  problem.point = where.point / units.length;
+  const auto [kind, point] = kind_and_point(load);
+  problem.kind = kind;
+  problem.point = point / units.length;
   for (const double end : cilium.interfaces()) problem.ends.push_back(end / units.length);
   problem.ends.back() = 1;
   double stiffest = 0;  // Pa
