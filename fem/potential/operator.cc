@@ -4,6 +4,7 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
 #include <mpi.h>
 
 #include <algorithm>
