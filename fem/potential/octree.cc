@@ -32,7 +32,6 @@ dealii::Point<3> to_point(const Vector3& x) {
   return {x[0], x[1], x[2]};
 }
 
-
 }  // namespace
 
 Octree::Octree(const Vector3& centre, double half_width)
