@@ -38,19 +38,6 @@ void end_mpi() {
   if (running()) MPI_Finalize();
 }
 
-/// Broadcasts rank 0's value. The others sleep until it comes, however long that takes, instead of
-/// taking a processor from rank 0.
-void idle_until_first_rank_sends(MPI_Comm communicator, int& value) {
-  using namespace std::chrono_literals;
-  MPI_Request request = MPI_REQUEST_NULL;
-  MPI_Ibcast(&value, 1, MPI_INT, 0, communicator, &request);
-  int done = 0;
-  for (auto nap = 0us; done == 0; nap = std::min(2 * nap + 10us, 2000us)) {
-    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
-    if (done == 0) std::this_thread::sleep_for(nap);
-  }
-}
-
 RowRange range_of(Row size, int part, int parts) {
   const auto bound = [&](int i) {
     const auto exact = static_cast<Row>(static_cast<long long>(size) * i / parts);
@@ -106,26 +93,17 @@ void require_failure_of_all_ranks(const std::string& message) {
 }
 
 int from_first_rank(int value) {
-  if (rank_count() > 1) idle_until_first_rank_sends(MPI_COMM_WORLD, value);
-  return value;
-}
-
-std::string from_first_rank(MPI_Comm communicator, const std::function<std::string()>& work) {
-  if (rank_count(communicator) == 1) return work();
-  std::string text;
-  int failed = 0;
-  if (rank(communicator) == 0) {
-    try {
-      text = work();
-    } catch (const CheckpointError& error) {
-      text = error.what();
-      failed = 1;
-    }
+  using namespace std::chrono_literals;
+  if (rank_count() == 1) return value;
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Ibcast(&value, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
+  int done = 0;
+  // Asleep, however long that takes, instead of taking a processor from rank 0.
+  for (auto nap = 0us; done == 0; nap = std::min(2 * nap + 10us, 2000us)) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done == 0) std::this_thread::sleep_for(nap);
   }
-  idle_until_first_rank_sends(communicator, failed);
-  text = dealii::Utilities::MPI::broadcast(communicator, text);
-  if (failed != 0) throw CheckpointError(text);
-  return text;
+  return value;
 }
 
 RowRange own_range(MPI_Comm communicator, Row size) {

@@ -4,7 +4,6 @@
 #include <deal.II/base/types.h>
 #include <mpi.h>
 
-#include <functional>
 #include <span>
 #include <string>
 
@@ -32,10 +31,6 @@ void require_failure_of_all_ranks(const std::string& message);
 
 /// Rank 0's value, on all ranks of the program, which sleep until it comes. Collective.
 int from_first_rank(int value);
-
-/// The text that rank 0 alone makes, or the CheckpointError that it throws, on all ranks.
-/// Collective.
-std::string from_first_rank(MPI_Comm communicator, const std::function<std::string()>& work);
 
 using Row = dealii::types::global_dof_index;
 

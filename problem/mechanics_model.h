@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <filesystem>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "problem/cilium.h"
 #include "problem/deformation.h"
 #include "problem/load.h"
+#include "problem/support/fingerprint.h"
 
 namespace ciliaval {
 
@@ -48,10 +50,20 @@ struct MechanicsResult {
 /// 3, residual 1e-4").
 using Progress = std::function<void(const std::string&)>;
 
-/// Where a model keeps how far it has come, to go on from there if the program is killed.
+/// What a model keeps of its way along a load path, to go on from there: bytes of its own making
+/// under names. The n-th finished step has the name n, from 1.
 struct Checkpoint {
-  std::filesystem::path path;  ///< a file, and others whose names begin with this; empty: none
-  std::string program;         ///< name and version, one line: another one's files are refused
+  using Entries = std::map<std::string, std::string>;
+  Entries kept;  ///< by an earlier run; empty: start from the straight cilium
+  /// Adds entries or replaces those of the same names, all or none. Throws CheckpointError. Empty:
+  /// nothing is kept.
+  std::function<void(const Entries&)> save;
+
+  std::size_t finished_steps() const {
+    std::size_t n = 0;
+    while (kept.contains(std::to_string(n + 1))) ++n;
+    return n;
+  }
 };
 
 /// A model of the bending cilium: load path in, states out. How it steps from load to load is its
@@ -65,18 +77,16 @@ class MechanicsModel {
   virtual MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                                 const Progress& progress = {}) const = 0;
 
-  /// Steps of the path that the checkpoint holds; 0 without one. Nothing for a model that keeps
-  /// none because it takes but a moment. Throws CheckpointError if the files are damaged, or those
-  /// of another problem.
-  virtual std::optional<std::size_t> finished_steps(const Cilium& /*cilium*/,
-                                                    const LoadPath& /*path*/,
-                                                    const Checkpoint& /*checkpoint*/) const {
+  /// What a checkpoint depends on: one of another fingerprint must not be gone on from. Nothing for
+  /// a model that keeps none because it takes but a moment.
+  virtual std::optional<support::Fingerprint> fingerprint(const Cilium& /*cilium*/,
+                                                          const LoadPath& /*path*/) const {
     return std::nullopt;
   }
 
-  /// solve() that goes on from the checkpoint, if there is one, and keeps it up to date; the steps
-  /// are those of solve(). Steps from the first failed one on are not kept: they are solved again.
-  /// Besides the interface's errors, throws CheckpointError if the files cannot be used or written.
+  /// solve() that goes on from the checkpoint and keeps it up to date; the steps are those of
+  /// solve(). Steps from the first failed one on are not kept: they are solved again. Of several
+  /// ranks the first alone is given one. Throws CheckpointError, besides the interface's errors.
   virtual MechanicsResult solve_from(const Cilium& cilium, const LoadPath& path,
                                      const Checkpoint& /*checkpoint*/,
                                      const Progress& progress = {}) const {

@@ -54,13 +54,6 @@ void check(MechanicsStep& step) {
   }
 }
 
-/// The checkpoint of one model.
-Checkpoint checkpoint_of(const std::string& id, const Checkpoint& checkpoints) {
-  Checkpoint result = checkpoints;
-  if (!result.path.empty()) result.path /= id;
-  return result;
-}
-
 /// B and its uncertainty at some of the sensors; throws if they are not as many or not finite.
 Field checked_field(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
                     std::span<const Vector3> points) {
@@ -278,14 +271,15 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
 
 CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress,
-               const Checkpoint& checkpoints) {
+               const std::map<std::string, Checkpoint>& checkpoints) {
   const auto mechanics_models = make_chosen(mechanics, problem.mechanics, problem.options);
   const auto field_models = make_chosen(fields, problem.fields, problem.options);
   CaseResult result{problem, {}, {}};
   for (const auto& [id, model] : mechanics_models) {
     if (progress) progress(id + ": starting");
-    result.mechanics.push_back(
-        run_mechanics(id, *model, problem, progress, checkpoint_of(id, checkpoints)));
+    const auto kept = checkpoints.find(id);
+    result.mechanics.push_back(run_mechanics(
+        id, *model, problem, progress, kept != checkpoints.end() ? kept->second : Checkpoint{}));
   }
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.centrelines.empty()) result.mechanics.push_back(external_mechanics(model, problem));
@@ -302,14 +296,12 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   return result;
 }
 
-std::vector<Kept> kept_checkpoints(const input::Case& problem,
-                                   std::span<const MechanicsEntry> mechanics,
-                                   const Checkpoint& checkpoints) {
-  std::vector<Kept> result;
+std::map<std::string, support::Fingerprint> fingerprints(
+    const input::Case& problem, std::span<const MechanicsEntry> mechanics) {
+  std::map<std::string, support::Fingerprint> result;
   for (const auto& [id, model] : make_chosen(mechanics, problem.mechanics, problem.options))
-    if (const auto steps = model->finished_steps(problem.cilium, problem.load_path,
-                                                 checkpoint_of(id, checkpoints)))
-      result.push_back({id, *steps});
+    if (auto fingerprint = model->fingerprint(problem.cilium, problem.load_path))
+      result.emplace(id, std::move(*fingerprint));
   return result;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -64,13 +64,12 @@ struct CaseResult {
 /// model along the load path, then each field model on the undeformed cilium and on every converged
 /// step (a model that needs a body only where there is one). What one model throws, or a result
 /// that is not finite, is recorded as its failure and does not stop the others; where B diverges at
-/// one sensor, the rest are computed. A mechanics model that keeps a checkpoint goes on from it and
-/// keeps it in the folder `checkpoints.path`, under its id; without a path there is none. Throws
-/// InputError if the case names a model that is not among the entries, CheckpointError,
-/// RankFailure.
+/// one sensor, the rest are computed. A mechanics model goes on from the checkpoint under its id,
+/// if there is one. Throws InputError if the case names a model that is not among the entries,
+/// CheckpointError, RankFailure.
 CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress = {},
-               const Checkpoint& checkpoints = {});
+               const std::map<std::string, Checkpoint>& checkpoints = {});
 
 /// A part of run(): one mechanics model, which goes by the name `id` in messages and in the result,
 /// along the load path of a case. Throws CheckpointError, RankFailure.
@@ -83,17 +82,9 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
                    const input::Case& problem, const Progress& progress = {});
 
-/// A mechanics model of a case that keeps a checkpoint, and the steps that it holds.
-struct Kept {
-  std::string model;  ///< id
-  std::size_t finished_steps = 0;
-};
-
-/// Those of the case, in the order of the registry. Throws CheckpointError if one of the
-/// checkpoints cannot be used.
-std::vector<Kept> kept_checkpoints(const input::Case& problem,
-                                   std::span<const MechanicsEntry> mechanics,
-                                   const Checkpoint& checkpoints);
+/// The fingerprints of those mechanics models of the case that keep a checkpoint, by id.
+std::map<std::string, support::Fingerprint> fingerprints(const input::Case& problem,
+                                                         std::span<const MechanicsEntry> mechanics);
 
 /// Whether no step of the model failed.
 bool all_solved(const MechanicsRun& run);

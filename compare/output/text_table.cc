@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
+#include <utility>
 
 #include "problem/support/words.h"
 
@@ -47,6 +50,30 @@ std::string number_cell(std::optional<double> value, double unit, std::string_vi
   const std::string text = fmt::format(fmt::runtime(format), *value / unit);
   const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
   return is_zero && text.starts_with('-') ? text.substr(1) : text;
+}
+
+std::vector<std::size_t> evenly(std::size_t count, std::size_t shown) {
+  std::vector<std::size_t> chosen;
+  const std::size_t n = std::min(count, shown);
+  for (std::size_t i = 0; i < n; ++i) chosen.push_back(n < 2 ? 0 : i * (count - 1) / (n - 1));
+  return chosen;
+}
+
+std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, std::size_t most) {
+  std::vector<std::size_t> shown = counts;
+  const auto size = [&] {
+    return std::accumulate(shown.begin(), shown.end(), std::size_t{1}, std::multiplies<>());
+  };
+  while (size() > most) --*std::max_element(shown.rbegin(), shown.rend());
+  std::vector<std::size_t> points{0};
+  for (std::size_t d = 0; d < counts.size(); ++d) {
+    std::vector<std::size_t> finer;
+    for (const std::size_t point : points)
+      for (const std::size_t i : evenly(counts[d], shown[d]))
+        finer.push_back(point * counts[d] + i);
+    points = std::move(finer);
+  }
+  return points;
 }
 
 }  // namespace ciliaval::compare::output

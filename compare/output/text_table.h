@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,5 +18,12 @@ std::string text_table(const TextRows& rows, std::string_view alignment = ">");
 /// A number in a unit by a format such as "{:.4f}", or a dash for an undefined one. A number that
 /// rounds to zero has no sign.
 std::string number_cell(std::optional<double> value, double unit, std::string_view format);
+
+/// The indices of `shown` of `count` things, evenly chosen, the first and the last among them.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t shown);
+
+/// At most so many points of a grid with `counts` values along its directions, of which the last
+/// runs fastest. Whole values are left out, evenly, most of the longest direction.
+std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, std::size_t most);
 
 }  // namespace ciliaval::compare::output

@@ -50,13 +50,18 @@ void require_success(const support::ChildEnd& end, const std::filesystem::path& 
 }  // namespace
 
 std::string quoted(std::string_view text) {
-  std::string result = "'";
+  // In double quotes: gnuplot 5.4 misreads apostrophes in single ones. There a backslash is two.
+  std::string result = "\"";
   for (const char c : text) {
-    if (std::string_view("\\^_@&~{}").find(c) != std::string_view::npos) result += '\\';
-    if (c == '\'') result += '\'';
-    result += c == '\n' || c == '\r' ? ' ' : c;
+    if (std::string_view("\\^_@&~{}").find(c) != std::string_view::npos) result += "\\\\";
+    if (c == '`')
+      result += "\\140";  // what it encloses would be run
+    else if (c == '\\' || c == '"')
+      result += {'\\', c};
+    else
+      result += c == '\n' || c == '\r' ? ' ' : c;
   }
-  return result + '\'';
+  return result + '"';
 }
 
 std::string logarithmic_x_axis(double from, double to) {

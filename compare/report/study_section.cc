@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
+#include "compare/output/text_table.h"
 #include "compare/report/curves.h"
 #include "compare/report/sections.h"
 
@@ -48,12 +48,9 @@ std::string symbol(const std::string& output) {
   return output.starts_with("dB_") ? "ΔB" + output.substr(2) : output;
 }
 
-/// The indices of `shown` of `count` things, evenly chosen, the first and the last among them.
-std::vector<std::size_t> evenly(std::size_t count, std::size_t shown) {
-  std::vector<std::size_t> chosen;
-  const std::size_t n = std::min(count, shown);
-  for (std::size_t i = 0; i < n; ++i) chosen.push_back(n < 2 ? 0 : i * (count - 1) / (n - 1));
-  return chosen;
+/// Whether the parameters' values go together.
+bool is_zipped(const Json& study) {
+  return study.at("points").size() == study.at("parameters").at(0).at("values").size();
 }
 
 /// The points that differ in the first parameter alone, each set with the others' values in words.
@@ -65,10 +62,7 @@ struct Family {
 std::vector<Family> families_of(const Json& study, const std::vector<Parameter>& parameters) {
   std::vector<Family> all;
   std::map<std::string, std::size_t> known;
-  const auto is_zipped = [&] {
-    return study.at("points").size() == study.at("parameters")[0].at("values").size();
-  };
-  const std::size_t other = is_zipped() ? parameters.size() : 1;
+  const std::size_t other = is_zipped(study) ? parameters.size() : 1;
   for (const Json& point : study.at("points")) {
     std::string name;
     for (std::size_t i = other; i < parameters.size(); ++i)
@@ -80,28 +74,32 @@ std::vector<Family> families_of(const Json& study, const std::vector<Parameter>&
     all[it->second].points.push_back(&point);
   }
   std::vector<Family> result;
-  for (const std::size_t i : evenly(all.size(), most_families)) result.push_back(all[i]);
+  for (const std::size_t i : output::evenly(all.size(), most_families)) result.push_back(all[i]);
   return result;
 }
 
-/// "elastica/line 83.2 µT at L2/L0 = 0.87; …": the largest of a study's points.
-std::string largest_text(const std::vector<Family>& families, const Json& pairs, const Parameter& x,
+/// "elastica/line 83.2 µT at L2/L0 = 0.87, d = 3 mm; …": of each pair the point at which the output
+/// has the largest magnitude.
+std::string largest_text(const Json& study, const std::vector<Parameter>& parameters,
                          const std::string& output, const ShownUnit& unit) {
   std::string text;
-  for (const Json& pair : pairs) {
+  for (const Json& pair : study.at("pairs")) {
     const Json* best = nullptr;
-    double largest = -std::numeric_limits<double>::infinity();
-    for (const Family& family : families)
-      for (const Json* point : family.points) {
-        const Json& value = point->at("pairs").at(pair.get<std::string>()).at(output);
-        if (value.is_null() || value.get<double>() <= largest) continue;
-        largest = value.get<double>();
-        best = point;
-      }
+    double largest = 0;
+    for (const Json& point : study.at("points")) {
+      const Json& value = point.at("pairs").at(pair.get<std::string>()).at(output);
+      if (value.is_null() ||
+          (best != nullptr && std::abs(value.get<double>()) <= std::abs(largest)))
+        continue;
+      largest = value.get<double>();
+      best = &point;
+    }
     if (best == nullptr) continue;
-    text += fmt::format("{}{} {} {} at {} = {}", text.empty() ? "" : "; ", pair.get<std::string>(),
-                        number(largest, unit.size, 4), unit.name, x.name,
-                        x.shown(best->at("parameters").at(x.path).get<double>()));
+    text += fmt::format("{}{} {} {} at ", text.empty() ? "" : "; ", pair.get<std::string>(),
+                        number(largest, unit.size, 4), unit.name);
+    for (const Parameter& p : parameters)
+      text += fmt::format("{}{} = {}", &p == parameters.data() ? "" : ", ", p.name,
+                          p.shown(best->at("parameters").at(p.path).get<double>()));
   }
   return text;
 }
@@ -136,8 +134,8 @@ Drawing drawing_of(const Json& study, const std::vector<Parameter>& parameters,
     ++pair_number;
   }
   return {fmt::format("{} over {}", symbol(id), x.name),
-          fmt::format("Largest of the points: {}.",
-                      largest_text(families, study.at("pairs"), x, id, unit)),
+          fmt::format("Largest magnitude of the points: {}.",
+                      largest_text(study, parameters, id, unit)),
           script(drawing), panel_size(drawing)};
 }
 
@@ -161,6 +159,15 @@ std::vector<std::string> exceptions(const Json& study) {
   return result;
 }
 
+/// Of many points some.
+std::vector<std::size_t> shown_points(const Json& study) {
+  const std::size_t count = study.at("points").size();
+  if (is_zipped(study)) return output::evenly(count, most_rows);
+  std::vector<std::size_t> counts;
+  for (const Json& p : study.at("parameters")) counts.push_back(p.at("values").size());
+  return output::thinned_grid(counts, most_rows);
+}
+
 Table point_table(const Json& study, const std::vector<Parameter>& parameters,
                   const std::string& pair) {
   Table table{pair, {"point"}, {}};
@@ -169,7 +176,7 @@ Table point_table(const Json& study, const std::vector<Parameter>& parameters,
     table.head.push_back(fmt::format("{}, {}", output.at("id").get<std::string>(),
                                      shown_unit(output.at("unit").get<std::string>()).name));
   const Json& points = study.at("points");
-  for (const std::size_t i : evenly(points.size(), most_rows)) {
+  for (const std::size_t i : shown_points(study)) {
     const Json& of_pair = points[i].at("pairs").at(pair);
     std::vector<Cell> row{std::to_string(i)};
     for (const Parameter& p : parameters)
@@ -327,9 +334,10 @@ std::string study_content(const Json& study, Figures& figures) {
     text += figures.row(drawings);
     std::string tables;
     for (const std::string& pair : pairs) tables += html(point_table(study, parameters, pair));
-    if (study["points"].size() > most_rows)
-      tables = paragraph(fmt::format("{} of the {} points; all are in study.csv.", most_rows,
-                                     study["points"].size())) +
+    const std::size_t count = study["points"].size();
+    if (const std::size_t shown = shown_points(study).size(); shown < count)
+      tables = paragraph(fmt::format("{} of the {} points, {} are left out; all are in study.csv.",
+                                     shown, count, count - shown)) +
                tables;
     text += details("The points' numbers", tables);
   }

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/path_run.h"
 
+#include <deal.II/base/mpi.h>
+
+#include <boost/serialization/map.hpp>
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <utility>
-#include <variant>
+
+#include "fem/parallel.h"
+#include "fem/solid/archive.h"
+#include "problem/error.h"
 
 namespace ciliaval::fem::solid {
 using namespace discretisation;
@@ -12,6 +19,10 @@ using namespace equilibrium;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using dealii::Utilities::MPI::broadcast;
+
+/// Of the entry of a checkpoint with the levels' states, from which the next step goes on.
+constexpr const char* state_name = "state";
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -67,78 +78,84 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
 }  // namespace
 
 PathRun::PathRun(std::vector<std::unique_ptr<Level>> levels, const LoadPath& path,
-                 const SolidOptions& options, const Progress& progress)
+                 const SolidOptions& options, const Checkpoint& checkpoint,
+                 const Progress& progress, MPI_Comm communicator)
     : levels_(std::move(levels)),
       path_(path),
       options_(options),
+      checkpoint_(checkpoint),
       progress_(progress),
+      communicator_(communicator),
       result_{finest().undeformed(path.empty() ? 0 : mesh_azimuth(options, path.front())), {}} {}
 
-MechanicsResult PathRun::follow(SolidCheckpoint& saved) {
-  go_on_from(saved);
-  follow_path(saved);
+MechanicsResult PathRun::follow() {
+  go_on_from_checkpoint();
+  bool failed = false;
+  while (result_.steps.size() < path_.size()) {
+    MechanicsStep step = solve(result_.steps.size(), !failed);
+    failed = failed || step.status == Status::failed;
+    if (!failed) save(&step);
+    result_.steps.push_back(std::move(step));
+  }
   return std::move(result_);
 }
 
-void PathRun::go_on_from(SolidCheckpoint& saved) {
-  std::vector<std::optional<LoadPathState>> states = saved.read();
+void PathRun::go_on_from_checkpoint() {
+  const Checkpoint::Entries kept = broadcast(communicator_, checkpoint_.kept);
+  if (kept.empty()) return;
+  std::vector<std::optional<LoadPathState>> states;
+  deserialize(kept.at(state_name), states);
   for (std::size_t i = 0; i < states.size(); ++i) levels_.at(i)->restore(std::move(states[i]));
-  for (std::size_t i = 0; i < saved.steps().size(); ++i) {
-    MechanicsStep step = saved.steps()[i];
-    if (step.status == Status::converged) add_deformation(step, saved.finished_state(i));
+  for (std::size_t i = 1; kept.contains(std::to_string(i)); ++i) {
+    MechanicsStep step;
+    std::optional<SolidState> state;
+    deserialize(kept.at(std::to_string(i)), step, state);
+    if (state)
+      step.deformation =
+          finest().deformation({in_mesh_frame(options_, step.load), *state, step.applied_force},
+                               mesh_azimuth(options_, step.load));
     result_.steps.push_back(std::move(step));
   }
 }
 
-void PathRun::follow_path(SolidCheckpoint& saved) {
-  bool failed = false;
-  while (result_.steps.size() < path_.size()) {
-    MechanicsStep step = solve(result_.steps.size(), saved, !failed);
-    failed = failed || step.status == Status::failed;
-    if (!failed) {
-      add_to(saved, step);
-      saved.save(states());
+void PathRun::save(const MechanicsStep* finished) const {
+  std::string failure;
+  if (rank(communicator_) == 0 && checkpoint_.save) {
+    std::vector<std::optional<LoadPathState>> states;
+    for (const auto& level : levels_)
+      states.push_back(level->state() != nullptr ? std::optional(*level->state()) : std::nullopt);
+    Checkpoint::Entries entries{{state_name, serialized(states)}};
+    if (finished != nullptr) {
+      std::optional<SolidState> state;
+      if (finished->status == Status::converged) state = finest().state()->current.state;
+      entries.emplace(std::to_string(result_.steps.size() + 1), serialized(*finished, state));
     }
-    result_.steps.push_back(std::move(step));
+    try {
+      checkpoint_.save(entries);
+    } catch (const CheckpointError& error) {
+      failure = error.what();
+    }
   }
+  failure = broadcast(communicator_, failure);
+  if (!failure.empty()) throw CheckpointError(failure);
 }
 
-MechanicsStep PathRun::solve(std::size_t i, SolidCheckpoint& saved, bool keep) {
+MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   const auto start = Clock::now();
-  const auto save = [&] { saved.save(states()); };
   Progress shown;
   if (progress_) shown = [this, i](const std::string& text) { progress_(label(i) + text); };
-  const LoadPathOutcome outcome = levels_.back()->advance(
-      in_mesh_frame(options_, path_[i]), shown, keep ? std::function<void()>(save) : nullptr);
+  std::function<void()> on_equilibrium;
+  if (keep) on_equilibrium = [this] { save(nullptr); };
+  const LoadPathOutcome outcome =
+      levels_.back()->advance(in_mesh_frame(options_, path_[i]), shown, on_equilibrium);
   MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
-  if (step.status == Status::failed) {
-    step.message = label(i) + step.message;
-    if (saved.file())
-      step.message +=
-          "; what converged up to the first failure is kept in `" + saved.file()->string() + "`";
-  }
+  if (step.status == Status::failed) step.message = label(i) + step.message;
   step.seconds = seconds_since(start);
   return step;
 }
 
 std::string PathRun::label(std::size_t i) const {
   return "step " + std::to_string(i + 1) + "/" + std::to_string(path_.size()) + ", ";
-}
-
-void PathRun::add_to(SolidCheckpoint& saved, const MechanicsStep& step) const {
-  saved.add(step, step.status == Status::converged ? &finest().state()->current.state : nullptr);
-}
-
-void PathRun::add_deformation(MechanicsStep& step, const SolidState& state) const {
-  step.deformation =
-      finest().deformation({in_mesh_frame(options_, step.load), state, step.applied_force},
-                           mesh_azimuth(options_, step.load));
-}
-
-std::vector<const LoadPathState*> PathRun::states() const {
-  std::vector<const LoadPathState*> result;
-  for (const auto& level : levels_) result.push_back(level->state());
-  return result;
 }
 
 }  // namespace ciliaval::fem::solid

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <mpi.h>
+
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "fem/solid/checkpoint.h"
 #include "fem/solid/level.h"
 #include "fem/solid/solid.h"
 #include "problem/mechanics_model.h"
@@ -17,31 +17,31 @@ namespace ciliaval::fem::solid {
 /// The levels of the solid on their way along a load path.
 class PathRun {
  public:
-  /// The levels from the coarsest to the finest. Path, options and progress must outlive it.
+  /// The levels from the coarsest to the finest. All arguments must outlive it. Rank 0 reads and
+  /// renews the checkpoint; that of other ranks is not used.
   PathRun(std::vector<std::unique_ptr<Level>> levels, const LoadPath& path,
-          const SolidOptions& options, const Progress& progress);
+          const SolidOptions& options, const Checkpoint& checkpoint, const Progress& progress,
+          MPI_Comm communicator);
 
-  /// Goes on from where the checkpoint, if there is one, left off, to the end of the path, and
-  /// renews the checkpoint on the way. Collective.
-  MechanicsResult follow(SolidCheckpoint& saved);
+  /// Goes on from the checkpoint to the end of the path. Collective.
+  MechanicsResult follow();
 
  private:
   const Level& finest() const { return *levels_.back(); }
-  void go_on_from(SolidCheckpoint& saved);
-  void follow_path(SolidCheckpoint& saved);
+  void go_on_from_checkpoint();
+  /// Keeps the levels' states, and the step that has ended with them if there is one. Collective.
+  void save(const MechanicsStep* finished) const;
   /// "step 2/4, "
   std::string label(std::size_t i) const;
   /// Step i. If `keep`, saves each equilibrium on the way.
-  MechanicsStep solve(std::size_t i, SolidCheckpoint& saved, bool keep);
-  /// Adds the step that the levels have ended with.
-  void add_to(SolidCheckpoint& saved, const MechanicsStep& step) const;
-  void add_deformation(MechanicsStep& step, const discretisation::SolidState& state) const;
-  std::vector<const equilibrium::LoadPathState*> states() const;
+  MechanicsStep solve(std::size_t i, bool keep);
 
   std::vector<std::unique_ptr<Level>> levels_;  ///< the coarsest first
   const LoadPath& path_;
   const SolidOptions& options_;
+  const Checkpoint& checkpoint_;
   const Progress& progress_;
+  MPI_Comm communicator_;
   MechanicsResult result_;
 };
 

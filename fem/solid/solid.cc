@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "fem/parallel.h"
-#include "fem/solid/checkpoint.h"
+#include "fem/solid/fingerprint.h"
 #include "fem/solid/level.h"
 #include "fem/solid/path_run.h"
 #include "meshes/cylinder/cylinder_mesh.h"
@@ -121,14 +121,6 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
   return levels;
 }
 
-Facts facts(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
-  std::vector<meshes::cylinder::CylinderMeshOptions> meshes;
-  if (options.mesh.empty())
-    for (unsigned int i = 0; i <= mesh_level(options.refinement); ++i)
-      meshes.push_back(path_mesh(i, options, path));
-  return solid_facts(cilium, path, options, meshes);
-}
-
 }  // namespace
 
 unsigned int mesh_level(unsigned int refinement) {
@@ -184,17 +176,19 @@ MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
   return solve_from(cilium, path, {}, progress);
 }
 
-std::optional<std::size_t> Solid::finished_steps(const Cilium& cilium, const LoadPath& path,
-                                                 const Checkpoint& checkpoint) const {
-  require_valid(cilium, path, options_);
-  return SolidCheckpoint(checkpoint, facts(cilium, path, options_), communicator_).verify();
+std::optional<support::Fingerprint> Solid::fingerprint(const Cilium& cilium,
+                                                       const LoadPath& path) const {
+  return solid::fingerprint(cilium, path, options_);
 }
 
 MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
                                   const Checkpoint& checkpoint, const Progress& progress) const {
   require_valid(cilium, path, options_);
   try {
-    return follow(cilium, path, checkpoint, progress);
+    start_mpi();
+    return PathRun(make_levels(cilium, path, options_, communicator_), path, options_, checkpoint,
+                   progress, communicator_)
+        .follow();
   } catch (const CheckpointError&) {
     throw;  // on all ranks
   } catch (const RankFailure&) {
@@ -203,14 +197,6 @@ MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
     require_failure_of_all_ranks(error.what());
     throw;
   }
-}
-
-MechanicsResult Solid::follow(const Cilium& cilium, const LoadPath& path,
-                              const Checkpoint& checkpoint, const Progress& progress) const {
-  start_mpi();
-  PathRun run(make_levels(cilium, path, options_, communicator_), path, options_, progress);
-  SolidCheckpoint saved(checkpoint, facts(cilium, path, options_), communicator_);
-  return run.follow(saved);
 }
 
 }  // namespace ciliaval::fem::solid

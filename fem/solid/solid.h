@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <cstddef>
-#include <optional>
-
 #include <mpi.h>
+
+#include <optional>
 
 #include "fem/solid/solid_options.h"
 #include "problem/load.h"
@@ -50,16 +49,13 @@ class Solid : public MechanicsModel {
   MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                         const Progress& progress = {}) const override;
 
-  std::optional<std::size_t> finished_steps(const Cilium& cilium, const LoadPath& path,
-                                            const Checkpoint& checkpoint) const override;
+  std::optional<support::Fingerprint> fingerprint(const Cilium& cilium,
+                                                  const LoadPath& path) const override;
   MechanicsResult solve_from(const Cilium& cilium, const LoadPath& path,
                              const Checkpoint& checkpoint,
                              const Progress& progress = {}) const override;
 
  private:
-  MechanicsResult follow(const Cilium& cilium, const LoadPath& path, const Checkpoint& checkpoint,
-                         const Progress& progress) const;
-
   SolidOptions options_;
   MPI_Comm communicator_;
 };

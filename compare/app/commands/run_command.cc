@@ -2,7 +2,9 @@
 #include <fmt/core.h>
 #include <tbb/parallel_invoke.h>
 
-#include <optional>
+#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "compare/app/case_files.h"
@@ -11,12 +13,12 @@
 #include "compare/models/errors.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
-#include "compare/output/checkpoint_folder.h"
 #include "compare/output/field_grid.h"
 #include "compare/output/output_file.h"
 #include "compare/output/output_folder.h"
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
+#include "compare/output/store/store.h"
 #include "compare/output/table.h"
 #include "compare/output/vtk/output.h"
 #include "compare/report/report.h"
@@ -30,56 +32,63 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<fs::path> files;
   fs::path directory = "results";
-  bool fresh = false;  ///< delete the checkpoints of runs that were killed
+  bool fresh = false;  ///< empty the stores of runs that were killed
 };
 
-/// A case of `ciliaval run` and what it may write to.
+/// A case of `ciliaval run`, what it may write to, and what it goes on from.
 struct Prepared {
   input::Case problem;
   output::OutputFolder folder;
-  std::optional<output::CheckpointFolder> checkpoints;  ///< if a model of the case keeps one
+  std::unique_ptr<output::store::Store> store;  ///< if a model of the case keeps a checkpoint
+  std::map<std::string, Checkpoint> checkpoints;
 };
 
-Checkpoint checkpoint(const fs::path& directory, const input::Case& problem) {
-  return {output::checkpoint_path(directory, problem.name), version_line()};
-}
-
-/// Makes the folders. Says what the case goes on from, or deletes it if options.fresh.
+/// Makes the folders and the store, which is emptied if options.fresh. Says what the case goes on
+/// from.
 Prepared prepare(const fs::path& file, const input::Case& problem, const Options& options) {
   Prepared result{problem,
                   output::OutputFolder(options.directory, problem.name, input_files(file, problem)),
-                  std::nullopt};
-  if (models::kept_checkpoints(problem, models::mechanics_models(), {}).empty()) return result;
-  result.checkpoints.emplace(options.directory, problem.name);
-  if (options.fresh) result.checkpoints->clear();
-  const Checkpoint saved = checkpoint(options.directory, problem);
-  const std::size_t steps = problem.load_path.size();
-  for (const models::Kept& kept :
-       models::kept_checkpoints(problem, models::mechanics_models(), saved))
-    if (fs::exists(saved.path / kept.model))
-      warn(fmt::format("case \"{}\": {} {}, as `{}` says; --fresh starts anew", problem.name,
-                       kept.model,
-                       kept.finished_steps < steps
-                           ? fmt::format("goes on at step {}/{}", kept.finished_steps + 1, steps)
-                           : fmt::format("has solved all {} steps", steps),
-                       (saved.path / kept.model).string()));
+                  nullptr,
+                  {}};
+  for (auto& [id, fingerprint] : models::fingerprints(problem, models::mechanics_models())) {
+    if (!result.store)
+      result.store = std::make_unique<output::store::Store>(
+          options.directory / ("." + problem.name + ".sqlite"), options.fresh);
+    fingerprint.emplace_back("program", version_line());
+    output::store::Store& store = *result.store;
+    store.require_fingerprint(id, fingerprint);
+    const Checkpoint& checkpoint =
+        result.checkpoints
+            .emplace(id, Checkpoint{store.read(id),
+                                    [&store, owner = id](const Checkpoint::Entries& entries) {
+                                      store.write(owner, entries);
+                                    }})
+            .first->second;
+    if (checkpoint.kept.empty()) continue;
+    const std::size_t steps = problem.load_path.size();
+    const std::size_t finished = checkpoint.finished_steps();
+    warn(fmt::format("case \"{}\": {} {}, as `{}` says; --fresh starts anew", problem.name, id,
+                     finished < steps ? fmt::format("goes on at step {}/{}", finished + 1, steps)
+                                      : fmt::format("has solved all {} steps", steps),
+                     store.file().string()));
+  }
   return result;
 }
 
-/// Deletes the checkpoints, unless a model that keeps one has failed: says how to go on from there.
-void end_checkpoints(output::CheckpointFolder& folder, const models::CaseResult& result) {
+/// Deletes the store, unless a model that has kept something has failed: says how to go on from
+/// there.
+void end_store(output::store::Store& store, const models::CaseResult& result) {
   bool needed = false;
   for (const models::MechanicsRun& run : result.mechanics) {
-    const fs::path file = folder.path() / run.model;
-    if (!fs::exists(file) || models::all_solved(run)) continue;
+    if (models::all_solved(run) || store.read(run.model).empty()) continue;
     needed = true;
     warn(fmt::format(
         "case \"{0}\": the last state of {1} that converged is kept in `{2}`: run the case again, "
         "with a larger models.{1}.max_iterations or max_cutbacks, to go on from there, or with "
         "--fresh",
-        result.problem.name, run.model, file.string()));
+        result.problem.name, run.model, store.file().string()));
   }
-  if (!needed) folder.clear();
+  if (!needed) store.remove();
 }
 
 /// report.html beside summary.json. Figures that cannot be drawn are named, on the page and here:
@@ -91,14 +100,13 @@ void write_case_report(const fs::path& folder) {
     warn(fmt::format("report.html is without its figures: {}", figures.failure()));
 }
 
-ExitCode run_one(Prepared& prepared, const Options& options, const std::string& words) {
+ExitCode run_one(Prepared& prepared, const std::string& words) {
   ProgressLine line;
   const Progress progress = line.callback();
   const input::Case& problem = prepared.problem;
   output::OutputFolder& folder = prepared.folder;
-  const models::CaseResult result =
-      models::run(problem, models::mechanics_models(), models::field_models(), progress,
-                  checkpoint(options.directory, problem));
+  const models::CaseResult result = models::run(
+      problem, models::mechanics_models(), models::field_models(), progress, prepared.checkpoints);
   const std::vector<models::Comparison> comparisons = models::compare_models(result);
   const auto grid = output::field_grid(result, models::field_models(), progress);
   const output::Provenance origin = output::provenance(words);
@@ -109,28 +117,27 @@ ExitCode run_one(Prepared& prepared, const Options& options, const std::string& 
   folder.commit();
   line.clear();
   print(output::table(result, comparisons));
-  if (prepared.checkpoints) end_checkpoints(*prepared.checkpoints, result);
+  if (prepared.store) end_store(*prepared.store, result);
   return models::all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
 
 /// The part of the ranks beyond the first in a case: the solid and the potential, which share their
 /// work with them, and CalculiX, whose result they are given. For the potential each rank has the
 /// rods' deformations from its own solution, which is the same on all.
-void take_part(input::Case problem, const Options& options) {
+void take_part(input::Case problem) {
   std::erase_if(problem.fields, [](const std::string& id) { return id != "potential"; });
   if (problem.fields.empty())
     std::erase_if(problem.mechanics,
                   [](const std::string& id) { return id != "solid" && id != "calculix"; });
-  models::run(problem, models::mechanics_models(), models::field_models(), {},
-              checkpoint(options.directory, problem));
+  models::run(problem, models::mechanics_models(), models::field_models());
 }
 
-/// Checks all case files, output folders and checkpoints before anything runs. Then runs each case,
-/// from its checkpoint if there is one, and writes its results to DIRECTORY/name.
+/// Checks all case files, output folders and stores before anything runs. Then runs each case,
+/// from its store if there is one, and writes its results to DIRECTORY/name.
 ExitCode execute(const Options& options, const std::string& words) {
   const std::vector<input::Case> cases = read_cases(options.files);
   if (fem::rank() > 0) {
-    for (const input::Case& problem : cases) take_part(problem, options);
+    for (const input::Case& problem : cases) take_part(problem);
     return ExitCode::pass;  // rank 0 knows
   }
   std::vector<Prepared> prepared;
@@ -139,7 +146,7 @@ ExitCode execute(const Options& options, const std::string& words) {
     prepared.push_back(prepare(options.files[i], cases[i], options));
   ExitCode code = ExitCode::pass;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    const ExitCode one = run_one(prepared[i], options, words);
+    const ExitCode one = run_one(prepared[i], words);
     if (one != ExitCode::pass) code = one;
     print(fmt::format("Results: {}\n{}", prepared[i].folder.target().string(),
                       i + 1 < prepared.size() ? "\n" : ""));
@@ -161,7 +168,7 @@ void add_run(CommandLine& line) {
       ->type_name("DIR")
       ->capture_default_str();
   run->add_flag("--fresh", options->fresh,
-                "Start anew: delete the checkpoint of a run that was killed or did not converge");
+                "Start anew: forget what a run that was killed or did not converge has solved");
 }
 
 }  // namespace ciliaval::compare::app::commands

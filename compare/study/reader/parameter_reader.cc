@@ -15,9 +15,22 @@
 namespace ciliaval::compare::study::reader {
 namespace {
 
+constexpr std::size_t most_searched = 8;
 constexpr std::size_t longest_name = 40;  ///< of a parameter, bytes
-constexpr std::array<std::string_view, 4> range_keys{"from", "to", "count", "spacing"};
 constexpr Range count_range{2, 100'000, false, "a range has two ends, and a study must end"};
+
+/// The model of an option "models.MODEL.NAME" if no pair of the study runs it; else empty.
+std::string idle_model(const Study& study, std::string_view path) {
+  constexpr std::string_view prefix = "models.";
+  if (!path.starts_with(prefix) || study.pairs.empty()) return {};
+  path.remove_prefix(prefix.size());
+  const std::string_view model = path.substr(0, path.find('.'));
+  const bool is_run =
+      std::any_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
+        return pair.mechanics == model || pair.field == model;
+      });
+  return is_run ? std::string() : std::string(model);
+}
 
 /// The value with 15 significant digits, which a person would have written: 0.3, not
 /// 0.30000000000000004.
@@ -35,6 +48,58 @@ std::vector<double> spaced(double from, double to, unsigned int count, bool loga
   values.front() = from;
   values.back() = to;
   return values;
+}
+
+/// `path` and `name`; none, with a fault, if there is no such number.
+std::optional<Parameter> read_name(input::Section& table, const Reading& reading) {
+  input::Faults& faults = table.faults();
+  const toml::node* path_node = table.require("path");
+  const toml::node* name = table.find("name");
+  const std::optional<std::string> path =
+      path_node != nullptr ? input::read_text(*path_node, "path", faults) : std::nullopt;
+  const CaseNumber* number =
+      path ? find_number(reading, *path, input::place(*path_node), faults) : nullptr;
+  if (number == nullptr) return std::nullopt;
+  Parameter parameter{*number, path->substr(path->find_last_of('.') + 1), {}, 1, {}, false};
+  check_contradiction(reading.study, *number, input::place(*path_node), faults);
+  if (name != nullptr)
+    parameter.name = input::read_line(*name, "name", longest_name, faults).value_or(parameter.name);
+  return parameter;
+}
+
+/// The two ends of a range.
+struct Ends {
+  double from = 0;
+  double to = 0;
+};
+
+/// `from`, `to` and `spacing`, with the parameter's unit and spacing; none if there is a fault.
+std::optional<Ends> read_ends(input::Section& table, Parameter& parameter) {
+  input::Faults& faults = table.faults();
+  const std::size_t before = faults.size();
+  const auto end = [&](std::string_view key) {
+    const toml::node* node = table.require(key);
+    if (node == nullptr) return std::optional<double>();
+    if (parameter.unit.empty()) parameter.unit = unit_of(*node);
+    return read_number(*node, key, parameter.number, faults);
+  };
+  const auto from = end("from");
+  const auto to = end("to");
+  if (const toml::node* node = table.find("spacing")) {
+    constexpr std::array<std::string_view, 2> spacings{"linear", "logarithmic"};
+    parameter.is_logarithmic =
+        input::read_choice(*node, "spacing", spacings, {}, faults) == spacings[1];
+  }
+  if (!from || !to || faults.size() != before) return std::nullopt;
+  if (*from == *to)
+    faults.add(input::place(*table.find("to")),
+               "'from' and 'to' are the same: there is nothing to vary");
+  else if (parameter.is_logarithmic && !(*from * *to > 0))
+    faults.add(input::place(*table.find("spacing")),
+               "a logarithmic range has both ends of one sign, and none at zero");
+  else
+    return Ends{*from, *to};
+  return std::nullopt;
 }
 
 /// `from`, `to`, `count`, `spacing`.
@@ -75,30 +140,65 @@ void read_values(const toml::node& node, Parameter& parameter, input::Faults& fa
   }
 }
 
-/// A parameter with its values.
+/// The bounds of a parameter that is searched, and where the search starts: `start`, or the case's
+/// own value, brought within the bounds.
+void read_bounds(input::Section& table, Parameter& parameter, Reading& reading) {
+  input::Faults& faults = table.faults();
+  for (const std::string_view key : {"values", "count"})
+    if (const toml::node* node = table.find(key))
+      faults.add(input::place(*node),
+                 fmt::format("with [optimise] a parameter has its bounds, 'from' and 'to', and no "
+                             "'{}'",
+                             key));
+  if (parameter.number.is_whole)
+    faults.add(table.where(), fmt::format("'{}' is a whole number: list its values in a study of "
+                                          "its own",
+                                          parameter.number.path));
+  const auto ends = read_ends(table, parameter);
+  if (!ends) return;
+  if (ends->from > ends->to)
+    return faults.add(input::place(*table.find("from")), "the bound 'from' must be below 'to'");
+  parameter.values = {ends->from, ends->to};
+  const input::Case nominal = with_settings(reading.base, reading.study.fixed);
+  double start = std::clamp(parameter.number.get(nominal), ends->from, ends->to);
+  if (const toml::node* node = table.find("start")) {
+    start = read_number(*node, "start", parameter.number, faults).value_or(start);
+    if (start < ends->from || start > ends->to)
+      faults.add(input::place(*node), "'start' must lie between 'from' and 'to'");
+  }
+  reading.study.optimisation->start.push_back(start);
+}
+
+/// A parameter with its values, or with its bounds if the study optimises.
 void read_parameter(input::Section& table, Reading& reading) {
   input::Faults& faults = table.faults();
   const std::size_t before = faults.size();
-  std::optional<Parameter> parameter = read_parameter_name(table, reading);
+  const bool is_searched = reading.study.optimisation.has_value();
+  std::optional<Parameter> parameter = read_name(table, reading);
+  for (const std::string_view key : {"from", "to", "count", "spacing"}) table.find(key);
+  if (is_searched) table.find("start");
   const toml::node* values = table.find("values");
-  if (!parameter) {  // which values it may have cannot be told
-    for (const std::string_view key : range_keys) table.find(key);
-    table.finish();
-    return;
-  }
   const bool has_range = table.table()->contains("from") || table.table()->contains("to");
-  if (values != nullptr && has_range)
-    faults.add(input::place(*values), "'values' contradicts 'from' and 'to': give one of them");
-  if (values == nullptr && !has_range)
-    faults.add(table.where(), "[[parameter]] needs 'values', or 'from', 'to' and 'count'");
-  if (values != nullptr) {
+  if (!parameter) {
+    // Which values it may have cannot be told.
+  } else if (is_searched) {
+    read_bounds(table, *parameter, reading);
+  } else if (values != nullptr) {
+    if (has_range)
+      faults.add(input::place(*values), "'values' contradicts 'from' and 'to': give one of them");
     read_values(*values, *parameter, faults);
-    for (const std::string_view key : range_keys) table.find(key);
-  } else {
+  } else if (has_range) {
     read_range(table, *parameter);
+  } else {
+    faults.add(table.where(), "[[parameter]] needs 'values', or 'from', 'to' and 'count'");
   }
   table.finish();
-  if (faults.size() == before) add_parameter(std::move(*parameter), reading.study.parameters);
+  if (!parameter || faults.size() != before) return;
+  if (!parameter->unit.empty())
+    parameter->unit_size =
+        input::parse_quantity("1 " + parameter->unit, parameter->number.quantity);
+  Study& study = reading.study;
+  (is_searched ? study.optimisation->parameters : study.parameters).push_back(*parameter);
 }
 
 }  // namespace
@@ -107,8 +207,12 @@ const CaseNumber* find_number(const Reading& reading, const std::string& path, i
                               input::Faults& faults) {
   std::vector<std::string_view> paths;
   for (const CaseNumber& number : reading.numbers) {
-    if (number.path == path) return &number;
     paths.push_back(number.path);
+    if (number.path != path) continue;
+    if (const std::string model = idle_model(reading.study, path); !model.empty())
+      faults.add(where,
+                 fmt::format("'{}' has no effect: no pair of the study runs {}", path, model));
+    return &number;
   }
   std::string advice = support::did_you_mean(path, paths);
   if (advice.empty()) advice = fmt::format(" (there are {})", fmt::join(paths, ", "));
@@ -155,80 +259,30 @@ std::string unit_of(const toml::node& node) {
   return std::string(rest);
 }
 
-std::optional<Parameter> read_parameter_name(input::Section& table, Reading& reading) {
-  input::Faults& faults = table.faults();
-  const toml::node* path_node = table.require("path");
-  const toml::node* name = table.find("name");
-  const std::optional<std::string> path =
-      path_node != nullptr ? input::read_text(*path_node, "path", faults) : std::nullopt;
-  const CaseNumber* number =
-      path ? find_number(reading, *path, input::place(*path_node), faults) : nullptr;
-  if (number == nullptr) return std::nullopt;
-  Parameter parameter{*number, path->substr(path->find_last_of('.') + 1), {}, 1, {}, false};
-  check_contradiction(reading.study, *number, input::place(*path_node), faults);
-  if (name != nullptr)
-    parameter.name = input::read_line(*name, "name", longest_name, faults).value_or(parameter.name);
-  return parameter;
-}
-
-std::optional<Ends> read_ends(input::Section& table, Parameter& parameter) {
-  input::Faults& faults = table.faults();
-  const std::size_t before = faults.size();
-  const auto end = [&](std::string_view key) {
-    const toml::node* node = table.require(key);
-    if (node == nullptr) return std::optional<double>();
-    if (parameter.unit.empty()) parameter.unit = unit_of(*node);
-    return read_number(*node, key, parameter.number, faults);
-  };
-  const auto from = end("from");
-  const auto to = end("to");
-  if (const toml::node* node = table.find("spacing")) {
-    constexpr std::array<std::string_view, 2> spacings{"linear", "logarithmic"};
-    parameter.is_logarithmic =
-        input::read_choice(*node, "spacing", spacings, {}, faults) == spacings[1];
-  }
-  if (!from || !to || faults.size() != before) return std::nullopt;
-  if (*from == *to)
-    faults.add(input::place(*table.find("to")),
-               "'from' and 'to' are the same: there is nothing to vary");
-  else if (parameter.is_logarithmic && !(*from * *to > 0))
-    faults.add(input::place(*table.find("spacing")),
-               "a logarithmic range has both ends of one sign, and none at zero");
-  else
-    return Ends{*from, *to};
-  return std::nullopt;
-}
-
-void add_parameter(Parameter parameter, std::vector<Parameter>& all) {
-  if (!parameter.unit.empty())
-    parameter.unit_size = input::parse_quantity("1 " + parameter.unit, parameter.number.quantity);
-  all.push_back(std::move(parameter));
-}
-
-void for_parameters(input::Section& root, std::string_view advice,
-                    const std::function<void(input::Section& table)>& read) {
+void read_parameters(input::Section& root, Reading& reading) {
   input::Faults& faults = root.faults();
+  const bool is_searched = reading.study.optimisation.has_value();
   const toml::node* node = root.find("parameter");
   const toml::array* list = node != nullptr ? node->as_array() : nullptr;
   if (list == nullptr || list->empty())
-    return faults.add(node != nullptr ? input::place(*node) : input::Place{}, std::string(advice));
+    return faults.add(node != nullptr ? input::place(*node) : input::Place{},
+                      is_searched
+                          ? "an optimisation searches one parameter or more: write [[parameter]] "
+                            "with 'path', 'from' and 'to'"
+                          : "a study varies one parameter or more: write [[parameter]] with 'path' "
+                            "and 'values', or [tolerances]");
   for (const toml::node& element : *list) {
-    if (!element.is_table()) {
-      faults.add(input::place(element),
-                 fmt::format("expected a table [[parameter]], found {}", input::describe(element)));
-      continue;
-    }
     input::Section table(element.as_table(), "[[parameter]]", "parameter", input::place(element),
                          faults);
-    read(table);
+    if (table.exists())
+      read_parameter(table, reading);
+    else
+      faults.add(input::place(element),
+                 fmt::format("expected a table [[parameter]], found {}", input::describe(element)));
   }
-}
-
-void read_parameters(input::Section& root, Reading& reading) {
-  for_parameters(root,
-                 "a study varies one parameter or more: write [[parameter]] with 'path' and "
-                 "'values', or [tolerances]",
-                 [&](input::Section& table) { read_parameter(table, reading); });
+  if (is_searched && reading.study.optimisation->parameters.size() > most_searched)
+    faults.add(root.where(),
+               fmt::format("an optimisation searches at most {} parameters", most_searched));
 }
 
 }  // namespace ciliaval::compare::study::reader

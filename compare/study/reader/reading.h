@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,7 +23,7 @@ struct Reading {
   std::vector<CaseNumber> numbers;
 };
 
-/// The number of this path, or a fault.
+/// The number of this path, or a fault, also if it is an option of a model that no pair runs.
 const CaseNumber* find_number(const Reading& reading, const std::string& path, input::Place where,
                               input::Faults& faults);
 
@@ -39,32 +38,10 @@ void check_contradiction(const Study& study, const CaseNumber& number, input::Pl
 /// The unit of a quantity that has been read: what follows the number.
 std::string unit_of(const toml::node& node);
 
-/// `path` and `name` of a [[parameter]]; none, with a fault, if there is no such number.
-std::optional<Parameter> read_parameter_name(input::Section& table, Reading& reading);
-
-/// The two ends of a range.
-struct Ends {
-  double from = 0;
-  double to = 0;
-};
-/// `from`, `to` and `spacing` of a [[parameter]], whose unit and spacing are set; none if there is
-/// a fault.
-std::optional<Ends> read_ends(input::Section& table, Parameter& parameter);
-
-/// Adds the parameter with the size of its unit.
-void add_parameter(Parameter parameter, std::vector<Parameter>& all);
-
-/// Each table [[parameter]]; a fault, with the advice, if there is none.
-void for_parameters(input::Section& root, std::string_view advice,
-                    const std::function<void(input::Section& table)>& read);
-
-/// [[parameter]] of a study that varies them.
+/// [[parameter]]: what is varied, or searched if the study optimises.
 void read_parameters(input::Section& root, Reading& reading);
 
 /// [optimise]: the goal, the limits and the search's knobs. The case has been read.
 void read_optimisation(input::Section& table, Reading& reading);
-
-/// [[parameter]] of a study that optimises: their bounds and where the search starts.
-void read_searched_parameters(input::Section& root, Reading& reading);
 
 }  // namespace ciliaval::compare::study::reader

@@ -347,7 +347,7 @@ void read_varied(input::Section& root, const input::Section& tolerances, Reading
       faults.add(tolerances.where(),
                  "[tolerances] are of one design: put the one that [optimise] finds under [fixed] "
                  "of another study");
-    return read_searched_parameters(root, reading);
+    return read_parameters(root, reading);
   }
   if (tolerances.exists()) read_tolerances(*tolerances.table(), reading, faults);
   if (root.find("parameter") != nullptr || !tolerances.exists() || tolerances.table()->empty())

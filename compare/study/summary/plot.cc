@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compare/output/text_table.h"
 #include "compare/study/summary/report.h"
 
 namespace ciliaval::compare::study::summary {
@@ -45,8 +46,7 @@ std::vector<Family> families_of(const Study& study, bool& thinned) {
   thinned = count > most_families;
   if (!thinned) return all;
   std::vector<Family> some;
-  for (std::size_t i = 0; i < most_families; ++i)
-    some.push_back(all[i * (count - 1) / (most_families - 1)]);
+  for (const std::size_t i : output::evenly(count, most_families)) some.push_back(all[i]);
   return some;
 }
 

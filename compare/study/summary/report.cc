@@ -19,13 +19,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_rows = 25;
 
-/// As many rows as fit a screen, evenly chosen, the first and the last among them.
-std::vector<std::size_t> shown_points(std::size_t count) {
-  std::vector<std::size_t> points;
-  const std::size_t rows = std::min(count, most_rows);
-  for (std::size_t i = 0; i < rows; ++i)
-    points.push_back(rows < 2 ? 0 : (i * (count - 1) + (rows - 1) / 2) / (rows - 1));
-  return points;
+/// As many points as fit a screen.
+std::vector<std::size_t> shown_points(const Study& study) {
+  if (study.is_zipped) return output::evenly(study.point_count(), most_rows);
+  std::vector<std::size_t> counts;
+  for (const Parameter& p : study.parameters) counts.push_back(p.values.size());
+  return output::thinned_grid(counts, most_rows);
 }
 
 std::string point_table(const StudyResult& result, std::size_t pair) {
@@ -35,7 +34,7 @@ std::string point_table(const StudyResult& result, std::size_t pair) {
     rows[0].push_back(p.unit.empty() ? p.name : fmt::format("{}({})", p.name, p.unit));
   for (const Output output : study.outputs)
     rows[0].push_back(fmt::format("{}({})", symbol(output), unit_of(output, study).name));
-  for (const std::size_t point : shown_points(study.point_count())) {
+  for (const std::size_t point : shown_points(study)) {
     std::vector<std::string>& row = rows.emplace_back();
     const std::vector<double> values = study.values_at(point);
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -122,8 +121,9 @@ std::string text(const StudyResult& result) {
   std::string text = fmt::format("Study \"{}\": {}\n", study.name, study.title);
   const std::size_t count = study.point_count();
   if (count == 0) return text;
-  if (count > most_rows)
-    text += fmt::format("{} points, {} of them below; all are in study.csv\n", count, most_rows);
+  if (const std::size_t shown = shown_points(study).size(); shown < count)
+    text += fmt::format("{} points, {} of them below, {} left out; all are in study.csv\n", count,
+                        shown, count - shown);
   for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
     text += fmt::format("\n{}\n{}", study.pairs[pair].name(), point_table(result, pair));
   return text + trends(result) + exceptions(result);

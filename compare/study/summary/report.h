@@ -17,7 +17,7 @@ namespace ciliaval::compare::study::summary {
 /// An output of a result in this unit, or what has become of it.
 std::string cell(const PairResult& result, std::size_t output, double unit);
 
-/// For a terminal: a table of the points, thinned to some 25 of them, then what each output does
+/// For a terminal: a table of the points, thinned to at most 25 of them, then what each output does
 /// along the parameter if there is one alone: monotone, or its peak.
 std::string text(const StudyResult& result);
 

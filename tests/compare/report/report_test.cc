@@ -16,6 +16,7 @@
 #include "compare/plot/gnuplot.h"
 #include "compare/report/figures.h"
 #include "compare/report/html.h"
+#include "compare/report/sections.h"
 #include "problem/error.h"
 #include "results.h"
 
@@ -74,6 +75,21 @@ TEST(Report, ShowsAnOptimumWithItsDesigns) {
   for (const auto& design : optimum["designs"])
     for (const auto& [pair, result] : design["pairs"].items())
       expect_shown(page, fmt::format("<td>{:.5g}</td>", result["dB_norm"].get<double>() * 1e6));
+}
+
+// The largest magnitude has its sign, and the place all parameters.
+TEST(Report, NamesTheLargestMagnitudeOfAStudyWithAllParameters) {
+  nlohmann::json study = nlohmann::json::parse(R"({"case": "c", "resolved": [], "pairs": ["a/b"],
+    "parameters": [{"path": "p", "name": "P", "unit": "", "values": [1, 2]},
+                   {"path": "q", "name": "Q", "unit": "m", "values": [0.003, 0.004]}],
+    "outputs": [{"id": "dB_x", "unit": "T"}], "points": []})");
+  for (int i = 0; i < 4; ++i)
+    study["points"].push_back(
+        {{"parameters", {{"p", 1 + i / 2}, {"q", 0.003 + 0.001 * (i % 2)}}},
+         {"pairs", {{"a/b", {{"status", "converged"}, {"dB_x", i == 1 ? -9e-6 : 1e-6 * i}}}}}});
+  compare::report::Figures figures;
+  const std::string page = figures.drawn(compare::report::study_content(study, figures));
+  expect_shown(page, "Largest magnitude of the points: a/b -9 µT at P = 1, Q = 4 mm.");
 }
 
 // gnuplot's own text, and texts that would load or run something.

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "compare/output/store/store.h"
 #include "synthetic.h"
 
 namespace ciliaval {
@@ -79,6 +80,10 @@ Outcome run(const fs::path& folder, const std::vector<std::string>& arguments,
   return outcome;
 }
 
+fs::path store_in(const fs::path& folder) {
+  return folder / "out" / ".killed.sqlite";
+}
+
 bool never() {
   return false;
 }
@@ -136,7 +141,7 @@ void kill_and_compare(int kills_wanted) {
       ASSERT_TRUE(outcome.killed || outcome.code == 0) << outcome.err;
     } while (outcome.killed);
     EXPECT_EQ(contents(folder.path() / "out" / "killed"), expected) << "after " << kills;
-    EXPECT_FALSE(fs::exists(folder.path() / "out" / ".killed.checkpoint"));
+    EXPECT_FALSE(fs::exists(store_in(folder.path())));
   }
   EXPECT_GT(continued, 0) << "no run went on from a checkpoint";
 }
@@ -149,17 +154,17 @@ TEST(RestartSlow, ARunKilledAtTwentyRandomMomentsEndsWithTheSameDigits) {
   kill_and_compare(20);
 }
 
-/// Leaves the checkpoint of a run that was killed after its second step.
+/// Leaves the store of a run that was killed after its second step. SQLite writes the two columns
+/// of an entry's name side by side.
 void interrupt(const fs::path& folder) {
-  const fs::path second = folder / "out" / ".killed.checkpoint" / "solid.0001";
-  const fs::path last = folder / "out" / ".killed.checkpoint" / "solid";
-  std::error_code none;
-  fs::file_time_type written{};
   const Outcome outcome = run(folder, to_out, [&] {
-    // The file itself follows that of the step.
-    if (!fs::exists(second, none)) return false;
-    if (written == fs::file_time_type{}) written = fs::last_write_time(second, none);
-    return fs::last_write_time(last, none) > written;
+    for (const char* log : {"", "-wal"})
+      if (const fs::path file = store_in(folder).string() + log;
+          fs::exists(file) && read_text(file).find("solid2") != std::string::npos) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the rest of the transaction
+        return true;
+      }
+    return false;
   });
   ASSERT_TRUE(outcome.killed) << outcome.err;
 }
@@ -177,7 +182,7 @@ TEST(Restart, SaysWhereItGoesOnAndFreshStartsAnew) {
   const Outcome fresh = run(folder.path(), {"-o", "out", "--fresh"}, never);
   EXPECT_EQ(fresh.code, 0);
   EXPECT_EQ(fresh.err, "");
-  EXPECT_FALSE(fs::exists(folder.path() / "out" / ".killed.checkpoint"));
+  EXPECT_FALSE(fs::exists(store_in(folder.path())));
 }
 
 // Damaged, or of a case that was changed since: exit code 4 before anything is written, and the
@@ -186,51 +191,67 @@ TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   const TemporaryFolder folder;
   write_case(folder.path());
   interrupt(folder.path());
-  const fs::path file = folder.path() / "out" / ".killed.checkpoint" / "solid";
+  const fs::path file = store_in(folder.path());
+  compare::output::store::Store{file};  // merges what the kill has left beside it
   const std::string good = read_text(file);
   const auto refused = [&](const std::string& why) {
     const std::string before = read_text(file);
     const Outcome outcome = run(folder.path(), to_out, never);
     EXPECT_EQ(outcome.code, 4) << why;
-    EXPECT_THAT(outcome.err, HasSubstr("out/.killed.checkpoint/solid"));
+    EXPECT_THAT(outcome.err, HasSubstr("out/.killed.sqlite"));
     EXPECT_THAT(outcome.err, HasSubstr(why));
     EXPECT_THAT(outcome.err, HasSubstr("--fresh"));
     EXPECT_FALSE(fs::exists(folder.path() / "out" / "killed"));
     EXPECT_EQ(read_text(file), before);
   };
   std::ofstream(file, std::ios::binary) << good.substr(0, good.size() / 2);
-  refused("cut short");
+  refused("damaged");
   std::ofstream(file, std::ios::binary) << std::string(good).replace(good.size() / 2, 8, 8, '!');
   refused("damaged");
   std::ofstream(file, std::ios::binary) << good;
   write_case(folder.path(), "tolerance = 1e-8\n");
   refused("models.solid.tolerance was");
   write_case(folder.path(), "", R"(["0.5 mN", "1 mN", "1.25 mN", "2 mN"])");
-  refused("load of step 3 was contact, 0.0015 N");
+  refused("load of step 3 was contact, force 0.0015 N");
   write_case(folder.path(), "max_iterations = 30\n[models.line]\ntolerance = 1e-9\n");
   EXPECT_EQ(run(folder.path(), to_out, never).code, 0);
 }
 
-// One run at a time has a checkpoint.
+// Behind a link to anything, a store included, nothing is read or deleted.
+TEST(Restart, ALinkInPlaceOfTheStoreIsRefusedByFreshToo) {
+  const TemporaryFolder folder;
+  write_case(folder.path());
+  fs::create_directory(folder.path() / "out");
+  std::ofstream(folder.path() / "thesis") << "all of it";
+  fs::create_symlink("../thesis", store_in(folder.path()));
+  for (const std::vector<std::string>& arguments : {to_out, {"-o", "out", "--fresh"}}) {
+    const Outcome outcome = run(folder.path(), arguments, never);
+    EXPECT_EQ(outcome.code, 4);
+    EXPECT_THAT(outcome.err, HasSubstr("out/.killed.sqlite` cannot be used and was left as it is: "
+                                       "it is a link"));
+  }
+  EXPECT_EQ(read_text(folder.path() / "thesis"), "all of it");
+}
+
+// One run at a time has the store.
 TEST(Restart, ASecondRunOfTheSameCaseIsRefusedWhileTheFirstGoesOn) {
   const TemporaryFolder folder;
   write_case(folder.path());
   Outcome second;
-  const fs::path file = folder.path() / "out" / ".killed.checkpoint" / "solid";
   run(folder.path(), to_out, [&] {
     if (second.code >= 0) return true;
-    if (!fs::exists(file)) return false;
+    if (!fs::exists(store_in(folder.path()))) return false;
     fs::create_directory(folder.path() / "second");
     fs::copy_file(folder.path() / "case.toml", folder.path() / "second" / "case.toml");
     second = run(folder.path() / "second", {"-o", "../out"}, never);
     return true;
   });
   EXPECT_EQ(second.code, 4);
-  EXPECT_THAT(second.err, HasSubstr("another run of this case"));
+  EXPECT_THAT(second.err, HasSubstr("another run writes to"));
 }
 
 // One iteration is not enough for the second step: the message has the step, the residuals, the
-// last load that converged and the file that holds its state, from which more iterations go on.
+// last load that converged; stderr names the store, from which more iterations go on.
 TEST(Restart, AFailedStepCanBeGoneOnFromWithMoreIterations) {
   const TemporaryFolder folder;
   const std::string forces = R"(["1e-6 mN", "4 mN"])";
@@ -238,7 +259,7 @@ TEST(Restart, AFailedStepCanBeGoneOnFromWithMoreIterations) {
   write_case(folder.path(), options + "3\n", forces);
   const Outcome failed = run(folder.path(), to_out, never);
   EXPECT_EQ(failed.code, 3);
-  EXPECT_THAT(failed.err, HasSubstr("out/.killed.checkpoint/solid"));
+  EXPECT_THAT(failed.err, HasSubstr("out/.killed.sqlite"));
   EXPECT_THAT(failed.err, HasSubstr("max_iterations"));
   const auto solid = [&] {
     const std::string text = read_text(folder.path() / "out" / "killed" / "summary.json");
@@ -249,13 +270,12 @@ TEST(Restart, AFailedStepCanBeGoneOnFromWithMoreIterations) {
   EXPECT_THAT(message, HasSubstr("step 2/2"));
   EXPECT_THAT(message, HasSubstr("relative residuals"));
   EXPECT_THAT(message, HasSubstr("the last load that converged is 1e-09 N"));
-  EXPECT_THAT(message, HasSubstr("out/.killed.checkpoint/solid"));
   write_case(folder.path(), options + "25\n", forces);
   const Outcome again = run(folder.path(), to_out, never);
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("goes on at step 2/2"));
   EXPECT_EQ(solid()["status"], "converged");
-  EXPECT_FALSE(fs::exists(folder.path() / "out" / ".killed.checkpoint"));
+  EXPECT_FALSE(fs::exists(store_in(folder.path())));
 }
 
 }  // namespace

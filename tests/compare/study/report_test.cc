@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -126,10 +128,31 @@ TEST(StudyReport, TheTableIsThinnedAndTellsWhatSlippedOff) {
       "[[parameter]]\npath = \"cilium.diameter\"\nfrom = \"1 mm\"\nto = \"5 mm\"\ncount = 401\n";
   const std::string out = text(result_of(many, [](double d) { return d < 0.00105 ? NAN : d; }));
   EXPECT_LT(std::count(out.begin(), out.end(), '\n'), 40);
-  EXPECT_THAT(out, HasSubstr("401 points, 25 of them below"));
+  EXPECT_THAT(out, HasSubstr("401 points, 25 of them below, 376 left out"));
   EXPECT_THAT(out, HasSubstr("      1  slipped_off\n"));
   EXPECT_THAT(out, HasSubstr("      5         5000\n"));
   EXPECT_THAT(out, HasSubstr("slipped_off at 5 of 401 points, first at diameter = 1 mm"));
+}
+
+// Of 41 x 7 points whole values of the parameters are left out: the rows form a grid.
+TEST(StudyReport, TheTableOfTwoParametersHasWholeValues) {
+  const std::string two =
+      "[[parameter]]\npath = \"cilium.diameter\"\nfrom = \"1 mm\"\nto = \"5 mm\"\ncount = 41\n"
+      "[[parameter]]\npath = \"load.azimuth\"\nfrom = \"0 deg\"\nto = \"60 deg\"\ncount = 7\n";
+  const std::string out = text(result_of(two, [](double d) { return d; }));
+  EXPECT_THAT(out, HasSubstr("287 points, 25 of them below, 262 left out"));
+  std::map<std::string, std::vector<std::string>> rows;  // azimuths of each diameter
+  std::istringstream lines(out.substr(out.find("|dB|")));
+  std::string line;
+  std::getline(lines, line);
+  std::string diameter;
+  std::string azimuth;
+  std::string value;
+  while (std::getline(lines, line) && std::istringstream(line) >> diameter >> azimuth >> value)
+    rows[diameter].push_back(azimuth);
+  EXPECT_EQ(rows.size(), 5u);
+  for (const auto& [d, azimuths] : rows)
+    EXPECT_THAT(azimuths, testing::ElementsAre("0", "10", "30", "40", "60")) << d;
 }
 
 TEST(StudyPlot, HasACurveForEachPairAndMarksWhatSlippedOff) {
@@ -164,6 +187,17 @@ TEST(StudyPlot, OfAProductHasACurveForEachCombinationAndOfManySome) {
   EXPECT_THAT(many, HasSubstr("d = 1 mm"));
   EXPECT_THAT(many, HasSubstr("d = 3 mm"));
   EXPECT_THAT(many, Not(HasSubstr("d = 1.2 mm")));
+}
+
+// gnuplot 5.4 misreads two apostrophes in a row, also as the escape of one, in single quotes.
+TEST(StudyPlot, ShowsAnyNameOfAParameter) {
+  for (const std::string name : {"'d", "d'", "d''", "a'b\\n", "`d`", "@d_{1}^2", "\"d\" #1"}) {
+    StudyResult result = result_of(lengths, [](double x) { return x; });
+    result.study.parameters[0].name = name;
+    const auto all = plots(result);
+    EXPECT_THAT(plot::draw_svg(all.at(0).script, all.at(0).size), HasSubstr('>' + name + '<'))
+        << name;
+  }
 }
 
 TEST(StudyPlot, OfNothingThereIsNone) {

@@ -1,51 +1,32 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What an interrupted solution goes on from, and what it refuses.
+// What an interrupted solution goes on from.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
+#include <algorithm>
 #include <functional>
-#include <iterator>
 #include <string>
 #include <vector>
 
-#include "fem/checkpoint_file.h"
 #include "fem/solid/solid.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid {
 namespace {
 
-namespace fs = std::filesystem;
+using testing::Contains;
 using testing::HasSubstr;
 
-class SolidCheckpointFiles : public testing::Test {
- protected:
-  SolidCheckpointFiles() {
-    static int number = 0;
-    folder_ = fs::temp_directory_path() /
-              ("ciliaval-checkpoint-" + std::to_string(getpid()) + "-" + std::to_string(number++));
-    fs::create_directories(folder_);
+/// A checkpoint in memory, which outlives the solution that it is given to.
+class Memory {
+ public:
+  Checkpoint checkpoint() {
+    return {kept, [this](const Checkpoint::Entries& entries) {
+              for (const auto& [name, bytes] : entries) kept[name] = bytes;
+            }};
   }
-  ~SolidCheckpointFiles() override { fs::remove_all(folder_); }
-
-  Checkpoint checkpoint(const std::string& program = "program 1") const {
-    return {folder_ / "solid", program};
-  }
-  fs::path file(const std::string& name) const { return folder_ / name; }
-
-  fs::path folder_;
+  Checkpoint::Entries kept;
 };
-
-std::string read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-void write(const fs::path& file, const std::string& bytes) {
-  std::ofstream(file, std::ios::binary) << bytes;
-}
 
 /// A short cilium, quickly solved.
 Cilium stub() {
@@ -97,8 +78,7 @@ void expect_same(const MechanicsResult& a, const MechanicsResult& b, const std::
 
 /// Stops the solution again and again, each time after some more lines of progress than before, and
 /// compares what comes of it at last with the solution that nothing has stopped.
-void stop_and_go_on(const SolidOptions& options, const LoadPath& loads, const Checkpoint& files,
-                    int stops) {
+void stop_and_go_on(const SolidOptions& options, const LoadPath& loads, int stops) {
   int total = 0;
   const MechanicsResult whole =
       Solid(options).solve(stub(), loads, [&total](const std::string&) { ++total; });
@@ -106,188 +86,89 @@ void stop_and_go_on(const SolidOptions& options, const LoadPath& loads, const Ch
   bool went_on = false;
   for (int first = total / 4; first < total; first += total / stops) {
     const std::string what = "stopped first at line " + std::to_string(first);
-    fs::remove_all(files.path.parent_path());
-    fs::create_directories(files.path.parent_path());
+    Memory memory;
     int lines = first;
-    EXPECT_THROW(Solid(options).solve_from(stub(), loads, files, killed_after(lines)), Killed);
-    went_on = went_on || fs::exists(files.path);
+    EXPECT_THROW(Solid(options).solve_from(stub(), loads, memory.checkpoint(), killed_after(lines)),
+                 Killed);
+    went_on = went_on || !memory.kept.empty();
     lines = first + total / 3;
     try {
-      Solid(options).solve_from(stub(), loads, files, killed_after(lines));
+      Solid(options).solve_from(stub(), loads, memory.checkpoint(), killed_after(lines));
     } catch (const Killed&) {
     }
-    expect_same(Solid(options).solve_from(stub(), loads, files), whole, what);
+    expect_same(Solid(options).solve_from(stub(), loads, memory.checkpoint()), whole, what);
   }
   EXPECT_TRUE(went_on);
 }
 
 // Oracle: the solution that nothing has stopped, to the last bit: steps, iterations, shape, stress.
-TEST_F(SolidCheckpointFiles, GoOnToTheSameBits) {
-  stop_and_go_on(coarse(), path({2e-3, 4e-3, 1e-3}), checkpoint(), 4);
+TEST(SolidCheckpoint, GoesOnToTheSameBits) {
+  stop_and_go_on(coarse(), path({2e-3, 4e-3, 1e-3}), 4);
 }
 
 // … on the way to the slip-off and with its bracket half closed.
-using SolidCheckpointFilesSlow = SolidCheckpointFiles;
-TEST_F(SolidCheckpointFilesSlow, GoOnInTheSearchForTheSlipOff) {
-  stop_and_go_on(coarse(), path({3e-3, 1.0}), checkpoint(), 2);
+TEST(SolidCheckpointSlow, GoesOnInTheSearchForTheSlipOff) {
+  stop_and_go_on(coarse(), path({3e-3, 1.0}), 2);
 }
 
 // What a failed step leaves can be gone on from with more iterations; it ends as it would have.
-TEST_F(SolidCheckpointFiles, KeepTheStateBeforeAFailureForMoreIterations) {
+TEST(SolidCheckpoint, KeepsTheStateBeforeAFailureForMoreIterations) {
   SolidOptions impatient = coarse();
   impatient.initial_guess = InitialGuess::none;
   impatient.max_iterations = 3;
   impatient.max_cutbacks = 0;
   const LoadPath loads = path({1e-6, 6e-3});
-  const MechanicsResult failed = Solid(impatient).solve_from(stub(), loads, checkpoint());
+  Memory memory;
+  const MechanicsResult failed = Solid(impatient).solve_from(stub(), loads, memory.checkpoint());
   EXPECT_EQ(failed.steps.at(0).status, Status::converged) << failed.steps[0].message;
   ASSERT_EQ(failed.steps.at(1).status, Status::failed);
   EXPECT_THAT(failed.steps[1].message, HasSubstr("step 2/2"));
   EXPECT_THAT(failed.steps[1].message, HasSubstr("relative residuals"));
   EXPECT_THAT(failed.steps[1].message, HasSubstr("the last load that converged is 1e-06 N"));
-  EXPECT_THAT(failed.steps[1].message, HasSubstr(file("solid").string()));
+  EXPECT_EQ(memory.checkpoint().finished_steps(), 1u);
   SolidOptions patient = impatient;
   patient.max_iterations = 25;
-  EXPECT_EQ(Solid(patient).finished_steps(stub(), loads, checkpoint()), 1u);
-  const MechanicsResult result = Solid(patient).solve_from(stub(), loads, checkpoint());
+  EXPECT_EQ(Solid(patient).fingerprint(stub(), loads), Solid(impatient).fingerprint(stub(), loads));
+  const MechanicsResult result = Solid(patient).solve_from(stub(), loads, memory.checkpoint());
   expect_same(result, Solid(patient).solve(stub(), loads), "with more iterations");
 }
 
 // A solution that has ended is not solved again: it takes no iteration, hence no progress.
-TEST_F(SolidCheckpointFiles, OfAFinishedPathAreNotSolvedAgain) {
+TEST(SolidCheckpoint, OfAFinishedPathIsNotSolvedAgain) {
   const LoadPath loads = path({1e-3, 2e-3});
-  const MechanicsResult whole = Solid(coarse()).solve_from(stub(), loads, checkpoint());
+  Memory memory;
+  const MechanicsResult whole = Solid(coarse()).solve_from(stub(), loads, memory.checkpoint());
+  EXPECT_EQ(memory.checkpoint().finished_steps(), 2u);
   int lines = 0;
-  expect_same(Solid(coarse()).solve_from(stub(), loads, checkpoint(), killed_after(lines)), whole,
-              "again");
+  expect_same(Solid(coarse()).solve_from(stub(), loads, memory.checkpoint(), killed_after(lines)),
+              whole, "again");
 }
 
-/// What is said of the checkpoint's files; both functions must say the same.
-std::string complaint(const Checkpoint& files, const Cilium& cilium, const LoadPath& loads,
-                      const SolidOptions& options) {
-  const auto message = [](const std::function<void()>& work) -> std::string {
-    try {
-      work();
-    } catch (const CheckpointError& error) {
-      return error.what();
-    }
-    return "nothing is wrong";
-  };
-  const std::string checked = message([&] { Solid(options).finished_steps(cilium, loads, files); });
-  EXPECT_EQ(message([&] { Solid(options).solve_from(cilium, loads, files); }), checked);
-  return checked;
+TEST(SolidCheckpoint, ThatCannotBeWrittenEndsTheSolution) {
+  const Checkpoint full{{}, [](const Checkpoint::Entries&) { throw CheckpointError("full"); }};
+  EXPECT_THROW(Solid(coarse()).solve_from(stub(), path({1e-6}), full), CheckpointError);
 }
 
-class DamagedCheckpoint : public SolidCheckpointFiles {
- protected:
-  DamagedCheckpoint() {
-    Solid(coarse()).solve_from(stub(), loads_, checkpoint());
-    for (const char* name : {"solid", "solid.0000", "solid.0001"}) {
-      EXPECT_GT(fs::file_size(file(name)), 1000u);
-      names_.emplace_back(name);
-    }
-  }
-
-  /// Expects the refusal of a file, with a reason.
-  void refused(const std::string& name, const std::string& reason, const std::string& what) {
-    const std::string message = complaint(checkpoint(), stub(), loads_, coarse());
-    EXPECT_THAT(message, HasSubstr(file(name).string())) << what;
-    EXPECT_THAT(message, testing::ContainsRegex(reason)) << what;
-    EXPECT_THAT(message, HasSubstr("--fresh")) << what;
-  }
-
-  LoadPath loads_ = path({1e-6, 2e-6});
-  std::vector<std::string> names_;
-};
-
-// Oracle: CRC-32 of "123456789", the check value of the standard's tables.
-TEST(CheckpointFile, HasTheStandardsChecksum) {
-  EXPECT_EQ(checksum("123456789"), 0xCBF43926u);
+/// The names under which two fingerprints differ.
+std::vector<std::string> differences(const support::Fingerprint& a, const support::Fingerprint& b) {
+  std::vector<std::string> names;
+  for (const auto& entry : b)
+    if (std::find(a.begin(), a.end(), entry) == a.end()) names.push_back(entry.first);
+  return names;
 }
 
-TEST_F(DamagedCheckpoint, CutShortAtAnyLengthIsRefused) {
-  for (const std::string& name : names_) {
-    const std::string whole = read(file(name));
-    for (const std::size_t length :
-         {std::size_t{1}, std::size_t{10}, std::size_t{20}, std::size_t{25}, std::size_t{40},
-          std::size_t{60}, whole.size() / 3, whole.size() - 1}) {
-      write(file(name), whole.substr(0, length));
-      refused(name, "cut short|not a checkpoint", name + " of " + std::to_string(length));
-    }
-    write(file(name), "");
-    refused(name, "it is empty", name);
-    write(file(name), whole + "x");
-    refused(name, "damaged", name + " with a byte more");
-    write(file(name), whole);
-  }
-  EXPECT_EQ(complaint(checkpoint(), stub(), loads_, coarse()), "nothing is wrong");
-}
-
-// Each bit of the first line and of the program's name; 40 places all over the rest.
-TEST_F(DamagedCheckpoint, AFlippedBitAnywhereIsRefused) {
-  for (const std::string& name : names_) {
-    const std::string whole = read(file(name));
-    const std::size_t head = whole.find('\n', whole.find('\n') + 1) + 1;
-    std::vector<std::size_t> places;
-    for (std::size_t i = 0; i < head; ++i) places.push_back(i);
-    for (std::size_t i = 0; i < 40; ++i) places.push_back(head + (whole.size() - head) * i / 40);
-    places.push_back(whole.size() - 1);
-    for (const std::size_t place : places) {
-      std::string flipped = whole;
-      flipped[place] = static_cast<char>(flipped[place] ^ (1 << place % 8));
-      write(file(name), flipped);
-      EXPECT_THROW(Solid(coarse()).finished_steps(stub(), loads_, checkpoint()), CheckpointError)
-          << name << " byte " << place;
-    }
-    refused(name, "damaged", name);  // by solve_from too
-    write(file(name), whole);
-  }
-}
-
-TEST_F(DamagedCheckpoint, AnotherKindOfFileIsRefused) {
-  for (const std::string& name : names_) {
-    const std::string whole = read(file(name));
-    fs::remove(file(name));
-    fs::create_directory(file(name));
-    refused(name, "it is a folder", name);
-    fs::remove(file(name));
-    fs::create_symlink(name, file(name));  // a link to itself cannot be read, by root neither
-    refused(name, "symbolic links", name);
-    fs::remove(file(name));
-    write(file(name), whole);
-  }
-  const std::string next = read(file("solid.0001"));
-  fs::remove(file("solid.0001"));
-  refused("solid.0001", "missing", "no file of step 2");
-  fs::copy_file(file("solid.0000"), file("solid.0001"));
-  refused("solid.0001", "another run", "the file of another step");
-  write(file("solid.0001"), next);
-  std::string later = read(file("solid"));
-  later.replace(later.find(" 1 "), 3, " 2 ");
-  write(file("solid"), later);
-  refused("solid", "its format is 2", "another format");
-}
-
-// Without the file itself there is no checkpoint, whatever lies beside it.
-TEST_F(DamagedCheckpoint, FilesOfStepsAloneAreNone) {
-  fs::remove(file("solid"));
-  EXPECT_EQ(Solid(coarse()).finished_steps(stub(), loads_, checkpoint()), 0u);
-}
-
-TEST_F(DamagedCheckpoint, OfAnotherProgramIsRefused) {
-  EXPECT_THAT(complaint(checkpoint("program 2"), stub(), loads_, coarse()),
-              HasSubstr("written by program 1, and this is program 2"));
-}
-
-TEST_F(DamagedCheckpoint, OfAnotherProblemIsRefusedByNameOfWhatDiffers) {
+TEST(SolidFingerprint, HasAllThatTheSolutionDependsOn) {
+  const LoadPath usual = path({1e-6, 2e-6});
   const auto expect = [&](const Cilium& cilium, const LoadPath& loads, const SolidOptions& options,
                           const std::string& name) {
-    EXPECT_THAT(complaint(checkpoint(), cilium, loads, options), HasSubstr(name + " was "));
+    EXPECT_THAT(differences(*Solid(coarse()).fingerprint(stub(), usual),
+                            *Solid(options).fingerprint(cilium, loads)),
+                Contains(name));
   };
   const auto other_cilium = [&](const std::string& name, const std::function<void(Cilium&)>& set) {
     Cilium cilium = stub();
     set(cilium);
-    expect(cilium, loads_, coarse(), name);
+    expect(cilium, usual, coarse(), name);
   };
   other_cilium("diameter", [](Cilium& c) { c.diameter = 2.9e-3; });
   other_cilium("length of segment `base`", [](Cilium& c) { c.segments[0].length = 3.1e-3; });
@@ -305,14 +186,14 @@ TEST_F(DamagedCheckpoint, OfAnotherProblemIsRefusedByNameOfWhatDiffers) {
   };
   other_loads("number of load steps", path({1e-6, 2e-6, 3e-6}));
   other_loads("load of step 2", path({1e-6, 2.5e-6}));
-  other_loads("load of step 1", {ContactLoad{1e-6, 4.4e-3, 0.4}, loads_[1]});
-  other_loads("load of step 2", {loads_[0], ContactLoad{2e-6, 4.5e-3, 0.3}});
+  other_loads("load of step 1", {ContactLoad{1e-6, 4.4e-3, 0.4}, usual[1]});
+  other_loads("load of step 2", {usual[0], ContactLoad{2e-6, 4.5e-3, 0.3}});
   other_loads("load of step 1", {SectionLoad{1e-6, 4.5e-3, 0.4}, SectionLoad{2e-6, 4.5e-3, 0.4}});
   const auto other_options = [&](const std::string& name,
                                  const std::function<void(SolidOptions&)>& set) {
     SolidOptions options = coarse();
     set(options);
-    expect(stub(), loads_, options, "models.solid." + name);
+    expect(stub(), usual, options, "models.solid." + name);
   };
   using Material = SolidOptions::Material;
   other_options("material", [](SolidOptions& o) { o.material = Material::yeoh; });
@@ -324,15 +205,6 @@ TEST_F(DamagedCheckpoint, OfAnotherProblemIsRefusedByNameOfWhatDiffers) {
   other_options("kernel_width", [](SolidOptions& o) { o.kernel_width = 0.4e-3; });
   other_options("tolerance", [](SolidOptions& o) { o.tolerance = 1e-8; });
   other_options("solver", [](SolidOptions& o) { o.solver = solvers::SolverKind::direct; });
-}
-
-// The disk is full: the program's error, not one of the solution, and what was saved is still
-// there.
-TEST_F(SolidCheckpointFiles, ThatCannotBeWrittenAreAnError) {
-  fs::create_directory(file("solid.tmp"));
-  EXPECT_THROW(Solid(coarse()).solve_from(stub(), path({1e-6}), checkpoint()), CheckpointError);
-  const Checkpoint nowhere{folder_ / "none" / "solid", "program 1"};
-  EXPECT_THROW(Solid(coarse()).solve_from(stub(), path({1e-6}), nowhere), CheckpointError);
 }
 
 }  // namespace
