@@ -27,9 +27,6 @@ class FieldModel {
  public:
   virtual ~FieldModel() = default;
 
-  /// Whether the model needs Deformation::body.
-  virtual bool needs_body() const { return false; }
-
   /// Whether each point is computed by itself at little cost, so that the field may be drawn on a
   /// grid of many.
   virtual bool pointwise() const { return true; }

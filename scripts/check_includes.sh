@@ -15,13 +15,13 @@ fem/beam: problem
 fem/potential: problem fem/parallel.h
 fem/solid: problem meshes fem
 fem/calculix: problem meshes fem
-compare/input: problem analytic/elastica/elastica.h analytic/rod/field_models.h analytic/body/mesh_field.h fem/beam/beam.h fem/calculix/calculix_model.h fem/potential/potential.h fem/solid/solid_options.h fem/solid/material
+compare/input: problem
 compare/models: problem analytic fem meshes compare/input
-compare/output: problem meshes compare/input compare/models ciliaval_version.h
+compare/output: problem meshes analytic/rod/field_models.h compare/input compare/models ciliaval_version.h
 compare/plot: problem compare/output
 compare/regression: $shared
-compare/convergence: $shared compare/regression fem/solid/solid.h meshes/cylinder/cylinder_mesh.h
-compare/budget: $shared
+compare/convergence: $shared compare/regression
+compare/budget: $shared analytic/rod/field_models.h analytic/body/mesh_field.h fem/potential/potential.h
 compare/sensing: $shared
 compare/study: $shared compare/budget analytic/elastica/elastica.h
 compare/claims: $shared compare/sensing compare/study analytic/rod/field_models.h

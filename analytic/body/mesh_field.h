@@ -15,7 +15,6 @@ struct MeshOptions {
 class MeshField : public FieldModel {
  public:
   explicit MeshField(MeshOptions options = {}) : options_(options) {}
-  bool needs_body() const override { return true; }
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override;
 

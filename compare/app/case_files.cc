@@ -10,27 +10,12 @@
 #include <system_error>
 
 #include "compare/app/terminal.h"
-#include "meshes/gmsh/gmsh_mesh.h"
+#include "compare/models/registry.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-/// Reads the user's mesh of a case, if it names one and asks for the solid, and returns the remarks
-/// on it. Throws InputError and FileError as meshes::gmsh::read_gmsh().
-std::vector<std::string> check_case_mesh(const input::Case& problem) {
-  const fem::solid::SolidOptions& options = problem.options.solid;
-  const auto& ids = problem.mechanics;
-  if (options.mesh.empty() || std::find(ids.begin(), ids.end(), "solid") == ids.end()) return {};
-  dealii::Triangulation<3> triangulation;
-  return meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium, triangulation)
-      .remarks;
-}
-
-}  // namespace
 
 std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
   std::vector<input::Case> cases;
@@ -41,9 +26,11 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
         throw InputError(file.string() + ": is a study, not a case: `ciliaval study` runs it");
       if (is_bench_file(file))
         throw InputError(file.string() + ": is a test bench, not a case: `ciliaval sense` runs it");
-      cases.push_back(input::read_case(file));
-      for (const std::string& remark : check_case_mesh(cases.back()))
-        print(fmt::format("Remark: {}: {}\n", cases.back().options.solid.mesh.string(), remark));
+      cases.push_back(input::read_case(file, models::known()));
+      for (const std::string& id : cases.back().mechanics)
+        if (const auto& entry = entry_of(models::mechanics_models(), id); entry.remarks)
+          for (const std::string& remark : entry.remarks(cases.back()))
+            print(fmt::format("Remark: {}\n", remark));
     } catch (const InputError& error) {
       faults += (faults.empty() ? "" : "\n") + std::string(error.what());
     }
@@ -62,7 +49,9 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
 }
 
 std::vector<fs::path> input_files(const fs::path& file, const input::Case& problem) {
-  std::vector<fs::path> files{file, problem.options.solid.mesh};
+  std::vector<fs::path> files{file};
+  for (const auto& [option, mesh] : input::user_meshes(models::known(), problem.options))
+    files.push_back(mesh);
   for (const char* table : {"study", "bench"})
     if (is_study_file(file) || is_bench_file(file))
       if (const auto name = toml::parse_file(file.string())[table]["case"].value<std::string>())

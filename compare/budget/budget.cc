@@ -20,14 +20,6 @@ namespace {
 
 const std::array<std::string, 3> axis_names{"x", "y", "z"};
 
-template <class Entry>
-const Entry& entry_of(std::span<const Entry> entries, const std::string& id) {
-  const auto it =
-      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; });
-  if (it == entries.end()) throw InputError("the error budget needs the model `" + id + "`");
-  return *it;
-}
-
 /// The fields of one stage, and where the steps of the case are among them.
 struct StageFields {
   const Stage* stage;
@@ -63,14 +55,15 @@ StageFields compute_fields(const Stage& stage, const input::Case& problem,
                            const Progress& progress) {
   input::ModelOptions options = problem.options;
   stage.set(options);
-  const auto model = entry_of(entries, stage.field).make(options);
+  const models::FieldEntry& entry = models::entry_of(entries, stage.field);
   const models::MechanicsRun& mechanics =
       (stage.sensitivity ? computed.around : computed.alone).at(stage.mechanics);
   StageFields result{
       &stage, &mechanics, stage.sensitivity ? &computed.path.step : &computed.steps, {}};
   if (!mechanics.result.undeformed.centreline.pieces().empty() &&
-      (!model->needs_body() || mechanics.result.undeformed.body))
-    result.run = models::run_field(stage.field_name(), *model, mechanics, problem, progress);
+      (!entry.has_body || mechanics.result.undeformed.body))
+    result.run =
+        models::run_field(stage.field_name(), *entry.make(options), mechanics, problem, progress);
   return result;
 }
 
@@ -85,7 +78,7 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
   for (std::size_t i = 0; i < problem.load_path.size(); ++i) computed.steps.push_back(i);
   for (const std::string& id : chain.mechanics) {
     if (progress) progress(id + ": starting");
-    const auto model = entry_of(mechanics, id).make(problem.options);
+    const auto model = models::entry_of(mechanics, id).make(problem.options);
     const models::MechanicsRun& run =
         computed.around.emplace(id, models::run_mechanics(id, *model, surrounded, progress))
             .first->second;

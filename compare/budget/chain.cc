@@ -8,12 +8,16 @@
 #include <string_view>
 #include <utility>
 
+#include "analytic/body/mesh_field.h"
+#include "analytic/rod/field_models.h"
+#include "fem/potential/potential.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
 
 namespace ciliaval::compare::budget {
 namespace {
 
+using fem::potential::PotentialOptions;
 using Set = std::function<void(input::ModelOptions&)>;
 
 void require_words(const std::vector<std::string>& without) {
@@ -32,22 +36,27 @@ void require_words(const std::vector<std::string>& without) {
 }
 
 void set_line(input::ModelOptions& options) {
-  options.line.push_forward = analytic::sources::PushForward::F;
+  options.of<analytic::rod::LineOptions>().push_forward = analytic::sources::PushForward::F;
 }
 
 Set set_slices(analytic::rod::VolumeOptions::Slices slices) {
-  return [slices](input::ModelOptions& options) { options.volume.slices = slices; };
+  return [slices](input::ModelOptions& options) {
+    options.of<analytic::rod::VolumeOptions>().slices = slices;
+  };
 }
 
 Set set_mesh(analytic::sources::PushForward push_forward) {
-  return [push_forward](input::ModelOptions& options) { options.mesh.push_forward = push_forward; };
+  return [push_forward](input::ModelOptions& options) {
+    options.of<analytic::body::MeshOptions>().push_forward = push_forward;
+  };
 }
 
 Set set_potential(double relative_permeability, bool plates) {
   return [=](input::ModelOptions& options) {
-    options.potential.push_forward = fem::potential::MagnetPushForward::F;
-    options.potential.relative_permeability = relative_permeability;
-    if (!plates) options.potential.plates.clear();
+    auto& potential = options.of<PotentialOptions>();
+    potential.push_forward = fem::potential::MagnetPushForward::F;
+    potential.relative_permeability = relative_permeability;
+    if (!plates) potential.plates.clear();
   };
 }
 
@@ -75,7 +84,7 @@ std::vector<Stage> field_stages(const input::Case& problem, const std::string& m
        "moments carried along by F, in place of the rotation R"},
       {mechanics, "potential", "mu_r = 1", set_potential(1, false),
        "the same physics by another method: a potential by finite elements", false}};
-  const fem::potential::PotentialOptions& potential = problem.options.potential;
+  const auto& potential = problem.options.of<PotentialOptions>();
   const std::string permeability = fmt::format("mu_r = {:g}", potential.relative_permeability);
   if (potential.relative_permeability != 1)
     stages.push_back({mechanics, "potential", permeability,

@@ -25,7 +25,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 input::Case paper_case(const std::filesystem::path& folder, const std::string& name,
                        bool with_solid) {
-  input::Case problem = input::read_case(folder / name);
+  input::Case problem = input::read_case(folder / name, models::known());
   problem.external.clear();
   problem.mechanics = {"elastica", "beam"};
   if (with_solid) problem.mechanics.emplace_back("solid");
@@ -314,7 +314,8 @@ std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_s
                                 const Progress& progress) {
   input::Case problem = paper_case(folder, "fig3d.toml", with_solid);
   problem.fields = {"line", "volume"};
-  problem.options.volume.slices = analytic::rod::VolumeOptions::Slices::stacked;
+  problem.options.of<analytic::rod::VolumeOptions>().slices =
+      analytic::rod::VolumeOptions::Slices::stacked;
   const models::CaseResult result = solved(problem, progress);
   std::vector<Claim> claims{intractable(result), base_bends(result), misprints(result),
                             shapes(result)};

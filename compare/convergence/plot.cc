@@ -102,8 +102,8 @@ std::string panel(const RefinementStudy& study, std::size_t step, std::size_t st
     sizes.push_back(level.size);
   return blocks +
          fmt::format("set title {}\nset xlabel {} offset 0,0.7\nset xtics ({})\nplot \\\n{}\n",
-                     plot::quoted(fmt::format("{}, {}, load step {} of {}", study.model, study.knob,
-                                              step + 1, steps)),
+                     plot::quoted(fmt::format("{}, {}, load step {} of {}", study.model,
+                                              study.option, step + 1, steps)),
                      plot::quoted("h: " + study.size_name), fmt::join(sizes, ", "), curves);
 }
 

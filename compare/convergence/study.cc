@@ -24,14 +24,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Two computations agree to rounding if they differ by less than this part of the scale: the
-/// solvers' tolerances, 1e-12 for rods and 1e-9 for the solid, leave as much. CalculiX prints seven
-/// digits.
-double rounding_of(const std::string& model) {
-  if (model == "calculix") return 1e-6;
-  return model == "solid" ? 1e-9 : 1e-11;
-}
-
 /// What one level gave, by id.
 struct LevelResult {
   double size = 0;
@@ -59,15 +51,15 @@ void add_lengths(std::map<std::string, regression::Measurement>& quantities) {
   for (regression::Measurement& length : lengths) quantities.emplace(length.id, std::move(length));
 }
 
-Progress named(const Progress& progress, const Refinement& refinement, double value) {
+Progress named(const Progress& progress, const ModelRefinement& refinement, double value) {
   if (!progress) return {};
-  return [&progress, prefix = fmt::format("{} {:g}: ", refinement.knob, value)](
+  return [&progress, prefix = fmt::format("{} {:g}: ", refinement.option.name, value)](
              const std::string& text) { progress(prefix + text); };
 }
 
 /// The first of the case's mechanics models, the cheapest first, that gives the field model what it
 /// needs.
-models::MechanicsRun mechanics_for(const FieldModel& field, const input::Case& problem,
+models::MechanicsRun mechanics_for(const models::FieldEntry& field, const input::Case& problem,
                                    const Progress& progress) {
   for (const models::MechanicsEntry& entry : models::mechanics_models()) {
     if (std::find(problem.mechanics.begin(), problem.mechanics.end(), entry.id) ==
@@ -76,14 +68,13 @@ models::MechanicsRun mechanics_for(const FieldModel& field, const input::Case& p
     models::MechanicsRun run =
         models::run_mechanics(entry.id, *entry.make(problem.options), problem, progress, {});
     const Deformation& undeformed = run.result.undeformed;
-    if (!undeformed.centreline.pieces().empty() && (!field.needs_body() || undeformed.body))
-      return run;
+    if (!undeformed.centreline.pieces().empty() && (!field.has_body || undeformed.body)) return run;
   }
   throw InputError("none of the case's own mechanics models gives what the field model needs");
 }
 
 /// What makes a study of this level impossible; else empty.
-std::string failure_of(const models::CaseResult& result, const Refinement& refinement) {
+std::string failure_of(const models::CaseResult& result, const ModelRefinement& refinement) {
   for (const models::MechanicsRun& run : result.mechanics)
     for (const MechanicsStep& step : run.result.steps)
       if (step.status == Status::failed) return step.message;
@@ -108,15 +99,15 @@ double seconds_of(const models::CaseResult& result, bool is_field) {
   return seconds;
 }
 
-/// Runs a mechanics model, and the fields on it, at each value of its knob.
+/// Runs a mechanics model, and the fields on it, at each value of its option.
 std::vector<models::CaseResult> run_mechanics_levels(input::Case problem,
-                                                     const Refinement& refinement,
+                                                     const ModelRefinement& refinement,
                                                      std::span<const double> values,
                                                      const Progress& progress) {
   std::vector<models::CaseResult> results;
   problem.mechanics = {refinement.model};
   problem.external.clear();  // the same at every level
-  if (refinement.law == Refinement::Law::tolerance) problem.fields.clear();
+  if (refinement.sequence.law == input::Refinement::Law::tolerance) problem.fields.clear();
   for (const double value : values) {
     refinement.set(problem.options, value);
     results.push_back(models::run(problem, models::mechanics_models(), models::field_models(),
@@ -125,19 +116,18 @@ std::vector<models::CaseResult> run_mechanics_levels(input::Case problem,
   return results;
 }
 
-/// Runs a field model at each value of its knob, on one deformation.
-std::vector<models::CaseResult> run_field_levels(input::Case problem, const Refinement& refinement,
+/// Runs a field model at each value of its option, on one deformation.
+std::vector<models::CaseResult> run_field_levels(input::Case problem,
+                                                 const ModelRefinement& refinement,
                                                  std::span<const double> values,
                                                  const Progress& progress) {
-  const auto entry =
-      std::find_if(models::field_models().begin(), models::field_models().end(),
-                   [&](const models::FieldEntry& e) { return e.id == refinement.model; });
+  const models::FieldEntry& entry = entry_of(models::field_models(), refinement.model);
   std::vector<models::CaseResult> results;
   std::optional<models::MechanicsRun> mechanics;
   for (const double value : values) {
     refinement.set(problem.options, value);
-    const auto field = entry->make(problem.options);
-    if (!mechanics) mechanics = mechanics_for(*field, problem, progress);
+    const auto field = entry.make(problem.options);
+    if (!mechanics) mechanics = mechanics_for(entry, problem, progress);
     results.push_back({problem,
                        {*mechanics},
                        {models::run_field(refinement.model, *field, *mechanics, problem,
@@ -146,8 +136,9 @@ std::vector<models::CaseResult> run_field_levels(input::Case problem, const Refi
   return results;
 }
 
-LevelResult level_of(const models::CaseResult& result, const Refinement& refinement, double value) {
-  LevelResult level{refinement.size(value), {}};
+LevelResult level_of(const models::CaseResult& result, const ModelRefinement& refinement,
+                     double value) {
+  LevelResult level{refinement.sequence.size(value), {}};
   for (regression::Measurement& quantity : regression::measurements(result).quantities)
     if (!quantity.id.ends_with("/tip_uncertainty") &&
         (!refinement.is_field || quantity.id.find("/mechanics/") == std::string::npos))
@@ -156,19 +147,18 @@ LevelResult level_of(const models::CaseResult& result, const Refinement& refinem
   return level;
 }
 
-Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
-                               const regression::Measurement& finest,
-                               const Refinement& refinement) {
-  if (refinement.law == Refinement::Law::power)
-    return extrapolate(levels, refinement.formal_order,
-                       rounding_of(refinement.model) * finest.scale);
+Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels, const regression::Measurement& finest,
+                               const ModelRefinement& refinement) {
+  if (refinement.sequence.law == input::Refinement::Law::power)
+    return extrapolate(levels, refinement.sequence.formal_order,
+                       refinement.rounding * finest.scale);
   // ΔB is the difference of two fields, each within the tolerance.
   const double parts = finest.id.find("/dB/") == std::string::npos ? 1 : 2;
   return kept_tolerances(levels, parts * finest.scale);
 }
 
 /// The quantities that every level has.
-void extrapolate_all(const std::vector<LevelResult>& levels, const Refinement& refinement,
+void extrapolate_all(const std::vector<LevelResult>& levels, const ModelRefinement& refinement,
                      RefinementStudy& study) {
   for (const auto& [id, finest] : levels.front().quantities) {
     ConvergedQuantity quantity{id, finest.unit, {}, {}};
@@ -229,13 +219,19 @@ ConvergedQuantity read_quantity(const Json& json) {
 
 }  // namespace
 
-RefinementStudy refinement_study(const input::Case& problem, const Refinement& refinement,
+RefinementStudy refinement_study(const input::Case& problem, const ModelRefinement& refinement,
                                  unsigned int count, const Progress& progress) {
-  RefinementStudy study{refinement.model, refinement.knob, refinement.size_name, {}, {}, {}, {}};
+  RefinementStudy study{refinement.model,
+                        std::string(refinement.option.name),
+                        std::string(refinement.sequence.size_name),
+                        {},
+                        {},
+                        {},
+                        {}};
   if (count < 3)
     throw InputError(fmt::format("a study needs 3 levels of refinement or more, not {}", count));
-  const auto values =
-      std::span(refinement.values).first(std::min<std::size_t>(count, refinement.values.size()));
+  const auto values = std::span(refinement.sequence.values)
+                          .first(std::min<std::size_t>(count, refinement.sequence.values.size()));
   const std::vector<models::CaseResult> results =
       refinement.is_field ? run_field_levels(problem, refinement, values, progress)
                           : run_mechanics_levels(problem, refinement, values, progress);
@@ -245,7 +241,7 @@ RefinementStudy refinement_study(const input::Case& problem, const Refinement& r
     study.seconds.push_back(seconds_of(results[i], refinement.is_field));
     levels.push_back(level_of(results[i], refinement, values[i]));
     if (const std::string failure = failure_of(results[i], refinement); !failure.empty())
-      study.failure = fmt::format("{} {:g}: {}", refinement.knob, values[i], failure);
+      study.failure = fmt::format("{} {:g}: {}", refinement.option.name, values[i], failure);
   }
   if (study.failure.empty()) extrapolate_all(levels, refinement, study);
   return study;
@@ -254,7 +250,7 @@ RefinementStudy refinement_study(const input::Case& problem, const Refinement& r
 std::string study_text(const std::vector<RefinementStudy>& studies) {
   std::string text;
   for (const RefinementStudy& study : studies) {
-    text += fmt::format("{}, {} {:g} ({:.3g} s)\n", study.model, study.knob,
+    text += fmt::format("{}, {} {:g} ({:.3g} s)\n", study.model, study.option,
                         fmt::join(study.settings, ", "), fmt::join(study.seconds, ", "));
     if (!study.failure.empty()) {
       text += fmt::format("  inconclusive: {}\n", study.failure);
@@ -290,7 +286,7 @@ std::string study_json(const std::string& case_name, const std::vector<Refinemen
             {"studies", Json::array()}};
   for (const RefinementStudy& study : studies) {
     Json entry{{"model", study.model},
-               {"knob", study.knob},
+               {"option", study.option},
                {"size_name", study.size_name},
                {"settings", study.settings},
                {"seconds", study.seconds},
@@ -308,7 +304,7 @@ std::vector<RefinementStudy> read_studies(const Json& json) {
   for (const Json& entry : json.at("studies")) {
     RefinementStudy study{};
     study.model = entry.at("model").get<std::string>();
-    study.knob = entry.at("knob").get<std::string>();
+    study.option = entry.at("option").get<std::string>();
     study.size_name = entry.value("size_name", "size of the level");
     study.settings = entry.at("settings").get<std::vector<double>>();
     study.seconds = entry.at("seconds").get<std::vector<double>>();
@@ -338,7 +334,7 @@ std::string study_csv(const std::vector<RefinementStudy>& studies) {
       const auto number = [&](double value) {
         return e.conclusive ? std::optional(value) : std::nullopt;
       };
-      for (const std::string& text : {study.model, study.knob, quantity.id, quantity.unit})
+      for (const std::string& text : {study.model, study.option, quantity.id, quantity.unit})
         csv.add(text);
       csv.add(e.conclusive ? 1 : 0);
       for (const auto& value : {e.order, number(e.limit), number(e.uncertainty), number(e.safety)})

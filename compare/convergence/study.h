@@ -25,9 +25,9 @@ struct ConvergedQuantity {
 
 struct RefinementStudy {
   std::string model;
-  std::string knob;
+  std::string option;
   std::string size_name;
-  std::vector<double> settings;  ///< of the knob, finest first
+  std::vector<double> settings;  ///< of the option, finest first
   std::vector<double> seconds;   ///< wall time of each
   std::vector<ConvergedQuantity> quantities;
   std::string failure;  ///< why there is no study; else empty
@@ -38,13 +38,13 @@ struct RefinementStudy {
 /// that there are, and extrapolates each quantity. Tolerances of a mechanics model are those of its
 /// shape: fields are left out. A model that fails on a level leaves none with a study, a quantity
 /// that a level lacks has none. Throws InputError if `count` is below 3.
-RefinementStudy refinement_study(const input::Case& problem, const Refinement& refinement,
+RefinementStudy refinement_study(const input::Case& problem, const ModelRefinement& refinement,
                                  unsigned int count, const Progress& progress = {});
 
 /// Tables for people: of each model the tip, its angle and the field components, with what the
 /// levels say.
 std::string study_text(const std::vector<RefinementStudy>& studies);
-/// {"schema": 1, "case", "provenance", "studies": [{"model", "knob", "size_name", "settings",
+/// {"schema": 1, "case", "provenance", "studies": [{"model", "option", "size_name", "settings",
 /// "seconds", "failure", "quantities": [{"id", "unit", "levels": [{"size", "value"}], "conclusive",
 /// "reason", "order", "limit", "uncertainty", "safety"}]}]}
 std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,

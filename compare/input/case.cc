@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/input/case.h"
 
+#include <fmt/core.h>
+
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
 #include "compare/input/external/external_files.h"
@@ -31,7 +33,32 @@ void read_files(std::vector<external::ExternalModel>& external, const Case& c) {
 
 }  // namespace
 
-Case read_case(std::string_view text, std::string_view file) {
+void change_files(const Models& models, ModelOptions& options,
+                  const std::function<void(Option::File, std::filesystem::path&)>& change) {
+  models.for_each([&](const auto& entry) {
+    for (const Option& option : entry.options) {
+      if (option.file == Option::File::none) continue;
+      std::filesystem::path file = std::get<std::string>(option.get(options));
+      if (file.empty()) continue;
+      change(option.file, file);
+      option.set(options, file.string());
+    }
+  });
+}
+
+std::map<std::string, std::filesystem::path> user_meshes(const Models& models,
+                                                         const ModelOptions& options) {
+  std::map<std::string, std::filesystem::path> result;
+  models.for_each([&](const auto& entry) {
+    for (const Option& option : entry.options)
+      if (option.file == Option::File::mesh)
+        if (const auto file = std::get<std::string>(option.get(options)); !file.empty())
+          result[fmt::format("models.{}.{}", entry.id, option.name)] = file;
+  });
+  return result;
+}
+
+Case read_case(std::string_view text, std::string_view file, const Models& known) {
   const toml::table table = parse_toml(text, file);
   Faults faults;
   Section root(&table, "the case file", "", {}, faults);
@@ -40,10 +67,10 @@ Case read_case(std::string_view text, std::string_view file) {
   const bool cilium = read_cilium(root, c);
   const bool load = read_load(root, c);
   read_sensor(root, c);
-  const bool models = read_models(root, c);
-  put_beside(file, c.options.solid.mesh);
-  put_beside(file, c.options.calculix.keep);
-  if (c.options.calculix.program.has_parent_path()) put_beside(file, c.options.calculix.program);
+  const bool models = read_models(root, known, c);
+  change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {
+    if (kind != Option::File::program || name.has_parent_path()) put_beside(file, name);
+  });
   for (external::ExternalModel& model : c.external) {
     for (std::filesystem::path& centreline : model.centreline_files) put_beside(file, centreline);
     put_beside(file, model.readings_file);
@@ -51,7 +78,7 @@ Case read_case(std::string_view text, std::string_view file) {
   }
   root.finish();
   if (cilium) snap_to_interfaces(c.cilium, c.load_path);
-  check_together(table, c, {cilium, load, models}, faults);
+  check_together(table, c, known, {cilium, load, models}, faults);
   if (!faults.empty()) throw InputError(faults.report(file));
 
   // What the models themselves demand; a case that comes so far has it.
@@ -61,8 +88,8 @@ Case read_case(std::string_view text, std::string_view file) {
   return c;
 }
 
-Case read_case(const std::filesystem::path& file) {
-  return read_case(read_toml_file(file, "case"), file.string());
+Case read_case(const std::filesystem::path& file, const Models& known) {
+  return read_case(read_toml_file(file, "case"), file.string(), known);
 }
 
 }  // namespace ciliaval::compare::input

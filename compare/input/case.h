@@ -7,32 +7,13 @@
 #include <string_view>
 #include <vector>
 
-#include "analytic/body/mesh_field.h"
-#include "analytic/elastica/elastica.h"
-#include "analytic/rod/field_models.h"
 #include "compare/input/external/external.h"
-#include "fem/beam/beam.h"
-#include "fem/calculix/calculix_model.h"
-#include "fem/potential/potential.h"
-#include "fem/solid/solid_options.h"
+#include "compare/input/model_entry.h"
 #include "problem/cilium.h"
 #include "problem/load.h"
 #include "problem/types.h"
 
 namespace ciliaval::compare::input {
-
-/// The knobs of every model, with their defaults from the models' own headers.
-struct ModelOptions {
-  analytic::elastica::ElasticaOptions elastica;
-  fem::beam::BeamOptions beam;
-  fem::calculix::CalculixOptions calculix;
-  fem::solid::SolidOptions solid;
-  analytic::rod::DipoleOptions dipole;
-  analytic::rod::LineOptions line;
-  analytic::rod::VolumeOptions volume;
-  analytic::body::MeshOptions mesh;
-  fem::potential::PotentialOptions potential;
-};
 
 /// A validation case, as a case file states it (docs/guide/cases.md), in SI units.
 struct Case {
@@ -51,13 +32,14 @@ struct Case {
   ModelOptions options;
 };
 
-/// Reads and checks a case file. Throws InputError with every fault found, a line each:
-/// `file:line:column: what is wrong; did you mean …?`. A file that is missing, not a regular file,
-/// unreadable or larger than 1 MB is an InputError too: it is the user's command that names it.
-Case read_case(const std::filesystem::path& file);
+/// Reads and checks a case file, which may name these models. Throws InputError with every fault
+/// found, a line each: `file:line:column: what is wrong; did you mean …?`. A file that is missing,
+/// not a regular file, unreadable or larger than 1 MB is an InputError too: it is the user's
+/// command that names it.
+Case read_case(const std::filesystem::path& file, const Models& models);
 
 /// The same from a text; `file` is the name that the messages give.
-Case read_case(std::string_view text, std::string_view file);
+Case read_case(std::string_view text, std::string_view file, const Models& models);
 
 /// The values along the path of a parameter of Case::stated_by, such as "velocity"; empty if the
 /// file does not state it.
@@ -68,6 +50,6 @@ void set_stated_magnitudes(Case& c);
 
 /// The case as TOML with every value it used, defaults included, in SI units: read_case() of it
 /// gives the same case.
-std::string to_toml(const Case& c);
+std::string to_toml(const Case& c, const Models& models);
 
 }  // namespace ciliaval::compare::input

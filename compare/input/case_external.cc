@@ -39,28 +39,29 @@ std::vector<std::filesystem::path> read_file_names(const toml::node& node, std::
   return result;
 }
 
-void read_name(const toml::node& node, const std::vector<external::ExternalModel>& others,
-               external::ExternalModel& model, Faults& faults) {
+void read_name(const toml::node& node, const Models& known,
+               const std::vector<external::ExternalModel>& others, external::ExternalModel& model,
+               Faults& faults) {
   model.name = read_text(node, "name", faults).value_or("");
-  const auto is_name = [&](std::string_view id) { return id == model.name; };
+  bool is_taken = std::any_of(others.begin(), others.end(), [&](const external::ExternalModel& m) {
+    return m.name == model.name;
+  });
+  known.for_each([&](const auto& entry) { is_taken = is_taken || entry.id == model.name; });
   if (!is_plain_file_name(model.name))
     faults.add(place(node), fmt::format("the name {} must be a plain file name: letters, digits, "
                                         "'.', '_' and '-', not starting with '.' or '-'",
                                         in_quotes(model.name)));
-  else if (std::any_of(mechanics_ids().begin(), mechanics_ids().end(), is_name) ||
-           std::any_of(field_ids().begin(), field_ids().end(), is_name) ||
-           std::any_of(others.begin(), others.end(), [&](const external::ExternalModel& other) {
-             return other.name == model.name;
-           }))
+  else if (is_taken)
     faults.add(place(node),
                fmt::format("the name {} is already that of a model", in_quotes(model.name)));
 }
 
-external::ExternalModel read_model(Section& table,
+external::ExternalModel read_model(Section& table, const Models& known,
                                    const std::vector<external::ExternalModel>& others) {
   Faults& faults = table.faults();
   external::ExternalModel model;
-  if (const toml::node* node = table.require("name")) read_name(*node, others, model, faults);
+  if (const toml::node* node = table.require("name"))
+    read_name(*node, known, others, model, faults);
   if (const toml::node* node = table.find("centrelines"))
     model.centreline_files = read_file_names(*node, "centrelines", faults);
   for (const auto& [key, file] :
@@ -85,7 +86,8 @@ external::ExternalModel read_model(Section& table,
 
 }  // namespace
 
-void read_external(Section& models, std::vector<external::ExternalModel>& external) {
+void read_external(Section& models, const Models& known,
+                   std::vector<external::ExternalModel>& external) {
   Faults& faults = models.faults();
   const toml::node* node = models.find("external");
   if (node == nullptr) return;
@@ -104,7 +106,7 @@ void read_external(Section& models, std::vector<external::ExternalModel>& extern
     }
     Section table(element.as_table(), std::string(table_name), std::string(path_name),
                   place(element), faults);
-    external.push_back(read_model(table, external));
+    external.push_back(read_model(table, known, external));
   }
 }
 

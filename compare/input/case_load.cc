@@ -178,7 +178,7 @@ bool read_load(Section& root, Case& c) {
   std::optional<std::string> type;
   std::vector<std::string_view> names;
   for (const LoadType* known : load_types()) names.push_back(known->name);
-  if (node != nullptr) type = read_choice(*node, "type", names, {}, faults);
+  if (node != nullptr) type = read_choice(*node, "type", names, faults);
   if (!type) {
     read_any_type(table);
     return false;

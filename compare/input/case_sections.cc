@@ -74,9 +74,99 @@ void read_segments(Section& cilium, std::vector<Segment>& segments) {
   }
 }
 
-using Coordinates = std::optional<Vector3>;
+/// The ids listed under models.mechanics or models.fields.
+std::vector<std::string> read_ids(const toml::node& node, std::string_view name,
+                                  std::span<const std::string_view> ids, Faults& faults) {
+  std::vector<std::string> result;
+  const toml::array* list = node.as_array();
+  if (list == nullptr) {
+    faults.add(place(node), fmt::format("'{}' must be a list, such as [\"{}\"], found {}", name,
+                                        ids.front(), describe(node)));
+    return result;
+  }
+  for (const toml::node& element : *list) {
+    const std::optional<std::string> id = read_choice(element, name, ids, faults);
+    if (!id) continue;
+    if (std::find(result.begin(), result.end(), *id) != result.end())
+      faults.add(place(element), fmt::format("'{}' lists {} twice", name, in_quotes(*id)));
+    else
+      result.push_back(*id);
+  }
+  return result;
+}
 
-Coordinates read_point(const toml::array& list, const QuantityKey& k, Faults& faults) {
+std::optional<std::array<double, 2>> read_pair(const toml::node& node, const Option& option,
+                                               Faults& faults) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 2) {
+    faults.add(
+        place(node),
+        fmt::format("'{}' must be a list of two numbers, such as {}, found {}", option.name,
+                    to_toml(option, option.get(ModelOptions{})),
+                    list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
+    return std::nullopt;
+  }
+  const auto first = read_value((*list)[0], option.name, option.quantity, option.range, faults);
+  const auto second = read_value((*list)[1], option.name, option.quantity, option.range, faults);
+  if (!first || !second) return std::nullopt;
+  return std::array{*first, *second};
+}
+
+void read_option(const Option& option, const toml::node& node, ModelOptions& options,
+                 Faults& faults) {
+  const OptionValue fallback = option.get(options);
+  if (!option.choices.empty()) {
+    if (auto text = read_choice(node, option.name, option.choices, faults))
+      option.set(options, *text);
+  } else if (std::holds_alternative<std::string>(fallback)) {
+    if (const auto text = read_text(node, option.name, faults);
+        text && has_control_character(*text))
+      faults.add(place(node), fmt::format("'{}' must not have control characters", option.name));
+    else if (text)
+      option.set(options, *text);
+  } else if (std::holds_alternative<bool>(fallback)) {
+    if (const auto* flag = node.as_boolean())
+      option.set(options, flag->get());
+    else
+      faults.add(place(node),
+                 fmt::format("'{}' must be true or false, found {}", option.name, describe(node)));
+  } else if (std::holds_alternative<unsigned int>(fallback)) {
+    if (const auto number = read_whole_number(node, option.name, option.range, faults))
+      option.set(options, *number);
+  } else if (std::holds_alternative<std::array<double, 2>>(fallback)) {
+    if (const auto pair = read_pair(node, option, faults)) option.set(options, *pair);
+  } else if (const auto value =
+                 read_value(node, option.name, option.quantity, option.range, faults)) {
+    option.set(options, *value);
+  }
+}
+
+void read_options(Section& models, const Models& known, ModelOptions& options) {
+  known.for_each([&](const auto& entry) {
+    Section table = models.section(entry.id);
+    for (const Option& option : entry.options)
+      if (const toml::node* node = table.find(option.name))
+        read_option(option, *node, options, table.faults());
+    for (const Option& option : entry.options)
+      if (const toml::node* node = table.find(option.name);
+          node != nullptr && !belongs(option, options))
+        table.faults().add(place(*node),
+                           fmt::format("'{}' goes with {} only", option.name, option.goes_with));
+    if (entry.tables.read) entry.tables.read(table, options);
+    table.finish();
+  });
+}
+
+}  // namespace
+
+bool is_plain_file_name(std::string_view name) {
+  return !name.empty() && name.size() <= longest_name && name.front() != '.' &&
+         name.front() != '-' && std::all_of(name.begin(), name.end(), [](char c) {
+           return is_alphanumeric(c) || c == '.' || c == '_' || c == '-';
+         });
+}
+
+std::optional<Vector3> read_point(const toml::array& list, const QuantityKey& k, Faults& faults) {
   if (list.size() != 3) {
     faults.add(place(list), fmt::format("a point has three coordinates, such as [\"0 mm\", \"0 "
                                         "mm\", \"-1.55 mm\"]; found {}",
@@ -92,154 +182,7 @@ Coordinates read_point(const toml::array& list, const QuantityKey& k, Faults& fa
     else
       right = false;
   }
-  return right ? Coordinates(point) : std::nullopt;
-}
-
-/// The ids listed under models.mechanics or models.fields.
-std::vector<std::string> read_ids(const toml::node& node, std::string_view name,
-                                  std::span<const std::string_view> ids,
-                                  std::span<const std::string_view> not_yet, Faults& faults) {
-  std::vector<std::string> result;
-  const toml::array* list = node.as_array();
-  if (list == nullptr) {
-    faults.add(place(node), fmt::format("'{}' must be a list, such as [\"{}\"], found {}", name,
-                                        ids.front(), describe(node)));
-    return result;
-  }
-  for (const toml::node& element : *list) {
-    const std::optional<std::string> id = read_choice(element, name, ids, not_yet, faults);
-    if (!id) continue;
-    if (std::find(result.begin(), result.end(), *id) != result.end())
-      faults.add(place(element), fmt::format("'{}' lists {} twice", name, in_quotes(*id)));
-    else
-      result.push_back(*id);
-  }
-  return result;
-}
-
-std::optional<std::array<double, 2>> read_pair(const toml::node& node, const Knob& knob,
-                                               Faults& faults) {
-  const toml::array* list = node.as_array();
-  if (list == nullptr || list->size() != 2) {
-    faults.add(
-        place(node),
-        fmt::format("'{}' must be a list of two numbers, such as {}, found {}", knob.name,
-                    to_toml(knob, knob.get(ModelOptions{})),
-                    list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
-    return std::nullopt;
-  }
-  const auto first = read_value((*list)[0], knob.name, knob.quantity, knob.range, faults);
-  const auto second = read_value((*list)[1], knob.name, knob.quantity, knob.range, faults);
-  if (!first || !second) return std::nullopt;
-  return std::array{*first, *second};
-}
-
-void read_knob(const Knob& knob, const toml::node& node, ModelOptions& options, Faults& faults) {
-  const KnobValue fallback = knob.get(options);
-  if (!knob.choices.empty()) {
-    if (auto text = read_choice(node, knob.name, knob.choices, {}, faults))
-      knob.set(options, *text);
-  } else if (std::holds_alternative<std::string>(fallback)) {
-    if (const auto text = read_text(node, knob.name, faults); text && has_control_character(*text))
-      faults.add(place(node), fmt::format("'{}' must not have control characters", knob.name));
-    else if (text)
-      knob.set(options, *text);
-  } else if (std::holds_alternative<bool>(fallback)) {
-    if (const auto* flag = node.as_boolean())
-      knob.set(options, flag->get());
-    else
-      faults.add(place(node),
-                 fmt::format("'{}' must be true or false, found {}", knob.name, describe(node)));
-  } else if (std::holds_alternative<unsigned int>(fallback)) {
-    if (const auto number = read_whole_number(node, knob.name, knob.range, faults))
-      knob.set(options, *number);
-  } else if (std::holds_alternative<std::array<double, 2>>(fallback)) {
-    if (const auto pair = read_pair(node, knob, faults)) knob.set(options, *pair);
-  } else if (const auto value = read_value(node, knob.name, knob.quantity, knob.range, faults)) {
-    knob.set(options, *value);
-  }
-}
-
-/// [[models.potential.plate]]: the boxes that are right by themselves and beside each other.
-void read_plates(Section& potential, std::vector<fem::potential::PermeableBox>& plates) {
-  constexpr std::size_t most_plates = 100;
-  Faults& faults = potential.faults();
-  const toml::node* node = potential.find("plate");
-  if (node == nullptr) return;
-  const toml::array* list = node->as_array();
-  if (list == nullptr || list->size() > most_plates) {
-    faults.add(place(*node), fmt::format("the plates are a list of at most {} tables, found {}: "
-                                         "write [[models.potential.plate]] above each",
-                                         most_plates, describe(*node)));
-    return;
-  }
-  for (const toml::node& element : *list) {
-    if (!element.is_table()) {
-      faults.add(
-          place(element),
-          fmt::format("expected a table [[models.potential.plate]], found {}", describe(element)));
-      continue;
-    }
-    const std::size_t before = faults.size();
-    Section table(element.as_table(), "[[models.potential.plate]]", "models.potential.plate",
-                  place(element), faults);
-    fem::potential::PermeableBox plate;
-    const auto corner = [&](const QuantityKey& k, auto set) {
-      const toml::node* value = table.require(k.name);
-      if (value == nullptr) return;
-      if (!value->is_array())
-        faults.add(place(*value), fmt::format("'{}' must be a point, such as [\"-5 mm\", \"-5 "
-                                              "mm\", \"-3 mm\"], found {}",
-                                              k.name, describe(*value)));
-      else if (const Coordinates p = read_point(*value->as_array(), k, faults))
-        set(*p);
-    };
-    corner(key::plate_lower, [&](const Vector3& p) { plate.box.min() = p; });
-    corner(key::plate_upper, [&](const Vector3& p) { plate.box.max() = p; });
-    const QuantityKey& k = key::plate_permeability;
-    if (const toml::node* value = table.require(k.name))
-      plate.relative_permeability =
-          read_value(*value, k.name, k.quantity, k.range, faults).value_or(1.0);
-    table.finish();
-    if (faults.size() == before && !(plate.box.sizes().minCoeff() > 0))
-      faults.add(place(element),
-                 "a plate's 'upper' corner must lie above its 'lower' one in x, y "
-                 "and z");
-    for (const fem::potential::PermeableBox& other : plates)
-      if (faults.size() == before && other.box.intersection(plate.box).sizes().minCoeff() > 0)
-        faults.add(place(element), "the plate overlaps one above: cut them apart");
-    if (faults.size() == before) plates.push_back(plate);
-  }
-}
-
-void read_knobs(Section& models, ModelOptions& options) {
-  const auto read_model = [&](std::string_view id) {
-    Section table = models.section(id);
-    for (const Knob& knob : knobs()) {
-      if (knob.model != id) continue;
-      if (const toml::node* node = table.find(knob.name))
-        read_knob(knob, *node, options, table.faults());
-    }
-    for (const Knob& knob : knobs()) {
-      if (knob.model != id || belongs(knob, options)) continue;
-      if (const toml::node* node = table.find(knob.name))
-        table.faults().add(place(*node),
-                           fmt::format("'{}' goes with {} only", knob.name, knob.goes_with));
-    }
-    if (id == "potential") read_plates(table, options.potential.plates);
-    table.finish();
-  };
-  for (const std::string_view id : mechanics_ids()) read_model(id);
-  for (const std::string_view id : field_ids()) read_model(id);
-}
-
-}  // namespace
-
-bool is_plain_file_name(std::string_view name) {
-  return !name.empty() && name.size() <= longest_name && name.front() != '.' &&
-         name.front() != '-' && std::all_of(name.begin(), name.end(), [](char c) {
-           return is_alphanumeric(c) || c == '.' || c == '_' || c == '-';
-         });
+  return right ? std::optional<Vector3>(point) : std::nullopt;
 }
 
 std::optional<std::string> read_line(const toml::node& node, std::string_view name,
@@ -317,14 +260,14 @@ bool read_sensor(Section& root, Case& c) {
                            [](const toml::node& n) { return n.is_array(); })) {
       for (const toml::node& element : *list) {
         if (const toml::array* point = element.as_array()) {
-          if (const Coordinates p = read_point(*point, key::position, faults))
+          if (const std::optional<Vector3> p = read_point(*point, key::position, faults))
             c.sensors.push_back(*p);
         } else {
           faults.add(place(element),
                      fmt::format("expected a point among the others, found {}", describe(element)));
         }
       }
-    } else if (const Coordinates p = read_point(*list, key::position, faults)) {
+    } else if (const std::optional<Vector3> p = read_point(*list, key::position, faults)) {
       c.sensors.push_back(*p);
     }
   }
@@ -332,21 +275,22 @@ bool read_sensor(Section& root, Case& c) {
   return faults.size() == before;
 }
 
-bool read_models(Section& root, Case& c) {
+bool read_models(Section& root, const Models& known, Case& c) {
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
+  const std::vector<std::string_view> mechanics = ids(known.mechanics);
   Section table = require_section(root, "models");
   if (const toml::node* node = table.require("mechanics")) {
     const std::size_t faults_before = faults.size();
-    c.mechanics = read_ids(*node, "mechanics", mechanics_ids(), {}, faults);
+    c.mechanics = read_ids(*node, "mechanics", mechanics, faults);
     if (c.mechanics.empty() && faults.size() == faults_before)
       faults.add(place(*node), fmt::format("'mechanics' is empty: name at least one of {}",
-                                           fmt::join(mechanics_ids(), ", ")));
+                                           fmt::join(mechanics, ", ")));
   }
   if (const toml::node* node = table.find("fields"))
-    c.fields = read_ids(*node, "fields", field_ids(), {}, faults);
-  read_knobs(table, c.options);
-  read_external(table, c.external);
+    c.fields = read_ids(*node, "fields", ids(known.fields), faults);
+  read_options(table, known, c.options);
+  read_external(table, known, c.external);
   table.finish();
   return faults.size() == before;
 }

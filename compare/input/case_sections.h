@@ -20,10 +20,12 @@ bool read_header(Section& root, Case& c);  ///< [case]
 bool read_cilium(Section& root, Case& c);  ///< [cilium], [[cilium.segment]]
 bool read_load(Section& root, Case& c);    ///< [load]; needs the diameter for `velocity`
 bool read_sensor(Section& root, Case& c);  ///< [sensor]
-bool read_models(Section& root, Case& c);  ///< [models], [models.<id>]
+/// [models], [models.<id>]
+bool read_models(Section& root, const Models& known, Case& c);
 
 /// [[models.external]], a part of [models]: the tables, not the files that they name.
-void read_external(Section& models, std::vector<external::ExternalModel>& external);
+void read_external(Section& models, const Models& known,
+                   std::vector<external::ExternalModel>& external);
 /// Faults between these tables and the load and the sensors.
 void check_external(const toml::table& root, const Case& c, Faults& faults);
 
@@ -36,13 +38,16 @@ struct RightTables {
 
 /// Faults between tables of which each is right by itself: a contact height or section beyond the
 /// tip, a contact kernel that does not fit, fields without a sensor or a magnet, more results than
-/// a machine can hold, …
-void check_together(const toml::table& root, const Case& c, const RightTables& right,
-                    Faults& faults);
+/// a machine can hold, … and those that the models find (Entry::check).
+void check_together(const toml::table& root, const Case& c, const Models& known,
+                    const RightTables& right, Faults& faults);
 
 /// Puts a section that lies within rounding of a segment's end exactly there, so that "20 mm" is
 /// the tip of 3 mm + 17 mm.
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
+
+/// A point of three coordinates, each as the key says, or a fault.
+std::optional<Vector3> read_point(const toml::array& list, const QuantityKey& k, Faults& faults);
 
 /// A text for people: a line, not empty, of at most `longest` bytes. Adds a fault otherwise.
 std::optional<std::string> read_line(const toml::node& node, std::string_view name,

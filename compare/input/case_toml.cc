@@ -166,17 +166,12 @@ std::optional<std::string> read_text(const toml::node& node, std::string_view na
 }
 
 std::optional<std::string> read_choice(const toml::node& node, std::string_view name,
-                                       std::span<const std::string_view> choices,
-                                       std::span<const std::string_view> not_yet, Faults& faults) {
+                                       std::span<const std::string_view> choices, Faults& faults) {
   std::optional<std::string> text = read_text(node, name, faults);
   if (!text) return std::nullopt;
   if (std::find(choices.begin(), choices.end(), *text) != choices.end()) return text;
-  const bool planned = std::find(not_yet.begin(), not_yet.end(), *text) != not_yet.end();
-  faults.add(place(node), planned
-                              ? fmt::format("'{}' = {} is not available in this version{}", name,
-                                            in_quotes(*text), valid(choices))
-                              : fmt::format("'{}' cannot be {}{}{}", name, in_quotes(*text),
-                                            valid(choices), support::did_you_mean(*text, choices)));
+  faults.add(place(node), fmt::format("'{}' cannot be {}{}{}", name, in_quotes(*text),
+                                      valid(choices), support::did_you_mean(*text, choices)));
   return std::nullopt;
 }
 

@@ -78,10 +78,9 @@ class Section {
 /// The text of a node, or a fault.
 std::optional<std::string> read_text(const toml::node& node, std::string_view name, Faults& faults);
 
-/// A text that is one of the choices; `not_yet` are refused as not available in this version.
+/// A text that is one of the choices, or a fault.
 std::optional<std::string> read_choice(const toml::node& node, std::string_view name,
-                                       std::span<const std::string_view> choices,
-                                       std::span<const std::string_view> not_yet, Faults& faults);
+                                       std::span<const std::string_view> choices, Faults& faults);
 
 /// A quantity (text with a unit) or a plain number, as `quantity` says, in its range; or a fault.
 std::optional<double> read_value(const toml::node& node, std::string_view name,

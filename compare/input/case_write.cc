@@ -107,7 +107,7 @@ std::string external(const external::ExternalModel& model) {
   return text;
 }
 
-std::string models(const Case& c) {
+std::string models(const Case& c, const Models& known) {
   const auto ids = [](const std::vector<std::string>& names) {
     std::vector<std::string> texts;
     texts.reserve(names.size());
@@ -116,27 +116,20 @@ std::string models(const Case& c) {
   };
   std::string text =
       fmt::format("\n[models]\nmechanics = {}\nfields = {}\n", ids(c.mechanics), ids(c.fields));
-  std::string_view model;
-  for (const Knob& knob : knobs()) {
-    if (knob.model != model) text += fmt::format("\n[models.{}]\n", knob.model);
-    model = knob.model;
-    if (!belongs(knob, c.options)) continue;
-    text += fmt::format("{} = {}\n", knob.name, to_toml(knob, knob.get(c.options)));
-  }
-  const auto corner = [](const QuantityKey& k, const Vector3& x) {
-    return fmt::format("{} = {}\n", k.name, list({value(k, x[0]), value(k, x[1]), value(k, x[2])}));
-  };
-  for (const fem::potential::PermeableBox& plate : c.options.potential.plates)
-    text += fmt::format("\n[[{}]]\n", key::plate_table) +
-            corner(key::plate_lower, plate.box.min()) + corner(key::plate_upper, plate.box.max()) +
-            line(key::plate_permeability, plate.relative_permeability);
+  known.for_each([&](const auto& entry) {
+    if (!entry.options.empty()) text += fmt::format("\n[models.{}]\n", entry.id);
+    for (const Option& option : entry.options)
+      if (belongs(option, c.options))
+        text += fmt::format("{} = {}\n", option.name, to_toml(option, option.get(c.options)));
+    if (entry.tables.write) text += entry.tables.write(c.options);
+  });
   for (const external::ExternalModel& given : c.external) text += external(given);
   return text;
 }
 
 }  // namespace
 
-std::string to_toml(const Case& c) {
+std::string to_toml(const Case& c, const Models& known) {
   std::string text =
       fmt::format("[case]\nname = {}\ntitle = {}\n", toml_text(c.name), toml_text(c.title));
   if (!c.references.empty()) text += fmt::format("references = {}\n", toml_text(c.references));
@@ -145,7 +138,7 @@ std::string to_toml(const Case& c) {
     text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));
     text += parameters(c);
   }
-  return text + sensor(c) + models(c);
+  return text + sensor(c) + models(c, known);
 }
 
 }  // namespace ciliaval::compare::input

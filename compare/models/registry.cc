@@ -1,54 +1,63 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/models/registry.h"
 
-#include "fem/solid/solid.h"
+#include <utility>
+
+// Every model, one line each, the more detailed ones later. CalculiX stands before the solid, which
+// is the reference: it takes every load, and on a mesh of the same size its error is a tenth
+// (docs/measurements/calculix.md).
+#define CILIAVAL_MODELS(MECHANICS, FIELD) \
+  MECHANICS(elastica)                     \
+  MECHANICS(beam)                         \
+  MECHANICS(calculix)                     \
+  MECHANICS(solid)                        \
+  FIELD(dipole)                           \
+  FIELD(line)                             \
+  FIELD(volume)                           \
+  FIELD(mesh)                             \
+  FIELD(potential)
 
 namespace ciliaval::compare::models {
 
+namespace entries {
+#define CILIAVAL_DECLARE_MECHANICS(model) MechanicsEntry model();
+#define CILIAVAL_DECLARE_FIELD(model) FieldEntry model();
+CILIAVAL_MODELS(CILIAVAL_DECLARE_MECHANICS, CILIAVAL_DECLARE_FIELD)
+}  // namespace entries
+
+namespace {
+
+input::Models& all() {
+  static input::Models models = [] {
+    input::Models list;
+#define CILIAVAL_ADD_MECHANICS(model) list.mechanics.push_back(entries::model());
+#define CILIAVAL_ADD_FIELD(model) list.fields.push_back(entries::model());
+    CILIAVAL_MODELS(CILIAVAL_ADD_MECHANICS, CILIAVAL_ADD_FIELD)
+    return list;
+  }();
+  return models;
+}
+
+}  // namespace
+
+const input::Models& known() {
+  return all();
+}
+
 const std::vector<MechanicsEntry>& mechanics_models() {
-  static const std::vector<MechanicsEntry> entries{
-      {"elastica", "the paper's inextensible, shear-rigid elastica (Eq. 1-4)",
-       [](const input::ModelOptions& o) {
-         return std::make_unique<analytic::elastica::Elastica>(o.elastica);
-       }},
-      {"beam", "geometrically exact Simo-Reissner beam FEM: bending, shear, extension, torsion",
-       [](const input::ModelOptions& o) { return std::make_unique<fem::beam::Beam>(o.beam); }},
-      // Before the solid, which is the reference: it takes every load, and on a mesh of the same
-      // size its error is a tenth (docs/measurements/calculix.md).
-      {"calculix", "CalculiX's 3D solid, another program (needs `ccx`; loads section and dead)",
-       [](const input::ModelOptions& o) {
-         return std::make_unique<fem::calculix::Calculix>(o.calculix);
-       }},
-      {"solid", "3D finite-strain near-incompressible solid FEM",
-       [](const input::ModelOptions& o) { return std::make_unique<fem::solid::Solid>(o.solid); }},
-  };
-  return entries;
+  return all().mechanics;
 }
 
 const std::vector<FieldEntry>& field_models() {
-  static const std::vector<FieldEntry> entries{
-      {"dipole", "each magnetic segment as one dipole at its centroid",
-       [](const input::ModelOptions& o) {
-         return std::make_unique<analytic::rod::DipoleField>(o.dipole);
-       }},
-      {"line", "dipoles along the centreline (Eq. 5-7, the paper's single-dipole model)",
-       [](const input::ModelOptions& o) {
-         return std::make_unique<analytic::rod::LineField>(o.line);
-       }},
-      {"volume", "volume of the bent rod (Eq. 8-9, the paper's multi-dipole model)",
-       [](const input::ModelOptions& o) {
-         return std::make_unique<analytic::rod::VolumeField>(o.volume);
-       }},
-      {"mesh", "the solid's own deformed magnet (with `solid` only)",
-       [](const input::ModelOptions& o) {
-         return std::make_unique<analytic::body::MeshField>(o.mesh);
-       }},
-      {"potential", "scalar-potential FEM with recoil permeability and permeable plates",
-       [](const input::ModelOptions& o) {
-         return std::make_unique<fem::potential::Potential>(o.potential);
-       }},
-  };
-  return entries;
+  return all().fields;
+}
+
+void add_model(MechanicsEntry entry) {
+  all().mechanics.push_back(std::move(entry));
+}
+
+void add_model(FieldEntry entry) {
+  all().fields.push_back(std::move(entry));
 }
 
 }  // namespace ciliaval::compare::models

@@ -1,32 +1,33 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "compare/input/case.h"
-#include "problem/field_model.h"
-#include "problem/mechanics_model.h"
+#include "compare/input/model_entry.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::models {
 
-struct MechanicsEntry {
-  std::string id;
-  std::string description;  ///< one line for `ciliaval list`
-  std::function<std::unique_ptr<MechanicsModel>(const input::ModelOptions&)> make;
-};
+using input::FieldEntry;
+using input::MechanicsEntry;
 
-struct FieldEntry {
-  std::string id;
-  std::string description;
-  std::function<std::unique_ptr<FieldModel>(const input::ModelOptions&)> make;
-};
+/// Every model, the more detailed ones later: in a comparison the later one is the reference. To
+/// add a model, write its entry in compare/models/entries and its line in registry.cc.
+const input::Models& known();
+const std::vector<MechanicsEntry>& mechanics_models();  ///< known().mechanics
+const std::vector<FieldEntry>& field_models();          ///< known().fields
 
-/// Every model, the more detailed ones later: in a comparison the later one is the reference.
-/// To add a model, write it and add its line in registry.cc.
-const std::vector<MechanicsEntry>& mechanics_models();
-const std::vector<FieldEntry>& field_models();
+/// Adds a model that a program brings along, before the program uses any other.
+void add_model(MechanicsEntry entry);
+void add_model(FieldEntry entry);
+
+/// The entry of this id. Throws InputError if there is none.
+template <class Entries>
+const typename Entries::value_type& entry_of(const Entries& entries, const std::string& id) {
+  for (const auto& entry : entries)
+    if (entry.id == id) return entry;
+  throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
+}
 
 }  // namespace ciliaval::compare::models

@@ -22,17 +22,15 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The models that the case asks for, each with its id, in the order of the registry.
+/// The models that the case asks for, each with its entry, in the order of the registry.
 template <class Entry>
 auto make_chosen(std::span<const Entry> entries, const std::vector<std::string>& ids,
                  const input::ModelOptions& options) {
-  for (const std::string& id : ids)
-    if (std::none_of(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; }))
-      throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
-  std::vector<std::pair<std::string, decltype(entries.front().make(options))>> result;
+  for (const std::string& id : ids) entry_of(entries, id);
+  std::vector<std::pair<const Entry*, decltype(entries.front().make(options))>> result;
   for (const Entry& entry : entries)
     if (std::find(ids.begin(), ids.end(), entry.id) != ids.end())
-      result.emplace_back(entry.id, entry.make(options));
+      result.emplace_back(&entry, entry.make(options));
   return result;
 }
 
@@ -275,20 +273,20 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   const auto mechanics_models = make_chosen(mechanics, problem.mechanics, problem.options);
   const auto field_models = make_chosen(fields, problem.fields, problem.options);
   CaseResult result{problem, {}, {}};
-  for (const auto& [id, model] : mechanics_models) {
-    if (progress) progress(id + ": starting");
-    const auto kept = checkpoints.find(id);
+  for (const auto& [entry, model] : mechanics_models) {
+    if (progress) progress(entry->id + ": starting");
+    const auto kept = checkpoints.find(entry->id);
     result.mechanics.push_back(run_mechanics(
-        id, *model, problem, progress, kept != checkpoints.end() ? kept->second : Checkpoint{}));
+        entry->id, *model, problem, progress, kept != checkpoints.end() ? kept->second : Checkpoint{}));
   }
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.centrelines.empty()) result.mechanics.push_back(external_mechanics(model, problem));
   for (const MechanicsRun& mechanics_run : result.mechanics) {
     const Deformation& undeformed = mechanics_run.result.undeformed;
     if (undeformed.centreline.pieces().empty()) continue;
-    for (const auto& [id, model] : field_models)
-      if (!model->needs_body() || undeformed.body)
-        result.fields.push_back(run_field(id, *model, mechanics_run, problem, progress));
+    for (const auto& [entry, model] : field_models)
+      if (!entry->has_body || undeformed.body)
+        result.fields.push_back(run_field(entry->id, *model, mechanics_run, problem, progress));
   }
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.readings.empty())
@@ -299,9 +297,9 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
 std::map<std::string, support::Fingerprint> fingerprints(
     const input::Case& problem, std::span<const MechanicsEntry> mechanics) {
   std::map<std::string, support::Fingerprint> result;
-  for (const auto& [id, model] : make_chosen(mechanics, problem.mechanics, problem.options))
+  for (const auto& [entry, model] : make_chosen(mechanics, problem.mechanics, problem.options))
     if (auto fingerprint = model->fingerprint(problem.cilium, problem.load_path))
-      result.emplace(id, std::move(*fingerprint));
+      result.emplace(entry->id, std::move(*fingerprint));
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "analytic/rod/field_models.h"
 #include "compare/output/results.h"
 #include "problem/error.h"
 
@@ -25,8 +26,8 @@ const models::MechanicsRun* mechanics_to_draw(const models::CaseResult& result) 
 }
 
 input::ModelOptions with_closed_forms(input::ModelOptions options) {
-  options.line.method = analytic::rod::Method::closed_form;
-  options.volume.method = analytic::rod::Method::closed_form;
+  options.of<analytic::rod::LineOptions>().method = analytic::rod::Method::closed_form;
+  options.of<analytic::rod::VolumeOptions>().method = analytic::rod::Method::closed_form;
   return options;
 }
 
@@ -98,8 +99,9 @@ std::optional<FieldGrid> field_grid(const models::CaseResult& result,
   FieldGrid grid;
   for (const models::FieldEntry& entry : fields) {
     if (std::find(asked.begin(), asked.end(), entry.id) == asked.end()) continue;
+    if (entry.has_body) continue;
     auto candidate = entry.make(with_closed_forms(result.problem.options));
-    if (candidate->needs_body() || !candidate->pointwise()) continue;
+    if (!candidate->pointwise()) continue;
     model = std::move(candidate);
     grid.field = entry.id;
   }

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "compare/models/registry.h"
 #include "compare/output/json_file.h"
 #include "problem/error.h"
 #include "problem/support/fingerprint.h"
@@ -189,11 +190,11 @@ std::vector<Change> changes(const Baseline& old, const std::vector<Expected>& qu
 
 /// The part of its scale to which a number of a model is the same on any machine.
 double accuracy_class(const std::string& model) {
-  // CalculiX prints seven digits, and its tolerances for equilibrium are its own.
-  if (model == "calculix") return 1e-5;
-  if (model == "potential") return 1e-6;
-  if (model == "solid" || model == "mesh") return 1e-8;
-  return 1e-10;
+  double accuracy = 1e-10;
+  models::known().for_each([&](const auto& entry) {
+    if (entry.id == model) accuracy = entry.accuracy;
+  });
+  return accuracy;
 }
 
 }  // namespace
@@ -208,15 +209,16 @@ std::filesystem::path baseline_path(const std::filesystem::path& case_file) {
 
 std::vector<std::string> case_text(const input::Case& problem) {
   input::Case portable = problem;
-  portable.options.solid.mesh = problem.options.solid.mesh.filename();
-  portable.options.calculix.program = problem.options.calculix.program.filename();
-  portable.options.calculix.keep.clear();
+  input::change_files(models::known(), portable.options,
+                      [](input::Option::File kind, std::filesystem::path& file) {
+                        file = kind == input::Option::File::folder ? "" : file.filename();
+                      });
   for (input::external::ExternalModel& model : portable.external) {
     for (std::filesystem::path& file : model.centreline_files) file = file.filename();
     model.readings_file = model.readings_file.filename();
     model.background_file = model.background_file.filename();
   }
-  std::istringstream text(input::to_toml(portable));
+  std::istringstream text(input::to_toml(portable, models::known()));
   const auto used = [&](const std::string& model) {
     const auto among = [&](const std::vector<std::string>& ids) {
       return std::find(ids.begin(), ids.end(), model) != ids.end();

@@ -55,7 +55,7 @@ bool is_shown(const std::string& id) {
 }
 
 Table convergence_table(const convergence::RefinementStudy& study) {
-  Table table{fmt::format("{}, {} {:g}, finest first ({:.3g} s)", study.model, study.knob,
+  Table table{fmt::format("{}, {} {:g}, finest first ({:.3g} s)", study.model, study.option,
                           fmt::join(study.settings, ", "), fmt::join(study.seconds, ", ")),
               {"quantity", "unit", "finest", "order", "extrapolated", "±", "remark"},
               {}};
@@ -132,7 +132,7 @@ std::string convergence_content(const Json& json, Figures& figures) {
          fmt::format("{}, {}: distance from the extrapolated limit f₀ over h, {}. Lines: "
                      "the observed order. Grey crosses: inconclusive, distance from the finest "
                      "level.",
-                     study.model, study.knob, study.size_name),
+                     study.model, study.option, study.size_name),
          drawing.script, drawing.size});
     tables += html(convergence_table(study));
   }

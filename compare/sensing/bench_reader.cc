@@ -71,7 +71,7 @@ void read_problem(input::Section& table, const std::filesystem::path& file, inpu
   const std::optional<std::string> name = input::read_text(*node, "case", table.faults());
   if (!name) return;
   try {
-    problem = input::read_case(file.parent_path() / *name);
+    problem = input::read_case(file.parent_path() / *name, models::known());
     if (problem.sensors.empty()) throw InputError("the case has no sensor");
     for (const Load& load : problem.load_path)
       if (!(magnitude(load) > 0)) throw InputError("the case has a load that is zero");

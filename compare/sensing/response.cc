@@ -8,7 +8,6 @@
 #include <complex>
 #include <memory>
 #include <numbers>
-#include <variant>
 
 #include "compare/models/registry.h"
 #include "problem/error.h"
@@ -22,13 +21,6 @@ constexpr std::size_t most_angles = 256;
 constexpr double enough = 1e-9;    ///< error between the angles, of the largest |ΔB|
 constexpr double too_much = 1e-3;  ///< … of the whole interpolation
 constexpr std::size_t check_places[] = {1, 5, 10, 14};  ///< the intervals with a check
-
-template <class Entry>
-const Entry& entry_of(const std::vector<Entry>& entries, const std::string& id) {
-  for (const Entry& entry : entries)
-    if (entry.id == id) return entry;
-  throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
-}
 
 Matrix3 turn(double angle) {
   return Eigen::AngleAxisd(angle, Vector3::UnitZ()).toRotationMatrix();
@@ -91,11 +83,10 @@ double largest_column(const Eigen::Matrix3Xd& values) {
   return values.cols() == 0 ? 0 : values.colwise().norm().maxCoeff();
 }
 
-void require_round(const input::Case& problem, const std::string& mechanics) {
-  if (mechanics == "solid" && !problem.options.solid.mesh.empty())
-    throw InputError(
-        "a solid with a mesh of the user is not the same from all sides: leave out "
-        "models.solid.mesh");
+void require_round(const input::Case& problem, const models::MechanicsEntry& mechanics) {
+  for (const auto& [option, mesh] : input::user_meshes({{mechanics}, {}}, problem.options))
+    throw InputError("a solid with a mesh of the user is not the same from all sides: leave out " +
+                     option);
 }
 
 Load along_x(const Load& load) {
@@ -110,9 +101,8 @@ models::ModelPair parse_pair(const std::string& text) {
     throw InputError("a pair of models is written mechanics/field, such as elastica/volume, not `" +
                      text + "`");
   models::ModelPair pair{text.substr(0, slash), text.substr(slash + 1)};
-  entry_of(models::mechanics_models(), pair.mechanics);
-  const auto field = entry_of(models::field_models(), pair.field).make(input::ModelOptions{});
-  if (field->needs_body() && (pair.mechanics == "elastica" || pair.mechanics == "beam"))
+  if (!models::entry_of(models::mechanics_models(), pair.mechanics).has_body &&
+      models::entry_of(models::field_models(), pair.field).has_body)
     throw InputError("`" + pair.field + "` needs the body of a solid; `" + pair.mechanics +
                      "` has none");
   return pair;
@@ -120,7 +110,8 @@ models::ModelPair parse_pair(const std::string& text) {
 
 Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
                     const Progress& progress) {
-  require_round(problem, mechanics);
+  const models::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), mechanics);
+  require_round(problem, entry);
   if (!(largest > 0) || !std::isfinite(largest))
     throw InputError("the largest load must be finite and positive");
   Shapes shapes;
@@ -139,7 +130,7 @@ Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, do
   LoadPath loads;
   for (const auto& [magnitude, is_check] : path)
     loads.push_back(with_magnitude(along_x(problem.load_path.front()), magnitude));
-  const auto model = entry_of(models::mechanics_models(), mechanics).make(problem.options);
+  const auto model = entry.make(problem.options);
   const MechanicsResult result = model->solve(problem.cilium, loads, progress);
   shapes.undeformed = result.undeformed;
   for (std::size_t i = 0; i < result.steps.size(); ++i) {
@@ -165,7 +156,7 @@ Response::Response(const input::Case& problem, const std::string& field, const S
     const bool end = k == 0 || k + 1 == magnitudes_.size();
     weights_.push_back((k % 2 == 0 ? 1.0 : -1.0) * (end ? 0.5 : 1.0));
   }
-  const auto model = entry_of(models::field_models(), field).make(problem.options);
+  const auto model = models::entry_of(models::field_models(), field).make(problem.options);
   const Field straight = model->field(problem.cilium, shapes.undeformed, sensors);
   for (std::size_t s = 0; s < sensors.size(); ++s) {
     undeformed_.segment<3>(static_cast<Eigen::Index>(3 * s)) = straight.B.at(s);

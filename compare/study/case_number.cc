@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <utility>
-#include <variant>
 
 #include "compare/input/case_sections.h"
+#include "compare/models/registry.h"
 
 namespace ciliaval::compare::study {
 namespace {
@@ -96,24 +96,17 @@ void append_load(const input::Case& c, std::vector<CaseNumber>& all) {
   }
 }
 
-void append_knobs(const input::Case& c, std::vector<CaseNumber>& all) {
-  for (const input::Knob& knob : input::knobs()) {
-    const input::KnobValue value = knob.get(c.options);
-    const bool is_whole = std::holds_alternative<unsigned int>(value);
-    if (!input::belongs(knob, c.options) || !(is_whole || std::holds_alternative<double>(value)))
-      continue;
-    const std::string path = fmt::format("models.{}.{}", knob.model, knob.name);
-    all.push_back({path, knob.quantity, knob.range, std::string(knob.doc), is_whole, Order::plain,
-                   path,
-                   [knob, is_whole](const input::Case& x) {
-                     const input::KnobValue v = knob.get(x.options);
-                     return is_whole ? std::get<unsigned int>(v) : std::get<double>(v);
-                   },
-                   [knob, is_whole](input::Case& x, double v) {
-                     knob.set(x.options, is_whole ? input::KnobValue(static_cast<unsigned int>(v))
-                                                  : input::KnobValue(v));
-                   }});
-  }
+void append_options(const input::Case& c, std::vector<CaseNumber>& all) {
+  models::known().for_each([&](const auto& entry) {
+    for (const input::Option& option : entry.options) {
+      if (!input::belongs(option, c.options) || !option.number(c.options)) continue;
+      const std::string path = fmt::format("models.{}.{}", entry.id, option.name);
+      all.push_back({path, option.quantity, option.range, std::string(option.doc),
+                     option.is_whole_number(), Order::plain, path,
+                     [option](const input::Case& x) { return option.number(x.options).value(); },
+                     [option](input::Case& x, double v) { option.set_number(x.options, v); }});
+    }
+  });
 }
 
 }  // namespace
@@ -128,7 +121,7 @@ std::vector<CaseNumber> case_numbers(const input::Case& c) {
           fmt::format("sensor.position.{}", name), input::key::position,
           [a = axis](const input::Case& x) { return x.sensors.front()[a]; },
           [a = axis](input::Case& x, double v) { x.sensors.front()[a] = v; }));
-  append_knobs(c, all);
+  append_options(c, all);
   return all;
 }
 

@@ -27,7 +27,7 @@ struct CaseNumber {
 };
 
 /// The numbers of this case: those of its cilium and segments, of its load (set at all its steps),
-/// of its first sensor and of the models' knobs, and
+/// of its first sensor and of the models' options, and
 /// - `cilium.length`: the total length, the segments in proportion;
 /// - `cilium.segment.NAME.proportion`: the segment's part of the total length, which stays, as do
 ///   the proportions of the others among themselves (the paper's L₂/L₀);

@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 
+#include "analytic/elastica/elastica.h"
 #include "compare/budget/sensitivity.h"
 #include "compare/models/errors.h"
 #include "compare/models/run.h"
@@ -14,16 +15,6 @@
 
 namespace ciliaval::compare::study {
 namespace {
-
-template <class Entry>
-auto make_model(std::span<const Entry> entries, const std::string& id,
-                const input::ModelOptions& options) {
-  const auto entry =
-      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.id == id; });
-  if (entry == entries.end())
-    throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
-  return entry->make(options);
-}
 
 void append(std::string& message, const std::string& text) {
   if (!text.empty()) message += (message.empty() ? "" : "; ") + text;
@@ -94,7 +85,8 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
   try {
     range = study.rotation
                 ? magnitude_at_rotation(model, c.cilium, step.load, *study.rotation, progress)
-                : slip_off(model, c.cilium, step, c.options.elastica, progress);
+                : slip_off(model, c.cilium, step,
+                           c.options.of<analytic::elastica::ElasticaOptions>(), progress);
     if (!std::isfinite(*range)) throw SolverError("range: it is not finite");
   } catch (const CheckpointError&) {
     throw;
@@ -119,7 +111,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
   const budget::SurroundedPath path = budget::surround(
       c.load_path, study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution));
   c.load_path = path.loads;
-  const auto model = make_model(mechanics_models, mechanics, c.options);
+  const auto model = entry_of(mechanics_models, mechanics).make(c.options);
   const models::MechanicsRun run = models::run_mechanics(mechanics, *model, c, progress);
   const MechanicsStep& step = run.result.steps[path.step.front()];
   std::vector<PairResult> results;
@@ -129,7 +121,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
       results.push_back(result_of(study, step, {}, path));
       continue;
     }
-    const auto field = make_model(field_models, pair.field, c.options);
+    const auto field = entry_of(field_models, pair.field).make(c.options);
     const models::FieldRun fields = models::run_field(pair.field, *field, run, c, progress);
     results.push_back(result_of(study, step, fields, path));
     results.back().uncertainty = models::change_uncertainty(run, fields, path.step.front(), 0);

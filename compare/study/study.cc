@@ -153,13 +153,12 @@ std::string format_value(const Parameter& parameter, double value) {
 }
 
 support::Fingerprint fingerprint(const Study& study) {
-  toml::table base = input::parse_toml(input::to_toml(study.base), study.name);
+  toml::table base = input::parse_toml(input::to_toml(study.base, models::known()), study.name);
   base.erase("case");  // its name and title
   support::Fingerprint all;
   append_values(base, "", all);
-  const std::filesystem::path& mesh = study.base.options.solid.mesh;
-  if (!mesh.empty())
-    all.emplace_back("content of models.solid.mesh", support::describe_content(mesh));
+  for (const auto& [option, mesh] : input::user_meshes(models::known(), study.base.options))
+    all.emplace_back("content of " + option, support::describe_content(mesh));
   for (const Setting& s : study.fixed)
     all.emplace_back("fixed " + s.number.path, input::format_number(s.value));
   for (std::size_t i = 0; i < study.parameters.size(); ++i) {

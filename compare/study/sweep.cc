@@ -19,12 +19,13 @@ struct Task {
 };
 
 /// Whether the models of the study's pairs with this mechanics model may run in several threads
-/// beside each other: rods and closed forms do; the solid, the potential (MPI) and CalculiX
-/// use the cores themselves.
-bool runs_in_threads(const Study& study, const std::string& mechanics) {
-  if (mechanics != "elastica" && mechanics != "beam") return false;
+/// beside each other: collective ones use the cores themselves.
+bool runs_in_threads(const Study& study, const std::string& mechanics,
+                     std::span<const models::MechanicsEntry> mechanics_models,
+                     std::span<const models::FieldEntry> field_models) {
+  if (entry_of(mechanics_models, mechanics).is_collective) return false;
   return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
-    return pair.mechanics == mechanics && pair.field == "potential";
+    return pair.mechanics == mechanics && entry_of(field_models, pair.field).is_collective;
   });
 }
 
@@ -38,7 +39,9 @@ StudyResult run_study(const Study& study, Solutions& solutions,
   for (const std::string& mechanics : study.mechanics())
     for (std::size_t point = 0; point < study.all_points(); ++point)
       if (Task task{point, mechanics}; solutions.find(task.name()) == nullptr)
-        (runs_in_threads(study, mechanics) ? side_by_side : one_by_one).push_back(std::move(task));
+        (runs_in_threads(study, mechanics, mechanics_models, field_models) ? side_by_side
+                                                                           : one_by_one)
+            .push_back(std::move(task));
 
   const auto done = [&, all = study.all_points() * study.mechanics().size()](std::size_t solved) {
     return fmt::format("{}: {}/{} solved", study.name, solved, all);

@@ -17,6 +17,7 @@
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
 #include "compare/output/vtk/output.h"
+#include "fem/solid/solid_options.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -38,9 +39,9 @@ void whole_case(benchmark::State& state, const std::string& name, const Change& 
   const fs::path folder =
       fs::temp_directory_path() / ("ciliaval-bench-" + std::to_string(getpid()));
   for (auto _ : state) {
-    input::Case problem = input::read_case(shipped(name));
+    input::Case problem = input::read_case(shipped(name), models::known());
     if (!change.mechanics.empty()) problem.mechanics = change.mechanics;
-    problem.options.solid.refinement = change.refinement;
+    problem.options.of<fem::solid::SolidOptions>().refinement = change.refinement;
     if (change.last)
       problem.load_path.erase(problem.load_path.begin(),
                               problem.load_path.end() - static_cast<std::ptrdiff_t>(*change.last));

@@ -30,16 +30,15 @@ struct Options {
   OptionalFile json;
 };
 
-/// The models that take seconds, which `--quick` leaves out.
-constexpr std::array<std::string_view, 3> slow_models{"calculix", "solid", "potential"};
-
-/// Those of the case's models that are not run.
+/// Those of the case's models that are not run: `--quick` leaves out the slow ones.
 std::vector<std::string> left_out_of(const input::Case& problem, bool quick) {
   std::vector<std::string> result;
-  for (const auto* ids : {&problem.mechanics, &problem.fields})
-    for (const std::string& id : *ids)
-      if (quick && std::find(slow_models.begin(), slow_models.end(), id) != slow_models.end())
-        result.push_back(id);
+  const auto add = [&](const std::vector<std::string>& ids, const auto& entries) {
+    for (const std::string& id : ids)
+      if (quick && entry_of(entries, id).is_slow) result.push_back(id);
+  };
+  add(problem.mechanics, models::mechanics_models());
+  add(problem.fields, models::field_models());
   return result;
 }
 

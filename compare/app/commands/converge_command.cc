@@ -7,6 +7,7 @@
 #include "compare/app/terminal.h"
 #include "compare/convergence/plot.h"
 #include "compare/convergence/study.h"
+#include "compare/models/registry.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "problem/error.h"
@@ -30,20 +31,19 @@ ExitCode execute(const Options& options, const std::string& words) {
   const input::Case problem = read_cases({options.file}).front();
   output::check_outputs({options.json, options.csv, options.plot},
                         input_files(options.file, problem));
-  if (!problem.options.solid.mesh.empty())
-    throw InputError(
-        options.file.string() +
-        ": a mesh of the user has no levels of refinement: leave out models.solid.mesh");
+  for (const auto& [option, mesh] : input::user_meshes(models::known(), problem.options))
+    throw InputError(options.file.string() +
+                     ": a mesh of the user has no levels of refinement: leave out " + option);
   std::vector<convergence::RefinementStudy> studies;
   bool failed = false;
-  for (const convergence::Refinement& refinement : convergence::refinements(problem)) {
+  for (const convergence::ModelRefinement& refinement : convergence::refinements(problem)) {
     ProgressLine line;
     studies.push_back(
         convergence::refinement_study(problem, refinement, options.levels, line.callback()));
     failed = failed || !studies.back().failure.empty();
   }
   print(studies.empty()
-            ? "The case has no model that can be refined: `dipole` is a closed form.\n"
+            ? "The case has no model that can be refined: a closed form has no levels.\n"
             : convergence::study_text(studies));  // first: a full disk must not cost the table
   if (options.json)
     output::write_file(*options.json,

@@ -24,7 +24,7 @@ std::string title_of(const fs::path& file) {
   try {
     if (is_study_file(file)) return study::reader::read_study(file).title;
     if (is_bench_file(file)) return sensing::read_bench(file).title;
-    return input::read_case(file).title;
+    return input::read_case(file, models::known()).title;
   } catch (const Error&) {
     return "(cannot be read: see `ciliaval validate`)";
   }

@@ -7,6 +7,7 @@
 
 #include "compare/app/case_files.h"
 #include "compare/app/terminal.h"
+#include "compare/models/registry.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "compare/output/vtk/files.h"
@@ -34,7 +35,7 @@ struct CaseMesh {
 };
 
 CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refinement) {
-  fem::solid::SolidOptions options = problem.options.solid;
+  auto options = problem.options.of<fem::solid::SolidOptions>();
   dealii::Triangulation<3> triangulation;
   if (options.mesh.empty()) {
     options.symmetry = false;
@@ -60,7 +61,7 @@ CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refin
 /// `.msh` has the names of the segments and the boundary and can be named in a case again, a `.vtu`
 /// is for ParaView; both keep the curved geometry.
 ExitCode execute(const Options& options, const std::string& words) {
-  const input::Case problem = input::read_case(options.problem);
+  const input::Case problem = input::read_case(options.problem, models::known());
   const fs::path& output = options.output;
   output::check_outputs({output}, input_files(options.problem, problem));
   const std::string extension = output.extension().string();

@@ -110,7 +110,7 @@ ExitCode run_one(Prepared& prepared, const std::string& words) {
   const std::vector<models::Comparison> comparisons = models::compare_models(result);
   const auto grid = output::field_grid(result, models::field_models(), progress);
   const output::Provenance origin = output::provenance(words);
-  output::write_file(folder.path() / "case.toml", input::to_toml(problem));
+  output::write_file(folder.path() / "case.toml", input::to_toml(problem, models::known()));
   output::write_results(result, comparisons, origin, folder.path());
   tbb::parallel_invoke([&] { output::vtk::write_vtk(result, grid, origin, folder.path() / "vtk"); },
                        [&] { write_case_report(folder.path()); });
@@ -121,14 +121,14 @@ ExitCode run_one(Prepared& prepared, const std::string& words) {
   return models::all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
 
-/// The part of the ranks beyond the first in a case: the solid and the potential, which share their
-/// work with them, and CalculiX, whose result they are given. For the potential each rank has the
-/// rods' deformations from its own solution, which is the same on all.
+/// The part of the ranks beyond the first in a case: the models that all ranks call. For a field
+/// model each rank has the rods' deformations from its own solution, which is the same on all.
 void take_part(input::Case problem) {
-  std::erase_if(problem.fields, [](const std::string& id) { return id != "potential"; });
-  if (problem.fields.empty())
-    std::erase_if(problem.mechanics,
-                  [](const std::string& id) { return id != "solid" && id != "calculix"; });
+  const auto leave_collective = [](std::vector<std::string>& ids, const auto& entries) {
+    std::erase_if(ids, [&](const std::string& id) { return !entry_of(entries, id).is_collective; });
+  };
+  leave_collective(problem.fields, models::field_models());
+  if (problem.fields.empty()) leave_collective(problem.mechanics, models::mechanics_models());
   models::run(problem, models::mechanics_models(), models::field_models());
 }
 

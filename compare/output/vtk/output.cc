@@ -17,6 +17,7 @@
 #include <system_error>
 #include <vector>
 
+#include "analytic/rod/field_models.h"
 #include "compare/output/output_file.h"
 #include "compare/output/results.h"
 #include "compare/output/vtk/datasets.h"
@@ -114,7 +115,8 @@ void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>&
         return rod_polyline(problem.cilium, centreline);
       });
       add("dipoles_" + run.model, step, [&problem, &centreline = deformation->centreline] {
-        return dipoles(problem.cilium, centreline, problem.options.line.push_forward);
+        return dipoles(problem.cilium, centreline,
+                       problem.options.of<analytic::rod::LineOptions>().push_forward);
       });
     }
     if (any_field(result, step)) add("sensors", step, [&, step] { return sensors(result, step); });

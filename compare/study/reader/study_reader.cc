@@ -122,10 +122,10 @@ void read_tolerances(const toml::table& table, Reading& reading, input::Faults& 
 /// Every pair of models that can be formed.
 std::vector<std::string> all_pairs() {
   std::vector<std::string> pairs;
-  for (const std::string_view mechanics : input::mechanics_ids())
-    for (const std::string_view field : input::field_ids())
-      if (field != "mesh" || mechanics == "solid" || mechanics == "calculix")
-        pairs.push_back(fmt::format("{}/{}", mechanics, field));
+  for (const models::MechanicsEntry& mechanics : models::mechanics_models())
+    for (const models::FieldEntry& field : models::field_models())
+      if (!field.has_body || mechanics.has_body)
+        pairs.push_back(fmt::format("{}/{}", mechanics.id, field.id));
   return pairs;
 }
 
@@ -142,7 +142,7 @@ std::vector<std::string> read_choices(const toml::node& node, std::string_view n
     return texts;
   }
   for (const toml::node& element : *list) {
-    const std::optional<std::string> text = input::read_choice(element, name, choices, {}, faults);
+    const std::optional<std::string> text = input::read_choice(element, name, choices, faults);
     if (!text) continue;
     if (std::find(texts.begin(), texts.end(), *text) != texts.end())
       faults.add(input::place(element),
@@ -236,7 +236,7 @@ bool read_base(input::Section& table, const fs::path& file, input::Case& base) {
                            path.string()));
     return false;
   }
-  base = input::read_case(path);
+  base = input::read_case(path, models::known());
   base.external.clear();
   return true;
 }
@@ -287,7 +287,8 @@ void reduce_to_one_step(Study& study, input::Place where, input::Faults& faults)
 
 /// Checks each point as a case file would be; the first that cannot be is a fault.
 void check_points(const Study& study, input::Place where, input::Faults& faults) {
-  const toml::table root = input::parse_toml(input::to_toml(study.base), study.name);
+  const toml::table root =
+      input::parse_toml(input::to_toml(study.base, models::known()), study.name);
   for (std::size_t i = 0; i < study.all_points(); ++i) {
     const input::Case c = study.case_at(i);
     std::string fault;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/budget/budget.h"
+#include "analytic/body/mesh_field.h"
+#include "analytic/rod/field_models.h"
+#include "fem/potential/potential.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,12 +45,17 @@ struct World {
   static double factor(const input::ModelOptions& o, const std::string& id) {  // T/m
     if (id == "dipole") return 0.7e-2;
     if (id == "volume")
-      return o.volume.slices == analytic::rod::VolumeOptions::Slices::stacked ? 1.1e-2 : 1.12e-2;
+      return o.of<analytic::rod::VolumeOptions>().slices ==
+                     analytic::rod::VolumeOptions::Slices::stacked
+                 ? 1.1e-2
+                 : 1.12e-2;
     if (id == "mesh")
-      return o.mesh.push_forward == analytic::sources::PushForward::R ? 1.15e-2 : 1.14e-2;
+      return o.of<analytic::body::MeshOptions>().push_forward == analytic::sources::PushForward::R
+                 ? 1.15e-2
+                 : 1.14e-2;
     if (id == "potential")
-      return 1.14e-2 + 1e-2 * (o.potential.relative_permeability - 1) +
-             1e-3 * static_cast<double>(o.potential.plates.size());
+      return 1.14e-2 + 1e-2 * (o.of<fem::potential::PotentialOptions>().relative_permeability - 1) +
+             1e-3 * static_cast<double>(o.of<fem::potential::PotentialOptions>().plates.size());
     return 1e-2;
   }
 
@@ -78,14 +86,18 @@ struct World {
   std::vector<models::FieldEntry> fields() const {
     std::vector<models::FieldEntry> entries;
     for (const std::string id : {"dipole", "line", "volume", "mesh", "potential"})
-      entries.push_back({id, "", [*this, id](const input::ModelOptions& options) {
-                           const double c = factor(options, id);
-                           return std::make_unique<test::FormulaField>(
-                               [c](const Deformation& d, const Vector3&) -> Vector3 {
-                                 return c * d.centreline.at(L).position;
-                               },
-                               uncertainty, id == "mesh");
-                         }});
+      entries.push_back({.id = id,
+                         .description = "",
+                         .make =
+                             [*this, id](const input::ModelOptions& options) {
+                               const double c = factor(options, id);
+                               return std::make_unique<test::FormulaField>(
+                                   [c](const Deformation& d, const Vector3&) -> Vector3 {
+                                     return c * d.centreline.at(L).position;
+                                   },
+                                   uncertainty);
+                             },
+                         .has_body = id == "mesh"});
     return entries;
   }
 
@@ -280,7 +292,8 @@ TEST(Budget, LinksJoinOverAStationWithoutValue) {
   auto fields = world.fields();
   const auto right = fields[2].make;
   fields[2].make = [right](const input::ModelOptions& options) -> std::unique_ptr<FieldModel> {
-    if (options.volume.slices == analytic::rod::VolumeOptions::Slices::stacked)
+    if (options.of<analytic::rod::VolumeOptions>().slices ==
+        analytic::rod::VolumeOptions::Slices::stacked)
       return right(options);
     return std::make_unique<test::FormulaField>(
         [](const Deformation& d, const Vector3&) -> Vector3 {
@@ -305,22 +318,22 @@ TEST(Budget, LinksJoinOverAStationWithoutValue) {
 
 TEST(Chain, FollowsTheCase) {
   input::Case problem = test::paper_case({1e-3});
-  problem.options.potential.relative_permeability = 1;
+  problem.options.of<fem::potential::PotentialOptions>().relative_permeability = 1;
   EXPECT_EQ(budget::make_chain(problem, {}).stages.back().name(), "solid/potential mu_r = 1");
-  problem.options.potential.plates.resize(1);
+  problem.options.of<fem::potential::PotentialOptions>().plates.resize(1);
   EXPECT_EQ(budget::make_chain(problem, {}).stages.back().name(),
             "solid/potential mu_r = 1, plates");
-  problem.options.potential.relative_permeability = 1.1;
+  problem.options.of<fem::potential::PotentialOptions>().relative_permeability = 1.1;
   const budget::Chain chain = budget::make_chain(problem, {});
   ASSERT_EQ(chain.stages.size(), 10U);
   input::ModelOptions options = problem.options;
   chain.stages[7].set(options);
-  EXPECT_EQ(options.potential.relative_permeability, 1);
-  EXPECT_TRUE(options.potential.plates.empty());
+  EXPECT_EQ(options.of<fem::potential::PotentialOptions>().relative_permeability, 1);
+  EXPECT_TRUE(options.of<fem::potential::PotentialOptions>().plates.empty());
   options = problem.options;
   chain.stages[9].set(options);
-  EXPECT_EQ(options.potential.relative_permeability, 1.1);
-  EXPECT_EQ(options.potential.plates.size(), 1U);
+  EXPECT_EQ(options.of<fem::potential::PotentialOptions>().relative_permeability, 1.1);
+  EXPECT_EQ(options.of<fem::potential::PotentialOptions>().plates.size(), 1U);
   EXPECT_THAT(names(budget::make_chain(problem, {"beam", "solid", "volume", "potential"}).stages),
               ElementsAre("elastica/line"));
 }

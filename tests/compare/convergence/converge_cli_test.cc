@@ -150,10 +150,10 @@ TEST(Converge, ThePapersSumsConvergeWithOrderTwoToTheClosedForms) {
 }
 
 const nlohmann::json& study_of(const nlohmann::json& studies, const std::string& model,
-                               const std::string& knob) {
+                               const std::string& option) {
   for (const auto& study : studies)
-    if (study["model"] == model && study["knob"] == knob) return study;
-  throw std::out_of_range(model + " " + knob);
+    if (study["model"] == model && study["option"] == option) return study;
+  throw std::out_of_range(model + " " + option);
 }
 
 // Degrees converge exponentially, tolerances are kept. Oracles: the beam on 32 elements a segment
@@ -195,7 +195,7 @@ TEST(Converge, DegreesAndTolerancesAreRefinedToo) {
       const auto& q = quantity(study, "steps/0/fields/" + pair + "/B/0/" + "xyz"[axis]);
       const double closed_form = exact["fields"][pair]["B"][0][axis];
       EXPECT_LT(std::abs(q["limit"].get<double>() - closed_form), q["uncertainty"].get<double>());
-      EXPECT_GT(std::abs(value(q, 4) - closed_form), 0) << "the knob does nothing";
+      EXPECT_GT(std::abs(value(q, 4) - closed_form), 0) << "the option does nothing";
     }
   }
 }

@@ -87,7 +87,7 @@ const BadCase keys[]{
      "; did you mean 'length'?"},
     {"StartOfAKey", "poisson_ratio", "poisson", "12:1",
      "unknown key 'poisson' in [[cilium.segment]]", "did you mean 'poisson_ratio'?"},
-    {"StartOfAKnob", "refinement = 1", "kernel = \"0.5 mm\"", "35:1", "unknown key 'kernel'",
+    {"StartOfAnOption", "refinement = 1", "kernel = \"0.5 mm\"", "35:1", "unknown key 'kernel'",
      "did you mean 'kernel_width'?"},
     {"UnknownKeyInCase", "title", "titel", "3:1", "unknown key 'titel' in [case]",
      "did you mean 'title'?"},
@@ -97,7 +97,7 @@ const BadCase keys[]{
      "unknown key 'velocity' in [load] of type 'contact' (valid: type, force, height, azimuth)"},
     {"UnknownKeyInModels", "[models.solid]", "[models.sold]", "34:9",
      "unknown key 'sold' in [models]", "did you mean 'solid'?"},
-    {"UnknownKnob", "refinement", "refinment", "35:1", "unknown key 'refinment' in [models.solid]",
+    {"UnknownOption", "refinement", "refinment", "35:1", "unknown key 'refinment' in [models.solid]",
      "did you mean 'refinement'?"},
     {"UnknownKeyWithoutANeighbour", "refinement", "colour", "35:1",
      "unknown key 'colour' in [models.solid] (valid: material, mooney_ratio"},
@@ -291,8 +291,8 @@ const BadCase contradictions[]{
     {"FieldsOfNoMagnetization", "\"75 kA/m\"", "\"0 A/m\"", "32:10", "'fields' need a magnet"},
     {"CalculixUnderAContactLoad", "\"beam\", \"solid\"", "\"beam\", \"calculix\", \"solid\"",
      "31:34",
-     "CalculiX takes the load types 'section' and 'dead', not 'contact', which follows the current "
-     "height: leave out 'calculix', or state the load as one of those"},
+     "calculix takes the load types 'section', 'dead', not 'contact': leave out 'calculix', or "
+     "state the load as one of those"},
     {"CalculixWithoutAProgram", "[models.solid]\nrefinement = 1",
      "[models.calculix]\nprogram = \"\"", "35:11", "'program' must name a program"},
     {"MeshWithoutSolid", ", \"solid\"]", "]", "32:39", "add 'solid' to 'mechanics'"},
@@ -393,7 +393,7 @@ TEST(BadCaseSize, ALoadPathHasAThousandStepsAtMost) {
 const BadCase later[]{
     {"UnknownLoad", "\"contact\"", "\"contract\"", "22:8", "'type' cannot be 'contract'",
      "did you mean 'contact'?"},
-    {"PotentialKnobs", "[models.solid]\nrefinement = 1",
+    {"PotentialOptions", "[models.solid]\nrefinement = 1",
      "[models.potential]\nrelative_permeability = 0", "35:25",
      "'relative_permeability' is 0, but must be between 0"},
     {"PotentialPlates", "[models.solid]\nrefinement = 1", "[models.potential]\nplate = \"iron\"",

@@ -11,6 +11,7 @@
 
 #include "case_texts.h"
 #include "compare/input/case.h"
+#include "compare/models/registry.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -97,7 +98,7 @@ class CaseFiles : public testing::Test {
   /// What read_case() says of a file, or "" if it reads it.
   static std::string fault_of(const std::filesystem::path& file) {
     try {
-      input::read_case(file);
+      input::read_case(file, models::known());
     } catch (const InputError& error) {
       return error.what();
     }

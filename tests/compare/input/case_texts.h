@@ -3,9 +3,11 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compare/input/case.h"
+#include "compare/models/registry.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -66,10 +68,19 @@ inline std::vector<std::string> lines(const std::string& text) {
   return result;
 }
 
+/// Every option of every model, with the model's id.
+inline std::vector<std::pair<std::string, input::Option>> all_options() {
+  std::vector<std::pair<std::string, input::Option>> result;
+  models::known().for_each([&](const auto& entry) {
+    for (const input::Option& option : entry.options) result.emplace_back(entry.id, option);
+  });
+  return result;
+}
+
 /// What is said of a bad case file; empty if it is read. Any other exception is let through.
 inline std::string faults_of(std::string_view text) {
   try {
-    input::read_case(text, "bad.toml");
+    input::read_case(text, "bad.toml", models::known());
   } catch (const InputError& error) {
     return error.what();
   }

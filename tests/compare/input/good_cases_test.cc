@@ -11,9 +11,17 @@
 #include <string>
 #include <vector>
 
+#include "analytic/body/mesh_field.h"
+#include "analytic/elastica/elastica.h"
+#include "analytic/rod/field_models.h"
 #include "case_texts.h"
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
+#include "compare/models/registry.h"
+#include "fem/beam/beam.h"
+#include "fem/calculix/calculix_model.h"
+#include "fem/potential/potential.h"
+#include "fem/solid/solid_options.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -22,7 +30,7 @@ namespace {
 using testing::ElementsAre;
 
 input::Case read(std::string_view text) {
-  return input::read_case(text, "test.toml");
+  return input::read_case(text, "test.toml", models::known());
 }
 
 std::filesystem::path source(std::string_view file) {
@@ -72,14 +80,19 @@ void expect_same(const input::Case& a, const input::Case& b) {
   EXPECT_EQ(a.sensors, b.sensors);
   EXPECT_EQ(a.mechanics, b.mechanics);
   EXPECT_EQ(a.fields, b.fields);
-  for (const input::Knob& knob : input::knobs())
-    EXPECT_EQ(knob.get(a.options), knob.get(b.options)) << knob.model << '.' << knob.name;
-  ASSERT_EQ(a.options.potential.plates.size(), b.options.potential.plates.size());
-  for (std::size_t i = 0; i < a.options.potential.plates.size(); ++i) {
-    const fem::potential::PermeableBox& plate = a.options.potential.plates[i];
-    EXPECT_EQ(plate.box.min(), b.options.potential.plates[i].box.min());
-    EXPECT_EQ(plate.box.max(), b.options.potential.plates[i].box.max());
-    EXPECT_EQ(plate.relative_permeability, b.options.potential.plates[i].relative_permeability);
+  for (const auto& [model, option] : all_options())
+    EXPECT_EQ(option.get(a.options), option.get(b.options)) << model << '.' << option.name;
+  ASSERT_EQ(a.options.of<fem::potential::PotentialOptions>().plates.size(),
+            b.options.of<fem::potential::PotentialOptions>().plates.size());
+  for (std::size_t i = 0; i < a.options.of<fem::potential::PotentialOptions>().plates.size(); ++i) {
+    const fem::potential::PermeableBox& plate =
+        a.options.of<fem::potential::PotentialOptions>().plates[i];
+    EXPECT_EQ(plate.box.min(),
+              b.options.of<fem::potential::PotentialOptions>().plates[i].box.min());
+    EXPECT_EQ(plate.box.max(),
+              b.options.of<fem::potential::PotentialOptions>().plates[i].box.max());
+    EXPECT_EQ(plate.relative_permeability,
+              b.options.of<fem::potential::PotentialOptions>().plates[i].relative_permeability);
   }
 }
 
@@ -140,9 +153,9 @@ TEST(GoodCase, AzimuthMayBeTwoTurns) {
 
 TEST(GoodCase, LeavesTheModelsTheirDefaults) {
   const input::Case c = read(replaced(good_case, "[models.solid]\nrefinement = 1\n", ""));
-  for (const input::Knob& knob : input::knobs())
-    EXPECT_EQ(knob.get(c.options), knob.get(input::ModelOptions{}))
-        << knob.model << '.' << knob.name;
+  for (const auto& [model, option] : all_options())
+    EXPECT_EQ(option.get(c.options), option.get(input::ModelOptions{}))
+        << model << '.' << option.name;
 }
 
 TEST(GoodCase, LoadsBroadcastSingleValuesAlongThePath) {
@@ -243,7 +256,7 @@ TEST(GoodCase, NumbersOfSegmentsVary) {
   EXPECT_EQ(c.cilium.segments[6].poisson_ratio, 0.0);
 }
 
-constexpr std::string_view all_knobs = R"toml(
+constexpr std::string_view all_option_lines = R"toml(
 [models.elastica]
 form = "height"
 tolerance = 1e-9
@@ -301,86 +314,93 @@ upper = ["5 mm", "6 mm", "-7 mm"]
 relative_permeability = 0.5
 )toml";
 
-std::string with_all_knobs() {
+std::string with_all_options() {
   const std::string mesh = "mesh = \"" + source("cases/verification/ogrid.msh").string() +
                            "\"\nmesh_unit = \"1 mm\"\nsymmetry";
-  return replaced(replaced(good_case, "[models.solid]\nrefinement = 1\n", all_knobs), "symmetry",
-                  mesh);
+  return replaced(replaced(good_case, "[models.solid]\nrefinement = 1\n", all_option_lines),
+                  "symmetry", mesh);
 }
 
-/// The other material and the paper's sums, and their knobs.
+/// The other material and the paper's sums, and their options.
 std::string with_mooney_rivlin() {
   return replaced(good_case, "refinement = 1", "mooney_ratio = 0.1\nmaterial = \"mooney-rivlin\"") +
          "\n[models.line]\nmethod = \"uniform\"\nelements = 7\n"
          "[models.volume]\nmethod = \"uniform\"\nelements = 9\n";
 }
 
-TEST(Knobs, ReachTheOptionsOfTheirModel) {
-  const input::ModelOptions o = read(with_all_knobs()).options;
-  EXPECT_EQ(o.elastica.form, analytic::elastica::ElasticaOptions::Form::height);
-  EXPECT_EQ(o.elastica.tolerance, 1e-9);
-  EXPECT_EQ(o.beam.degree, 2U);
-  EXPECT_EQ(o.beam.refinement, 4U);
-  EXPECT_TRUE(o.beam.shear_rigid);
-  EXPECT_EQ(o.beam.tolerance, 1e-8);
-  EXPECT_EQ(o.beam.max_iterations, 11U);
-  EXPECT_EQ(o.beam.max_cutbacks, 3U);
-  EXPECT_EQ(o.solid.material, fem::solid::SolidOptions::Material::yeoh);
-  EXPECT_EQ(o.solid.yeoh_ratios, (std::array{-0.2, 0.03}));
+TEST(Options, ReachTheOptionsOfTheirModel) {
+  const input::ModelOptions o = read(with_all_options()).options;
+  EXPECT_EQ(o.of<analytic::elastica::ElasticaOptions>().form,
+            analytic::elastica::ElasticaOptions::Form::height);
+  EXPECT_EQ(o.of<analytic::elastica::ElasticaOptions>().tolerance, 1e-9);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().degree, 2U);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().refinement, 4U);
+  EXPECT_TRUE(o.of<fem::beam::BeamOptions>().shear_rigid);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().tolerance, 1e-8);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_iterations, 11U);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_cutbacks, 3U);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().material, fem::solid::SolidOptions::Material::yeoh);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().yeoh_ratios, (std::array{-0.2, 0.03}));
   const input::ModelOptions mooney = read(with_mooney_rivlin()).options;
-  EXPECT_EQ(mooney.solid.material, fem::solid::SolidOptions::Material::mooney_rivlin);
-  EXPECT_EQ(mooney.solid.mooney_ratio, 0.1);
-  EXPECT_EQ(mooney.line.method, analytic::rod::Method::uniform);
-  EXPECT_EQ(mooney.line.elements, 7U);
-  EXPECT_EQ(mooney.volume.method, analytic::rod::Method::uniform);
-  EXPECT_EQ(mooney.volume.elements, 9U);
-  EXPECT_EQ(o.calculix.refinement, 3U);
-  EXPECT_FALSE(o.calculix.error_estimate);
-  EXPECT_EQ(o.calculix.first_increment, 0.1);
-  EXPECT_EQ(o.calculix.threads, 3U);
-  EXPECT_EQ(o.calculix.time_limit, 600);
-  EXPECT_EQ(o.calculix.program, "/opt/ccx");
-  EXPECT_EQ(o.calculix.keep, "/somewhere");
-  EXPECT_EQ(o.solid.refinement, 2U);
-  EXPECT_EQ(o.solid.solver, fem::solid::solvers::SolverKind::iterative);
-  EXPECT_EQ(o.solid.initial_guess, fem::solid::InitialGuess::none);
-  EXPECT_FALSE(o.solid.symmetry);
-  EXPECT_EQ(o.solid.mesh, source("cases/verification/ogrid.msh"));
-  EXPECT_EQ(o.solid.mesh_unit, 1e-3);
-  EXPECT_EQ(o.solid.kernel_width, 0.00025);
-  EXPECT_EQ(o.solid.tolerance, 1e-7);
-  EXPECT_EQ(o.solid.max_iterations, 12U);
-  EXPECT_EQ(o.solid.max_cutbacks, 4U);
-  EXPECT_EQ(o.dipole.push_forward, analytic::sources::PushForward::R);
-  EXPECT_EQ(o.line.push_forward, analytic::sources::PushForward::R);
-  EXPECT_EQ(o.line.method, analytic::rod::Method::quadrature);
-  EXPECT_EQ(o.line.tolerance, 1e-6);
-  EXPECT_EQ(o.volume.slices, analytic::rod::VolumeOptions::Slices::stacked);
-  EXPECT_EQ(o.volume.method, analytic::rod::Method::quadrature);
-  EXPECT_EQ(o.volume.tolerance, 1e-5);
-  EXPECT_EQ(o.mesh.push_forward, analytic::sources::PushForward::R);
-  EXPECT_EQ(o.mesh.tolerance, 1e-4);
-  EXPECT_EQ(o.potential.relative_permeability, 1.2);
-  EXPECT_EQ(o.potential.push_forward, fem::potential::MagnetPushForward::R);
-  EXPECT_EQ(o.potential.tolerance, 1e-2);
-  EXPECT_EQ(o.potential.max_unknowns, 5000U);
-  ASSERT_EQ(o.potential.plates.size(), 2U);
-  EXPECT_EQ(o.potential.plates[0].box.min(), Vector3(-0.005, -0.006, -0.004));
-  EXPECT_EQ(o.potential.plates[0].box.max(), Vector3(0.005, 0.006, -0.003));
-  EXPECT_EQ(o.potential.plates[0].relative_permeability, 1000);
-  EXPECT_EQ(o.potential.plates[1].relative_permeability, 0.5);
+  EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().material,
+            fem::solid::SolidOptions::Material::mooney_rivlin);
+  EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().mooney_ratio, 0.1);
+  EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().method, analytic::rod::Method::uniform);
+  EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().elements, 7U);
+  EXPECT_EQ(mooney.of<analytic::rod::VolumeOptions>().method, analytic::rod::Method::uniform);
+  EXPECT_EQ(mooney.of<analytic::rod::VolumeOptions>().elements, 9U);
+  EXPECT_EQ(o.of<fem::calculix::CalculixOptions>().refinement, 3U);
+  EXPECT_FALSE(o.of<fem::calculix::CalculixOptions>().error_estimate);
+  EXPECT_EQ(o.of<fem::calculix::CalculixOptions>().first_increment, 0.1);
+  EXPECT_EQ(o.of<fem::calculix::CalculixOptions>().threads, 3U);
+  EXPECT_EQ(o.of<fem::calculix::CalculixOptions>().time_limit, 600);
+  EXPECT_EQ(o.of<fem::calculix::CalculixOptions>().program, "/opt/ccx");
+  EXPECT_EQ(o.of<fem::calculix::CalculixOptions>().keep, "/somewhere");
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().refinement, 2U);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().solver, fem::solid::solvers::SolverKind::iterative);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().initial_guess, fem::solid::InitialGuess::none);
+  EXPECT_FALSE(o.of<fem::solid::SolidOptions>().symmetry);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().mesh, source("cases/verification/ogrid.msh"));
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().mesh_unit, 1e-3);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().kernel_width, 0.00025);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().tolerance, 1e-7);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().max_iterations, 12U);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().max_cutbacks, 4U);
+  EXPECT_EQ(o.of<analytic::rod::DipoleOptions>().push_forward, analytic::sources::PushForward::R);
+  EXPECT_EQ(o.of<analytic::rod::LineOptions>().push_forward, analytic::sources::PushForward::R);
+  EXPECT_EQ(o.of<analytic::rod::LineOptions>().method, analytic::rod::Method::quadrature);
+  EXPECT_EQ(o.of<analytic::rod::LineOptions>().tolerance, 1e-6);
+  EXPECT_EQ(o.of<analytic::rod::VolumeOptions>().slices,
+            analytic::rod::VolumeOptions::Slices::stacked);
+  EXPECT_EQ(o.of<analytic::rod::VolumeOptions>().method, analytic::rod::Method::quadrature);
+  EXPECT_EQ(o.of<analytic::rod::VolumeOptions>().tolerance, 1e-5);
+  EXPECT_EQ(o.of<analytic::body::MeshOptions>().push_forward, analytic::sources::PushForward::R);
+  EXPECT_EQ(o.of<analytic::body::MeshOptions>().tolerance, 1e-4);
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().relative_permeability, 1.2);
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().push_forward,
+            fem::potential::MagnetPushForward::R);
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().tolerance, 1e-2);
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().max_unknowns, 5000U);
+  ASSERT_EQ(o.of<fem::potential::PotentialOptions>().plates.size(), 2U);
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().plates[0].box.min(),
+            Vector3(-0.005, -0.006, -0.004));
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().plates[0].box.max(),
+            Vector3(0.005, 0.006, -0.003));
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().plates[0].relative_permeability, 1000);
+  EXPECT_EQ(o.of<fem::potential::PotentialOptions>().plates[1].relative_permeability, 0.5);
 }
 
 // A mesh is looked for beside the case file, and is written back with its full name: the results go
 // elsewhere.
-TEST(Knobs, TheMeshIsBesideTheCaseFile) {
+TEST(Options, TheMeshIsBesideTheCaseFile) {
   const std::string text =
       replaced(good_case, "refinement = 1", "mesh = \"../verification/ogrid.msh\"");
-  const input::Case c = input::read_case(text, source("cases/paper/some.toml").string());
-  EXPECT_EQ(c.options.solid.mesh, source("cases/verification/ogrid.msh"));
-  expect_same(read(input::to_toml(c)), c);
+  const input::Case c =
+      input::read_case(text, source("cases/paper/some.toml").string(), models::known());
+  EXPECT_EQ(c.options.of<fem::solid::SolidOptions>().mesh, source("cases/verification/ogrid.msh"));
+  expect_same(read(input::to_toml(c, models::known())), c);
   try {
-    input::read_case(text, "/some.toml");
+    input::read_case(text, "/some.toml", models::known());
     FAIL() << "the mesh is not there";
   } catch (const InputError& error) {
     EXPECT_THAT(
@@ -389,27 +409,28 @@ TEST(Knobs, TheMeshIsBesideTheCaseFile) {
   }
 }
 
-TEST(Knobs, AreAllInTheListAbove) {
-  // So that the test of the options and of the round trip covers a knob added later.
-  const input::ModelOptions set = read(with_all_knobs()).options;
+TEST(Options, AreAllInTheListAbove) {
+  // So that the test of the options and of the round trip covers an option added later.
+  const input::ModelOptions set = read(with_all_options()).options;
   const input::ModelOptions mooney = read(with_mooney_rivlin()).options;
-  for (const input::Knob& knob : input::knobs()) {
-    EXPECT_NE(knob.get(input::belongs(knob, set) ? set : mooney), knob.get(input::ModelOptions{}))
-        << knob.model << '.' << knob.name;
+  for (const auto& [model, option] : all_options()) {
+    EXPECT_NE(option.get(input::belongs(option, set) ? set : mooney),
+              option.get(input::ModelOptions{}))
+        << model << '.' << option.name;
   }
 }
 
-TEST(Knobs, HaveDefaultsInTheirRange) {
-  for (const input::Knob& knob : input::knobs()) {
-    const input::KnobValue value = knob.get(input::ModelOptions{});
+TEST(Options, HaveDefaultsInTheirRange) {
+  for (const auto& [model, option] : all_options()) {
+    const input::OptionValue value = option.get(input::ModelOptions{});
     if (const auto* number = std::get_if<double>(&value)) {
-      EXPECT_TRUE(knob.range.contains(*number)) << knob.model << '.' << knob.name;
+      EXPECT_TRUE(option.range.contains(*number)) << model << '.' << option.name;
     }
     if (const auto* number = std::get_if<unsigned int>(&value)) {
-      EXPECT_TRUE(knob.range.contains(*number)) << knob.model << '.' << knob.name;
+      EXPECT_TRUE(option.range.contains(*number)) << model << '.' << option.name;
     }
-    if (const auto* text = std::get_if<std::string>(&value); text && !knob.choices.empty()) {
-      EXPECT_THAT(knob.choices, testing::Contains(*text)) << knob.model << '.' << knob.name;
+    if (const auto* text = std::get_if<std::string>(&value); text && !option.choices.empty()) {
+      EXPECT_THAT(option.choices, testing::Contains(*text)) << model << '.' << option.name;
     }
   }
 }
@@ -417,7 +438,7 @@ TEST(Knobs, HaveDefaultsInTheirRange) {
 TEST(WrittenCase, ReadsBackAsTheSameCaseBitForBit) {
   const std::vector<std::string> texts{
       std::string(good_case),
-      with_all_knobs(),
+      with_all_options(),
       with_mooney_rivlin(),
       replaced(good_case, "\"A case without a fault\"", R"("µ \"quoted\" \\ 'back'")"),
       with_load("type = \"contact\"\nforce = [\"1 mN\", \"1 mN\"]\nheight = \"3.1 mm\""),
@@ -435,24 +456,24 @@ TEST(WrittenCase, ReadsBackAsTheSameCaseBitForBit) {
   for (const std::string& text : texts) {
     SCOPED_TRACE(text);
     const input::Case c = read(text);
-    const std::string written = input::to_toml(c);
+    const std::string written = input::to_toml(c, models::known());
     SCOPED_TRACE(written);
     expect_same(read(written), c);
   }
 }
 
-TEST(WrittenCase, StatesEveryKnobWithItsValue) {
+TEST(WrittenCase, StatesEveryOptionWithItsValue) {
   const input::Case c = read(good_case);
-  const std::string written = input::to_toml(c);
-  for (const input::Knob& knob : input::knobs()) {
-    if (!input::belongs(knob, c.options)) {
-      EXPECT_THAT(written, Not(testing::HasSubstr(std::string(knob.name)))) << knob.model;
+  const std::string written = input::to_toml(c, models::known());
+  for (const auto& [model, option] : all_options()) {
+    if (!input::belongs(option, c.options)) {
+      EXPECT_THAT(written, Not(testing::HasSubstr(std::string(option.name)))) << model;
       continue;
     }
     std::string line = "\n";
-    line += knob.name;
-    line += " = " + input::to_toml(knob, knob.get(input::ModelOptions{})) + "\n";
-    EXPECT_THAT(written, testing::HasSubstr(line)) << knob.model;
+    line += option.name;
+    line += " = " + input::to_toml(option, option.get(input::ModelOptions{})) + "\n";
+    EXPECT_THAT(written, testing::HasSubstr(line)) << model;
   }
   EXPECT_THAT(written, testing::HasSubstr("kernel_width = \"0.0005 m\""));
   EXPECT_THAT(written, testing::HasSubstr("diameter = \"0.003 m\""));
@@ -461,7 +482,8 @@ TEST(WrittenCase, StatesEveryKnobWithItsValue) {
 TEST(WrittenCase, StatesTheDefaultsOfTheChosenMaterial) {
   const auto written = [](const std::string& material) {
     return input::to_toml(
-        read(replaced(good_case, "refinement = 1", "material = \"" + material + "\"")));
+        read(replaced(good_case, "refinement = 1", "material = \"" + material + "\"")),
+        models::known());
   };
   EXPECT_THAT(written("mooney-rivlin"), testing::HasSubstr("\nmooney_ratio = 0.25\n"));
   EXPECT_THAT(written("yeoh"), testing::HasSubstr("\nyeoh_ratios = [-0.1, 0.01]\n"));
@@ -474,9 +496,9 @@ TEST(ShippedCases, AreReadAndWrittenBack) {
         file.path().string().ends_with(".sense.toml"))
       continue;
     SCOPED_TRACE(file.path());
-    const input::Case c = input::read_case(file.path());
+    const input::Case c = input::read_case(file.path(), models::known());
     EXPECT_EQ(c.name, file.path().stem());
-    expect_same(read(input::to_toml(c)), c);
+    expect_same(read(input::to_toml(c, models::known())), c);
     ++count;
   }
   EXPECT_GE(count, 4);
@@ -486,7 +508,8 @@ TEST(ShippedCases, HaveTheFiguresOfThePaper) {
   // Oracle: the paper, sections 3.2, 3.4 and 3.5.
   for (const std::string_view name : {"fig3b", "fig3d", "fig5"}) {
     SCOPED_TRACE(name);
-    const input::Case c = input::read_case(source("cases/paper") / (std::string(name) + ".toml"));
+    const input::Case c =
+        input::read_case(source("cases/paper") / (std::string(name) + ".toml"), models::known());
     EXPECT_EQ(c.cilium.diameter, 0.003);
     EXPECT_THAT(c.cilium.interfaces(), ElementsAre(0.0, 0.003, 0.02));
     EXPECT_EQ(c.cilium.segments[0].young_modulus, 0.1e6);
@@ -494,10 +517,10 @@ TEST(ShippedCases, HaveTheFiguresOfThePaper) {
     EXPECT_EQ(c.cilium.segments[1].magnetization, 7.5e4);
     EXPECT_THAT(c.sensors, ElementsAre(Vector3(-0.1e-3, 0.2e-3, -1.55e-3)));
   }
-  const input::Case flow = input::read_case(source("cases/paper/fig5.toml"));
+  const input::Case flow = input::read_case(source("cases/paper/fig5.toml"), models::known());
   EXPECT_EQ(flow.load_path.size(), 5U);
   EXPECT_NEAR(magnitude(flow.load_path.back()), 0.375, 1e-16);  // the paper's q_max
-  const input::Case contact = input::read_case(source("cases/paper/fig3b.toml"));
+  const input::Case contact = input::read_case(source("cases/paper/fig3b.toml"), models::known());
   EXPECT_EQ(contact.load_path.front().as<ContactLoad>()->force, 0.001);
   EXPECT_EQ(contact.load_path.front().as<ContactLoad>()->height, 0.016);
 }
@@ -505,8 +528,9 @@ TEST(ShippedCases, HaveTheFiguresOfThePaper) {
 TEST(Documentation, HasTheTableOfKeys) {
   std::ifstream in(source("docs/guide/cases.md"));
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (std::getenv("CILIAVAL_PRINT_KEYS") != nullptr) std::fputs(input::key_table().c_str(), stdout);
-  EXPECT_THAT(text, testing::HasSubstr(input::key_table()))
+  if (std::getenv("CILIAVAL_PRINT_KEYS") != nullptr)
+    std::fputs(input::key_table(models::known()).c_str(), stdout);
+  EXPECT_THAT(text, testing::HasSubstr(input::key_table(models::known())))
       << "run this test with CILIAVAL_PRINT_KEYS=1 and put the table into docs/guide/cases.md";
 }
 

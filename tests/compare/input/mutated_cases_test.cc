@@ -13,6 +13,7 @@
 #include "case_texts.h"
 #include "compare/input/case.h"
 #include "compare/input/units.h"
+#include "compare/models/registry.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare {
@@ -90,8 +91,12 @@ TEST(MutatedCases, AreReadOrRefusedWithAPlace) {
   for (int i = 0; i < 20000; ++i) {
     const std::string text = mutate(good_case);
     try {
-      const std::string written = input::to_toml(input::read_case(text, "mutated.toml"));
-      ASSERT_EQ(input::to_toml(input::read_case(written, "written.toml")), written) << text;
+      const std::string written =
+          input::to_toml(input::read_case(text, "mutated.toml", models::known()), models::known());
+      ASSERT_EQ(input::to_toml(input::read_case(written, "written.toml", models::known()),
+                               models::known()),
+                written)
+          << text;
       ++read;
     } catch (const InputError& error) {
       ASSERT_THAT(error.what(), testing::MatchesRegex("mutated.toml:[0-9]+:[0-9]+: .+")) << text;

@@ -11,8 +11,10 @@
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "compare/input/case.h"
+#include "compare/models/registry.h"
 #include "fem/beam/beam.h"
 #include "fem/solid/solid.h"
+#include "fem/solid/solid_options.h"
 
 namespace ciliaval {
 namespace {
@@ -120,11 +122,14 @@ TEST(Models, ElasticaAndShearRigidBeamFindTheSameForceForADisplacement) {
 // the deflection.
 TEST(Models, AgreeToHalfAPercentForASlenderCilium) {
   const std::string file = CILIAVAL_SOURCE_DIR "/cases/verification/slender.toml";
-  const compare::input::Case c = compare::input::read_case(file);
+  const compare::input::Case c = compare::input::read_case(file, compare::models::known());
   const Centreline elastica =
-      solved(analytic::elastica::Elastica(c.options.elastica), c.cilium, c.load_path.back());
-  const Centreline beam = solved(fem::beam::Beam(c.options.beam), c.cilium, c.load_path.back());
-  const Centreline solid = solved(fem::solid::Solid(c.options.solid), c.cilium, c.load_path.back());
+      solved(analytic::elastica::Elastica(c.options.of<analytic::elastica::ElasticaOptions>()),
+             c.cilium, c.load_path.back());
+  const Centreline beam =
+      solved(fem::beam::Beam(c.options.of<fem::beam::BeamOptions>()), c.cilium, c.load_path.back());
+  const Centreline solid = solved(fem::solid::Solid(c.options.of<fem::solid::SolidOptions>()),
+                                  c.cilium, c.load_path.back());
   const double deflection = tip_deflection(solid);
   EXPECT_GT(deflection, 0.3 * c.cilium.length());  // a large deflection
   EXPECT_LT(largest_distance(elastica, solid), 5e-3 * deflection);
@@ -137,7 +142,7 @@ TEST(Models, AgreeToHalfAPercentForASlenderCilium) {
 // deflection.
 TEST(Models, ProbesOfASlenderCiliumTakeTheSameForce) {
   const std::string file = CILIAVAL_SOURCE_DIR "/cases/verification/slender.toml";
-  const Cilium cilium = compare::input::read_case(file).cilium;
+  const Cilium cilium = compare::input::read_case(file, compare::models::known()).cilium;
   const LoadPath path{ProbeLoad{6e-3, 16e-3, 0.3}};
   const MechanicsResult solid = fem::solid::Solid({.refinement = 0}).solve(cilium, path);
   ASSERT_EQ(solid.steps[0].status, Status::converged) << solid.steps[0].message;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/regression/baseline.h"
+#include "compare/models/registry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ const output::Provenance origin{
 
 input::Case any_case() {
   return input::read_case(test::case_text({.name = "any"}, "mechanics = [\"elastica\"]\n"),
-                          "any.toml");
+                          "any.toml", models::known());
 }
 
 regression::Measurements some() {
@@ -91,7 +92,7 @@ TEST(Baseline, KeepsTheOptionsOfTheModelsInUse) {
                       "mechanics = [\"beam\"]\nfields = [\"potential\"]\n"
                       "[[models.potential.plate]]\nlower = [\"-1 mm\", \"-1 mm\", \"-5 mm\"]\n"
                       "upper = [\"1 mm\", \"1 mm\", \"-4 mm\"]\nrelative_permeability = 9\n"),
-      "any.toml");
+      "any.toml", models::known());
   const std::vector<std::string> text = regression::case_text(problem);
   EXPECT_THAT(text, Contains("[models.beam]"));
   EXPECT_THAT(text, Contains("[models.potential]"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Faults planted into a run that passes: each must fail, with a message that names it.
 #include "compare/regression/check.h"
+#include "analytic/rod/field_models.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +50,7 @@ Checked make_checked() {
   setup.problem = input::read_case(
       test::case_text({.name = "planted", .force = R"(["1 mN", "2 mN", "7 mN"])"},
                       "mechanics = [\"elastica\", \"beam\"]\nfields = [\"line\", \"volume\"]\n"),
-      "planted.toml");
+      "planted.toml", models::known());
   setup.problem.sensors.emplace_back(0.5e-3, 0, -2e-3);
   setup.result = models::run(setup.problem, models::mechanics_models(), models::field_models());
   setup.baseline =
@@ -220,7 +221,7 @@ std::vector<Fault> faults_of_the_baseline() {
       {"a stale baseline", "another version of the case",
        [](Checked& s) { s.problem.cilium.segments[0].young_modulus *= 1.01; }},
       {"a stale default", "another version of the case",
-       [](Checked& s) { s.problem.options.line.tolerance *= 2; }},
+       [](Checked& s) { s.problem.options.of<analytic::rod::LineOptions>().tolerance *= 2; }},
       {"another unit", "is in m, the baseline is in mm",
        [](Checked& s) { s.expected("steps/0/mechanics/beam/tip/x").unit = "mm"; }},
       {"a tolerance that checks nothing", "checks too little",

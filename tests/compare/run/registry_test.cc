@@ -3,29 +3,32 @@
 
 #include <gtest/gtest.h>
 
-#include "compare/input/case_keys.h"
+#include <algorithm>
+#include <set>
 
 namespace ciliaval::compare {
 namespace {
 
-// The case reader knows the models' names without the models: both lists are held together here.
-TEST(Registry, HasTheModelsThatTheCaseReaderKnows) {
-  std::vector<std::string> mechanics;
-  for (const models::MechanicsEntry& entry : models::mechanics_models())
-    mechanics.push_back(entry.id);
-  EXPECT_EQ(mechanics,
-            std::vector<std::string>(input::mechanics_ids().begin(), input::mechanics_ids().end()));
-  std::vector<std::string> fields;
-  for (const models::FieldEntry& entry : models::field_models()) fields.push_back(entry.id);
-  EXPECT_EQ(fields, std::vector<std::string>(input::field_ids().begin(), input::field_ids().end()));
+TEST(Registry, MakesEveryModelUnderAnIdOfItsOwn) {
+  std::set<std::string> ids;
+  models::known().for_each([&](const auto& entry) {
+    EXPECT_NE(entry.make({}), nullptr) << entry.id;
+    EXPECT_TRUE(ids.insert(entry.id).second) << entry.id;
+    EXPECT_FALSE(entry.description.empty()) << entry.id;
+  });
 }
 
-TEST(Registry, MakesEveryModel) {
-  const input::ModelOptions options;
-  for (const models::MechanicsEntry& entry : models::mechanics_models())
-    EXPECT_NE(entry.make(options), nullptr);
-  for (const models::FieldEntry& entry : models::field_models())
-    EXPECT_EQ(entry.make(options)->needs_body(), entry.id == "mesh");
+TEST(Registry, RefinesByOptionsThatTheModelHasWithinTheirRange) {
+  models::known().for_each([](const auto& entry) {
+    for (const input::Refinement& refinement : entry.refinements) {
+      const auto option =
+          std::find_if(entry.options.begin(), entry.options.end(),
+                       [&](const input::Option& o) { return o.name == refinement.option; });
+      ASSERT_NE(option, entry.options.end()) << entry.id << '.' << refinement.option;
+      for (const double value : refinement.values)
+        EXPECT_TRUE(option->range.contains(value)) << entry.id << '.' << refinement.option;
+    }
+  });
 }
 
 }  // namespace

@@ -128,9 +128,13 @@ compare::models::MechanicsEntry mechanics_entry(std::string id, const ShapeModel
 compare::models::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,
                                         const std::optional<Vector3>& uncertainty,
                                         bool needs_body) {
-  return {std::move(id), "a known field", [=](const compare::input::ModelOptions&) {
-            return std::make_unique<FormulaField>(formula, uncertainty, needs_body);
-          }};
+  return {.id = std::move(id),
+          .description = "a known field",
+          .make =
+              [=](const compare::input::ModelOptions&) {
+                return std::make_unique<FormulaField>(formula, uncertainty);
+              },
+          .has_body = needs_body};
 }
 
 MechanicsStep converged(const Load& load, Centreline centreline,

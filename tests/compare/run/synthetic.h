@@ -69,16 +69,14 @@ class ShapeModel : public MechanicsModel {
 class FormulaField : public FieldModel {
  public:
   using Formula = std::function<Vector3(const Deformation&, const Vector3&)>;
-  FormulaField(Formula formula, const std::optional<Vector3>& uncertainty, bool needs_body = false)
-      : formula_(std::move(formula)), uncertainty_(uncertainty), needs_body_(needs_body) {}
-  bool needs_body() const override { return needs_body_; }
+  FormulaField(Formula formula, const std::optional<Vector3>& uncertainty)
+      : formula_(std::move(formula)), uncertainty_(uncertainty) {}
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override;
 
  private:
   Formula formula_;
   std::optional<Vector3> uncertainty_;
-  bool needs_body_;
 };
 
 compare::models::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape);

@@ -10,6 +10,7 @@
 
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
+#include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
@@ -68,7 +69,7 @@ class ToyLoad : public testing::Test {
   const input::Case problem =
       input::read_case(couple_case("couple = [\"1 mN mm\", \"3 mN mm\"]\narclength = \"17 mm\"\n"
                                    "azimuth = \"90 deg\"\n"),
-                       "toy.toml");
+                       "toy.toml", models::known());
 };
 
 TEST_F(ToyLoad, IsReadFromACaseFileAndWrittenBack) {
@@ -77,14 +78,15 @@ TEST_F(ToyLoad, IsReadFromACaseFileAndWrittenBack) {
   ASSERT_TRUE(couple);
   EXPECT_DOUBLE_EQ(couple->couple, 3e-6);
   EXPECT_DOUBLE_EQ(couple->arclength, 17e-3);
-  EXPECT_EQ(input::read_case(input::to_toml(problem), "again.toml").load_path, problem.load_path);
-  EXPECT_THAT(input::key_table(), HasSubstr("| `load.couple` |"));
+  EXPECT_EQ(input::read_case(input::to_toml(problem), "again.toml", models::known()).load_path,
+            problem.load_path);
+  EXPECT_THAT(input::key_table(models::known()), HasSubstr("| `load.couple` |"));
 }
 
 TEST_F(ToyLoad, IsRefusedWithItsOwnRangeAndKeys) {
   const auto message = [](const std::string& load) {
     try {
-      input::read_case(couple_case(load), "toy.toml");
+      input::read_case(couple_case(load), "toy.toml", models::known());
     } catch (const InputError& error) {
       return std::string(error.what());
     }

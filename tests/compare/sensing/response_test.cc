@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/sensing/response.h"
+#include "fem/solid/solid_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -90,7 +91,7 @@ TEST(Response, RefusesWhatItCannotServe) {
   }
   EXPECT_THROW(sensing::shapes_up_to(problem, "elastica", 0), InputError);
   EXPECT_THROW(sensing::shapes_up_to(problem, "elastica", std::nan("")), InputError);
-  problem.options.solid.mesh = "mine.msh";
+  problem.options.of<fem::solid::SolidOptions>().mesh = "mine.msh";
   EXPECT_THROW(sensing::shapes_up_to(problem, "solid", 1e-3), InputError);
   EXPECT_EQ(sensing::parse_pair("beam/volume").name(), "beam/volume");
   EXPECT_THROW(sensing::parse_pair("elastica"), InputError);

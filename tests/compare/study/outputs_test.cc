@@ -15,6 +15,7 @@
 #include "compare/study/range.h"
 #include "compare/study/reader/study_reader.h"
 #include "compare/study/sweep.h"
+#include "fem/beam/beam.h"
 #include "problem/error.h"
 #include "study_texts.h"
 
@@ -218,11 +219,12 @@ TEST(StudyRange, OfRodsIsTheForceAtWhichTheContactSlipsOff) {
     EXPECT_NEAR(range("beam"), 5.862e-3, 0.02 * 5.862e-3);
     // A shear-rigid beam is an elastica.
     input::Case rigid = study.case_at(point);
-    rigid.options.beam.shear_rigid = true;
-    const auto beam = fem::beam::Beam(rigid.options.beam);
+    rigid.options.of<fem::beam::BeamOptions>().shear_rigid = true;
+    const auto beam = fem::beam::Beam(rigid.options.of<fem::beam::BeamOptions>());
     const MechanicsStep step = beam.solve(rigid.cilium, rigid.load_path).steps[0];
-    EXPECT_NEAR(slip_off(beam, rigid.cilium, step, rigid.options.elastica), range("elastica"),
-                1e-6 * 5.862e-3);
+    EXPECT_NEAR(
+        slip_off(beam, rigid.cilium, step, rigid.options.of<analytic::elastica::ElasticaOptions>()),
+        range("elastica"), 1e-6 * 5.862e-3);
   }
 }
 

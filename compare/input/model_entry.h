@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/input/option.h"
+#include "problem/field_model.h"
+#include "problem/load.h"
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::compare::input {
+
+struct Case;
+class Section;
+
+/// How a model is refined: by which of its options, and through which values.
+struct Refinement {
+  enum class Law {
+    power,     ///< the error is α h^p, or nearly
+    tolerance  ///< the model promises an error below h times the scale
+  };
+  std::string_view option;
+  std::vector<double> values;          ///< of the option, coarsest first
+  std::function<double(double)> size;  ///< h of a value
+  std::string_view size_name;          ///< what h is, for people
+  Law law = Law::power;
+  std::optional<double> formal_order{};
+  std::function<bool(const ModelOptions&)> applies{};  ///< empty: always
+  std::function<void(ModelOptions&)> also{};           ///< what else is set on all levels
+};
+
+/// A case whose tables are right by themselves, as a model checks it against its own options.
+struct CaseCheck {
+  const Case& problem;
+  bool is_asked_for = false;  ///< the case names the model
+  bool cilium_is_right = false;
+  bool load_is_right = false;
+  /// Reports a fault; `path` is a dotted path in the case file, "models.solid.mesh".
+  std::function<void(const std::string& path, const std::string& fault)> report;
+};
+
+/// Sub-tables of a model, [[models.<model>.<name>]].
+struct SubTables {
+  std::vector<const QuantityKey*> keys;
+  std::function<void(Section& model, ModelOptions&)> read;
+  std::function<std::string(const ModelOptions&)> write;
+};
+
+/// A model as all others know it. A part that is left out has the simplest meaning: no options, not
+/// refined, every load, serial, quick, accurate to rounding.
+template <class Model>
+struct Entry {
+  std::string id;           ///< in case files and results
+  std::string description;  ///< one line for `ciliaval list`
+  std::function<std::unique_ptr<Model>(const ModelOptions&)> make;
+  std::vector<Option> options{};
+  std::vector<Refinement> refinements{};
+  std::vector<const LoadType*> loads{};  ///< that a mechanics model takes; empty: it says so itself
+  bool has_body = false;                 ///< mechanics: gives Deformation::body; field: needs it
+  bool is_collective = false;            ///< all MPI ranks call it, and no two threads at a time
+  bool is_slow = false;                  ///< `ciliaval check --quick` leaves it out
+  /// The part of its scale to which a number is the same on any machine; on one machine a tenth.
+  double accuracy = 1e-10;
+  std::function<void(const CaseCheck&)> check{};
+  /// What there is to remark on the files that the options name. Throws InputError.
+  std::function<std::vector<std::string>(const Case&)> remarks{};
+  SubTables tables{};
+};
+using MechanicsEntry = Entry<MechanicsModel>;
+using FieldEntry = Entry<FieldModel>;
+
+/// Every model, the more detailed ones later.
+struct Models {
+  std::vector<MechanicsEntry> mechanics;
+  std::vector<FieldEntry> fields;
+
+  template <class F>
+  void for_each(const F& f) const {
+    for (const MechanicsEntry& entry : mechanics) f(entry);
+    for (const FieldEntry& entry : fields) f(entry);
+  }
+};
+
+template <class Entries>
+std::vector<std::string_view> ids(const Entries& entries) {
+  std::vector<std::string_view> result;
+  for (const auto& entry : entries) result.emplace_back(entry.id);
+  return result;
+}
+
+/// Entry::make of a model that takes a struct of options.
+template <class Model, class Options>
+std::unique_ptr<Model> make(const ModelOptions& options) {
+  return std::make_unique<Model>(options.of<Options>());
+}
+
+/// Changes the names of the files that the options state.
+void change_files(const Models& models, ModelOptions& options,
+                  const std::function<void(Option::File, std::filesystem::path&)>& change);
+
+/// The meshes that the user made, by the option that names them, "models.solid.mesh".
+std::map<std::string, std::filesystem::path> user_meshes(const Models& models,
+                                                         const ModelOptions& options);
+
+}  // namespace ciliaval::compare::input

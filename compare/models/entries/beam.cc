@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/beam/beam.h"
+
+#include "compare/models/entries/sequences.h"
+#include "compare/models/entries/values.h"
+
+namespace ciliaval::compare::models::entries {
+
+input::MechanicsEntry beam() {
+  using fem::beam::BeamOptions;
+  return {
+      .id = "beam",
+      .description =
+          "geometrically exact Simo-Reissner beam FEM: bending, shear, extension, torsion",
+      .make = input::make<fem::beam::Beam, BeamOptions>,
+      .options = {input::option(&BeamOptions::degree, "degree",
+                                {1, 20, false, "higher elements gain nothing here"},
+                                "Degree of the interpolation of position and rotation."),
+                  input::option(&BeamOptions::refinement, "refinement",
+                                {0, 12, false, "finer beams exceed the memory of a machine"},
+                                "Each step halves the elements."),
+                  input::flag(&BeamOptions::shear_rigid, "shear_rigid",
+                              "No shear and no extension: the elastica's assumptions."),
+                  input::option(&BeamOptions::tolerance, "tolerance", tolerance_range,
+                                "Of the residual and the increment, relative."),
+                  input::option(&BeamOptions::max_iterations, "max_iterations", iterations_range,
+                                "Newton iterations of a load increment."),
+                  input::option(&BeamOptions::max_cutbacks, "max_cutbacks", cutbacks_range,
+                                "Halvings of a load increment that does not converge.")},
+      // 2^-degree as the size: the order is the number of bits gained per degree.
+      .refinements = {halvings("refinement", {0, 1, 2, 3, 4, 5},
+                               "length of the elements, in segments"),
+                      halvings("degree", {2, 3, 4, 5, 6}, "2^-degree")},
+  };
+}
+
+}  // namespace ciliaval::compare::models::entries

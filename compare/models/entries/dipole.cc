@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/model_entry.h"
+#include "compare/models/entries/values.h"
+
+namespace ciliaval::compare::models::entries {
+
+input::FieldEntry dipole() {
+  using analytic::rod::DipoleOptions;
+  return {
+      .id = "dipole",
+      .description = "each magnetic segment as one dipole at its centroid",
+      .make = input::make<analytic::rod::DipoleField, DipoleOptions>,
+      .options = {input::choice(&DipoleOptions::push_forward, "push_forward", push_forwards,
+                                rod_push_forward)},
+  };
+}
+
+}  // namespace ciliaval::compare::models::entries

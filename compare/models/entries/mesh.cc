@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/body/mesh_field.h"
+#include "compare/models/entries/sequences.h"
+#include "compare/models/entries/values.h"
+
+namespace ciliaval::compare::models::entries {
+
+input::FieldEntry mesh() {
+  using analytic::body::MeshOptions;
+  return {
+      .id = "mesh",
+      .description = "a solid's own deformed magnet (needs its body: `solid`, `calculix`)",
+      .make = input::make<analytic::body::MeshField, MeshOptions>,
+      .options = {input::choice(&MeshOptions::push_forward, "push_forward", push_forwards,
+                                "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M (rigid "
+                                "sections)."),
+                  input::option(&MeshOptions::tolerance, "tolerance", tolerance_range,
+                                "Relative to the field.")},
+      .refinements = {tolerances({1e-2, 1e-4, 1e-6, 1e-8})},
+      .has_body = true,
+      .accuracy = 1e-8,
+  };
+}
+
+}  // namespace ciliaval::compare::models::entries

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/potential/potential.h"
+
+#include <fmt/format.h>
+
+#include "compare/input/case_sections.h"
+#include "compare/input/case_toml.h"
+#include "compare/input/units.h"
+#include "compare/models/entries/sequences.h"
+
+namespace ciliaval::compare::models::entries {
+namespace {
+
+using fem::potential::PermeableBox;
+using fem::potential::PotentialOptions;
+
+constexpr std::string_view plate_table = "models.potential.plate";
+constexpr Range permeability_range{
+    0, 1e6, true, "a permeability is positive, that of vacuum is 1 and iron has some thousands"};
+/// Each coordinate of a plate's corner.
+constexpr QuantityKey plate_lower{
+    plate_table,
+    "lower",
+    quantity::length,
+    {-1000, 1000, false, "a plate farther away is taken for a slip in the unit"},
+    "",
+    "The corner `[x, y, z]` of a permeable box with the lowest coordinates; one "
+    "`[[models.potential.plate]]` for each box."};
+constexpr QuantityKey plate_upper{plate_table,
+                                  "upper",
+                                  quantity::length,
+                                  plate_lower.range,
+                                  "",
+                                  "The corner with the highest "
+                                  "coordinates."};
+constexpr QuantityKey plate_permeability{
+    plate_table, "relative_permeability", quantity::number, permeability_range,
+    "",          "The plate's μ_r."};
+
+/// [[models.potential.plate]]: the boxes that are right by themselves and beside each other.
+void read_plates(input::Section& potential, input::ModelOptions& options) {
+  std::vector<PermeableBox>& plates = options.of<PotentialOptions>().plates;
+  constexpr std::size_t most_plates = 100;
+  input::Faults& faults = potential.faults();
+  const toml::node* node = potential.find("plate");
+  if (node == nullptr) return;
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->size() > most_plates) {
+    faults.add(input::place(*node),
+               fmt::format("the plates are a list of at most {} tables, found {}: "
+                           "write [[models.potential.plate]] above each",
+                           most_plates, input::describe(*node)));
+    return;
+  }
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) {
+      faults.add(input::place(element),
+                 fmt::format("expected a table [[models.potential.plate]], found {}",
+                             input::describe(element)));
+      continue;
+    }
+    const std::size_t before = faults.size();
+    input::Section table(element.as_table(), "[[models.potential.plate]]", std::string(plate_table),
+                         input::place(element), faults);
+    PermeableBox plate;
+    const auto corner = [&](const QuantityKey& k, auto set) {
+      const toml::node* value = table.require(k.name);
+      if (value == nullptr) return;
+      if (!value->is_array())
+        faults.add(input::place(*value),
+                   fmt::format("'{}' must be a point, such as [\"-5 mm\", \"-5 "
+                               "mm\", \"-3 mm\"], found {}",
+                               k.name, input::describe(*value)));
+      else if (const std::optional<Vector3> p = input::read_point(*value->as_array(), k, faults))
+        set(*p);
+    };
+    corner(plate_lower, [&](const Vector3& p) { plate.box.min() = p; });
+    corner(plate_upper, [&](const Vector3& p) { plate.box.max() = p; });
+    const QuantityKey& k = plate_permeability;
+    if (const toml::node* value = table.require(k.name))
+      plate.relative_permeability =
+          input::read_value(*value, k.name, k.quantity, k.range, faults).value_or(1.0);
+    table.finish();
+    if (faults.size() == before && !(plate.box.sizes().minCoeff() > 0))
+      faults.add(input::place(element),
+                 "a plate's 'upper' corner must lie above its 'lower' one in x, y "
+                 "and z");
+    for (const PermeableBox& other : plates)
+      if (faults.size() == before && other.box.intersection(plate.box).sizes().minCoeff() > 0)
+        faults.add(input::place(element), "the plate overlaps one above: cut them apart");
+    if (faults.size() == before) plates.push_back(plate);
+  }
+}
+
+std::string write_plates(const input::ModelOptions& options) {
+  std::string text;
+  const auto corner = [](const QuantityKey& k, const Vector3& x) {
+    std::string coordinates;
+    for (const double value : x)
+      coordinates += fmt::format("{}\"{}\"", coordinates.empty() ? "" : ", ",
+                                 input::format_quantity(value, k.quantity));
+    return fmt::format("{} = [{}]\n", k.name, coordinates);
+  };
+  for (const PermeableBox& plate : options.of<PotentialOptions>().plates)
+    text += fmt::format("\n[[{}]]\n{}{}{} = {}\n", plate_table,
+                        corner(plate_lower, plate.box.min()), corner(plate_upper, plate.box.max()),
+                        plate_permeability.name, input::format_number(plate.relative_permeability));
+  return text;
+}
+
+}  // namespace
+
+input::FieldEntry potential() {
+  using fem::potential::MagnetPushForward;
+  return {
+      .id = "potential",
+      .description = "scalar-potential FEM with recoil permeability and permeable plates",
+      .make = input::make<fem::potential::Potential, PotentialOptions>,
+      .options =
+          {input::option(&PotentialOptions::relative_permeability, "relative_permeability",
+                         permeability_range,
+                         "Recoil permeability μ_r of the magnetised segments: about 1.05 for "
+                         "NdFeB composites; 1 is what the dipole models assume."),
+           input::choice(
+               &PotentialOptions::push_forward, "push_forward",
+               {{"F", MagnetPushForward::F}, {"R", MagnetPushForward::R}},
+               "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M, of rods M d₃ (rigid sections)."),
+           input::option(&PotentialOptions::tolerance, "tolerance",
+                         {1e-7, 0.1, false, "finer meshes exceed the memory of a machine"},
+                         "Estimated error of B at each sensor, relative to |B|."),
+           input::option(&PotentialOptions::max_unknowns, "max_unknowns",
+                         {1000, 20000000, false, "more exceed the memory of a machine"},
+                         "Where the tolerance is not reached with these, it is an error.")},
+      .refinements = {tolerances({1e-2, 3e-3, 1e-3})},
+      .is_collective = true,
+      .is_slow = true,
+      .accuracy = 1e-6,
+      .tables = {{&plate_lower, &plate_upper, &plate_permeability}, read_plates, write_plates},
+  };
+}
+
+}  // namespace ciliaval::compare::models::entries

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/models/entries/sequences.h"
+#include "compare/models/entries/values.h"
+
+namespace ciliaval::compare::models::entries {
+namespace {
+
+using analytic::rod::Method;
+using analytic::rod::VolumeOptions;
+
+/// The stack of loops is integrated along the centreline, with closed forms too.
+bool is_integrated(const input::ModelOptions& all) {
+  const auto& o = all.of<VolumeOptions>();
+  return o.method == Method::quadrature ||
+         (o.method == Method::closed_form && o.slices == VolumeOptions::Slices::stacked);
+}
+
+}  // namespace
+
+input::FieldEntry volume() {
+  using Slices = VolumeOptions::Slices;
+  const input::Option elements =
+      only_with(&VolumeOptions::method, Method::uniform, "method = \"uniform\"",
+                input::option(&VolumeOptions::elements, "elements",
+                              {1, 400, false, "more than 400^3 dipoles take too long"},
+                              "`uniform`: n³ dipoles in each magnetic segment, n in z, r and φ."));
+  input::Refinement sums = pieces({16, 32, 64, 128, 256}, "height of the slices, in segments");
+  sums.applies = elements.belongs;
+  input::Refinement integrals = tolerances({1e-2, 1e-4, 1e-6, 1e-8, 1e-10});
+  integrals.applies = is_integrated;
+  return {
+      .id = "volume",
+      .description = "volume of the bent rod (Eq. 8-9, the paper's multi-dipole model)",
+      .make = input::make<analytic::rod::VolumeField, VolumeOptions>,
+      .options = {input::choice(
+                      &VolumeOptions::slices, "slices",
+                      {{"wedge", Slices::wedge}, {"stacked", Slices::stacked}},
+                      "`wedge`: the true volume of the bent rod; `stacked`: the paper's Eq. "
+                      "8-9, flat slices of equal thickness."),
+                  input::choice(
+                      &VolumeOptions::method, "method", methods,
+                      "`closed_form`: charged discs or current loops; `quadrature`: their "
+                      "check; `uniform`: the paper's sum over slices of equal height."),
+                  input::option(&VolumeOptions::tolerance, "tolerance", tolerance_range,
+                                "Relative to the field."),
+                  elements},
+      .refinements = {sums, integrals},
+  };
+}
+
+}  // namespace ciliaval::compare::models::entries
