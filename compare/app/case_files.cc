@@ -28,7 +28,7 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
         throw InputError(file.string() + ": is a test bench, not a case: `ciliaval sense` runs it");
       cases.push_back(input::read_case(file, models::known()));
       for (const std::string& id : cases.back().mechanics)
-        if (const auto& entry = entry_of(models::mechanics_models(), id); entry.remarks)
+        if (const auto& entry = models::entry_of(models::mechanics_models(), id); entry.remarks)
           for (const std::string& remark : entry.remarks(cases.back()))
             print(fmt::format("Remark: {}\n", remark));
     } catch (const InputError& error) {

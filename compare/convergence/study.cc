@@ -121,7 +121,7 @@ std::vector<models::CaseResult> run_field_levels(input::Case problem,
                                                  const ModelRefinement& refinement,
                                                  std::span<const double> values,
                                                  const Progress& progress) {
-  const models::FieldEntry& entry = entry_of(models::field_models(), refinement.model);
+  const models::FieldEntry& entry = models::entry_of(models::field_models(), refinement.model);
   std::vector<models::CaseResult> results;
   std::optional<models::MechanicsRun> mechanics;
   for (const double value : values) {

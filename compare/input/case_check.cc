@@ -30,73 +30,46 @@ Place place_of(const toml::table& root, std::string path) {
   return {};
 }
 
-/// Where the value of a load's key for one step stands.
-Place place_of_step(const toml::table& root, std::string_view key, std::size_t step) {
-  return place_of(root, fmt::format("load.{}[{}]", key, step));
+/// Where a list of ids names one of them, as a path.
+std::string path_of_id(std::string_view list, const std::vector<std::string>& ids,
+                       std::string_view id) {
+  const auto at = std::find(ids.begin(), ids.end(), id) - ids.begin();
+  return fmt::format("models.{}[{}]", list, at);
 }
 
-/// Where a list of ids names one of them.
-Place place_of_id(const toml::table& root, std::string_view id) {
-  for (const char* list : {"models.mechanics", "models.fields"})
-    if (const toml::array* array = root.at_path(list).as_array())
-      for (const toml::node& element : *array)
-        if (element.value<std::string_view>() == id) return place(element);
-  return place_of(root, "models");
-}
-
-/// Whether a step is the first one with this place: one value that stands for all steps is told
-/// once.
-bool is_told_first(const toml::table& root, std::string_view key, std::size_t step) {
-  return step == 0 || root.at_path(fmt::format("load.{}", key)).is_array();
-}
-
-void check_contact(const toml::table& root, const Case& c, Faults& faults) {
+void check_load(const Case& c, const Report& report) {
   const double length = c.cilium.length();
   for (std::size_t i = 0; i < c.load_path.size(); ++i) {
     const std::optional<double> height = contact_height(c.load_path[i]);
-    if (height && is_told_first(root, "height", i) && !(*height > 0 && *height < length))
-      faults.add(place_of_step(root, "height", i),
-                 fmt::format("the contact height {:g} m must lie between the base and the tip of "
-                             "the cilium, which is {:g} m high",
-                             *height, length));
-  }
-}
-
-void check_section(const toml::table& root, const Case& c, Faults& faults) {
-  for (std::size_t i = 0; i < c.load_path.size(); ++i) {
+    if (height && !(*height > 0 && *height < length))
+      report(fmt::format("load.height[{}]", i),
+             fmt::format("the contact height {:g} m must lie between the base and the tip of the "
+                         "cilium, which is {:g} m high",
+                         *height, length));
     const std::optional<double> arclength = loaded_arclength(c.load_path[i]);
-    if (!arclength || !is_told_first(root, "arclength", i)) continue;
-    if (*arclength > c.cilium.length())
-      faults.add(
-          place_of_step(root, "arclength", i),
-          fmt::format("the loaded section at arc length {:g} m lies beyond the tip at {:g} m",
-                      *arclength, c.cilium.length()));
+    if (arclength && *arclength > length)
+      report(fmt::format("load.arclength[{}]", i),
+             fmt::format("the loaded section at arc length {:g} m lies beyond the tip at {:g} m",
+                         *arclength, length));
   }
 }
 
-/// What the models find, each with its own options.
-void check_models(const toml::table& root, const Case& c, const Models& known,
-                  const RightTables& right, Faults& faults) {
+/// The loads that the models take, and what they find with their own options.
+void check_models(const Case& c, const Models& known, const RightTables& right,
+                  const Report& report) {
   known.for_each([&](const auto& entry) {
     const bool is_asked_for = asks_for(c.mechanics, entry.id) || asks_for(c.fields, entry.id);
-    if (is_asked_for && right.load && !entry.loads.empty() &&
-        std::find(entry.loads.begin(), entry.loads.end(), &c.load_path.front().type()) ==
-            entry.loads.end()) {
+    const auto& loads = entry.loads;
+    if (is_asked_for && right.load && !loads.empty() &&
+        std::find(loads.begin(), loads.end(), &c.load_path.front().type()) == loads.end()) {
       std::vector<std::string_view> names;
-      for (const LoadType* type : entry.loads) names.push_back(type->name);
-      faults.add(place_of_id(root, entry.id),
-                 fmt::format("{0} takes the load types '{1}', not '{2}': leave out '{0}', or state "
-                             "the load as one of those",
-                             entry.id, fmt::join(names, "', '"), type(c.load_path.front())));
+      for (const LoadType* type : loads) names.push_back(type->name);
+      report(path_of_id("mechanics", c.mechanics, entry.id),
+             fmt::format("{0} takes the load types '{1}', not '{2}': leave out '{0}', or state the "
+                         "load as one of those",
+                         entry.id, fmt::join(names, "', '"), type(c.load_path.front())));
     }
-    std::string last;  // one value that stands for all steps is told once
-    if (entry.check)
-      entry.check({c, is_asked_for, right.cilium, right.load,
-                   [&](const std::string& path, const std::string& fault) {
-                     const bool is_listed = root.at_path(path).node() != nullptr;
-                     if (is_listed || fault != last) faults.add(place_of(root, path), fault);
-                     last = fault;
-                   }});
+    if (entry.check) entry.check({c, is_asked_for, right.cilium, right.load, report});
   });
 }
 
@@ -108,26 +81,21 @@ std::size_t bodies(const Case& c, const Models& known) {
       }));
 }
 
-void check_fields(const toml::table& root, const Case& c, const Models& known, bool cilium_is_right,
-                  Faults& faults) {
+void check_fields(const Case& c, const Models& known, bool cilium_is_right, const Report& report) {
   if (c.fields.empty()) return;
-  if (root.get("sensor") == nullptr)
-    faults.add(place_of(root, "models.fields"),
-               "'fields' need a place: add [sensor] with 'position'");
   const bool magnetic = std::any_of(c.cilium.segments.begin(), c.cilium.segments.end(),
                                     [](const Segment& s) { return s.magnetization != 0; });
   if (cilium_is_right && !magnetic)
-    faults.add(place_of(root, "models.fields"),
-               "'fields' need a magnet: no [[cilium.segment]] has a 'magnetization'");
+    report("models.fields", "'fields' need a magnet: no [[cilium.segment]] has a 'magnetization'");
   std::vector<std::string_view> with_body;
   for (const MechanicsEntry& entry : known.mechanics)
     if (entry.has_body) with_body.push_back(entry.id);
   for (const FieldEntry& entry : known.fields)
     if (entry.has_body && asks_for(c.fields, entry.id) && bodies(c, known) == 0)
-      faults.add(place_of_id(root, entry.id),
-                 fmt::format("the field model '{}' needs the body of a solid: add one of {} to "
-                             "'mechanics'",
-                             entry.id, fmt::join(with_body, ", ")));
+      report(path_of_id("fields", c.fields, entry.id),
+             fmt::format("the field model '{}' needs the body of a solid: add one of {} to "
+                         "'mechanics'",
+                         entry.id, fmt::join(with_body, ", ")));
 }
 
 std::size_t pairs(std::size_t n) {
@@ -137,7 +105,7 @@ std::size_t pairs(std::size_t n) {
 /// The figures of a run: B and ΔB of each field run at each sensor, straight and at each step, and
 /// the comparisons of each pair of runs (compare/models/errors.h): of mechanics five a step, of
 /// fields six components at each sensor a step and over the path.
-void check_size(const toml::table& root, const Case& c, const Models& known, Faults& faults) {
+void check_size(const Case& c, const Models& known, const Report& report) {
   const std::size_t steps = c.load_path.size();
   const std::size_t sensors = c.sensors.size();
   std::size_t mechanics = c.mechanics.size();
@@ -152,33 +120,39 @@ void check_size(const toml::table& root, const Case& c, const Models& known, Fau
   const std::size_t rows =
       5 * pairs(mechanics) * steps + (runs + 6 * pairs(runs)) * sensors * (steps + 1);
   if (rows > most_rows)
-    faults.add(place_of(root, "sensor.position"),
-               fmt::format("{} sensor points, {} steps and {} pairs of mechanics and field model "
-                           "with {} comparisons among them make {} rows of results, more than {}: "
-                           "list fewer points, steps or models",
-                           sensors, steps, runs, pairs(runs), rows, most_rows));
+    report("sensor.position",
+           fmt::format("{} sensor points, {} steps and {} pairs of mechanics and field model "
+                       "with {} comparisons among them make {} rows of results, more than {}: "
+                       "list fewer points, steps or models",
+                       sensors, steps, runs, pairs(runs), rows, most_rows));
 }
 
 }  // namespace
 
 void check_together(const toml::table& root, const Case& c, const Models& known,
                     const RightTables& right, Faults& faults) {
+  std::string last;  // one value that stands for all steps is told once
+  const Report report = [&](const std::string& path, const std::string& fault) {
+    if (fault != last || root.at_path(path)) faults.add(place_of(root, path), fault);
+    last = fault;
+  };
   if (right.cilium && c.cilium.length() > longest_cilium)
-    faults.add(place_of(root, "cilium.segment"),
-               fmt::format("the segments are {:g} m long together; more than {:g} m is taken for a "
-                           "slip in the unit",
-                           c.cilium.length(), longest_cilium));
+    report("cilium.segment",
+           fmt::format("the segments are {:g} m long together; more than {:g} m is taken for a "
+                       "slip in the unit",
+                       c.cilium.length(), longest_cilium));
   else if (right.cilium && c.cilium.length() > most_slender * c.cilium.diameter)
-    faults.add(place_of(root, "cilium.diameter"),
-               fmt::format("the cilium is {:g} diameters long; more than {:g} is taken for a slip "
-                           "in the unit",
-                           c.cilium.length() / c.cilium.diameter, most_slender));
-  if (right.cilium && right.load) check_contact(root, c, faults);
-  if (right.cilium && right.load) check_section(root, c, faults);
-  if (right.models) check_models(root, c, known, right, faults);
-  if (right.load && right.models) check_external(root, c, faults);
-  if (right.models) check_fields(root, c, known, right.cilium, faults);
-  if (right.load && right.models) check_size(root, c, known, faults);
+    report("cilium.diameter",
+           fmt::format("the cilium is {:g} diameters long; more than {:g} is taken for a slip "
+                       "in the unit",
+                       c.cilium.length() / c.cilium.diameter, most_slender));
+  if (right.cilium && right.load) check_load(c, report);
+  if (right.models) check_models(c, known, right, report);
+  if (right.load && right.models) check_external(c, report);
+  if (right.models && !c.fields.empty() && !root.contains("sensor"))
+    report("models.fields", "'fields' need a place: add [sensor] with 'position'");
+  if (right.models) check_fields(c, known, right.cilium, report);
+  if (right.load && right.models) check_size(c, known, report);
 }
 
 }  // namespace ciliaval::compare::input

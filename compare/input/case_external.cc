@@ -10,8 +10,6 @@ namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::size_t most_external = 20;
-constexpr std::string_view path_name = "models.external";
-constexpr std::string_view table_name = "[[models.external]]";
 
 std::optional<std::filesystem::path> read_file_name(const toml::node& node, std::string_view name,
                                                     Faults& faults) {
@@ -69,18 +67,12 @@ external::ExternalModel read_model(Section& table, const Models& known,
         std::pair{"background", &external::ExternalModel::background_file}})
     if (const toml::node* node = table.find(key))
       model.*file = read_file_name(*node, key, faults).value_or("");
-  const auto uncertainty = [&](const QuantityKey& k) -> std::optional<double> {
-    const toml::node* node = table.find(k.name);
-    if (node == nullptr) return std::nullopt;
-    return read_value(*node, k.name, k.quantity, k.range, faults);
-  };
-  model.tip_uncertainty = uncertainty(key::tip_uncertainty);
-  model.field_uncertainty = uncertainty(key::field_uncertainty);
+  model.tip_uncertainty = table.value(key::tip_uncertainty);
+  model.field_uncertainty = table.value(key::field_uncertainty);
   if (table.find("centrelines") == nullptr && table.find("readings") == nullptr)
-    faults.add(table.where(), fmt::format("{} needs 'centrelines' or 'readings'", table_name));
+    faults.add(table.where(), fmt::format("{} needs 'centrelines' or 'readings'", table.name()));
   if (table.find("background") != nullptr && table.find("readings") == nullptr)
     faults.add(place(*table.find("background")), "'background' goes with 'readings'");
-  table.finish();
   return model;
 }
 
@@ -88,41 +80,20 @@ external::ExternalModel read_model(Section& table, const Models& known,
 
 void read_external(Section& models, const Models& known,
                    std::vector<external::ExternalModel>& external) {
-  Faults& faults = models.faults();
-  const toml::node* node = models.find("external");
-  if (node == nullptr) return;
-  const toml::array* list = node->as_array();
-  if (list == nullptr || list->size() > most_external) {
-    faults.add(place(*node), fmt::format("the external models are a list of at most {} tables, "
-                                         "found {}: write {} above each",
-                                         most_external, describe(*node), table_name));
-    return;
-  }
-  for (const toml::node& element : *list) {
-    if (!element.is_table()) {
-      faults.add(place(element),
-                 fmt::format("expected a table {}, found {}", table_name, describe(element)));
-      continue;
-    }
-    Section table(element.as_table(), std::string(table_name), std::string(path_name),
-                  place(element), faults);
-    external.push_back(read_model(table, known, external));
-  }
+  models.tables("external", 0, most_external,
+                [&](Section& table) { external.push_back(read_model(table, known, external)); });
 }
 
-void check_external(const toml::table& root, const Case& c, Faults& faults) {
+void check_external(const Case& c, const Report& report) {
   for (std::size_t i = 0; i < c.external.size(); ++i) {
     const external::ExternalModel& model = c.external[i];
-    const auto at = [&](std::string_view key) {
-      const auto node = root.at_path(fmt::format("{}[{}].{}", path_name, i, key));
-      return node.node() == nullptr ? Place{} : place(*node.node());
-    };
+    const std::string path = fmt::format("{}[{}].", key::external_table, i);
     if (!model.centreline_files.empty() && model.centreline_files.size() != c.load_path.size())
-      faults.add(at("centrelines"), fmt::format("there are {} files of centrelines and {} load "
-                                                "steps: one file for each",
-                                                model.centreline_files.size(), c.load_path.size()));
+      report(path + "centrelines", fmt::format("there are {} files of centrelines and {} load "
+                                               "steps: one file for each",
+                                               model.centreline_files.size(), c.load_path.size()));
     if (!model.readings_file.empty() && c.sensors.empty())
-      faults.add(at("readings"), "readings need a place: add [sensor] with 'position'");
+      report(path + "readings", "readings need a place: add [sensor] with 'position'");
   }
 }
 

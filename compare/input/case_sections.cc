@@ -24,54 +24,24 @@ bool has_control_character(std::string_view text) {
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
-void read_segment(Section& table, Segment& segment) {
-  Faults& faults = table.faults();
-  const auto value = [&](const QuantityKey& k, bool required) {
-    const toml::node* node = required ? table.require(k.name) : table.find(k.name);
-    if (node == nullptr) return 0.0;
-    return read_value(*node, k.name, k.quantity, k.range, faults).value_or(0.0);
-  };
-  if (const toml::node* node = table.require("name"))
-    segment.name = read_line(*node, "name", longest_name, faults).value_or("");
-  segment.length = value(key::segment_length, true);
-  segment.young_modulus = value(key::young_modulus, true);
-  segment.poisson_ratio = value(key::poisson_ratio, true);
-  segment.magnetization = value(key::magnetization, false);
-  table.finish();
-}
-
 void read_segments(Section& cilium, std::vector<Segment>& segments) {
-  Faults& faults = cilium.faults();
-  const toml::node* node = cilium.require("segment");
-  if (node == nullptr) return;
-  const toml::array* list = node->as_array();
-  if (list == nullptr) {
-    faults.add(place(*node), fmt::format("the segments are a list of tables, found {}: write "
-                                         "[[cilium.segment]] above each",
-                                         describe(*node)));
-    return;
-  }
-  if (list->empty() || list->size() > most_segments)
-    faults.add(place(*node),
-               fmt::format("a cilium has 1 to {} segments, found {}", most_segments, list->size()));
-  if (list->size() > most_segments) return;
-  for (const toml::node& element : *list) {
-    if (!element.is_table()) {
-      faults.add(place(element),
-                 fmt::format("expected a table [[cilium.segment]], found {}", describe(element)));
-      continue;
-    }
-    Section table(element.as_table(), "[[cilium.segment]]", "cilium.segment", place(element),
-                  faults);
+  cilium.require("segment");
+  cilium.tables("segment", 1, most_segments, [&](Section& table) {
     Segment segment;
-    read_segment(table, segment);
+    if (const toml::node* node = table.require("name"))
+      segment.name = read_line(*node, "name", longest_name, table.faults()).value_or("");
+    segment.length = table.value(key::segment_length).value_or(0);
+    segment.young_modulus = table.value(key::young_modulus).value_or(0);
+    segment.poisson_ratio = table.value(key::poisson_ratio).value_or(0);
+    segment.magnetization = table.value(key::magnetization).value_or(0);
     const bool known = std::any_of(segments.begin(), segments.end(),
                                    [&](const Segment& s) { return s.name == segment.name; });
     if (known && !segment.name.empty())
-      faults.add(place(*table.find("name")),
-                 fmt::format("the segment name {} is already taken", in_quotes(segment.name)));
+      table.faults().add(
+          place(*table.find("name")),
+          fmt::format("the segment name {} is already taken", in_quotes(segment.name)));
     segments.push_back(std::move(segment));
-  }
+  });
 }
 
 /// The ids listed under models.mechanics or models.fields.
@@ -166,17 +136,20 @@ bool is_plain_file_name(std::string_view name) {
          });
 }
 
-std::optional<Vector3> read_point(const toml::array& list, const QuantityKey& k, Faults& faults) {
-  if (list.size() != 3) {
-    faults.add(place(list), fmt::format("a point has three coordinates, such as [\"0 mm\", \"0 "
-                                        "mm\", \"-1.55 mm\"]; found {}",
-                                        list.size()));
+std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 3) {
+    faults.add(
+        place(node),
+        fmt::format("'{}' must be a point: a point has three coordinates, such as [\"0 mm\", "
+                    "\"0 mm\", \"-1.55 mm\"]; found {}",
+                    k.name, list == nullptr ? describe(node) : fmt::format("{}", list->size())));
     return std::nullopt;
   }
   Vector3 point = Vector3::Zero();
   bool right = true;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto value = read_value(list[i], k.name, k.quantity, k.range, faults);
+    const auto value = read_value((*list)[i], k.name, k.quantity, k.range, faults);
     if (value)
       point[static_cast<Eigen::Index>(i)] = *value;
     else
@@ -235,9 +208,7 @@ bool read_cilium(Section& root, Case& c) {
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
   Section table = require_section(root, "cilium");
-  const QuantityKey& k = key::diameter;
-  if (const toml::node* node = table.require(k.name))
-    c.cilium.diameter = read_value(*node, k.name, k.quantity, k.range, faults).value_or(0.0);
+  c.cilium.diameter = table.value(key::diameter).value_or(0);
   read_segments(table, c.cilium.segments);
   table.finish();
   return faults.size() == before;
@@ -259,13 +230,7 @@ bool read_sensor(Section& root, Case& c) {
     } else if (std::any_of(list->begin(), list->end(),
                            [](const toml::node& n) { return n.is_array(); })) {
       for (const toml::node& element : *list) {
-        if (const toml::array* point = element.as_array()) {
-          if (const std::optional<Vector3> p = read_point(*point, key::position, faults))
-            c.sensors.push_back(*p);
-        } else {
-          faults.add(place(element),
-                     fmt::format("expected a point among the others, found {}", describe(element)));
-        }
+        if (const auto p = read_point(element, key::position, faults)) c.sensors.push_back(*p);
       }
     } else if (const std::optional<Vector3> p = read_point(*list, key::position, faults)) {
       c.sensors.push_back(*p);

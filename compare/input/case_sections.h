@@ -27,7 +27,7 @@ bool read_models(Section& root, const Models& known, Case& c);
 void read_external(Section& models, const Models& known,
                    std::vector<external::ExternalModel>& external);
 /// Faults between these tables and the load and the sensors.
-void check_external(const toml::table& root, const Case& c, Faults& faults);
+void check_external(const Case& c, const Report& report);
 
 /// The tables that had no fault by themselves.
 struct RightTables {
@@ -47,7 +47,7 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
 
 /// A point of three coordinates, each as the key says, or a fault.
-std::optional<Vector3> read_point(const toml::array& list, const QuantityKey& k, Faults& faults);
+std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults);
 
 /// A text for people: a line, not empty, of at most `longest` bytes. Adds a fault otherwise.
 std::optional<std::string> read_line(const toml::node& node, std::string_view name,

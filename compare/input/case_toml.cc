@@ -125,6 +125,35 @@ Section Section::section(std::string_view key) {
   return {node->as_table(), name, path, place(*node), *faults_};
 }
 
+std::optional<double> Section::value(const QuantityKey& key) {
+  const toml::node* node = key.fallback.empty() ? require(key.name) : find(key.name);
+  if (node == nullptr) return std::nullopt;
+  return read_value(*node, key.name, key.quantity, key.range, *faults_);
+}
+
+void Section::tables(std::string_view key, std::size_t fewest, std::size_t most,
+                     const std::function<void(Section&)>& f) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const std::string path = fmt::format("{}.{}", path_, key);
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->size() < fewest || list->size() > most)
+    return faults_->add(
+        place(*node),
+        fmt::format("expected {} to {} tables [[{}]], found {}", fewest, most, path,
+                    list == nullptr ? describe(*node) : fmt::format("{}", list->size())));
+  for (const toml::node& element : *list) {
+    if (!element.is_table()) {
+      faults_->add(place(element),
+                   fmt::format("expected a table [[{}]], found {}", path, describe(element)));
+      continue;
+    }
+    Section table(element.as_table(), fmt::format("[[{}]]", path), path, place(element), *faults_);
+    f(table);
+    table.finish();
+  }
+}
+
 void Section::finish() const {
   if (table_ == nullptr) return;
   const std::vector<std::string_view> candidates(valid_.begin(), valid_.end());

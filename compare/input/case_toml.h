@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,6 +62,12 @@ class Section {
   const toml::node* require(std::string_view key);
   /// The sub-table of this name; a value that is no table is a fault.
   Section section(std::string_view key);
+  /// The value of a key, which is required if it has no fallback; none if it is missing or a fault.
+  std::optional<double> value(const QuantityKey& key);
+  /// Calls f with each table of a list [[…]], and finishes it. A value that is no list of at least
+  /// `fewest` and at most `most` tables is a fault.
+  void tables(std::string_view key, std::size_t fewest, std::size_t most,
+              const std::function<void(Section&)>& f);
   /// Adds a fault for each key that was not asked for (unknown, or of a later version) and for each
   /// that is missing, unless an unknown one looks like it.
   void finish() const;

@@ -36,14 +36,16 @@ struct Refinement {
   std::function<void(ModelOptions&)> also{};           ///< what else is set on all levels
 };
 
+/// Takes a fault of a case; `path` says where it is, dotted: "models.solid.mesh", "load.height[2]".
+using Report = std::function<void(const std::string& path, const std::string& fault)>;
+
 /// A case whose tables are right by themselves, as a model checks it against its own options.
 struct CaseCheck {
   const Case& problem;
   bool is_asked_for = false;  ///< the case names the model
   bool cilium_is_right = false;
   bool load_is_right = false;
-  /// Reports a fault; `path` is a dotted path in the case file, "models.solid.mesh".
-  std::function<void(const std::string& path, const std::string& fault)> report;
+  const Report& report;
 };
 
 /// Sub-tables of a model, [[models.<model>.<name>]].

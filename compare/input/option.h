@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
 #include <any>
 #include <array>
 #include <filesystem>
@@ -52,12 +53,12 @@ struct Option {
     folder    ///< written to, beside the case file; empty: nothing is kept
   };
   std::string_view name;
-  Quantity quantity = quantity::number;   ///< of a double
-  Range range{};                          ///< of a number or of each number of a pair
-  std::vector<std::string_view> choices;  ///< of a text
-  std::string_view doc;                   ///< one sentence
-  std::function<OptionValue(const ModelOptions&)> get;
-  std::function<void(ModelOptions&, const OptionValue&)> set;
+  Quantity quantity = quantity::number;     ///< of a double
+  Range range{};                            ///< of a number or of each number of a pair
+  std::vector<std::string_view> choices{};  ///< of a text
+  std::string_view doc;                     ///< one sentence
+  std::function<OptionValue(const ModelOptions&)> get{};
+  std::function<void(ModelOptions&, const OptionValue&)> set{};
   File file = File::none;
   /// Whether the option means anything with the other options; empty: it always does. A file that
   /// states it where it does not is refused, and it is not written back.
@@ -74,15 +75,13 @@ struct Option {
 template <class Options, class T>
 Option option(T Options::*member, std::string_view name, const Quantity& quantity,
               const Range& range, std::string_view doc) {
-  static_assert(std::is_same_v<T, double> || std::is_same_v<T, unsigned int> ||
-                std::is_same_v<T, bool> || std::is_same_v<T, std::array<double, 2>>);
-  return {name,
-          quantity,
-          range,
-          {},
-          doc,
-          [=](const ModelOptions& o) { return OptionValue(o.of<Options>().*member); },
-          [=](ModelOptions& o, const OptionValue& v) { o.of<Options>().*member = std::get<T>(v); }};
+  return {.name = name,
+          .quantity = quantity,
+          .range = range,
+          .doc = doc,
+          .get = [=](const ModelOptions& o) { return OptionValue(o.of<Options>().*member); },
+          .set = [=](ModelOptions& o,
+                     const OptionValue& v) { o.of<Options>().*member = std::get<T>(v); }};
 }
 
 /// The same without a unit.
@@ -103,39 +102,32 @@ using Choices = std::vector<std::pair<std::string_view, T>>;
 template <class Options, class T>
 Option choice(T Options::*member, std::string_view name,
               const std::type_identity_t<Choices<T>>& values, std::string_view doc) {
-  std::vector<std::string_view> names;
-  names.reserve(values.size());
-  for (const auto& [text, value] : values) names.push_back(text);
-  return {name,
-          quantity::number,
-          {},
-          names,
-          doc,
-          [=](const ModelOptions& o) {
-            for (const auto& [text, value] : values)
-              if (o.of<Options>().*member == value) return OptionValue(std::string(text));
-            return OptionValue(std::string(values.front().first));
-          },
-          [=](ModelOptions& o, const OptionValue& v) {
-            for (const auto& [text, value] : values)
-              if (std::get<std::string>(v) == text) o.of<Options>().*member = value;
-          }};
+  Option result{.name = name, .doc = doc};
+  for (const auto& [text, value] : values) result.choices.push_back(text);
+  result.get = [=](const ModelOptions& o) {
+    const auto at =
+        std::ranges::find(values, o.of<Options>().*member, &Choices<T>::value_type::second);
+    return OptionValue(std::string(at->first));
+  };
+  result.set = [=](ModelOptions& o, const OptionValue& v) {
+    const auto at =
+        std::ranges::find(values, std::get<std::string>(v), &Choices<T>::value_type::first);
+    o.of<Options>().*member = at->second;
+  };
+  return result;
 }
 
 /// An option that is the name of a file; empty: none.
 template <class Options>
 Option file(std::filesystem::path Options::*member, std::string_view name, Option::File kind,
             std::string_view doc) {
-  return {name,
-          quantity::number,
-          {},
-          {},
-          doc,
-          [=](const ModelOptions& o) { return OptionValue((o.of<Options>().*member).string()); },
-          [=](ModelOptions& o, const OptionValue& v) {
-            o.of<Options>().*member = std::get<std::string>(v);
-          },
-          kind};
+  return {
+      .name = name,
+      .doc = doc,
+      .get = [=](const ModelOptions& o) { return OptionValue((o.of<Options>().*member).string()); },
+      .set = [=](ModelOptions& o,
+                 const OptionValue& v) { o.of<Options>().*member = std::get<std::string>(v); },
+      .file = kind};
 }
 
 /// The option, which goes with one value of another one only; `other` is that as a file states it.

@@ -8,6 +8,7 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
+#include "compare/models/registry.h"
 #include "compare/sensing/bench.h"
 #include "problem/error.h"
 

@@ -111,7 +111,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
   const budget::SurroundedPath path = budget::surround(
       c.load_path, study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution));
   c.load_path = path.loads;
-  const auto model = entry_of(mechanics_models, mechanics).make(c.options);
+  const auto model = models::entry_of(mechanics_models, mechanics).make(c.options);
   const models::MechanicsRun run = models::run_mechanics(mechanics, *model, c, progress);
   const MechanicsStep& step = run.result.steps[path.step.front()];
   std::vector<PairResult> results;
@@ -121,7 +121,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
       results.push_back(result_of(study, step, {}, path));
       continue;
     }
-    const auto field = entry_of(field_models, pair.field).make(c.options);
+    const auto field = models::entry_of(field_models, pair.field).make(c.options);
     const models::FieldRun fields = models::run_field(pair.field, *field, run, c, progress);
     results.push_back(result_of(study, step, fields, path));
     results.back().uncertainty = models::change_uncertainty(run, fields, path.step.front(), 0);

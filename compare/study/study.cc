@@ -13,6 +13,7 @@
 
 #include "compare/input/case_syntax.h"
 #include "compare/input/units.h"
+#include "compare/models/registry.h"
 
 namespace ciliaval::compare::study {
 namespace {

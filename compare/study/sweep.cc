@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "compare/models/registry.h"
+
 namespace ciliaval::compare::study {
 namespace {
 
@@ -23,9 +25,9 @@ struct Task {
 bool runs_in_threads(const Study& study, const std::string& mechanics,
                      std::span<const models::MechanicsEntry> mechanics_models,
                      std::span<const models::FieldEntry> field_models) {
-  if (entry_of(mechanics_models, mechanics).is_collective) return false;
+  if (models::entry_of(mechanics_models, mechanics).is_collective) return false;
   return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
-    return pair.mechanics == mechanics && entry_of(field_models, pair.field).is_collective;
+    return pair.mechanics == mechanics && models::entry_of(field_models, pair.field).is_collective;
   });
 }
 

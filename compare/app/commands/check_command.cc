@@ -4,8 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "compare/app/case_files.h"
 #include "compare/app/terminal.h"
@@ -35,7 +33,7 @@ std::vector<std::string> left_out_of(const input::Case& problem, bool quick) {
   std::vector<std::string> result;
   const auto add = [&](const std::vector<std::string>& ids, const auto& entries) {
     for (const std::string& id : ids)
-      if (quick && entry_of(entries, id).is_slow) result.push_back(id);
+      if (quick && models::entry_of(entries, id).is_slow) result.push_back(id);
   };
   add(problem.mechanics, models::mechanics_models());
   add(problem.fields, models::field_models());
@@ -178,8 +176,9 @@ void add_check(CommandLine& line) {
       options, execute);
   check->add_option("CASE", options->files, "Case files (TOML); none: all shipped ones")
       ->check(CLI::ExistingFile);
-  check->add_flag("--quick", options->quick,
-                  "Leave out solid and potential: seconds instead of minutes");
+  check->add_flag(
+      "--quick", options->quick,
+      "Leave out the models that `ciliaval list` calls slow: seconds instead of minutes");
   check->add_flag(
       "--accept", options->accept,
       "Check nothing: write NAME.baseline.candidate.json beside each case that has\n"

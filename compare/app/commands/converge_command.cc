@@ -73,8 +73,7 @@ void add_converge(CommandLine& line) {
   add_file(converge, "CASE", options->file, "Case file (TOML)");
   converge
       ->add_option("--levels", options->levels,
-                   "How many levels of each refinement, from the coarsest, or as many as there\n"
-                   "are (solid 4, potential 3)")
+                   "How many levels of each refinement, from the coarsest, or as many as there are")
       ->capture_default_str();
   add_output(converge, "--json", options->json, "Write the study as JSON too");
   add_output(converge, "--csv", options->csv, "Write the study as CSV too");

@@ -81,14 +81,17 @@ ExitCode validate(const Options& options, const std::string&) {
 
 ExitCode list(const Options&, const std::string&) {
   std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
-  for (const models::MechanicsEntry& entry : models::mechanics_models())
-    text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
+  const auto add = [&](const auto& entries) {
+    for (const auto& entry : entries)
+      text += fmt::format("  {:<10} {}{}\n", entry.id, entry.description,
+                          entry.is_slow ? "; slow" : "");
+  };
+  add(models::mechanics_models());
   text += fmt::format(
       "  {:<10} {}\n", "(external)",
       "[[models.external]]: centrelines and readings from CSV files (docs/guide/referees.md)");
   text += "\nField models\n";
-  for (const models::FieldEntry& entry : models::field_models())
-    text += fmt::format("  {:<10} {}\n", entry.id, entry.description);
+  add(models::field_models());
   text +=
       "\nLoads\n"
       "  contact    horizontal force that stays at a height while the cilium slides under it\n"

@@ -125,7 +125,8 @@ ExitCode run_one(Prepared& prepared, const std::string& words) {
 /// model each rank has the rods' deformations from its own solution, which is the same on all.
 void take_part(input::Case problem) {
   const auto leave_collective = [](std::vector<std::string>& ids, const auto& entries) {
-    std::erase_if(ids, [&](const std::string& id) { return !entry_of(entries, id).is_collective; });
+    std::erase_if(
+        ids, [&](const std::string& id) { return !models::entry_of(entries, id).is_collective; });
   };
   leave_collective(problem.fields, models::field_models());
   if (problem.fields.empty()) leave_collective(problem.mechanics, models::mechanics_models());

@@ -10,7 +10,7 @@ input::FieldEntry dipole() {
       .id = "dipole",
       .description = "each magnetic segment as one dipole at its centroid",
       .make = input::make<analytic::rod::DipoleField, DipoleOptions>,
-      .options = {input::choice(&DipoleOptions::push_forward, "push_forward", push_forwards,
+      .options = {input::choice(&DipoleOptions::push_forward, "push_forward", push_forwards(),
                                 rod_push_forward)},
   };
 }

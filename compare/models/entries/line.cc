@@ -31,9 +31,9 @@ input::FieldEntry line() {
       .id = "line",
       .description = "dipoles along the centreline (Eq. 5-7, the paper's single-dipole model)",
       .make = input::make<analytic::rod::LineField, LineOptions>,
-      .options = {input::choice(&LineOptions::push_forward, "push_forward", push_forwards,
+      .options = {input::choice(&LineOptions::push_forward, "push_forward", push_forwards(),
                                 rod_push_forward),
-                  input::choice(&LineOptions::method, "method", methods,
+                  input::choice(&LineOptions::method, "method", methods(),
                                 "`closed_form`: two poles; `quadrature`: its check; `uniform`: "
                                 "the paper's sum over slices of equal height."),
                   input::option(&LineOptions::tolerance, "tolerance", tolerance_range,

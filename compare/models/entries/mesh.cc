@@ -11,7 +11,7 @@ input::FieldEntry mesh() {
       .id = "mesh",
       .description = "a solid's own deformed magnet (needs its body: `solid`, `calculix`)",
       .make = input::make<analytic::body::MeshField, MeshOptions>,
-      .options = {input::choice(&MeshOptions::push_forward, "push_forward", push_forwards,
+      .options = {input::choice(&MeshOptions::push_forward, "push_forward", push_forwards(),
                                 "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M (rigid "
                                 "sections)."),
                   input::option(&MeshOptions::tolerance, "tolerance", tolerance_range,

@@ -15,6 +15,7 @@ using fem::potential::PermeableBox;
 using fem::potential::PotentialOptions;
 
 constexpr std::string_view plate_table = "models.potential.plate";
+constexpr std::size_t most_plates = 100;
 constexpr Range permeability_range{
     0, 1e6, true, "a permeability is positive, that of vacuum is 1 and iron has some thousands"};
 /// Each coordinate of a plate's corner.
@@ -40,56 +41,27 @@ constexpr QuantityKey plate_permeability{
 /// [[models.potential.plate]]: the boxes that are right by themselves and beside each other.
 void read_plates(input::Section& potential, input::ModelOptions& options) {
   std::vector<PermeableBox>& plates = options.of<PotentialOptions>().plates;
-  constexpr std::size_t most_plates = 100;
-  input::Faults& faults = potential.faults();
-  const toml::node* node = potential.find("plate");
-  if (node == nullptr) return;
-  const toml::array* list = node->as_array();
-  if (list == nullptr || list->size() > most_plates) {
-    faults.add(input::place(*node),
-               fmt::format("the plates are a list of at most {} tables, found {}: "
-                           "write [[models.potential.plate]] above each",
-                           most_plates, input::describe(*node)));
-    return;
-  }
-  for (const toml::node& element : *list) {
-    if (!element.is_table()) {
-      faults.add(input::place(element),
-                 fmt::format("expected a table [[models.potential.plate]], found {}",
-                             input::describe(element)));
-      continue;
-    }
+  potential.tables("plate", 0, most_plates, [&](input::Section& table) {
+    input::Faults& faults = table.faults();
     const std::size_t before = faults.size();
-    input::Section table(element.as_table(), "[[models.potential.plate]]", std::string(plate_table),
-                         input::place(element), faults);
     PermeableBox plate;
-    const auto corner = [&](const QuantityKey& k, auto set) {
+    const auto corner = [&](const QuantityKey& k) -> Vector3 {
       const toml::node* value = table.require(k.name);
-      if (value == nullptr) return;
-      if (!value->is_array())
-        faults.add(input::place(*value),
-                   fmt::format("'{}' must be a point, such as [\"-5 mm\", \"-5 "
-                               "mm\", \"-3 mm\"], found {}",
-                               k.name, input::describe(*value)));
-      else if (const std::optional<Vector3> p = input::read_point(*value->as_array(), k, faults))
-        set(*p);
+      return value == nullptr ? Vector3::Zero()
+                              : input::read_point(*value, k, faults).value_or(Vector3::Zero());
     };
-    corner(plate_lower, [&](const Vector3& p) { plate.box.min() = p; });
-    corner(plate_upper, [&](const Vector3& p) { plate.box.max() = p; });
-    const QuantityKey& k = plate_permeability;
-    if (const toml::node* value = table.require(k.name))
-      plate.relative_permeability =
-          input::read_value(*value, k.name, k.quantity, k.range, faults).value_or(1.0);
-    table.finish();
-    if (faults.size() == before && !(plate.box.sizes().minCoeff() > 0))
-      faults.add(input::place(element),
-                 "a plate's 'upper' corner must lie above its 'lower' one in x, y "
-                 "and z");
+    plate.box = {corner(plate_lower), corner(plate_upper)};
+    plate.relative_permeability = table.value(plate_permeability).value_or(1);
+    const auto report = [&](const char* fault) {
+      if (faults.size() == before) faults.add(table.where(), fault);
+    };
+    if (!(plate.box.sizes().minCoeff() > 0))
+      report("a plate's 'upper' corner must lie above its 'lower' one in x, y and z");
     for (const PermeableBox& other : plates)
-      if (faults.size() == before && other.box.intersection(plate.box).sizes().minCoeff() > 0)
-        faults.add(input::place(element), "the plate overlaps one above: cut them apart");
+      if (other.box.intersection(plate.box).sizes().minCoeff() > 0)
+        report("the plate overlaps one above: cut them apart");
     if (faults.size() == before) plates.push_back(plate);
-  }
+  });
 }
 
 std::string write_plates(const input::ModelOptions& options) {

@@ -9,6 +9,7 @@
 #include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 #include "fem/solid/material/hyperelastic.h"
+#include "meshes/cylinder/cylinder_mesh.h"
 #include "meshes/gmsh/gmsh_mesh.h"
 
 namespace ciliaval::compare::models::entries {
@@ -132,6 +133,17 @@ std::vector<input::Option> options() {
 }
 
 }  // namespace
+
+input::Refinement solid_meshes() {
+  return {.option = "refinement",
+          .values = {0, 1, 2, 3},
+          .size =
+              [](double value) {
+                const auto refinement = static_cast<unsigned int>(value);
+                return fem::solid::cylinder_mesh_options(refinement).finest_layer;
+              },
+          .size_name = "thickness of the finest layers, in diameters"};
+}
 
 input::MechanicsEntry solid() {
   return {

@@ -17,13 +17,15 @@ inline constexpr Range iterations_range{1, 1000, false, "the solver must end"};
 inline constexpr Range cutbacks_range{0, 50, false, "50 halvings leave nothing of a step"};
 inline constexpr Range solid_mesh_range{0, 3, false, "the solid has the meshes 0 to 3"};
 
-inline const input::Choices<analytic::sources::PushForward> push_forwards{
-    {"F", analytic::sources::PushForward::F}, {"R", analytic::sources::PushForward::R}};
 inline constexpr std::string_view rod_push_forward =
     "`F`: M dr (ideal hard magnet); `R`: M d₃ dS (rigid sections).";
-inline const input::Choices<analytic::rod::Method> methods{
-    {"closed_form", analytic::rod::Method::closed_form},
-    {"quadrature", analytic::rod::Method::quadrature},
-    {"uniform", analytic::rod::Method::uniform}};
+inline input::Choices<analytic::sources::PushForward> push_forwards() {
+  return {{"F", analytic::sources::PushForward::F}, {"R", analytic::sources::PushForward::R}};
+}
+inline input::Choices<analytic::rod::Method> methods() {
+  return {{"closed_form", analytic::rod::Method::closed_form},
+          {"quadrature", analytic::rod::Method::quadrature},
+          {"uniform", analytic::rod::Method::uniform}};
+}
 
 }  // namespace ciliaval::compare::models::entries

@@ -38,7 +38,7 @@ input::FieldEntry volume() {
                       "`wedge`: the true volume of the bent rod; `stacked`: the paper's Eq. "
                       "8-9, flat slices of equal thickness."),
                   input::choice(
-                      &VolumeOptions::method, "method", methods,
+                      &VolumeOptions::method, "method", methods(),
                       "`closed_form`: charged discs or current loops; `quadrature`: their "
                       "check; `uniform`: the paper's sum over slices of equal height."),
                   input::option(&VolumeOptions::tolerance, "tolerance", tolerance_range,

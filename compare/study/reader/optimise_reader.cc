@@ -46,7 +46,7 @@ void read_optimisation(input::Section& table, Reading& reading) {
   for (const Output output : all_outputs())
     if (output != Output::resolution) goals.push_back(id(output));
   if (const toml::node* node = table.require("maximise"))
-    if (const auto goal = input::read_choice(*node, "maximise", goals, {}, faults))
+    if (const auto goal = input::read_choice(*node, "maximise", goals, faults))
       for (const Output output : all_outputs())
         if (id(output) == *goal) optimisation.goal = output;
   if (const toml::node* node = table.find("global_evaluations"))

@@ -88,7 +88,7 @@ std::optional<Ends> read_ends(input::Section& table, Parameter& parameter) {
   if (const toml::node* node = table.find("spacing")) {
     constexpr std::array<std::string_view, 2> spacings{"linear", "logarithmic"};
     parameter.is_logarithmic =
-        input::read_choice(*node, "spacing", spacings, {}, faults) == spacings[1];
+        input::read_choice(*node, "spacing", spacings, faults) == spacings[1];
   }
   if (!from || !to || faults.size() != before) return std::nullopt;
   if (*from == *to)

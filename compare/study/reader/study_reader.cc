@@ -16,6 +16,7 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
+#include "compare/models/registry.h"
 #include "compare/study/reader/reading.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
@@ -250,7 +251,7 @@ void read_study_table(input::Section& table, Reading& reading) {
       faults.add(input::place(*node),
                  "'combine' goes with the values of parameters, not with [optimise]");
     constexpr std::array<std::string_view, 2> choices{"product", "zip"};
-    study.is_zipped = input::read_choice(*node, "combine", choices, {}, faults) == choices[1];
+    study.is_zipped = input::read_choice(*node, "combine", choices, faults) == choices[1];
   }
   read_pairs(table, study);
   read_outputs(table, study);
@@ -293,7 +294,7 @@ void check_points(const Study& study, input::Place where, input::Faults& faults)
     const input::Case c = study.case_at(i);
     std::string fault;
     input::Faults of_point;
-    input::check_together(root, c, {true, true, true}, of_point);
+    input::check_together(root, c, models::known(), {true, true, true}, of_point);
     if (!of_point.empty()) fault = of_point.first();
     try {
       require_valid(c.cilium);
