@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "../compare/run/program.h"
+#include "tests/support/program.h"
 
 namespace ciliaval {
 namespace {

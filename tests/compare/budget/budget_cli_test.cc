@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "../run/program.h"
+#include "tests/support/program.h"
 
 namespace ciliaval {
 namespace {

@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-#include "../run/synthetic.h"
 #include "compare/budget/report.h"
 #include "compare/budget/sensitivity.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

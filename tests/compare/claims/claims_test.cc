@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "../run/program.h"
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "compare/claims/ledger.h"
 #include "compare/claims/misprint.h"
+#include "tests/support/program.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <string>
 
-#include "../run/program.h"
+#include "tests/support/program.h"
 
 namespace ciliaval {
 namespace {

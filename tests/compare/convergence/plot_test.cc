@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "../run/synthetic.h"
 #include "compare/plot/gnuplot.h"
 #include "problem/error.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "case_texts.h"
+#include "tests/support/case_texts.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -97,8 +97,8 @@ const BadCase keys[]{
      "unknown key 'velocity' in [load] of type 'contact' (valid: type, force, height, azimuth)"},
     {"UnknownKeyInModels", "[models.solid]", "[models.sold]", "34:9",
      "unknown key 'sold' in [models]", "did you mean 'solid'?"},
-    {"UnknownOption", "refinement", "refinment", "35:1", "unknown key 'refinment' in [models.solid]",
-     "did you mean 'refinement'?"},
+    {"UnknownOption", "refinement", "refinment", "35:1",
+     "unknown key 'refinment' in [models.solid]", "did you mean 'refinement'?"},
     {"UnknownKeyWithoutANeighbour", "refinement", "colour", "35:1",
      "unknown key 'colour' in [models.solid] (valid: material, mooney_ratio"},
     {"CaseOfAKeyMatters", "title", "Title", "3:1", "unknown key 'Title'", "did you mean 'title'?"},

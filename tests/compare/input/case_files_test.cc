@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "case_texts.h"
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
 #include "problem/error.h"
+#include "tests/support/case_texts.h"
 
 namespace ciliaval::compare {
 namespace {

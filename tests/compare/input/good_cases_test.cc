@@ -14,7 +14,6 @@
 #include "analytic/body/mesh_field.h"
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
-#include "case_texts.h"
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
 #include "compare/models/registry.h"
@@ -23,6 +22,7 @@
 #include "fem/potential/potential.h"
 #include "fem/solid/solid_options.h"
 #include "problem/error.h"
+#include "tests/support/case_texts.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -10,11 +10,11 @@
 #include <string>
 #include <string_view>
 
-#include "case_texts.h"
 #include "compare/input/case.h"
 #include "compare/input/units.h"
 #include "compare/models/registry.h"
 #include "problem/error.h"
+#include "tests/support/case_texts.h"
 
 namespace ciliaval::compare {
 namespace {

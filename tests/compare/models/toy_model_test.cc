@@ -11,13 +11,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "../run/synthetic.h"
 #include "compare/app/commands/commands.h"
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
 #include "compare/models/registry.h"
 #include "compare/study/case_number.h"
 #include "problem/error.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
-#include "../run/synthetic.h"
 #include "compare/output/json_file.h"
 #include "compare/regression/report.h"
 #include "problem/error.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -10,7 +10,7 @@
 #include <regex>
 #include <string>
 
-#include "../run/program.h"
+#include "tests/support/program.h"
 
 namespace ciliaval {
 namespace {

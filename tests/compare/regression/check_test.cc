@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "../run/synthetic.h"
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

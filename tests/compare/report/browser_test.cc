@@ -7,7 +7,7 @@
 #include <string>
 
 #include "browser.h"
-#include "results.h"
+#include "tests/support/results.h"
 
 namespace ciliaval {
 namespace {

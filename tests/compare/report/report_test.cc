@@ -18,7 +18,7 @@
 #include "compare/report/html.h"
 #include "compare/report/sections.h"
 #include "problem/error.h"
-#include "results.h"
+#include "tests/support/results.h"
 
 namespace ciliaval {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "program.h"
+#include "tests/support/program.h"
 
 namespace ciliaval {
 namespace {

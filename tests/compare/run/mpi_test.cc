@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval {
 namespace {

@@ -12,7 +12,7 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/text_table.h"
 #include "problem/error.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval {
 namespace {

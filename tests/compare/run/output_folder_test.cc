@@ -12,7 +12,7 @@
 
 #include "compare/output/results.h"
 #include "problem/error.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "compare/output/store/store.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval {
 namespace {

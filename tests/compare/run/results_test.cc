@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "problem/error.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "problem/error.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

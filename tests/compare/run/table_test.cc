@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "problem/error.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

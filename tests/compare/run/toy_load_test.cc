@@ -18,7 +18,7 @@
 #include "compare/study/case_number.h"
 #include "problem/error.h"
 #include "problem/load.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -21,7 +21,7 @@
 #include "compare/output/vtk/files.h"
 #include "compare/output/vtk/output.h"
 #include "problem/error.h"
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare::vtk {
 namespace {

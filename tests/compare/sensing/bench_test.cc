@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "../run/program.h"
 #include "problem/error.h"
+#include "tests/support/program.h"
 
 namespace ciliaval::compare {
 namespace {

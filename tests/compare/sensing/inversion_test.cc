@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "../run/synthetic.h"
 #include "problem/error.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "../run/synthetic.h"
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "fem/beam/beam.h"
 #include "problem/error.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "../run/program.h"
+#include "tests/support/program.h"
 
 namespace ciliaval {
 namespace {

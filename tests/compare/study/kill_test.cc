@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "compare/output/store/store.h"
-#include "study_texts.h"
+#include "tests/support/study_texts.h"
 
 namespace ciliaval {
 namespace {

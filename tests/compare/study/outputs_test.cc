@@ -17,7 +17,7 @@
 #include "compare/study/sweep.h"
 #include "fem/beam/beam.h"
 #include "problem/error.h"
-#include "study_texts.h"
+#include "tests/support/study_texts.h"
 
 namespace ciliaval::compare::study {
 namespace {

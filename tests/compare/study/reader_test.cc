@@ -9,7 +9,7 @@
 
 #include "compare/study/reader/study_reader.h"
 #include "problem/error.h"
-#include "study_texts.h"
+#include "tests/support/study_texts.h"
 
 namespace ciliaval::compare::study::reader {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "compare/study/reader/study_reader.h"
-#include "study_texts.h"
+#include "tests/support/study_texts.h"
 
 namespace ciliaval::compare::study::summary {
 namespace {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "../run/program.h"
-#include "study_texts.h"
+#include "tests/support/program.h"
+#include "tests/support/study_texts.h"
 
 namespace ciliaval {
 namespace {

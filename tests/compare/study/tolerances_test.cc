@@ -15,7 +15,7 @@
 #include "compare/study/reader/study_reader.h"
 #include "compare/study/summary/report.h"
 #include "problem/error.h"
-#include "study_texts.h"
+#include "tests/support/study_texts.h"
 
 namespace ciliaval::compare::study::summary {
 namespace {

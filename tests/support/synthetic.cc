@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::test {
 

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "../run/program.h"
-#include "../study/study_texts.h"
 #include "compare/claims/claim.h"
 #include "compare/output/provenance.h"
+#include "tests/support/program.h"
+#include "tests/support/study_texts.h"
 
 namespace ciliaval::test {
 

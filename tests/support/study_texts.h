@@ -5,7 +5,7 @@
 #include <fstream>
 #include <string>
 
-#include "../run/synthetic.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::test {
 
