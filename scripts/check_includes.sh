@@ -17,7 +17,7 @@ fem/solid: problem meshes fem
 fem/calculix: problem meshes fem
 compare/input: problem
 compare/models: problem analytic fem meshes compare/input
-compare/output: problem meshes analytic/rod/field_models.h compare/input compare/models ciliaval_version.h
+compare/output: problem meshes analytic/rod/field_models.h analytic/sources/push_forward.h compare/input compare/models ciliaval_version.h
 compare/plot: problem compare/output
 compare/regression: $shared
 compare/convergence: $shared compare/regression

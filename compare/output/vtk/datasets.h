@@ -8,6 +8,7 @@
 
 #include <cstddef>
 
+#include "analytic/sources/push_forward.h"
 #include "compare/models/run.h"
 #include "compare/output/field_grid.h"
 
