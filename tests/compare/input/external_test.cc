@@ -140,7 +140,7 @@ TEST_F(External, WrittenCaseReadsBack) {
       "centrelines = [\"a.csv\", \"a.csv\"]\nreadings = \"r.csv\"\n"
       "background = \"earth.csv\"\ntip_uncertainty = \"5 um\"\n");
   const input::Case again =
-      input::read_case(input::to_toml(c), "elsewhere/case.toml", models::known());
+      input::read_case(input::to_toml(c, models::known()), "elsewhere/case.toml", models::known());
   EXPECT_EQ(input::to_toml(again, models::known()), input::to_toml(c, models::known()));
   ASSERT_EQ(again.external.size(), 1U);
   EXPECT_EQ(again.external[0].centreline_files, c.external[0].centreline_files);

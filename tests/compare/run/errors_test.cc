@@ -159,7 +159,7 @@ models::CaseResult run_tilts(std::optional<double> rough_uncertainty,
   const std::vector<models::MechanicsEntry> mechanics{tilt("rough", 1, rough_uncertainty),
                                                       tilt("fine", 2, fine_uncertainty)};
   const std::vector<models::FieldEntry> fields{field_entry("tip", tip_field, field_uncertainty)};
-  return run(c, mechanics, fields);
+  return models::run(c, mechanics, fields);
 }
 
 // Oracle: tilts of 0.1 against 0.2 rad: chord, and tip deflection of the reference L sin 0.2.
@@ -221,7 +221,7 @@ TEST(Comparisons, OfIdenticalModelsAreZero) {
   c.fields = {"tip"};
   const std::vector<models::MechanicsEntry> mechanics{tilt("one", 1, 1e-9), tilt("other", 1, 1e-9)};
   const std::vector<models::FieldEntry> fields{field_entry("tip", tip_field, Vector3(0, 0, 0))};
-  const auto all = models::compare_models(run(c, mechanics, fields));
+  const auto all = models::compare_models(models::run(c, mechanics, fields));
   ASSERT_EQ(all.size(), 5u + 6 + 6);
   for (const models::Comparison& comparison : all) {
     EXPECT_EQ(*comparison.difference, 0) << comparison.quantity;
@@ -276,7 +276,7 @@ TEST(Comparisons, CarryTheMechanicsUncertaintyIntoTheFieldOfDifferentMechanicsOn
                                                       tilt("fine", 2, 3e-5)};
   const std::vector<models::FieldEntry> fields{field_entry("one", tip_field, u),
                                                field_entry("two", tip_field, u)};
-  const auto all = models::compare_models(run(c, mechanics, fields));
+  const auto all = models::compare_models(models::run(c, mechanics, fields));
   const auto uncertainty = [&](const char* model, const char* reference) {
     const auto it = std::find_if(all.begin(), all.end(), [&](const models::Comparison& x) {
       return x.step && x.quantity == "dB" && x.component == "y" && x.model == model &&
@@ -325,7 +325,7 @@ TEST(Comparisons, RoundingIsNeverResolved) {
         return {d.centreline.at(L).position.x() / L, 0, 1};
       },
       Vector3(0, 0, 0))};
-  const auto all = models::compare_models(run(c, mechanics, fields));
+  const auto all = models::compare_models(models::run(c, mechanics, fields));
   const models::Comparison& dBx = find(all, 0, "dB", "x", "value", "one/tip");
   EXPECT_NE(*dBx.difference, 0);
   EXPECT_EQ(dBx.verdict, models::Verdict::below_uncertainty);
@@ -345,7 +345,7 @@ TEST(Comparisons, ASensorWhereTheFieldDivergesLeavesTheOthersCompared) {
         return d.centreline.at(L).position;
       })};
   std::size_t compared = 0;
-  for (const models::Comparison& x : models::compare_models(run(c, mechanics, fields))) {
+  for (const models::Comparison& x : models::compare_models(models::run(c, mechanics, fields))) {
     if (!x.sensor) continue;
     EXPECT_EQ(*x.sensor, 1u);
     if (x.quantity != "dB" || x.component != "x" || x.step != 0) continue;
@@ -364,7 +364,7 @@ TEST(Comparisons, TakeTheMoreDetailedModelAsTheReference) {
   const std::vector<models::FieldEntry> fields{field_entry("l", tip_field),
                                                field_entry("v", tip_field)};
   std::vector<std::string> pairs;
-  for (const models::Comparison& x : models::compare_models(run(c, mechanics, fields)))
+  for (const models::Comparison& x : models::compare_models(models::run(c, mechanics, fields)))
     if (x.quantity == "tip" || (x.quantity == "B" && x.component == "x" && x.step))
       pairs.push_back(x.model + " " + x.reference);
   const std::vector<std::string> expected{"a b",     "a/l a/v", "a/l b/l", "a/v b/l",

@@ -63,8 +63,9 @@ class ExternalRun : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << content;
   }
   models::CaseResult run_case(const std::string& more) const {
-    return run(input::read_case(text + more, (folder_ / "case.toml").string(), models::known()),
-               models::mechanics_models(), models::field_models());
+    return models::run(
+        input::read_case(text + more, (folder_ / "case.toml").string(), models::known()),
+        models::mechanics_models(), models::field_models());
   }
   /// The centrelines as `ciliaval run` writes them.
   void write_centrelines(const models::CaseResult& result) const {

@@ -44,7 +44,7 @@ TEST(FieldGrid, IsTheMostDetailedMechanicsAndFieldThatNeedsNoBody) {
                     return {9, 9, 9};
                   }),
       field_entry("volume", linear), field_entry("mesh", linear, {}, true)};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   const auto grid = output::field_grid(result, fields);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->mechanics, "solid");
@@ -73,7 +73,7 @@ TEST(FieldGrid, MasksThePointsAtWhichTheModelHasNoField) {
         if (x.z() > 10e-3 && x.x() > 0) throw InputError("B diverges here");
         return {1, 1, 1};
       })};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   const auto grid = output::field_grid(result, fields);
   ASSERT_TRUE(grid);
   const output::FieldGrid::Step step = *grid->sample(0);
@@ -102,7 +102,7 @@ TEST(FieldGrid, StaysAroundTheCiliumWhateverTheSensors) {
     c.fields = {"volume"};
     const std::vector<models::MechanicsEntry> mechanics{bend("rod", false)};
     const std::vector<models::FieldEntry> fields{field_entry("volume", linear)};
-    const models::CaseResult result = run(c, mechanics, fields);
+    const models::CaseResult result = models::run(c, mechanics, fields);
     const auto grid = output::field_grid(result, fields);
     ASSERT_TRUE(grid);
     EXPECT_LT(grid->spacing.maxCoeff(), 3e-3);  // a diameter
@@ -127,7 +127,7 @@ TEST(FieldGrid, IsSampledStepByStep) {
   const std::vector<models::FieldEntry> fields{field_entry(
       "volume",
       [](const Deformation& d, const Vector3&) -> Vector3 { return d.centreline.at(L).position; })};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   std::vector<std::string> sampled;
   const auto grid =
       output::field_grid(result, fields, [&](const std::string& s) { sampled.push_back(s); });

@@ -55,7 +55,7 @@ models::CaseResult two_models() {
       field_entry("tip", [](const Deformation& d, const Vector3&) -> Vector3 {
         return d.centreline.at(d.centreline.length()).position / 3;
       })};
-  return run(c, mechanics, fields);
+  return models::run(c, mechanics, fields);
 }
 
 std::vector<std::string> keys(const json& object) {
@@ -106,7 +106,7 @@ TEST(Summary, StatesAProbesDisplacementForceAndSlipOff) {
     step.slip_off_displacement = 11.7e-3;
     return step;
   })};
-  const models::CaseResult result = run(c, mechanics, {});
+  const models::CaseResult result = models::run(c, mechanics, {});
   const json steps = json::parse(output::summary_json(result, {}, origin))["steps"];
   EXPECT_EQ(steps[0]["load"],
             json({{"type", "probe"}, {"displacement", 1e-3}, {"height", 16e-3}, {"azimuth", 0.5}}));
@@ -172,7 +172,7 @@ TEST(Summary, HasANullRowForASensorWithoutAField) {
         if (x.x() == 3) throw InputError("B diverges");
         return {1, -0.0, 2};
       })};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   const std::string text = output::summary_json(result, {}, origin);
   const json field = json::parse(text)["steps"][0]["fields"]["one/tip"];
   EXPECT_EQ(field["B"], json::parse("[null, [1.0, 0.0, 2.0]]"));

@@ -42,7 +42,7 @@ TEST(Run, SubtractsTheFieldOfTheUndeformedCilium) {
   c.fields = {"dipole"};
   const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
   const std::vector<models::FieldEntry> fields{field_entry("dipole", tip_dipole)};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   ASSERT_EQ(result.fields.size(), 1u);
   const models::FieldRun& field = result.fields[0];
   EXPECT_EQ(field.name(), "bend/dipole");
@@ -69,7 +69,7 @@ TEST(Run, RecordsWhatAModelThrowsAndGoesOnWithTheOthers) {
                     throw InputError("the sensor is on the rim");
                   }),
       field_entry("dipole", tip_dipole)};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   ASSERT_EQ(result.mechanics.size(), 2u);
   for (const MechanicsStep& step : result.mechanics[0].result.steps) {
     EXPECT_EQ(step.status, Status::failed);
@@ -100,7 +100,7 @@ TEST(Run, ASensorWhereTheFieldDivergesLeavesTheOthers) {
   const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
   const std::vector<models::FieldEntry> fields{
       field_entry("singular", singular, Vector3(1e-9, 0, 0))};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   const models::FieldRun& field = result.fields.at(0);
   for (std::size_t i = 0; i < 2; ++i) {
     const models::FieldStep& step = *field.steps[i];
@@ -157,7 +157,7 @@ TEST(Run, AModelOfOneSystemIsAskedAgainOnlyIfItRefusesSensors) {
     const models::FieldEntry entry{"coupled", "", [&calls, fails](const input::ModelOptions&) {
                                      return std::make_unique<Coupled>(fails, calls);
                                    }};
-    return run(c, mechanics, std::vector<models::FieldEntry>{entry})
+    return models::run(c, mechanics, std::vector<models::FieldEntry>{entry})
         .fields.at(0)
         .steps.at(0)
         .value();
@@ -189,7 +189,7 @@ TEST(Run, TakesAFieldOrAShapeThatIsNotFiniteForAFailure) {
       field_entry("nan", [=](const Deformation&, const Vector3&) -> Vector3 {
         return {nan, 0, 0};
       })};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   EXPECT_EQ(result.mechanics[0].result.steps[0].status, Status::failed);
   EXPECT_FALSE(result.mechanics[0].result.steps[0].deformation);
   EXPECT_FALSE(result.fields.back().steps[0]->failure.empty());
@@ -210,7 +210,7 @@ TEST(Run, ASlipOffIsAResultWithoutAFieldAndNoFailure) {
         return step;
       })};
   const std::vector<models::FieldEntry> fields{field_entry("dipole", tip_dipole)};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   EXPECT_TRUE(models::all_solved(result));
   EXPECT_TRUE(result.fields[0].steps[0]);
   EXPECT_FALSE(result.fields[0].steps[1]);
@@ -227,7 +227,7 @@ TEST(Run, AFieldModelThatNeedsABodyRunsOnlyWhereThereIsOne) {
         return step;
       })};
   const std::vector<models::FieldEntry> fields{field_entry("mesh", tip_dipole, {}, true)};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   ASSERT_EQ(result.fields.size(), 1u);
   EXPECT_EQ(result.fields[0].name(), "body/mesh");
 }
@@ -236,7 +236,7 @@ TEST(Run, RefusesAModelThatDoesNotExist) {
   input::Case c = paper_case({1e-3});
   c.mechanics = {"elastika"};
   const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
-  EXPECT_THROW(run(c, mechanics, {}), InputError);
+  EXPECT_THROW(models::run(c, mechanics, {}), InputError);
 }
 
 }  // namespace

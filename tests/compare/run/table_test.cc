@@ -42,7 +42,7 @@ TEST(Table, ShowsValuesWithUnitsAndErrorsAgainstTheReference) {
   };
   const std::vector<models::FieldEntry> fields{
       field_entry("sure", formula, Vector3(1e-6, 2e-6, 3e-6)), field_entry("tip", formula)};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("contact, force 1 mN at height 16 mm, azimuth 0 deg"));
   EXPECT_THAT(text, ContainsRegex("rough +converged +1.9967 +0.0000 +19.9001 +0.001 +5.730 +1 "));
@@ -67,7 +67,7 @@ TEST(Table, SaysWhyAModelHasNoResult) {
         step.slip_off_force = 5.862e-3;
         return step;
       })};
-  const models::CaseResult result = run(c, mechanics, {});
+  const models::CaseResult result = models::run(c, mechanics, {});
   const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("slips off above 5.862 mN"));
 }
@@ -86,7 +86,7 @@ TEST(Table, ShowsTheForceThatAProbesDisplacementTakes) {
     step.slip_off_displacement = 11.66e-3;
     return step;
   })};
-  const models::CaseResult result = run(c, mechanics, {});
+  const models::CaseResult result = models::run(c, mechanics, {});
   const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("probe, displacement 2 mm at height 16 mm, azimuth 0 deg"));
   EXPECT_THAT(text, ContainsRegex("rod +converged .* 1.2345 "));
@@ -112,7 +112,7 @@ TEST(Table, TakesTheLastPairWithAFieldForTheReferenceOfThePathToo) {
       field_entry("broken", [](const Deformation&, const Vector3&) -> Vector3 {
         throw SolverError("no convergence");
       })};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, HasSubstr("RRMSE (3) against rough/full"));
   EXPECT_THAT(text, ContainsRegex("rough/half +50.00 +- +50.00 +50.00 +- +50.00"));
@@ -132,7 +132,7 @@ TEST(Table, ShowsBWhereOnlyItsChangeIsUndefined) {
         if (x == 0) throw InputError("B diverges");
         return {0.1 * x, -1e-12, 0};
       })};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   const std::string text = output::table(result, models::compare_models(result));
   EXPECT_THAT(text, ContainsRegex("rough/tip +0.1997 +0.0000 +0.0000 +- +- +- "));
   EXPECT_THAT(text, Not(HasSubstr("-0.0000")));

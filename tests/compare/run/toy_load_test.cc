@@ -78,8 +78,10 @@ TEST_F(ToyLoad, IsReadFromACaseFileAndWrittenBack) {
   ASSERT_TRUE(couple);
   EXPECT_DOUBLE_EQ(couple->couple, 3e-6);
   EXPECT_DOUBLE_EQ(couple->arclength, 17e-3);
-  EXPECT_EQ(input::read_case(input::to_toml(problem), "again.toml", models::known()).load_path,
-            problem.load_path);
+  EXPECT_EQ(
+      input::read_case(input::to_toml(problem, models::known()), "again.toml", models::known())
+          .load_path,
+      problem.load_path);
   EXPECT_THAT(input::key_table(models::known()), HasSubstr("| `load.couple` |"));
 }
 

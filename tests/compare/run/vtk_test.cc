@@ -90,7 +90,7 @@ models::CaseResult two_models() {
       test::field_entry("line", [](const Deformation& d, const Vector3& x) -> Vector3 {
         return d.centreline.at(L).position + x;
       })};
-  return run(c, mechanics, fields);
+  return models::run(c, mechanics, fields);
 }
 
 // Oracle: the bricks' deformation, of degree 2, in closed form: 27 nodes give it exactly. Error is
@@ -378,7 +378,7 @@ TEST(WriteVtk, WritesSensorsWhereThereIsAFieldAndMasksThoseWithoutOne) {
         if (x.x() > 2.5 || (straight && x.x() > 1.5)) throw InputError("B diverges here");
         return d.centreline.at(L).position + x;
       })};
-  const models::CaseResult result = run(c, mechanics, fields);
+  const models::CaseResult result = models::run(c, mechanics, fields);
   output::vtk::write_vtk(result, std::nullopt, origin, folder.path() / "vtk");
   EXPECT_FALSE(fs::exists(folder.path() / "vtk" / "sensors_0001.vtp"));
   const auto reader = read_back<vtkXMLPolyDataReader>(folder.path() / "vtk" / "sensors_0000.vtp");
