@@ -16,3 +16,10 @@ if(CILIAVAL_SANITIZE)
   # was built without, so that one would free what the other has allocated.
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
+
+# GNU ld takes ten times as long to link a program against deal.II's libraries.
+include(CheckLinkerFlag)
+check_linker_flag(CXX -fuse-ld=gold CILIAVAL_HAS_GOLD)
+if(CILIAVAL_HAS_GOLD)
+  add_link_options(-fuse-ld=gold)
+endif()
