@@ -295,7 +295,7 @@ const BadCase contradictions[]{
      "state the load as one of those"},
     {"CalculixWithoutAProgram", "[models.solid]\nrefinement = 1",
      "[models.calculix]\nprogram = \"\"", "35:11", "'program' must name a program"},
-    {"MeshWithoutSolid", ", \"solid\"]", "]", "32:39", "add 'solid' to 'mechanics'"},
+    {"MeshWithoutSolid", ", \"solid\"]", "]", "32:39", "add one of calculix, solid to 'mechanics'"},
     {"TooLongTogether", "length = \"3 mm\"", "length = \"100 m\"", "8:1",
      "the segments are 100.017 m long together"},
     {"TooSlender", "diameter = \"3 mm\"", "diameter = \"3 nm\"", "6:12",
@@ -397,7 +397,7 @@ const BadCase later[]{
      "[models.potential]\nrelative_permeability = 0", "35:25",
      "'relative_permeability' is 0, but must be between 0"},
     {"PotentialPlates", "[models.solid]\nrefinement = 1", "[models.potential]\nplate = \"iron\"",
-     "35:9", "the plates are a list"},
+     "35:9", "expected 0 to 100 tables [[models.potential.plate]]"},
     {"PotentialPlateCorners", "[models.solid]\nrefinement = 1",
      "[[models.potential.plate]]\nlower = [\"0 mm\", \"0 mm\", \"0 mm\"]\nupper = [\"1 mm\", "
      "\"-1 mm\", \"1 mm\"]\nrelative_permeability = 2",

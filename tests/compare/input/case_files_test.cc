@@ -57,8 +57,8 @@ TEST(BadCaseFiles, EveryStepOfAPathIsChecked) {
 
 TEST(BadCaseFiles, APointAmongCoordinatesIsRefused) {
   const std::string text = replaced(good_case, "\"0.2 mm\"", "[\"0 m\", \"0 m\", \"0 m\"]");
-  EXPECT_THAT(located(text), testing::ElementsAre(StartsWith("28:13: expected a point"),
-                                                  StartsWith("28:47: expected a point")));
+  EXPECT_THAT(located(text), testing::ElementsAre(StartsWith("28:13: 'position' must be a point"),
+                                                  StartsWith("28:47: 'position' must be a point")));
 }
 
 TEST(BadCaseFiles, AnEmptyFileLacksItsTables) {

@@ -18,15 +18,16 @@ TEST(Registry, MakesEveryModelUnderAnIdOfItsOwn) {
   });
 }
 
-TEST(Registry, RefinesByOptionsThatTheModelHasWithinTheirRange) {
+// The coarsest levels may be coarser than a case file may state.
+TEST(Registry, RefinesByOptionsThatTheModelHasDownToValuesInTheirRange) {
   models::known().for_each([](const auto& entry) {
     for (const input::Refinement& refinement : entry.refinements) {
       const auto option =
           std::find_if(entry.options.begin(), entry.options.end(),
                        [&](const input::Option& o) { return o.name == refinement.option; });
       ASSERT_NE(option, entry.options.end()) << entry.id << '.' << refinement.option;
-      for (const double value : refinement.values)
-        EXPECT_TRUE(option->range.contains(value)) << entry.id << '.' << refinement.option;
+      EXPECT_TRUE(option->range.contains(refinement.values.back()))
+          << entry.id << '.' << refinement.option;
     }
   });
 }
