@@ -147,7 +147,8 @@ LevelResult level_of(const models::CaseResult& result, const ModelRefinement& re
   return level;
 }
 
-Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels, const regression::Measurement& finest,
+Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
+                               const regression::Measurement& finest,
                                const ModelRefinement& refinement) {
   if (refinement.sequence.law == input::Refinement::Law::power)
     return extrapolate(levels, refinement.sequence.formal_order,

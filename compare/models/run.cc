@@ -276,8 +276,9 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   for (const auto& [entry, model] : mechanics_models) {
     if (progress) progress(entry->id + ": starting");
     const auto kept = checkpoints.find(entry->id);
-    result.mechanics.push_back(run_mechanics(
-        entry->id, *model, problem, progress, kept != checkpoints.end() ? kept->second : Checkpoint{}));
+    result.mechanics.push_back(
+        run_mechanics(entry->id, *model, problem, progress,
+                      kept != checkpoints.end() ? kept->second : Checkpoint{}));
   }
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.centrelines.empty()) result.mechanics.push_back(external_mechanics(model, problem));

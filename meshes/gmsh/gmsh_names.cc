@@ -106,8 +106,7 @@ void find_segments(UserMesh& mesh) {
       mesh.fail(fmt::format("physical volume {} has no name; it must have that of a segment: '{}'",
                             group.tag, fmt::join(names, "', '")));
     mesh.fail(fmt::format("the physical volume '{}' is no segment of the cilium, which has '{}'{}",
-                          group.name, fmt::join(names, "', '"),
-                          did_you_mean(group.name, names)));
+                          group.name, fmt::join(names, "', '"), did_you_mean(group.name, names)));
   };
   const auto several = [&](int entity, std::size_t a, std::size_t b) {
     mesh.fail(

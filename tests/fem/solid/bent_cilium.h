@@ -32,8 +32,8 @@ struct BentCilium {
     options.rings = 1;
     options.finest_layer = options.coarsest_layer = 0.7;
     options.planes = {5e-3};
-    meshes::cylinder::make_cylinder({3e-3, {{"a", 3e-3, 1e5, 0.49, 0}, {"b", 5e-3, 3e5, 0.49, 0}}}, options,
-                          triangulation);
+    meshes::cylinder::make_cylinder({3e-3, {{"a", 3e-3, 1e5, 0.49, 0}, {"b", 5e-3, 3e5, 0.49, 0}}},
+                                    options, triangulation);
     mapping = meshes::cylinder::cylinder_mapping(triangulation);
     space = std::make_unique<discretisation::SolidSpace>(triangulation, *mapping, materials);
     quadrature = std::make_unique<discretisation::ExtrudedQuadrature>(*space);
