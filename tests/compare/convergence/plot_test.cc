@@ -83,7 +83,7 @@ TEST(ConvergencePlot, ShowsTheLastStepsTipAndFieldsWithOrdersOrWhyThereAreNone) 
   const convergence::ConvergencePlot drawing = convergence::convergence_plot(problem, {study()});
   EXPECT_THAT(drawing.script, HasSubstr("solid, refinement, load step 2 of 2"));
   EXPECT_THAT(drawing.script, HasSubstr("tip: order 2.00"));
-  EXPECT_THAT(drawing.script, HasSubstr("'|dB| solid/mesh: inconclusive: the convergence is not"));
+  EXPECT_THAT(drawing.script, HasSubstr("\"|dB| solid/mesh: inconclusive: the convergence is not"));
   EXPECT_THAT(drawing.script, Not(HasSubstr("solid/line")));
   const std::size_t tip = drawing.script.find("$points0_1 << EOD\n1 ");
   ASSERT_NE(tip, std::string::npos);

@@ -154,9 +154,11 @@ class ToyModel : public testing::Test {
       add(line);
     program.parse(words);
     testing::internal::CaptureStdout();
-    EXPECT_EQ(line.chosen(), expected) << words;
+    const ExitCode code = line.chosen();
     std::fflush(stdout);
-    return testing::internal::GetCapturedStdout();
+    std::string output = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(code, expected) << words << '\n' << output;
+    return output;
   }
   nlohmann::json json(const fs::path& file) const {
     return nlohmann::json::parse(test::read_text(folder_.path() / file));
