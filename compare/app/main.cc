@@ -147,8 +147,8 @@ ExitCode execute(int argc, char** argv) {
 int silenced_stderr = STDERR_FILENO;
 
 /// Spares Open MPI a daemon to start other ranks and the search for fast networks, which one rank,
-/// or ranks on one machine, do not need: 0.3 s together. What the user has set stands; other MPI
-/// libraries do not know these names.
+/// or ranks on one machine, do not need. What the user has set stands; other MPI libraries do not
+/// know these names.
 void spare_open_mpi_the_network() {
   constexpr int keep_what_is_set = 0;
   const char* all = std::getenv("OMPI_COMM_WORLD_SIZE");

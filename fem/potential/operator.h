@@ -53,7 +53,7 @@ class PotentialOperator : public dealii::Subscriptor {
 
 /// One V-cycle of two levels for a PotentialOperator: Chebyshev's iteration on its degree, and one
 /// cycle of smoothed aggregation (ML) on the trilinear elements of the same octree. The transfer is
-/// ours: deal.II's MGTwoLevelTransfer is not implemented for locally refined meshes (9.4).
+/// ours: MGTwoLevelTransfer of deal.II 9.4 refuses locally refined meshes.
 class PotentialMultigrid {
  public:
   /// The algebraic multigrid of the trilinear elements, shared by the degrees above.

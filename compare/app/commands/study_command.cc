@@ -161,8 +161,8 @@ ExitCode execute(const Options& options, const std::string& words) {
   const std::string json_text =
       json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   output::write_file(folder / "study.json", json_text);
-  if (options.json) output::write_file(*options.json, json_text);
   print(text + fmt::format("\nResults: {}\n", folder.string()));
+  if (options.json) output::write_file(*options.json, json_text);  // a full disk costs no table
   for (const study::summary::StudyPlot& drawing : study::summary::plots(result.sweep))
     plot::write_svg(folder / drawing.name, drawing.script, drawing.size);
   return exit_code(result);

@@ -82,10 +82,10 @@ void check_points(const Points& points, const CsvTable& table, double L, Faults&
                                               chords.back(), L));
 }
 
-/// The indices of the points where the curve may have a kink in its curvature: the ends, and the
-/// points at interfaces and at a loaded section.
-std::vector<std::size_t> kinks(const std::vector<double>& S, const Cilium& cilium,
-                               const Load& load) {
+/// The indices of the points where the curvature may jump: the ends, and the points at interfaces
+/// and at a loaded section.
+std::vector<std::size_t> curvature_jumps(const std::vector<double>& S, const Cilium& cilium,
+                                         const Load& load) {
   std::vector<double> places = cilium.interfaces();
   if (const auto section = load.as<SectionLoad>()) places.push_back(section->arclength);
   std::vector<std::size_t> result{0, S.size() - 1};
@@ -98,14 +98,14 @@ std::vector<std::size_t> kinks(const std::vector<double>& S, const Cilium& ciliu
 }
 
 /// The first point of each piece and the last of all: pieces of at most three intervals, as even as
-/// may be between kinks.
-std::vector<std::size_t> piece_ends(const std::vector<std::size_t>& kinks) {
+/// may be between jumps.
+std::vector<std::size_t> piece_ends(const std::vector<std::size_t>& jumps) {
   constexpr std::size_t most_intervals = 3;
-  std::vector<std::size_t> result{kinks.front()};
-  for (std::size_t k = 0; k + 1 < kinks.size(); ++k) {
-    const std::size_t intervals = kinks[k + 1] - kinks[k];
+  std::vector<std::size_t> result{jumps.front()};
+  for (std::size_t k = 0; k + 1 < jumps.size(); ++k) {
+    const std::size_t intervals = jumps[k + 1] - jumps[k];
     const std::size_t pieces = (intervals + most_intervals - 1) / most_intervals;
-    for (std::size_t i = 1; i <= pieces; ++i) result.push_back(kinks[k] + intervals * i / pieces);
+    for (std::size_t i = 1; i <= pieces; ++i) result.push_back(jumps[k] + intervals * i / pieces);
   }
   return result;
 }
@@ -118,7 +118,7 @@ Vector3 bending_direction(const Points& points, double L, const Load& load) {
 
 /// Cubic interpolation, with the sections at the angle θ, or normal to the curve.
 Centreline interpolated(const Points& points, const Cilium& cilium, const Load& load) {
-  const std::vector<std::size_t> ends = piece_ends(kinks(points.S, cilium, load));
+  const std::vector<std::size_t> ends = piece_ends(curvature_jumps(points.S, cilium, load));
   const Vector3 e = bending_direction(points, cilium.length(), load);
   std::vector<Centreline::Piece> pieces;
   for (std::size_t p = 0; p + 1 < ends.size(); ++p) {

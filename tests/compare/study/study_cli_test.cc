@@ -256,6 +256,8 @@ TEST(StudyCommand, WhatCannotBeDoneHasItsExitCodeAndMessage) {
   fails("study varied.study.toml --json none/x.json", 4, "none/x.json");
   fails("study varied.study.toml -o plotless", 4, "apt-get install gnuplot-nox", "PATH=/nowhere ");
   EXPECT_TRUE(fs::exists(folder.path() / "plotless/varied/study.csv"));
+  fails("study varied.study.toml --json /dev/full", 4, "/dev/full");
+  EXPECT_THAT(read_text(folder.path() / "out.txt"), HasSubstr("Results: results/varied"));
   const std::string full = "cd '" + folder.path().string() +
                            "' && '" CILIAVAL_PROGRAM
                            "' study varied.study.toml >/dev/full 2>err.txt";
