@@ -60,14 +60,17 @@ std::optional<double> value_at(const Load& load, Site site) {
 }  // namespace
 
 const LoadType& ContactLoad::type() {
-  static const LoadType type{"contact",
-                             {force_parameter, contact_height_parameter, azimuth_parameter}};
+  static const LoadType type{
+      "contact",
+      "horizontal force that stays at a height while the cilium slides under it",
+      {force_parameter, contact_height_parameter, azimuth_parameter}};
   return type;
 }
 
 const LoadType& FlowLoad::type() {
   static const LoadType type{
       "flow",
+      "horizontal force per unit of current height: drag",
       {parameter("force_per_height", quantity::force_per_length, any_magnitude, "from `velocity`",
                  "`flow`: the force q per unit of current height; this or `velocity`.",
                  ", {:g} N per metre of height"),
@@ -89,6 +92,7 @@ const LoadType& FlowLoad::type() {
 const LoadType& SectionLoad::type() {
   static const LoadType type{
       "section",
+      "dead force on one material cross-section",
       {force_parameter,
        parameter("arclength", quantity::length, length_range, "",
                  "`section`: the arc length of the loaded section; not beyond the tip.",
@@ -100,6 +104,7 @@ const LoadType& SectionLoad::type() {
 const LoadType& DeadLoad::type() {
   static const LoadType type{
       "dead",
+      "dead force per unit of reference length",
       {parameter("force_per_length", quantity::force_per_length, any_magnitude, "",
                  "`dead`: the force per reference length.", ", {:g} N per metre of length"),
        azimuth_parameter}};
@@ -109,6 +114,7 @@ const LoadType& DeadLoad::type() {
 const LoadType& ProbeLoad::type() {
   static const LoadType type{
       "probe",
+      "displacement of the contact point at a height: the contact force is a result",
       {parameter("displacement", quantity::length,
                  {0, 100, false,
                   "a displacement is not negative (to turn it round, add 180 deg to the azimuth) "

@@ -36,10 +36,11 @@ struct LoadStatement {
   double (*magnitude)(std::span<const double> values, const Cilium& cilium) = nullptr;
 };
 
-/// Name and parameters of a load type: the one declaration from which case files, results, studies,
-/// tables and checkpoints take them.
+/// Name, description and parameters of a load type: the one declaration from which case files,
+/// results, studies, tables and checkpoints take them.
 struct LoadType {
   std::string_view name;
+  std::string_view description;           ///< a line of `ciliaval list`
   std::vector<LoadParameter> parameters;  ///< the magnitude first, the azimuth last
   std::optional<LoadStatement> statement{};
   /// A key that [load] must not have, and why.

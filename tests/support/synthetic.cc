@@ -1,29 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "tests/support/synthetic.h"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 namespace ciliaval::test {
-
-TemporaryFolder::TemporaryFolder() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  path_ = std::filesystem::temp_directory_path() /
-          ("ciliaval_" + std::string(info->test_suite_name()) + "_" + info->name() + "_" +
-           std::to_string(getpid()));
-  std::filesystem::remove_all(path_);
-  std::filesystem::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 std::string case_text(const ContactCaseText& text, const std::string& models) {
   return "[case]\nname = \"" + text.name + R"("
@@ -50,14 +31,6 @@ azimuth = "30 deg"
 [sensor]
 position = )" +
          text.sensor + "\n[models]\n" + models;
-}
-
-std::string read_text(const std::filesystem::path& file) {
-  const std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw std::runtime_error("there is no " + file.string());
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
 }
 
 Centreline planar_curve(double L, double joint, const Vector3& e,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,22 +8,10 @@
 #include <vector>
 
 #include "compare/models/run.h"
+#include "tests/support/temporary_folder.h"
 
 /// Deformations and models of known shape, to test what is made of them.
 namespace ciliaval::test {
-
-/// A folder for one test, empty at its start, removed at its end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The text of a case file: the paper's cilium, or one with another magnet, under contact forces.
 struct ContactCaseText {
@@ -36,8 +23,6 @@ struct ContactCaseText {
 };
 /// `models` are the lines that follow `[models]`.
 std::string case_text(const ContactCaseText& text, const std::string& models);
-
-std::string read_text(const std::filesystem::path& file);
 
 /// The curve r(S) with the section's rotation about ê_z × e by θ(S), in two pieces that join at
 /// `joint`, each on 24 Chebyshev points.

@@ -10,6 +10,7 @@
 #include "compare/sensing/bench.h"
 #include "compare/study/reader/study_reader.h"
 #include "problem/error.h"
+#include "problem/load.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
@@ -92,15 +93,10 @@ ExitCode list(const Options&, const std::string&) {
       "[[models.external]]: centrelines and readings from CSV files (docs/guide/referees.md)");
   text += "\nField models\n";
   add(models::field_models());
-  text +=
-      "\nLoads\n"
-      "  contact    horizontal force that stays at a height while the cilium slides under it\n"
-      "  flow       horizontal force per unit of current height: drag\n"
-      "  section    dead force on one material cross-section\n"
-      "  dead       dead force per unit of reference length\n"
-      "  probe      displacement of the contact point at a height: the contact force is a result\n"
-      "\n";
-  print(text + list_of_cases());
+  text += "\nLoads\n";
+  for (const LoadType* type : load_types())
+    text += fmt::format("  {:<10} {}\n", type->name, type->description);
+  print(text + "\n" + list_of_cases());
   return ExitCode::pass;
 }
 

@@ -13,6 +13,7 @@
 #include "compare/models/registry.h"
 #include "problem/error.h"
 #include "tests/support/case_texts.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -84,16 +85,8 @@ TEST(BadCaseFiles, VeryManyFaultsAreCutOff) {
 /// A folder for the files of one test.
 class CaseFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, std::string_view text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+    return folder_.write(name, text);
   }
   /// What read_case() says of a file, or "" if it reads it.
   static std::string fault_of(const std::filesystem::path& file) {
@@ -105,7 +98,7 @@ class CaseFiles : public testing::Test {
     return {};
   }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(CaseFiles, AGoodFileIsReadAndAFaultNamesTheFile) {
@@ -117,9 +110,9 @@ TEST_F(CaseFiles, AGoodFileIsReadAndAFaultNamesTheFile) {
 }
 
 TEST_F(CaseFiles, WhatIsNoReadableFileIsAnInputError) {
-  EXPECT_EQ(fault_of(folder_ / "none.toml"),
-            (folder_ / "none.toml").string() + ": the case file does not exist");
-  EXPECT_EQ(fault_of(folder_), folder_.string() + ": is a folder, not a case file");
+  EXPECT_EQ(fault_of(folder_.path() / "none.toml"),
+            (folder_.path() / "none.toml").string() + ": the case file does not exist");
+  EXPECT_EQ(fault_of(folder_.path()), folder_.path().string() + ": is a folder, not a case file");
   EXPECT_EQ(fault_of("/dev/null"), "/dev/null: is not a regular file");
   EXPECT_THAT(fault_of(""), HasSubstr("the case file does not exist"));
   EXPECT_THAT(fault_of(write("large.toml", std::string(1'000'001, '#'))),

@@ -2,22 +2,19 @@
 // Centrelines and readings from CSV files: what is read, and what is said of files that are wrong.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
 #include "problem/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -60,16 +57,11 @@ constexpr const char* readings =
 
 class External : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   input::Case read(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
     std::string text = head + keys;
     text.replace(text.find("AZIMUTH"), 7, azimuth);
-    return input::read_case(text, (folder_ / "case.toml").string(), models::known());
+    return input::read_case(text, (folder_.path() / "case.toml").string(), models::known());
   }
   /// The faults, without the folder's name.
   std::string faults(const std::string& keys, const std::string& azimuth = "\"30 deg\"") const {
@@ -77,7 +69,7 @@ class External : public testing::Test {
       read(keys, azimuth);
     } catch (const InputError& error) {
       std::string text = error.what();
-      const std::string prefix = folder_.string() + "/";
+      const std::string prefix = folder_.path().string() + "/";
       for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
         text.erase(at, prefix.size());
       return text;
@@ -99,7 +91,7 @@ class External : public testing::Test {
     return readings_faults(readings, "background = \"earth.csv\"\n");
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("external_" + std::to_string(getpid()));
+  test::TemporaryFolder folder_;
 };
 
 std::string replaced(std::string text, const std::string& old, const std::string& with) {

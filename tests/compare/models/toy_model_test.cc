@@ -172,8 +172,11 @@ double angle(double force, double pieces = 16, double stiffness = 1e-3) {
   return force * 16e-3 / stiffness * (1 + 1 / (pieces * pieces));
 }
 
-TEST_F(ToyModel, IsListed) {
+TEST_F(ToyModel, IsListedAndSoIsALoad) {
+  static const LoadType tug{"tug", "a load of this test", ContactLoad::type().parameters};
+  add_load_type(tug);
   const std::string list = program("list");
+  EXPECT_THAT(list, HasSubstr("tug        a load of this test\n"));
   EXPECT_THAT(list, HasSubstr("hinge      a rigid rod on a spring\n"));
   EXPECT_THAT(list, HasSubstr("lamp       a source at the tip; slow\n"));
 }

@@ -17,6 +17,7 @@
 
 #include "fem/solid/solid.h"
 #include "problem/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::fem::calculix {
 namespace {
@@ -42,14 +43,12 @@ const LoadPath section_path{SectionLoad{.force = 2e-3, .arclength = 8e-3, .azimu
 class CalculixModel : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
     fs::create_directories(temporary_);
     setenv("TMPDIR", temporary_.c_str(), 1);
   }
   void TearDown() override {
     unsetenv("TMPDIR");
     setenv("PATH", path_.c_str(), 1);
-    fs::remove_all(folder_);
   }
 
   /// A shell script in place of CalculiX, called with `-i cilium` in its folder.
@@ -79,8 +78,8 @@ class CalculixModel : public testing::Test {
     return result.steps[0].message;
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) / ("calculix_model_" + std::to_string(getpid()));
+  const test::TemporaryFolder own_;
+  const fs::path folder_ = own_.path();
   const fs::path temporary_ = folder_ / "tmp";
   const std::string path_ = std::getenv("PATH");
 };

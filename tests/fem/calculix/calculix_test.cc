@@ -14,6 +14,7 @@
 #include "fem/solid/solid.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::fem::calculix {
 namespace {
@@ -139,8 +140,8 @@ TEST(Calculix, SolvesTheSameCilium) {
   if (std::system("command -v ccx > /dev/null 2>&1") != 0)
     GTEST_SKIP() << "CalculiX is not installed: apt-get install calculix-ccx";
   const Load load = SectionLoad{.force = 4e-3, .arclength = 8e-3, .azimuth = 0};
-  const fs::path folder = fs::path(testing::TempDir()) / "calculix_test";
-  fs::create_directories(folder);
+  const test::TemporaryFolder own;
+  const fs::path folder = own.path();
   const meshes::MeshNodes nodes = mesh(true);
   std::ofstream input(folder / "cilium.inp");
   write_calculix(input, nodes, cilium(), load);
@@ -158,7 +159,6 @@ TEST(Calculix, SolvesTheSameCilium) {
   const double expected = line.at(line.length()).position.x();
   EXPECT_NEAR(deflection, expected, 0.03 * expected);
   EXPECT_GT(deflection, 1e-3);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "bodies.h"
-#include "derby_olbert.h"
+#include "tests/analytic/oracles/derby_olbert.h"
 
 namespace ciliaval::oracle {
 namespace {

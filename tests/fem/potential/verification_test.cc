@@ -8,11 +8,11 @@
 
 #include "analytic/rod/field_models.h"
 #include "bodies.h"
-#include "cylinder_body.h"
-#include "derby_olbert.h"
 #include "fem/potential/adaptive.h"
 #include "fem/potential/potential.h"
 #include "permeable_cylinder.h"
+#include "tests/analytic/oracles/cylinder_body.h"
+#include "tests/analytic/oracles/derby_olbert.h"
 
 namespace ciliaval::fem::potential {
 namespace {

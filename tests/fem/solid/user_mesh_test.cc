@@ -2,7 +2,6 @@
 // The solid on meshes that come from files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "meshes/gmsh/write_gmsh.h"
 #include "problem/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::fem::solid {
 namespace {
@@ -26,11 +26,6 @@ Vector3 tip(const SolidOptions& options, const Load& load) {
   const MechanicsResult result = Solid(options).solve(cilium, {load});
   if (result.steps.at(0).status != Status::converged) throw SolverError(result.steps.at(0).message);
   return result.steps[0].deformation->centreline.at(cilium.length()).position;
-}
-
-std::filesystem::path temporary_mesh() {
-  return std::filesystem::temp_directory_path() /
-         ("ciliaval_solid_" + std::to_string(getpid()) + ".msh");
 }
 
 // Oracle: the mesh that was not written and read. The half of the built-in mesh is turned off, for
@@ -48,12 +43,12 @@ TEST(SolidOnAMeshFile, BendsAsOnTheMeshThatWasWritten) {
   meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {load}),
                                   triangulation);
   const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
-  options.mesh = temporary_mesh();
+  const test::TemporaryFolder folder;
+  options.mesh = folder.path() / "cilium.msh";
   options.mesh_unit = 1e-3;
   meshes::gmsh::write_gmsh(meshes::mesh_nodes(triangulation, *mapping), paper_cilium(),
                            options.mesh, {.unit = 1e-3});
   const Vector3 read = tip(options, load);
-  std::filesystem::remove(options.mesh);
   EXPECT_GT(made.x(), 1e-3);
   EXPECT_LT((read - made).norm() / made.x(), 1e-10);
 }
@@ -67,13 +62,13 @@ TEST(SolidOnAMeshFile, TakesLoadsOfAnyAzimuth) {
   dealii::Triangulation<3> triangulation;
   meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {}),
                                   triangulation);
-  options.mesh = temporary_mesh();
+  const test::TemporaryFolder folder;
+  options.mesh = folder.path() / "cilium.msh";
   meshes::gmsh::write_gmsh(
       meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation)),
       paper_cilium(), options.mesh);
   const Vector3 x = tip(options, SectionLoad{1e-4, 20e-3, 0});
   const Vector3 y = tip(options, SectionLoad{1e-4, 20e-3, std::numbers::pi / 2});
-  std::filesystem::remove(options.mesh);
   EXPECT_GT(x.x(), 1e-5);
   EXPECT_NEAR(y.y() / x.x(), 1, 1e-8);
   EXPECT_NEAR(y.x() / x.x(), 0, 1e-8);

@@ -17,6 +17,7 @@
 #include "meshes/gmsh/write_gmsh.h"
 #include "meshes/mesh_nodes.h"
 #include "problem/error.h"
+#include "tests/support/temporary_folder.h"
 #include "text_mesh.h"
 
 namespace ciliaval::meshes::gmsh {
@@ -283,7 +284,7 @@ class PlantedFault : public testing::TestWithParam<Fault> {};
 // Oracle: the fault that was planted. The same mesh without it is read (the mutation is what the
 // message is about).
 TEST_P(PlantedFault, IsToldWithItsPlaceAndRemedy) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   TextMesh mesh = test::built_in(cilium);
   const auto file = folder.path() / "cilium.msh";
@@ -300,7 +301,7 @@ INSTANTIATE_TEST_SUITE_P(Gmsh, PlantedFault, testing::ValuesIn(all_faults()),
                          [](const auto& instance) { return instance.param.name; });
 
 TEST(GmshFileFaults, AreFileErrors) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   const std::string good = test::built_in(cilium).text();
   dealii::Triangulation<3> triangulation;
@@ -328,7 +329,7 @@ TEST(GmshFileFaults, AreFileErrors) {
 
 // A file cut anywhere, also where a section happens to end, is an error and nothing worse.
 TEST(GmshFileFaults, ATruncatedFileIsNeverRead) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   const std::string good = test::built_in(cilium).text();
   std::vector<std::size_t> cuts{good.find("$Nodes"), good.find("$Elements"),
@@ -346,7 +347,7 @@ TEST(GmshFileFaults, ATruncatedFileIsNeverRead) {
 
 /// The message of a file of this content; "read" if it is read.
 std::string message_of(const std::string& text, const Cilium& cilium) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const auto file = folder.path() / "damaged.msh";
   std::ofstream(file, std::ios::binary) << text;
   dealii::Triangulation<3> triangulation;
@@ -361,7 +362,7 @@ std::string message_of(const std::string& text, const Cilium& cilium) {
 
 /// The content of a good file, as Gmsh writes it.
 std::string good_text(const GmshFormat& format, const Cilium& cilium) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const auto file = folder.path() / "good.msh";
   test::built_in(cilium).write(file);
   dealii::Triangulation<3> triangulation;
@@ -437,8 +438,8 @@ TEST(GmshFileFaults, MutatedFilesAreReadOrRefused) {
 
 // The Gmsh library writes preferences into ~/.fltk.
 TEST(GmshFile, LeavesTheHomeFolderAlone) {
-  const test::Folder home;
-  const test::Folder folder;
+  const test::TemporaryFolder home;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   const std::string before = std::getenv("HOME") == nullptr ? "" : std::getenv("HOME");
   setenv("HOME", home.path().c_str(), 1);

@@ -15,6 +15,7 @@
 #include "meshes/gmsh/gmsh_mesh.h"
 #include "meshes/gmsh/write_gmsh.h"
 #include "problem/error.h"
+#include "tests/support/temporary_folder.h"
 #include "text_mesh.h"
 
 namespace ciliaval::meshes::gmsh {
@@ -118,7 +119,7 @@ cylinder::CylinderMeshOptions small() {
 // Oracle: the mesh before it was written. The nodes come back to rounding error (3e-18 m measured,
 // text and binary), and again from a mesh that was read.
 TEST(GmshRoundTrip, KeepsCellsMaterialsBoundariesAndVolume) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   Mesh made;
   made.make(cilium, small());
@@ -152,7 +153,7 @@ TEST(GmshRoundTrip, KeepsCellsMaterialsBoundariesAndVolume) {
 // Oracle: cylinder::make_cylinder() curves the same vertices itself (by manifolds): a first-order
 // file gets the same geometry here, and with it the exact volume πd²L/4.
 TEST(GmshRoundTrip, CurvesAFirstOrderMeshAsTheBuiltInOne) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   Mesh made;
   made.make(cilium, small());
@@ -167,7 +168,7 @@ TEST(GmshRoundTrip, CurvesAFirstOrderMeshAsTheBuiltInOne) {
 
 // A rim with nodes on R itself at unequal distances: the area is exact all the same.
 TEST(GmshMeshes, HaveTheExactAreaWithUnequalArcs) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   test::TextMesh mesh = test::built_in(cilium);
   for (auto& x : mesh.nodes) {
@@ -185,7 +186,7 @@ TEST(GmshMeshes, HaveTheExactAreaWithUnequalArcs) {
 // Oracle: the mesh before its cells were renumbered by one of the 48 symmetries of a cube each,
 // half of which turn them inside out.
 TEST(GmshMeshes, RepairTurnedAndMirroredCells) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   test::TextMesh mesh = test::built_in(cilium);
   mesh.write(folder.path() / "straight.msh");
@@ -217,7 +218,7 @@ TEST(GmshMeshes, RepairTurnedAndMirroredCells) {
 // Second-order nodes that are on R itself are left there: the area is then short by 8e-4 with
 // eight arcs (sin β (1 + (1 − cos β)/3)/β, β = π/8), which a remark tells.
 TEST(GmshMeshes, HonourSecondOrderNodesAndTellTheirArea) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   cylinder::CylinderMeshOptions options = small();
   options.equal_area = false;
@@ -232,7 +233,7 @@ TEST(GmshMeshes, HonourSecondOrderNodesAndTellTheirArea) {
 }
 
 TEST(GmshMeshes, RefuseCurvedNodesThatAreNotExtruded) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   Mesh made;
   made.make(cilium, small());
@@ -250,7 +251,7 @@ TEST(GmshMeshes, RefuseCurvedNodesThatAreNotExtruded) {
 }
 
 TEST(GmshMeshes, ListUnusedSurfacesAndPoorCells) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   test::TextMesh mesh = test::built_in(cilium);
   test::TextMesh::Element extra = mesh.elements[mesh.find(3, -1, 1e-6)];
@@ -272,7 +273,7 @@ TEST(GmshMeshes, ListUnusedSurfacesAndPoorCells) {
 }
 
 TEST(GmshWriter, TellsWhatItCannotWrite) {
-  const test::Folder folder;
+  const test::TemporaryFolder folder;
   const Cilium cilium = test::stub_and_magnet();
   Mesh made;
   made.make(cilium, small());

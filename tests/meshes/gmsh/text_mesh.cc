@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "text_mesh.h"
 
-#include <unistd.h>
-
-#include <atomic>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
@@ -90,18 +87,6 @@ TextMesh built_in(const Cilium& cilium) {
     }
   }
   return mesh;
-}
-
-Folder::Folder() {
-  static std::atomic<int> count = 0;
-  path_ = std::filesystem::temp_directory_path() /
-          ("ciliaval_meshes_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-  std::filesystem::create_directories(path_);
-}
-
-Folder::~Folder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace ciliaval::test

@@ -46,17 +46,4 @@ Cilium stub_and_magnet();
 /// physical volumes 1… as the segments, physical surfaces 11 `base`, 12 `mantle`, 13 `tip`.
 TextMesh built_in(const Cilium& cilium);
 
-/// A folder that is removed at the end.
-class Folder {
- public:
-  Folder();
-  ~Folder();
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace ciliaval::test

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "problem/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare::output::store {
 namespace {
@@ -37,15 +38,6 @@ using testing::SizeIs;
 
 class StoreFile : public testing::Test {
  protected:
-  StoreFile() {
-    static int number = 0;
-    folder_ = fs::temp_directory_path() /
-              ("ciliaval-store-" + std::to_string(getpid()) + "-" + std::to_string(number++));
-    fs::create_directories(folder_);
-    file_ = folder_ / "case.sqlite";
-  }
-  ~StoreFile() override { fs::remove_all(folder_); }
-
   /// The files in the folder.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
@@ -55,8 +47,9 @@ class StoreFile : public testing::Test {
     return all;
   }
 
-  fs::path folder_;
-  fs::path file_;
+  test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+  const fs::path file_ = folder_ / "case.sqlite";
 };
 
 std::string read_bytes(const fs::path& file) {

@@ -7,9 +7,9 @@
 
 #include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
-#include "bent_rods.h"
-#include "cylinder_body.h"
 #include "problem/error.h"
+#include "tests/analytic/oracles/bent_rods.h"
+#include "tests/analytic/oracles/cylinder_body.h"
 
 namespace ciliaval::analytic {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "bent_rods.h"
+#include "tests/analytic/oracles/bent_rods.h"
 
 #include <gtest/gtest.h>
 

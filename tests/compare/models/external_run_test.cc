@@ -3,11 +3,8 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "compare/input/case.h"
@@ -16,39 +13,18 @@
 #include "compare/models/run.h"
 #include "compare/output/results.h"
 #include "compare/output/table.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr const char* text = R"toml([case]
-name = "roundtrip"
-[cilium]
-diameter = "3 mm"
-[[cilium.segment]]
-name = "base"
-length = "3 mm"
-young_modulus = "0.1 MPa"
-poisson_ratio = 0.49
-[[cilium.segment]]
-name = "magnet"
-length = "17 mm"
-young_modulus = "3 MPa"
-poisson_ratio = 0.49
-magnetization = "75 kA/m"
-[load]
-type = "contact"
-force = ["1 mN", "4 mN"]
-height = "16 mm"
-azimuth = "30 deg"
-[sensor]
-position = [["-0.1 mm", "0.2 mm", "-1.55 mm"], ["5 mm", "0 mm", "-2 mm"]]
-[models]
-mechanics = ["elastica"]
-fields = ["line", "volume"]
-)toml";
+const std::string text =
+    test::case_text({.name = "roundtrip",
+                     .force = R"(["1 mN", "4 mN"])",
+                     .sensor = R"([["-0.1 mm", "0.2 mm", "-1.55 mm"], ["5 mm", "0 mm", "-2 mm"]])"},
+                    "mechanics = [\"elastica\"]\nfields = [\"line\", \"volume\"]\n");
 
 /// The earth's field and a sensor's offset at 0° and 60°, T; at 30° their mean.
 const Vector3 earth_0(20e-6, -3e-6, 44e-6);
@@ -56,15 +32,10 @@ const Vector3 earth_60(8e-6, -13e-6, 44e-6);
 
 class ExternalRun : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
   models::CaseResult run_case(const std::string& more) const {
     return models::run(
-        input::read_case(text + more, (folder_ / "case.toml").string(), models::known()),
+        input::read_case(text + more, (folder_.path() / "case.toml").string(), models::known()),
         models::mechanics_models(), models::field_models());
   }
   /// The centrelines as `ciliaval run` writes them.
@@ -88,8 +59,7 @@ class ExternalRun : public testing::Test {
     write("readings.csv", csv);
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) / ("external_run_" + std::to_string(getpid()));
+  test::TemporaryFolder folder_;
 };
 
 /// The largest relative error of a model against a reference.

@@ -16,9 +16,9 @@
 
 #include "analytic/rod/field_models.h"
 #include "analytic/sources/dipole.h"
-#include "bent_rods.h"
-#include "derby_olbert.h"
 #include "problem/lagrange.h"
+#include "tests/analytic/oracles/bent_rods.h"
+#include "tests/analytic/oracles/derby_olbert.h"
 
 namespace ciliaval::analytic {
 namespace {

@@ -15,10 +15,10 @@
 #include "analytic/sources/current_loop.h"
 #include "analytic/sources/dipole.h"
 #include "analytic/sources/elliptic.h"
-#include "bent_rods.h"
-#include "derby_olbert.h"
 #include "problem/field_model.h"
 #include "problem/lagrange.h"
+#include "tests/analytic/oracles/bent_rods.h"
+#include "tests/analytic/oracles/derby_olbert.h"
 
 namespace ciliaval::analytic {
 namespace {

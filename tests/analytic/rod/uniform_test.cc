@@ -14,8 +14,8 @@
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "analytic/sources/dipole.h"
-#include "bent_rods.h"
 #include "problem/error.h"
+#include "tests/analytic/oracles/bent_rods.h"
 
 namespace ciliaval::analytic {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analytic/rod/field_models.h"
-#include "bent_rods.h"
-#include "derby_olbert.h"
+#include "tests/analytic/oracles/bent_rods.h"
+#include "tests/analytic/oracles/derby_olbert.h"
 
 namespace ciliaval::analytic {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "cylinder_body.h"
+#include "tests/analytic/oracles/cylinder_body.h"
 
 #include <array>
 #include <cmath>

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "analytic/rod/field_models.h"
-#include "bent_rods.h"
 #include "problem/lagrange.h"
+#include "tests/analytic/oracles/bent_rods.h"
 
 namespace ciliaval::analytic {
 namespace {

@@ -12,10 +12,10 @@
 #include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
 #include "analytic/sources/dipole.h"
-#include "bent_rods.h"
-#include "cylinder_body.h"
-#include "derby_olbert.h"
 #include "problem/lagrange.h"
+#include "tests/analytic/oracles/bent_rods.h"
+#include "tests/analytic/oracles/cylinder_body.h"
+#include "tests/analytic/oracles/derby_olbert.h"
 
 namespace ciliaval::analytic {
 namespace {

@@ -37,6 +37,7 @@ const LoadType& CoupleLoad::type() {
   static const LoadType type = [] {
     const LoadParameter azimuth = ContactLoad::type().parameters.back();
     return LoadType{"couple",
+                    "a couple at a material section",
                     {{{"load",
                        "couple",
                        {"a", "moment", "N m", "1 mN mm"},

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analytic/rod/field_models.h"
-#include "bent_rods.h"
+#include "tests/analytic/oracles/bent_rods.h"
 
 namespace ciliaval::analytic {
 namespace {
