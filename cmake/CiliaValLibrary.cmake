@@ -1,14 +1,23 @@
-# Headers of deal.II and Eigen that most units of meshes and fem spend their compile time on, parsed once for all targets
-# that say `target_precompile_headers(… REUSE_FROM precompiled_dealii)`. Each file still includes what it uses: scripts/lint.sh builds
-# without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled/dealii.cc CONTENT "")
-add_library(precompiled_dealii OBJECT ${PROJECT_BINARY_DIR}/precompiled/dealii.cc)
-target_compile_features(precompiled_dealii PRIVATE cxx_std_20)
-target_link_libraries(precompiled_dealii PRIVATE CiliaVal::dealii Eigen3::Eigen ciliaval_compiler)
-target_precompile_headers(precompiled_dealii PRIVATE
-  <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <deal.II/dofs/dof_handler.h> <deal.II/dofs/dof_tools.h> <deal.II/fe/fe_q.h>
-  <deal.II/fe/fe_values.h> <deal.II/grid/grid_tools.h> <deal.II/grid/tria.h> <deal.II/lac/affine_constraints.h>
+# ciliaval_precompile(name LIBRARIES targets… HEADERS files…): headers that many units spend their compile time on, parsed once for
+# all targets that say `target_precompile_headers(… REUSE_FROM precompiled_name)`. Each file still includes what it uses:
+# scripts/lint.sh builds without (CMAKE_DISABLE_PRECOMPILE_HEADERS).
+function(ciliaval_precompile name)
+  cmake_parse_arguments(ARG "" "" "LIBRARIES;HEADERS" ${ARGN})
+  set(target precompiled_${name})
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled/${name}.cc CONTENT "")
+  add_library(${target} OBJECT ${PROJECT_BINARY_DIR}/precompiled/${name}.cc)
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES} ciliaval_compiler)
+  target_precompile_headers(${target} PRIVATE ${ARG_HEADERS})
+endfunction()
+
+set(ciliaval_dealii_headers <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <deal.II/dofs/dof_handler.h> <deal.II/dofs/dof_tools.h>
+  <deal.II/fe/fe_q.h> <deal.II/fe/fe_values.h> <deal.II/grid/grid_tools.h> <deal.II/grid/tria.h> <deal.II/lac/affine_constraints.h>
   <deal.II/lac/dynamic_sparsity_pattern.h> <deal.II/lac/sparse_matrix.h> <deal.II/lac/vector.h>)
+ciliaval_precompile(dealii LIBRARIES CiliaVal::dealii Eigen3::Eigen HEADERS ${ciliaval_dealii_headers})
+ciliaval_precompile(text LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json
+  HEADERS <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <filesystem> <fmt/core.h> <fmt/ranges.h> <fstream> <functional> <map>
+    <nlohmann/json.hpp> <sstream> <string> <vector>)
 
 # ciliaval_library(name SOURCES files… PUBLIC targets… PRIVATE targets…): one library of the suite, CiliaVal::name.
 function(ciliaval_library name)
