@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
@@ -21,8 +22,8 @@ using fem::potential::PotentialOptions;
 using Set = std::function<void(input::ModelOptions&)>;
 
 void require_words(const std::vector<std::string>& without) {
-  const std::vector<std::string>& words = words_to_leave_out();
-  const std::vector<std::string_view> views(words.begin(), words.end());
+  constexpr std::array<std::string_view, 7> words{"beam",      "solid",  "volume",     "mesh",
+                                                  "potential", "dipole", "sensitivity"};
   for (const std::string& word : without) {
     if (word == "elastica" || word == "line")
       throw InputError(fmt::format(
@@ -31,7 +32,7 @@ void require_words(const std::vector<std::string>& without) {
       throw InputError(
           fmt::format("--without {}: there is nothing of that name to leave out{}; "
                       "there are {}",
-                      word, support::did_you_mean(word, views), fmt::join(words, ", ")));
+                      word, support::did_you_mean(word, words), fmt::join(words, ", ")));
   }
 }
 
@@ -98,12 +99,6 @@ std::vector<Stage> field_stages(const input::Case& problem, const std::string& m
 }
 
 }  // namespace
-
-const std::vector<std::string>& words_to_leave_out() {
-  static const std::vector<std::string> words{"beam",      "solid",  "volume",     "mesh",
-                                              "potential", "dipole", "sensitivity"};
-  return words;
-}
 
 std::string Chain::physics(std::size_t from, std::size_t to) const {
   std::vector<std::string> words;

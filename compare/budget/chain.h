@@ -38,11 +38,8 @@ struct Chain {
 /// R → solid/mesh F → solid/potential mu_r = 1 → the same with the case's μ_r, if it is another →
 /// with the case's plates, if it has any. The options are the case's but for those named; line and
 /// potential push forward by F. `without` names models to leave out: beam, solid (its fields then
-/// go with the beam, and mesh with it is left out), volume, mesh, potential, dipole. Throws
-/// InputError if one is not one of these.
+/// go with the beam, and mesh with it is left out), volume, mesh, potential, dipole; "sensitivity"
+/// leaves out dB/dF. Throws InputError if one is not one of these.
 Chain make_chain(const input::Case& problem, const std::vector<std::string>& without);
-
-/// The words that `without` may have; "sensitivity" leaves out dB/dF.
-const std::vector<std::string>& words_to_leave_out();
 
 }  // namespace ciliaval::compare::budget
