@@ -7,7 +7,6 @@
 #include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -61,7 +60,8 @@ class MeanErrors {
     errors_.azimuth_largest = std::max(errors_.azimuth_largest, angle);
     errors_.below_ten_degrees += angle < std::numbers::pi / 18 ? 1 : 0;
     ++errors_.readings;
-    azimuths_of_draw_[draw].add(angle * angle);
+    squares_of_draw_.resize(std::max(squares_of_draw_.size(), draw + 1));
+    squares_of_draw_[draw] += angle * angle;
   }
   BenchErrors mean() const {
     BenchErrors result = errors_;
@@ -75,23 +75,13 @@ class MeanErrors {
   }
 
  private:
-  struct Mean {
-    double sum = 0;
-    double n = 0;
-    void add(double value) {
-      sum += value;
-      ++n;
-    }
-    double value() const { return sum / n; }
-  };
-
-  /// d√x = dx/(2√x) with dx of the mean square x.
+  /// d√x = dx/(2√x) with dx of the mean square x. Each draw has as many readings.
   double interval(double rms) const {
-    const auto draws = static_cast<double>(azimuths_of_draw_.size());
+    const auto draws = static_cast<double>(squares_of_draw_.size());
     if (draws < 2 || rms == 0) return 0;
+    const double readings = static_cast<double>(errors_.readings) / draws;
     double squares = 0;
-    for (const auto& [draw, mean] : azimuths_of_draw_)
-      squares += std::pow(mean.value() - rms * rms, 2);
+    for (const double sum : squares_of_draw_) squares += std::pow(sum / readings - rms * rms, 2);
     const double standard_error = std::sqrt(squares / (draws - 1) / draws);
     return boost::math::quantile(boost::math::students_t(draws - 1), 0.975) * standard_error /
            (2 * rms);
@@ -99,7 +89,7 @@ class MeanErrors {
 
   std::optional<FlowLaw> flow_;
   BenchErrors errors_;
-  std::map<std::size_t, Mean> azimuths_of_draw_;  ///< squares
+  std::vector<double> squares_of_draw_;  ///< sums of the squares of the azimuth's errors
 };
 
 /// The bench with all that its readings are made and inverted with.

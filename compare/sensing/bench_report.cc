@@ -41,9 +41,8 @@ std::string magnitude_text(const Bench& bench, std::size_t step) {
   if (const auto velocity = input::stated_values(problem, "velocity"); !velocity.empty())
     return fmt::format("{:g} m/s", velocity[step]);
   const Load& load = problem.load_path[step];
-  const std::string_view unit = magnitude_unit(load);
-  if (unit == "N/m") return fmt::format("{:g} N/m", magnitude(load));
-  return fmt::format("{:g} m{}", 1e3 * magnitude(load), unit);
+  const auto [unit, size] = output::shown_unit(magnitude_unit(load));
+  return fmt::format("{:g} {}", 1 / size * magnitude(load), unit);
 }
 
 }  // namespace
@@ -120,16 +119,15 @@ std::string bench_json(const Bench& bench, const BenchResult& result,
 }
 
 std::string bench_script(const Bench& bench, const BenchResult& result) {
-  const std::string_view unit = magnitude_unit(bench.problem.load_path.front());
-  const double factor = unit == "N/m" ? 1 : 1e3;
-  const std::string shown = unit == "N/m" ? "N/m" : fmt::format("m{}", unit);
-  std::string text = "$truth << EOD\n";
-  for (const BenchPoint& p : result.first_draw)
-    text += fmt::format("{} {}\n", factor * p.truth.x(), factor * p.truth.y());
-  text += "EOD\n$found << EOD\n";
-  for (const BenchPoint& p : result.first_draw)
-    text += fmt::format("{} {}\n", factor * p.found.x(), factor * p.found.y());
-  return text +
+  const auto [shown, size] = output::shown_unit(magnitude_unit(bench.problem.load_path.front()));
+  const double factor = 1 / size;
+  std::string truth;
+  std::string found;
+  for (const BenchPoint& p : result.first_draw) {
+    truth += fmt::format("{} {}\n", factor * p.truth.x(), factor * p.truth.y());
+    found += fmt::format("{} {}\n", factor * p.found.x(), factor * p.found.y());
+  }
+  return "$truth << EOD\n" + truth + "EOD\n$found << EOD\n" + found +
          fmt::format(
              "EOD\nset title {}\nset size ratio -1\nset grid\n"
              "set xlabel {}\nset ylabel {}\nset key outside bottom center horizontal\n"

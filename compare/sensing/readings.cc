@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/sensing/readings.h"
-
+// A file of readings, less all offsets.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "compare/input/csv.h"
 #include "compare/input/external/background.h"
+#include "compare/sensing/sensing.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::sensing {
