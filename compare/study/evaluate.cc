@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <map>
 #include <memory>
 
 #include "analytic/elastica/elastica.h"
@@ -41,36 +42,28 @@ PairResult result_of(const Study& study, const MechanicsStep& step, const models
     return result;
   }
   const Vector3 dB = *field.dB.front();
-  const bool needs_slope =
-      study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution);
+  const bool needs_slope = study.needs_slope();
   const auto slope = needs_slope ? slope_of_norm(run, path, dB) : std::nullopt;
   if (needs_slope && !slope)
     append(result.message, path.around.front()
                                ? "sensitivity: a load 2 % higher or lower has no field"
                                : "sensitivity: the load is zero");
   const Vector3 B = *field.B.front();
-  const auto value = [&](Output output) -> std::optional<double> {
-    switch (output) {
-      case Output::B_x:
-      case Output::B_y:
-      case Output::B_z:
-        return B[static_cast<int>(output) - static_cast<int>(Output::B_x)];
-      case Output::dB_x:
-      case Output::dB_y:
-      case Output::dB_z:
-        return dB[static_cast<int>(output) - static_cast<int>(Output::dB_x)];
-      case Output::dB_norm:
-        return dB.norm();
-      case Output::sensitivity:
-        return slope;
-      case Output::resolution:
-        return slope && *slope != 0 ? std::optional(*study.noise / std::abs(*slope)) : std::nullopt;
-      case Output::range:
-        break;
-    }
-    return std::nullopt;
-  };
-  for (std::size_t i = 0; i < study.outputs.size(); ++i) result.values[i] = value(study.outputs[i]);
+  const std::map<Output, std::optional<double>> known{
+      {Output::B_x, B.x()},
+      {Output::B_y, B.y()},
+      {Output::B_z, B.z()},
+      {Output::dB_x, dB.x()},
+      {Output::dB_y, dB.y()},
+      {Output::dB_z, dB.z()},
+      {Output::dB_norm, dB.norm()},
+      {Output::sensitivity, slope},
+      {Output::range, std::nullopt},
+      {Output::resolution, slope && *slope != 0 && study.noise
+                               ? std::optional(*study.noise / std::abs(*slope))
+                               : std::nullopt}};
+  for (std::size_t i = 0; i < study.outputs.size(); ++i)
+    result.values[i] = known.at(study.outputs[i]);
   return result;
 }
 
@@ -108,8 +101,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
                                  std::span<const models::MechanicsEntry> mechanics_models,
                                  std::span<const models::FieldEntry> field_models,
                                  const Progress& progress) {
-  const budget::SurroundedPath path = budget::surround(
-      c.load_path, study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution));
+  const budget::SurroundedPath path = budget::surround(c.load_path, study.needs_slope());
   c.load_path = path.loads;
   const auto model = models::entry_of(mechanics_models, mechanics).make(c.options);
   const models::MechanicsRun run = models::run_mechanics(mechanics, *model, c, progress);

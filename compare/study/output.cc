@@ -58,14 +58,8 @@ Quantity quantity_of(Output output, const Load& load) {
   return {"a", "flux density per force per length", "T/(N/m)", "50 uT m/N"};
 }
 
-OutputUnit unit_of(Output output, const Load& load) {
-  const std::string_view unit = quantity_of(output, load).unit;
-  if (unit == "N") return {"mN", 1e-3};
-  if (unit == "m") return {"mm", 1e-3};
-  if (unit == "T/N") return {"uT/mN", 1e-3};
-  if (unit == "T/m") return {"uT/mm", 1e-3};
-  if (unit == "T/(N/m)") return {"uT/(N/m)", 1e-6};
-  return unit == "T" ? OutputUnit{"uT", 1e-6} : OutputUnit{std::string(unit), 1};
+output::ShownUnit unit_of(Output output, const Load& load) {
+  return output::shown_unit(quantity_of(output, load).unit);
 }
 
 }  // namespace ciliaval::compare::study

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <string_view>
 
+#include "compare/output/text_table.h"
 #include "problem/load.h"
 #include "problem/parameter.h"
 
@@ -34,12 +34,7 @@ std::string_view title(Output output);
 
 /// What an output is under this type of load, with its SI unit.
 Quantity quantity_of(Output output, const Load& load);
-
-/// A unit for people and its size in SI units.
-struct OutputUnit {
-  std::string name;  ///< "uT", "uT/mN"
-  double size = 1;
-};
-OutputUnit unit_of(Output output, const Load& load);
+/// The unit for people.
+output::ShownUnit unit_of(Output output, const Load& load);
 
 }  // namespace ciliaval::compare::study

@@ -14,10 +14,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* owner = "study";
 
-std::optional<double> number(const Json& json) {
-  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
-}
-
 std::string to_bytes(const std::vector<PairResult>& results) {
   Json pairs = Json::array();
   for (const PairResult& result : results) {
@@ -35,8 +31,8 @@ std::vector<PairResult> from_bytes(const std::string& bytes) {
     PairResult& result = results.emplace_back();
     result.status = static_cast<Status>(pair.at(0).get<int>());
     result.message = pair.at(1).get<std::string>();
-    for (const Json& value : pair.at(2)) result.values.push_back(number(value));
-    result.uncertainty = number(pair.at(3));
+    for (const Json& value : pair.at(2)) result.values.push_back(output::number_or_none(value));
+    result.uncertainty = output::number_or_none(pair.at(3));
   }
   return results;
 }

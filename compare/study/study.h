@@ -40,8 +40,9 @@ inline constexpr double tolerance_step = 0.25;
 /// A limit that a design must keep.
 struct Limit {
   Output output{};
-  bool is_lower = true;  ///< the output's magnitude is at least, not at most, the value
-  double value = 0;      ///< positive, SI units
+  bool is_lower = true;      ///< the output's magnitude is at least, not at most, the value
+  double value = 0;          ///< positive, SI units; of its own load the factor
+  bool is_own_load = false;  ///< the range is at least `value` times the design's own load
 };
 
 /// The search for the design whose goal has the largest magnitude.
@@ -88,9 +89,10 @@ struct Study {
   /// The place of a pair among those of its mechanics model.
   std::size_t place(std::size_t pair) const;
   bool asks_for(Output output) const;
+  bool needs_slope() const { return asks_for(Output::sensitivity) || asks_for(Output::resolution); }
 };
 
-inline OutputUnit unit_of(Output output, const Study& study) {
+inline output::ShownUnit unit_of(Output output, const Study& study) {
   return unit_of(output, study.load());
 }
 
