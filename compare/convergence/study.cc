@@ -47,12 +47,6 @@ void add_lengths(Quantities& quantities) {
   quantities.merge(lengths);
 }
 
-Progress named(const Progress& progress, const ModelRefinement& refinement, double value) {
-  if (!progress) return {};
-  return [&progress, prefix = fmt::format("{} {:g}: ", refinement.option.name, value)](
-             const std::string& text) { progress(prefix + text); };
-}
-
 /// The first of the case's mechanics models, the cheapest first, that gives the field model what it
 /// needs.
 models::MechanicsRun mechanics_for(const models::FieldEntry& field, const input::Case& problem,
@@ -109,7 +103,8 @@ std::vector<models::CaseResult> run_levels(input::Case problem, const ModelRefin
   }
   for (const double value : values) {
     refinement.set(problem.options, value);
-    const Progress of_level = named(progress, refinement, value);
+    const Progress of_level =
+        with_prefix(progress, fmt::format("{} {:g}: ", refinement.option.name, value));
     if (!refinement.is_field) {
       results.push_back(
           models::run(problem, models::mechanics_models(), models::field_models(), of_level));

@@ -122,21 +122,15 @@ class Simulation {
 Simulation::Simulation(const Bench& bench, const Progress& progress)
     : bench_(bench), flow_(flow_law(bench.problem)) {
   for (const Load& load : bench.problem.load_path) largest_ = std::max(largest_, magnitude(load));
-  const auto named = [&](const std::string& name) {
-    return progress ? Progress([&progress, name](const std::string& text) {
-      progress(name + ": " + text);
-    })
-                    : Progress();
-  };
   model_shapes_ = shapes_up_to(bench.problem, bench.models.mechanics, beyond_the_largest * largest_,
-                               named(bench.models.mechanics));
+                               with_prefix(progress, bench.models.mechanics + ": "));
   response_ = std::make_unique<Response>(bench.problem, bench.models.field, model_shapes_,
                                          bench.problem.sensors);
   if (bench.truth.name() != bench.models.name()) {
     truth_shapes_ = bench.truth.mechanics == bench.models.mechanics
                         ? model_shapes_
                         : shapes_up_to(bench.problem, bench.truth.mechanics, largest_,
-                                       named(bench.truth.mechanics));
+                                       with_prefix(progress, bench.truth.mechanics + ": "));
     truth_ = std::make_unique<Response>(bench.problem, bench.truth.field, truth_shapes_,
                                         bench.problem.sensors);
   }

@@ -58,13 +58,8 @@ StudyResult run_study(const Study& study, Solutions& solutions,
   tbb::parallel_for(std::size_t{0}, side_by_side.size(),
                     [&](std::size_t i) { solve(side_by_side[i], {}); });
   for (const Task& task : one_by_one) {
-    Progress inner;
-    if (progress)
-      inner = [&](const std::string& text) {
-        progress(
-            fmt::format("{}, {}: {}", done(solutions.size()), study.describe(task.point), text));
-      };
-    solve(task, inner);
+    const std::string at = study.describe(task.point);
+    solve(task, with_prefix(progress, fmt::format("{}, {}: ", done(solutions.size()), at)));
   }
   StudyResult result{study, {}};
   for (std::size_t point = 0; point < study.all_points(); ++point) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -25,12 +26,9 @@ constexpr double unknown_violation = 10;
 Study searched(const Study& study) {
   Study s = study;
   s.pairs.resize(1);
-  std::vector<Output> needed{study.optimisation->goal};
-  for (const Constraint& c : constraints_of(study)) needed.push_back(c.output);
-  s.outputs.clear();
-  for (const Output output : all_outputs())
-    if (std::find(needed.begin(), needed.end(), output) != needed.end())
-      s.outputs.push_back(output);
+  std::set<Output> needed{study.optimisation->goal};
+  for (const Limit& c : constraints_of(study)) needed.insert(c.output);
+  s.outputs.assign(needed.begin(), needed.end());
   return s;
 }
 
@@ -56,11 +54,7 @@ class Evaluations {
   /// A design by some of the mechanics models.
   Design design(std::string name, std::vector<double> values,
                 const std::vector<std::string>& mechanics) {
-    Progress inner;
-    if (progress_)
-      inner = [&](const std::string& text) {
-        progress_(fmt::format("{}: {}: {}", study_.name, name, text));
-      };
+    const Progress inner = with_prefix(progress_, fmt::format("{}: {}: ", study_.name, name));
     Design design{std::move(name), std::move(values), {}, {}};
     for (std::size_t i = 0; i < study_.pairs.size(); ++i) {
       const models::ModelPair& pair = study_.pairs[i];
@@ -116,22 +110,17 @@ std::vector<double> from_unit(const Study& study, const std::vector<double>& u) 
 }
 
 /// What the search makes of a result.
-Trial trial_of(const Study& search, const std::vector<Constraint>& constraints, double load,
+Trial trial_of(const Study& search, const std::vector<Limit>& constraints, double load,
                const PairResult& result) {
-  const auto magnitude_of = [&](Output output) -> std::optional<double> {
-    const auto place = std::find(search.outputs.begin(), search.outputs.end(), output);
-    const auto& value = result.values[static_cast<std::size_t>(place - search.outputs.begin())];
-    return value ? std::optional(std::abs(*value)) : std::nullopt;
-  };
   Trial trial{no_gain, {}, false};
   const Output goal = search.optimisation->goal;
-  if (const auto value = magnitude_of(goal)) {
+  if (const auto value = magnitude_of(search, result, goal)) {
     trial.is_defined = true;
     trial.gain = std::max(std::log(*value / unit_of(goal, search).size), no_gain);
   }
-  for (const Constraint& c : constraints) {
+  for (const Limit& c : constraints) {
     const double limit = c.is_own_load ? c.value * load : c.value;
-    const auto value = magnitude_of(c.output);
+    const auto value = magnitude_of(search, result, c.output);
     double g = unknown_violation;
     if (value) g = (c.is_lower ? 1 : -1) * std::log(limit / *value);
     trial.constraints.push_back(std::clamp(g, -unknown_violation, unknown_violation));
@@ -141,15 +130,18 @@ Trial trial_of(const Study& search, const std::vector<Constraint>& constraints, 
 
 }  // namespace
 
-std::vector<Constraint> constraints_of(const Study& study) {
-  const Optimisation& o = *study.optimisation;
-  std::vector<Constraint> all;
-  bool has_slope = o.goal == Output::sensitivity;
-  for (const Limit& limit : o.limits) {
-    all.push_back({limit.output, limit.is_lower, limit.value, false});
+std::optional<double> magnitude_of(const Study& study, const PairResult& result, Output output) {
+  for (std::size_t o = 0; o < study.outputs.size(); ++o)
+    if (study.outputs[o] == output && result.values[o]) return std::abs(*result.values[o]);
+  return std::nullopt;
+}
+
+std::vector<Limit> constraints_of(const Study& study) {
+  std::vector<Limit> all = study.optimisation->limits;
+  bool has_slope = study.optimisation->goal == Output::sensitivity;
+  for (const Limit& limit : all)
     has_slope =
         has_slope || limit.output == Output::sensitivity || limit.output == Output::resolution;
-  }
   // The slope is that between loads somewhat lower and higher.
   constexpr double margin = 1e-3;
   if (contact_height(study.base.load_path.front()))
@@ -164,7 +156,7 @@ Optimum run_optimisation(const Study& study, Solutions& solutions,
                          const Progress& progress) {
   const Optimisation& o = *study.optimisation;
   Evaluations evaluations(study, solutions, mechanics_models, field_models, progress);
-  const std::vector<Constraint> constraints = constraints_of(study);
+  const std::vector<Limit> constraints = constraints_of(study);
   const std::string& searcher = study.pairs.front().mechanics;
   Optimum optimum;
   double best = no_gain;

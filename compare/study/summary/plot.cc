@@ -145,7 +145,7 @@ std::string x_axis(const Parameter& x) {
 /// off a linear one, unless there is a peak or a trough to be seen.
 std::string y_axis(const StudyResult& result, std::size_t output, const Extremes& extremes) {
   const Study& study = result.study;
-  const OutputUnit unit = unit_of(study.outputs[output], study);
+  const output::ShownUnit unit = unit_of(study.outputs[output], study);
   const std::string script = fmt::format(
       "set ylabel {}\n", axis_label(std::string(title(study.outputs[output])), with_mu(unit.name)));
   bool turns = false;

@@ -14,8 +14,11 @@
 
 namespace ciliaval::compare::study::summary {
 
-/// An output of a result in this unit, or what has become of it.
-std::string cell(const PairResult& result, std::size_t output, double unit);
+/// "E1(MPa)", "|dB|(uT)", for a column of a table.
+std::string heading(const Parameter& parameter);
+std::string heading(Output output, const Study& study);
+/// An output of a result in its unit for people, or what has become of it.
+std::string cell(const Study& study, const PairResult& result, std::size_t output);
 
 /// For a terminal: a table of the points, thinned to at most 25 of them, then what each output does
 /// along the parameter if there is one alone: monotone, or its peak.
@@ -34,6 +37,9 @@ void add_csv_row(output::CsvWriter& csv, std::string_view first, const std::vect
 
 /// A number, or null; without negative zero.
 nlohmann::ordered_json number_json(const std::optional<double>& value);
+/// {"path", "name", "unit", members of `values`, "shown_unit", "shown_unit_size", "logarithmic"}
+nlohmann::ordered_json parameter_json(const Parameter& parameter,
+                                      const nlohmann::ordered_json& values);
 /// What a pair made of a point: {"status", "message", OUTPUT…, "dB_uncertainty"}, SI units.
 nlohmann::ordered_json pair_json(const Study& study, const PairResult& result);
 
