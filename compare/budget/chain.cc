@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/budget/chain.h"
-
+// The models on the way from the paper's to the best one.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +10,7 @@
 
 #include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
+#include "compare/budget/budget.h"
 #include "fem/potential/potential.h"
 #include "problem/error.h"
 #include "problem/support/words.h"

@@ -34,7 +34,7 @@ struct Tolerance {
 };
 
 /// Part of a standard deviation by which a number is moved for the differences of fourth order of
-/// compare/study/summary/tolerances.h, once and twice, to both sides.
+/// compare/study/summary/report.h, once and twice, to both sides.
 inline constexpr double tolerance_step = 0.25;
 
 /// A limit that a design must keep.

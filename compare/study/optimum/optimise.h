@@ -8,10 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "compare/study/evaluate.h"
 #include "compare/study/optimum/search.h"
-#include "compare/study/solutions.h"
-#include "compare/study/study.h"
+#include "compare/study/sweep.h"
 
 namespace ciliaval::compare::study::optimum {
 

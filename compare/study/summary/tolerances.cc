@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/summary/tolerances.h"
-
 #include <fmt/core.h>
 
 #include <cmath>
