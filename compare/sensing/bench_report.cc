@@ -16,15 +16,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double degree = std::numbers::pi / 180;
 
-std::vector<std::string> error_cells(const BenchErrors& errors, bool flow) {
-  std::vector<std::string> cells{fmt::format("{:.2f}", 100 * errors.magnitude_rms)};
-  if (flow) cells.push_back(fmt::format("{:.4f}", errors.speed_rms));
-  cells.push_back(fmt::format("{:.2f}", errors.azimuth_rms / degree));
-  cells.push_back(fmt::format("{:.2f}", errors.azimuth_largest / degree));
-  cells.push_back(fmt::format("{:.1f}", 100 * errors.below_ten_degrees));
-  return cells;
-}
-
 Json errors_json(const BenchErrors& errors) {
   return {{"magnitude_rms", errors.magnitude_rms},
           {"speed_rms", errors.speed_rms},
@@ -62,8 +53,11 @@ std::string bench_text(const Bench& bench, const BenchResult& result) {
   const auto add = [&](const std::string& label, const std::string& method,
                        const BenchErrors& errors) {
     std::vector<std::string>& row = rows.emplace_back();
-    row = {label, method};
-    for (std::string& cell : error_cells(errors, flow)) row.push_back(std::move(cell));
+    row = {label, method, fmt::format("{:.2f}", 100 * errors.magnitude_rms)};
+    if (flow) row.push_back(fmt::format("{:.4f}", errors.speed_rms));
+    row.push_back(fmt::format("{:.2f}", errors.azimuth_rms / degree));
+    row.push_back(fmt::format("{:.2f}", errors.azimuth_largest / degree));
+    row.push_back(fmt::format("{:.1f}", 100 * errors.below_ten_degrees));
   };
   for (const BenchRow& row : result.rows) {
     add(std::string(to_string(row.source)), "full inversion", row.inversion);

@@ -33,57 +33,43 @@ Study searched(const Study& study) {
 }
 
 /// Evaluates designs, unless they are known.
-class Evaluations {
- public:
-  Evaluations(const Study& study, Solutions& solutions,
-              std::span<const models::MechanicsEntry> mechanics,
-              std::span<const models::FieldEntry> fields, const Progress& progress)
-      : study_(study),
-        search_(searched(study)),
-        solutions_(solutions),
-        mechanics_(mechanics),
-        fields_(fields),
-        progress_(progress) {}
+struct Evaluations {
+  const Study& study;
+  Study search;  ///< the study as the search evaluates it
+  Solutions& solutions;
+  std::span<const models::MechanicsEntry> mechanics_models;
+  std::span<const models::FieldEntry> field_models;
+  const Progress& progress;
 
-  /// The study as the search evaluates it.
-  const Study& search() const { return search_; }
   const PairResult& searched_at(const std::vector<double>& values) {
-    return solve("search", search_, values, study_.pairs.front().mechanics, {}).front();
+    return solve("search", search, values, study.pairs.front().mechanics, {}).front();
   }
 
   /// A design by some of the mechanics models.
   Design design(std::string name, std::vector<double> values,
                 const std::vector<std::string>& mechanics) {
-    const Progress inner = with_prefix(progress_, fmt::format("{}: {}: ", study_.name, name));
+    const Progress inner = with_prefix(progress, fmt::format("{}: {}: ", study.name, name));
     Design design{std::move(name), std::move(values), {}, {}};
-    for (std::size_t i = 0; i < study_.pairs.size(); ++i) {
-      const models::ModelPair& pair = study_.pairs[i];
+    for (std::size_t i = 0; i < study.pairs.size(); ++i) {
+      const models::ModelPair& pair = study.pairs[i];
       if (std::find(mechanics.begin(), mechanics.end(), pair.mechanics) == mechanics.end())
         continue;
       design.models.push_back(pair);
       design.pairs.push_back(
-          solve("design", study_, design.values, pair.mechanics, inner).at(study_.place(i)));
+          solve("design", study, design.values, pair.mechanics, inner).at(study.place(i)));
     }
     return design;
   }
 
- private:
-  const std::vector<PairResult>& solve(std::string_view kind, const Study& study,
+  const std::vector<PairResult>& solve(std::string_view kind, const Study& reduced,
                                        const std::vector<double>& values,
-                                       const std::string& mechanics, const Progress& progress) {
+                                       const std::string& mechanics, const Progress& inner) {
     const std::string name = fmt::format("{} of {} at {}", kind, mechanics, fmt::join(values, " "));
-    if (solutions_.find(name) == nullptr)
-      solutions_.add(
-          name, evaluate(study, study_.design(values), mechanics, mechanics_, fields_, progress));
-    return *solutions_.find(name);
+    if (solutions.find(name) == nullptr)
+      solutions.add(name, evaluate(reduced, study.design(values), mechanics, mechanics_models,
+                                   field_models, inner));
+    return *solutions.find(name);
   }
-
-  const Study& study_;
-  Study search_;
-  Solutions& solutions_;
-  std::span<const models::MechanicsEntry> mechanics_;
-  std::span<const models::FieldEntry> fields_;
-  const Progress& progress_;
 };
 
 /// A parameter between its bounds as a number from 0 to 1, and back.
@@ -155,7 +141,8 @@ Optimum run_optimisation(const Study& study, Solutions& solutions,
                          std::span<const models::FieldEntry> field_models,
                          const Progress& progress) {
   const Optimisation& o = *study.optimisation;
-  Evaluations evaluations(study, solutions, mechanics_models, field_models, progress);
+  Evaluations evaluations{study,        searched(study), solutions, mechanics_models,
+                          field_models, progress};
   const std::vector<Limit> constraints = constraints_of(study);
   const std::string& searcher = study.pairs.front().mechanics;
   Optimum optimum;
@@ -164,7 +151,7 @@ Optimum run_optimisation(const Study& study, Solutions& solutions,
     const std::vector<double> values = from_unit(study, u);
     const PairResult& result = evaluations.searched_at(values);
     const double load = magnitude(study.design(values).load_path.front());
-    Trial trial = trial_of(evaluations.search(), constraints, load, result);
+    Trial trial = trial_of(evaluations.search, constraints, load, result);
     ++optimum.evaluations;
     if (trial.is_defined && trial.violation() <= feasibility) best = std::max(best, trial.gain);
     if (progress)
