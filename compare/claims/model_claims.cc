@@ -23,22 +23,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-input::Case paper_case(const std::filesystem::path& folder, const std::string& name,
-                       bool with_solid) {
-  input::Case problem = input::read_case(folder / name, models::known());
-  problem.external.clear();
-  problem.mechanics = {"elastica", "beam"};
-  if (with_solid) problem.mechanics.emplace_back("solid");
-  return problem;
-}
-
-models::CaseResult solved(const input::Case& problem, const Progress& progress) {
-  models::CaseResult result =
-      models::run(problem, models::mechanics_models(), models::field_models(), progress);
-  if (!models::all_solved(result)) throw SolverError("a model fails on the case " + problem.name);
-  return result;
-}
-
 /// R² between the shapes of the elastica and of finite elements.
 Claim shapes(const models::CaseResult& result) {
   Claim claim{"abstract, 3.2, Fig. 3b",
@@ -297,11 +281,16 @@ Claim misprints(const models::CaseResult& result) {
 
 std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_solid,
                                 const Progress& progress) {
-  input::Case problem = paper_case(folder, "fig3d.toml", with_solid);
+  input::Case problem = input::read_case(folder / "fig3d.toml", models::known());
+  problem.external.clear();
+  problem.mechanics = {"elastica", "beam"};
+  if (with_solid) problem.mechanics.emplace_back("solid");
   problem.fields = {"line", "volume"};
   problem.options.of<analytic::rod::VolumeOptions>().slices =
       analytic::rod::VolumeOptions::Slices::stacked;
-  const models::CaseResult result = solved(problem, progress);
+  const models::CaseResult result =
+      models::run(problem, models::mechanics_models(), models::field_models(), progress);
+  if (!models::all_solved(result)) throw SolverError("a model fails on the case " + problem.name);
   std::vector<Claim> claims{intractable(result), base_bends(result), misprints(result),
                             shapes(result)};
   claims.push_back(
@@ -321,8 +310,8 @@ std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_s
 std::vector<Claim> claims(const std::filesystem::path& folder, bool with_solid,
                           const Progress& progress) {
   std::vector<Claim> all = model_claims(folder, with_solid, progress);
-  for (Claim& claim : design_claims(folder, with_solid, progress)) all.push_back(std::move(claim));
-  for (Claim& claim : flow_claims(folder, with_solid, progress)) all.push_back(std::move(claim));
+  for (auto* part : {design_claims, flow_claims})
+    for (Claim& claim : part(folder, with_solid, progress)) all.push_back(std::move(claim));
   return all;
 }
 
