@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "problem/cilium.h"
@@ -49,6 +50,13 @@ struct MechanicsResult {
 /// Called with a short line of text while a long solution goes on ("step 2/4, load 0.5, iteration
 /// 3, residual 1e-4").
 using Progress = std::function<void(const std::string&)>;
+
+/// The same with a text in front of each line. `progress` must outlive it.
+inline Progress with_prefix(const Progress& progress, std::string prefix) {
+  if (!progress) return {};
+  return
+      [&progress, prefix = std::move(prefix)](const std::string& text) { progress(prefix + text); };
+}
 
 /// What a model keeps of its way along a load path, to go on from there: bytes of its own making
 /// under names. The n-th finished step has the name n, from 1.

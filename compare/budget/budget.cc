@@ -20,27 +20,26 @@ namespace {
 
 const std::array<std::string, 3> axis_names{"x", "y", "z"};
 
-/// The fields of one stage, and where the steps of the case are among them.
+/// The fields of one stage: with dB/dF on the surrounded path, else at the steps of the case only.
 struct StageFields {
   const Stage* stage;
   const models::MechanicsRun* mechanics;
-  const std::vector<std::size_t>* place;
+  const SurroundedPath* path;
   models::FieldRun run;
 
   std::optional<models::FieldValue> value(std::size_t step, std::size_t sensor, bool change) const {
     if (run.steps.empty()) return std::nullopt;
-    return models::field_value(run, *mechanics, (*place)[step], sensor, change);
+    const std::size_t place = stage->sensitivity ? path->step[step] : step;
+    return models::field_value(run, *mechanics, place, sensor, change);
   }
 };
 
 /// Everything that was computed.
 struct Computed {
   SurroundedPath path;
-  std::vector<std::size_t> steps;                      ///< 0, 1, …: the places in `alone`
   std::map<std::string, models::MechanicsRun> around;  ///< by id, on the surrounded path
   std::map<std::string, models::MechanicsRun> alone;   ///< the steps of the case only
-  std::vector<StageFields> chain;                      ///< in the order of the stages
-  std::optional<StageFields> beside;
+  std::vector<StageFields> fields;  ///< in the order of the stages, the model beside last
 };
 
 models::MechanicsRun steps_of(const models::MechanicsRun& run,
@@ -58,8 +57,7 @@ StageFields compute_fields(const Stage& stage, const input::Case& problem,
   const models::FieldEntry& entry = models::entry_of(entries, stage.field);
   const models::MechanicsRun& mechanics =
       (stage.sensitivity ? computed.around : computed.alone).at(stage.mechanics);
-  StageFields result{
-      &stage, &mechanics, stage.sensitivity ? &computed.path.step : &computed.steps, {}};
+  StageFields result{&stage, &mechanics, &computed.path, {}};
   if (!mechanics.result.undeformed.centreline.pieces().empty() &&
       (!entry.has_body || mechanics.result.undeformed.body))
     result.run =
@@ -70,12 +68,10 @@ StageFields compute_fields(const Stage& stage, const input::Case& problem,
 void compute(const input::Case& problem, std::span<const models::MechanicsEntry> mechanics,
              std::span<const models::FieldEntry> fields, const Chain& chain,
              const Progress& progress, Computed& computed) {
-  const bool any = std::any_of(chain.stages.begin(), chain.stages.end(),
-                               [](const Stage& stage) { return stage.sensitivity; });
-  computed.path = surround(problem.load_path, any && !problem.sensors.empty());
+  computed.path =
+      surround(problem.load_path, chain.stages.front().sensitivity && !problem.sensors.empty());
   input::Case surrounded = problem;
   surrounded.load_path = computed.path.loads;
-  for (std::size_t i = 0; i < problem.load_path.size(); ++i) computed.steps.push_back(i);
   for (const std::string& id : chain.mechanics) {
     if (progress) progress(id + ": starting");
     const auto model = models::entry_of(mechanics, id).make(problem.options);
@@ -86,23 +82,24 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
   }
   if (problem.sensors.empty()) return;
   for (const Stage& stage : chain.stages)
-    computed.chain.push_back(compute_fields(stage, problem, fields, computed, progress));
+    computed.fields.push_back(compute_fields(stage, problem, fields, computed, progress));
   if (chain.beside)
-    computed.beside = compute_fields(*chain.beside, problem, fields, computed, progress);
+    computed.fields.push_back(compute_fields(*chain.beside, problem, fields, computed, progress));
 }
 
 // ------------------------------------------------------------------------------------------- rows
 
-/// A number of all stages of a chain, with the uncertainty of each difference.
+/// A number of all stages of a chain, and of the model beside, with the uncertainty of each
+/// difference.
 struct Numbers {
   std::vector<std::string> names;             ///< of the stages
   std::vector<std::optional<double>> values;  ///< none where a stage has no value
   std::function<std::optional<double>(std::size_t, std::size_t)> uncertainty;
-  std::function<std::string(std::size_t, std::size_t)> physics;
 };
 
-BudgetLink make_link(const Numbers& numbers, std::size_t from, std::size_t to) {
-  BudgetLink link{numbers.names[from], numbers.names[to], numbers.physics(from, to),
+BudgetLink make_link(const Numbers& numbers, std::size_t from, std::size_t to,
+                     std::string physics) {
+  BudgetLink link{numbers.names[from], numbers.names[to], std::move(physics),
                   *numbers.values[to] - *numbers.values[from], numbers.uncertainty(from, to)};
   if (link.uncertainty && !std::isfinite(*link.uncertainty)) link.uncertainty.reset();
   if (link.uncertainty)
@@ -111,20 +108,24 @@ BudgetLink make_link(const Numbers& numbers, std::size_t from, std::size_t to) {
   return link;
 }
 
-/// Fills in the links; false if there is no link, or no value of the paper's model.
-bool fill(BudgetRow& row, const Numbers& numbers) {
-  if (numbers.values.empty() || !numbers.values.front()) return false;
+/// Adds a row with its links, unless there is no link, or no value of the paper's model.
+void add_row(BudgetRow row, const Numbers& numbers, const Chain& chain,
+             std::vector<BudgetRow>& rows) {
+  const std::size_t beside = chain.stages.size();
+  if (!numbers.values.front()) return;
   std::size_t last = 0;
-  for (std::size_t i = 1; i < numbers.values.size(); ++i) {
+  for (std::size_t i = 1; i < std::min(numbers.values.size(), beside); ++i) {
     if (!numbers.values[i]) continue;
-    row.links.push_back(make_link(numbers, last, i));
+    row.links.push_back(make_link(numbers, last, i, chain.physics(last, i)));
     last = i;
   }
-  if (last == 0) return false;
+  if (last == 0) return;
   row.paper = *numbers.values.front();
   row.best = *numbers.values[last];
-  row.total = make_link(numbers, 0, last);
-  return true;
+  row.total = make_link(numbers, 0, last, chain.physics(0, last));
+  if (numbers.values.size() > beside && numbers.values[beside])
+    row.beside = make_link(numbers, 0, beside, chain.beside->physics);
+  rows.push_back(std::move(row));
 }
 
 /// Adds tip and tip angle at a step. The first stages of the chain are the mechanics models, in
@@ -135,7 +136,7 @@ void add_mechanics(const Chain& chain, const Computed& computed, std::size_t ste
   for (const std::string& id : chain.mechanics) runs.push_back(&computed.alone.at(id));
   const auto add = [&](const char* quantity, const std::string& component, const char* unit,
                        const auto& value, const auto& uncertainty) {
-    Numbers numbers{chain.mechanics, {}, {}, {}};
+    Numbers numbers{chain.mechanics, {}, {}};
     for (const models::MechanicsRun* run : runs) {
       const Centreline& centreline = run->result.steps[step].deformation->centreline;
       numbers.values.emplace_back(value(centreline.at(centreline.length())));
@@ -145,9 +146,7 @@ void add_mechanics(const Chain& chain, const Computed& computed, std::size_t ste
       const std::optional<double> ub = uncertainty(*runs[b]);
       return ua && ub ? std::optional(std::abs(*ua) + std::abs(*ub)) : std::nullopt;
     };
-    numbers.physics = [&](std::size_t a, std::size_t b) { return chain.physics(a, b); };
-    BudgetRow row{step, {}, quantity, component, unit, 0, 0, {}, {}, {}};
-    if (fill(row, numbers)) rows.push_back(std::move(row));
+    add_row({step, {}, quantity, component, unit, 0, 0, {}, {}, {}}, numbers, chain, rows);
   };
   for (Eigen::Index axis = 0; axis < 3; ++axis)
     add(
@@ -170,28 +169,15 @@ void add_fields(const Chain& chain, const Computed& computed, std::size_t step, 
         return v ? std::optional((*v)[axis]) : std::nullopt;
       };
       Numbers numbers;
-      for (const StageFields& fields : computed.chain) {
+      for (const StageFields& fields : computed.fields) {
         numbers.names.push_back(fields.stage->name());
         numbers.values.push_back(component(value(fields)));
       }
       numbers.uncertainty = [&](std::size_t a, std::size_t b) {
-        return component(uncertainty(computed.chain[a], computed.chain[b]));
+        return component(uncertainty(computed.fields[a], computed.fields[b]));
       };
-      numbers.physics = [&](std::size_t a, std::size_t b) { return chain.physics(a, b); };
       const std::string& name = axis_names[static_cast<std::size_t>(axis)];
-      BudgetRow row{step, sensor, quantity, name, unit, 0, 0, {}, {}, {}};
-      if (!fill(row, numbers)) continue;
-      if (computed.beside) {
-        const StageFields& paper = computed.chain.front();
-        const StageFields& beside = *computed.beside;
-        const Numbers two{
-            {paper.stage->name(), beside.stage->name()},
-            {numbers.values.front(), component(value(beside))},
-            [&](std::size_t, std::size_t) { return component(uncertainty(paper, beside)); },
-            [&](std::size_t, std::size_t) { return beside.stage->physics; }};
-        if (two.values.back()) row.beside = make_link(two, 0, 1);
-      }
-      rows.push_back(std::move(row));
+      add_row({step, sensor, quantity, name, unit, 0, 0, {}, {}, {}}, numbers, chain, rows);
     }
   };
   const auto pair = [&](const StageFields& a, const StageFields& b, bool change) -> Vector {
@@ -292,7 +278,7 @@ void remark_failures(const StageFields& fields, Budget& budget) {
 
 /// dB/dF may end before the chain does.
 void remark_sensitivity(const Chain& chain, const Computed& computed, Budget& budget) {
-  if (computed.chain.empty() || !chain.stages.front().sensitivity) return;
+  if (computed.fields.empty() || !chain.stages.front().sensitivity) return;
   const auto end = std::find_if(chain.stages.begin(), chain.stages.end(),
                                 [](const Stage& stage) { return !stage.sensitivity; });
   if (end != chain.stages.end())
@@ -327,12 +313,10 @@ Budget error_budget(const input::Case& problem, std::span<const models::Mechanic
     add_mechanics(chain, computed, step, budget.rows);
     if (chain.stages.front().sensitivity && !problem.sensors.empty())
       remark_neighbours(computed, chain, step, budget);
-    if (computed.chain.empty()) continue;
     for (std::size_t sensor = 0; sensor < problem.sensors.size(); ++sensor)
       add_fields(chain, computed, step, sensor, budget.rows);
   }
-  for (const StageFields& stage : computed.chain) remark_failures(stage, budget);
-  if (computed.beside) remark_failures(*computed.beside, budget);
+  for (const StageFields& stage : computed.fields) remark_failures(stage, budget);
   remark_sensitivity(chain, computed, budget);
   budget.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return budget;

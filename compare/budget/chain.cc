@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/budget/chain.h"
-
+// The models on the way from the paper's to the best one.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <string_view>
 #include <utility>
 
 #include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
+#include "compare/budget/budget.h"
 #include "fem/potential/potential.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
@@ -17,12 +18,13 @@
 namespace ciliaval::compare::budget {
 namespace {
 
+using analytic::sources::PushForward;
 using fem::potential::PotentialOptions;
 using Set = std::function<void(input::ModelOptions&)>;
 
 void require_words(const std::vector<std::string>& without) {
-  const std::vector<std::string>& words = words_to_leave_out();
-  const std::vector<std::string_view> views(words.begin(), words.end());
+  constexpr std::array<std::string_view, 7> words{"beam",      "solid",  "volume",     "mesh",
+                                                  "potential", "dipole", "sensitivity"};
   for (const std::string& word : without) {
     if (word == "elastica" || word == "line")
       throw InputError(fmt::format(
@@ -31,24 +33,14 @@ void require_words(const std::vector<std::string>& without) {
       throw InputError(
           fmt::format("--without {}: there is nothing of that name to leave out{}; "
                       "there are {}",
-                      word, support::did_you_mean(word, views), fmt::join(words, ", ")));
+                      word, support::did_you_mean(word, words), fmt::join(words, ", ")));
   }
 }
 
-void set_line(input::ModelOptions& options) {
-  options.of<analytic::rod::LineOptions>().push_forward = analytic::sources::PushForward::F;
-}
-
-Set set_slices(analytic::rod::VolumeOptions::Slices slices) {
-  return [slices](input::ModelOptions& options) {
-    options.of<analytic::rod::VolumeOptions>().slices = slices;
-  };
-}
-
-Set set_mesh(analytic::sources::PushForward push_forward) {
-  return [push_forward](input::ModelOptions& options) {
-    options.of<analytic::body::MeshOptions>().push_forward = push_forward;
-  };
+/// Sets one option of a field model.
+template <class Options, class Value>
+Set set(Value Options::*option, Value value) {
+  return [=](input::ModelOptions& options) { options.of<Options>().*option = value; };
 }
 
 Set set_potential(double relative_permeability, bool plates) {
@@ -62,25 +54,27 @@ Set set_potential(double relative_permeability, bool plates) {
 
 /// The mechanics, with dipoles along the centreline.
 std::vector<Stage> mechanics_stages() {
+  const Set line = set(&analytic::rod::LineOptions::push_forward, PushForward::F);
   return {
-      {"elastica", "line", "", set_line, ""},
-      {"beam", "line", "", set_line, "shear and extension of the rod"},
-      {"solid", "line", "", set_line,
+      {"elastica", "line", "", line, ""},
+      {"beam", "line", "", line, "shear and extension of the rod"},
+      {"solid", "line", "", line,
        "three dimensions: bonded ends, near-incompressibility, a contact of some width"},
   };
 }
 
 /// The fields on the best mechanics.
 std::vector<Stage> field_stages(const input::Case& problem, const std::string& mechanics) {
-  using Slices = analytic::rod::VolumeOptions::Slices;
+  using analytic::body::MeshOptions;
+  using analytic::rod::VolumeOptions;
   std::vector<Stage> stages{
-      {mechanics, "volume", "stacked", set_slices(Slices::stacked),
+      {mechanics, "volume", "stacked", set(&VolumeOptions::slices, VolumeOptions::Slices::stacked),
        "the magnet's thickness, in flat slices (Eq. 8-9)"},
-      {mechanics, "volume", "wedge", set_slices(Slices::wedge),
+      {mechanics, "volume", "wedge", set(&VolumeOptions::slices, VolumeOptions::Slices::wedge),
        "wedges in place of flat slices: Jacobian 1 - kappa*offset"},
-      {mechanics, "mesh", "R", set_mesh(analytic::sources::PushForward::R),
+      {mechanics, "mesh", "R", set(&MeshOptions::push_forward, PushForward::R),
        "the solid's own sections, warped and stretched, with rotated moments"},
-      {mechanics, "mesh", "F", set_mesh(analytic::sources::PushForward::F),
+      {mechanics, "mesh", "F", set(&MeshOptions::push_forward, PushForward::F),
        "moments carried along by F, in place of the rotation R"},
       {mechanics, "potential", "mu_r = 1", set_potential(1, false),
        "the same physics by another method: a potential by finite elements", false}};
@@ -98,12 +92,6 @@ std::vector<Stage> field_stages(const input::Case& problem, const std::string& m
 }
 
 }  // namespace
-
-const std::vector<std::string>& words_to_leave_out() {
-  static const std::vector<std::string> words{"beam",      "solid",  "volume",     "mesh",
-                                              "potential", "dipole", "sensitivity"};
-  return words;
-}
 
 std::string Chain::physics(std::size_t from, std::size_t to) const {
   std::vector<std::string> words;

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string_view>
 
@@ -15,41 +14,27 @@
 #include "compare/output/json_file.h"
 #include "compare/output/table.h"
 #include "compare/output/text_table.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::budget {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A unit that people read: the SI value is divided by `size`.
-struct Unit {
-  std::string_view name;
-  double size;
-  int decimals;
-};
-
-Unit shown_unit(std::string_view si) {
-  if (si == "m") return {"mm", 1e-3, 5};
-  if (si == "rad") return {"deg", std::numbers::pi / 180, 4};
-  if (si == "T") return {"uT", 1e-6, 3};
-  if (si == "T/N") return {"uT/mN", 1e-3, 3};
-  if (si == "T/(N/m)") return {"uT/(N/m)", 1e-6, 3};
-  return {"uT/mm", 1e-3, 3};
-}
-
-/// "{:.5f}" for five decimals.
-std::string value_cell(double value, const Unit& unit) {
-  return output::number_cell(value, unit.size, fmt::format("{{:.{}f}}", unit.decimals));
+std::string value_cell(double value, std::string_view unit) {
+  return output::number_cell(value, output::shown_unit(unit).size,
+                             unit == "m"     ? "{:.5f}"
+                             : unit == "rad" ? "{:.4f}"
+                                             : "{:.3f}");
 }
 
 /// "+- 2.1e-06" and a mark: ~ below its uncertainty, ? inconclusive.
-std::string interval_cell(const BudgetLink& link, const Unit& unit) {
+std::string interval_cell(const BudgetLink& link, std::string_view unit) {
   const char* mark = link.verdict == models::Verdict::resolved            ? ""
                      : link.verdict == models::Verdict::below_uncertainty ? " ~"
                                                                           : " ?";
-  return fmt::format(
-      "+- {}{}",
-      link.uncertainty ? fmt::format("{:.2g}", *link.uncertainty / unit.size) : "unknown", mark);
+  if (!link.uncertainty) return fmt::format("+- unknown{}", mark);
+  return fmt::format("+- {:.2g}{}", *link.uncertainty / output::shown_unit(unit).size, mark);
 }
 
 /// The rows that stand side by side in a table.
@@ -82,7 +67,7 @@ std::string group_table(const Group& group, const std::string& title, bool is_fi
   std::string alignment = "<";
   for (const BudgetRow* row : group) {
     rows[0].push_back(fmt::format("{} ({})", row->component.empty() ? "angle" : row->component,
-                                  shown_unit(row->unit).name));
+                                  output::shown_unit(row->unit).name));
     rows[0].emplace_back();
     alignment += "><";
   }
@@ -90,16 +75,15 @@ std::string group_table(const Group& group, const std::string& title, bool is_fi
   const auto add_values = [&](const std::string& label, double BudgetRow::*value) {
     std::vector<std::string>& cells = rows.emplace_back(1, label);
     for (const BudgetRow* row : group)
-      cells.insert(cells.end(), {value_cell(row->*value, shown_unit(row->unit)), ""});
+      cells.insert(cells.end(), {value_cell(row->*value, row->unit), ""});
   };
   const auto add_links = [&](const std::string& label, auto&& link_of) {
     std::vector<std::string>& cells = rows.emplace_back(1, label);
     std::vector<const BudgetLink*> links;
     for (const BudgetRow* row : group) {
-      const Unit unit = shown_unit(row->unit);
-      links.push_back(&link_of(*row));
+      const BudgetLink& link = *links.emplace_back(&link_of(*row));
       cells.insert(cells.end(),
-                   {value_cell(links.back()->value, unit), interval_cell(*links.back(), unit)});
+                   {value_cell(link.value, row->unit), interval_cell(link, row->unit)});
     }
     if (is_field) cells.push_back(percent(group, links));
   };
@@ -179,6 +163,54 @@ Json row_json(const BudgetRow& row) {
   return json;
 }
 
+models::Verdict verdict_of(const std::string& text) {
+  for (const models::Verdict verdict :
+       {models::Verdict::resolved, models::Verdict::below_uncertainty,
+        models::Verdict::inconclusive})
+    if (to_string(verdict) == text) return verdict;
+  throw FileError("there is no verdict `" + text + "`");
+}
+
+BudgetLink read_link(const Json& json) {
+  return {json.at("from").get<std::string>(),
+          json.at("to").get<std::string>(),
+          json.at("physics").get<std::string>(),
+          json.at("value").get<double>(),
+          output::number_or_none(json.at("uncertainty")),
+          verdict_of(json.at("verdict").get<std::string>())};
+}
+
+BudgetRow read_row(const Json& json) {
+  BudgetRow row;
+  row.step = json.at("step").get<std::size_t>();
+  if (!json.at("sensor").is_null()) row.sensor = json["sensor"].get<std::size_t>();
+  row.quantity = json.at("quantity").get<std::string>();
+  row.component = output::text_or_none(json.at("component"));
+  row.unit = json.at("unit").get<std::string>();
+  row.paper = json.at("paper").get<double>();
+  row.best = json.at("best").get<double>();
+  row.total = read_link(json.at("total"));
+  for (const Json& link : json.at("links")) row.links.push_back(read_link(link));
+  if (!json.at("beside").is_null()) row.beside = read_link(json["beside"]);
+  return row;
+}
+
+/// "solid/volume stacked" taken apart.
+Stage read_stage(const Json& json) {
+  const std::string name = json.at("name").get<std::string>();
+  const std::size_t slash = name.find('/');
+  if (slash == std::string::npos) throw FileError("`" + name + "` is no pair of models");
+  Stage stage;
+  stage.mechanics = name.substr(0, slash);
+  stage.field = name.substr(slash + 1);
+  if (const std::size_t blank = stage.field.find(' '); blank != std::string::npos) {
+    stage.variant = stage.field.substr(blank + 1);
+    stage.field.resize(blank);
+  }
+  stage.physics = output::text_or_none(json.at("physics"));
+  return stage;
+}
+
 }  // namespace
 
 std::string budget_text(const Budget& budget) {
@@ -224,6 +256,17 @@ std::string budget_csv(const Budget& budget) {
     if (row.beside) add("beside", *row.beside);
   }
   return csv.text();
+}
+
+Budget read_budget(const Json& json) {
+  Budget budget;
+  budget.case_name = json.at("case").get<std::string>();
+  for (const Json& stage : json.at("chain")) budget.chain.stages.push_back(read_stage(stage));
+  budget.chain.not_run = json.at("not_run").get<std::vector<std::string>>();
+  budget.remarks = json.at("remarks").get<std::vector<std::string>>();
+  for (const Json& row : json.at("rows")) budget.rows.push_back(read_row(row));
+  budget.seconds = json.at("seconds").get<double>();
+  return budget;
 }
 
 }  // namespace ciliaval::compare::budget

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -50,17 +51,9 @@ Evidence in_range(std::string models, const Span& values, std::string unit, doub
 }
 
 std::string_view to_string(ClaimVerdict verdict) {
-  switch (verdict) {
-    case ClaimVerdict::reproduced:
-      return "reproduced";
-    case ClaimVerdict::not_reproduced:
-      return "not reproduced";
-    case ClaimVerdict::depends_on_the_model:
-      return "depends on the model";
-    case ClaimVerdict::not_checkable:
-      break;
-  }
-  return "not checkable";
+  constexpr std::array<std::string_view, 4> names{"reproduced", "not reproduced",
+                                                  "depends on the model", "not checkable"};
+  return names.at(static_cast<std::size_t>(verdict));
 }
 
 ClaimVerdict Claim::verdict() const {

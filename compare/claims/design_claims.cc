@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "compare/claims/ledger.h"
+#include "compare/claims/claim.h"
 #include "compare/models/registry.h"
 #include "compare/study/reader/study_reader.h"
 #include "compare/study/summary/report.h"
@@ -94,16 +94,16 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
   claims.push_back(
       {"3.4.1, Fig. 4a",
        "the signal |dB| grows with E2",
-       {},
        "Below some 0.2 MPa the magnet bends so far that dB_x has the other sign, and |dB| falls "
-       "first; above it grows (docs/evidence/studies.md). The paper's range of E2 is not given."});
+       "first; above it grows (docs/evidence/studies.md). The paper's range of E2 is not given.",
+       {}});
   add_trends(
       e2, [](const Trend& t) { return t.kind == Trend::Kind::rising; }, claims.back());
   const StudyResult e2_x = run("fig4a-e2.study.toml", Output::dB_x);
   claims.push_back({"3.4.1, Fig. 4a",
                     "dB_x grows with E2 and reaches a plateau",
-                    {},
-                    "A plateau: 95 % of the change by half of the range."});
+                    "A plateau: 95 % of the change by half of the range.",
+                    {}});
   const double middle = e2_x.study.parameters.front().values.back() / 2;
   add_trends(
       e2_x, [&](const Trend& t) { return t.kind == Trend::Kind::rising && t.settled_at < middle; },
@@ -111,17 +111,17 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
 
   claims.push_back({"3.4.2, Fig. 4b",
                     "the signal grows with the aspect ratio (thinner cilia)",
-                    {},
                     "Where the cilium bears the force at all: thinner ones slip off "
-                    "(docs/evidence/studies.md)."});
+                    "(docs/evidence/studies.md).",
+                    {}});
   add_trends(
       run("fig4b.study.toml", Output::dB_norm),
       [](const Trend& t) { return t.kind == Trend::Kind::falling; }, claims.back());
 
   claims.push_back({"3.4.3, Fig. 4c",
                     "the signal has its peak at L2/L0 = 0.7 to 0.9",
-                    {},
-                    "+-: what it moves by with every second point of the study."});
+                    "+-: what it moves by with every second point of the study.",
+                    {}});
   add_peaks(run("fig4c.study.toml", Output::dB_norm), claims.back());
   if (with_solid) {
     // About the peaks of the others: elsewhere the rods have shown that there is none.

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "compare/claims/ledger.h"
+#include "compare/claims/claim.h"
 #include "compare/sensing/bench.h"
 #include "problem/error.h"
 
@@ -37,16 +37,16 @@ Claim largest_force(const sensing::Bench& bench) {
   const double q = flow.force_per_height(input::stated_values(bench.problem, "velocity").back());
   return {"3.5, Eq. 11",
           "the largest force per length is 0.375 N/m at 0.5 m/s",
-          {in_range("rho v2 C_d d/2", {q, q}, "N/m", 0.3745, 0.3755)},
-          {}};
+          {},
+          {in_range("rho v2 C_d d/2", {q, q}, "N/m", 0.3745, 0.3755)}};
 }
 
 Claim linear_response(const sensing::Bench& bench, bool with_solid, const Progress& progress) {
   Claim claim{"3.5",
               "the field's change is approximately linear in v2",
-              {},
               "R2 of a straight line through |dB| at the case's velocities; held to R2 > 0.99, as "
-              "the paper's other comparisons are. The paper gives no figure."};
+              "the paper's other comparisons are. The paper gives no figure.",
+              {}};
   std::vector<double> forces;
   for (const Load& load : bench.problem.load_path) forces.push_back(magnitude(load));
   std::vector<models::ModelPair> pairs{
@@ -67,10 +67,10 @@ Claim direction(sensing::Bench bench, bool with_solid, const Progress& progress)
   Claim claim{
       "abstract, 3.5, Fig. 5e",
       "direction of the flow within 10 deg, 0 to 0.5 m/s",
-      {},
       "Simulated from 0.1 m/s on, with the stated errors of cases/paper/fig5.sense.toml, without "
       "turbulence; +-: 95 %, from the scatter of the simulated sensors. Towards 0 the direction is "
-      "lost in the noise. The paper's readings were not published."};
+      "lost in the noise. The paper's readings were not published.",
+      {}};
   if (!with_solid) bench.truth = {"beam", "volume"};
   const sensing::BenchResult result = sensing::run_bench(bench, progress);
   const sensing::BenchRow& all = result.rows.back();

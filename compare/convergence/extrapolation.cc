@@ -35,13 +35,8 @@ void require_levels(std::span<const RefinementLevel> levels, std::size_t least) 
 /// Whether the two finest levels agree to rounding: then that is the interval.
 std::optional<Extrapolation> converged(std::span<const RefinementLevel> levels, double rounding) {
   if (std::abs(levels[1].value - levels[0].value) > rounding) return std::nullopt;
-  Extrapolation result;
-  result.conclusive = true;
-  result.reason = "the finest levels agree to rounding";
-  result.limit = levels[0].value;
-  result.uncertainty = rounding;
-  result.safety = 1;
-  return result;
+  return Extrapolation{true, "the finest levels agree to rounding", {}, levels[0].value, rounding,
+                       1};
 }
 
 bool monotone(std::span<const RefinementLevel> levels) {
@@ -52,10 +47,7 @@ bool monotone(std::span<const RefinementLevel> levels) {
 }
 
 Extrapolation inconclusive(std::span<const RefinementLevel> levels, std::string reason) {
-  Extrapolation result;
-  result.reason = std::move(reason);
-  result.limit = levels.front().value;
-  return result;
+  return {false, std::move(reason), {}, levels.front().value};
 }
 
 /// The equation for p at one p, its left side less its right, for the levels from `first` on.
@@ -76,6 +68,12 @@ bool faster_than_any_order(std::span<const RefinementLevel> levels) {
   return true;
 }
 
+/// F |e₂₁|/(r₂₁^p − 1).
+double interval_of(std::span<const RefinementLevel> levels, double p, double safety) {
+  return safety * std::abs(levels[1].value - levels[0].value) /
+         (std::pow(levels[1].size / levels[0].size, p) - 1);
+}
+
 /// What monotone levels without an order between the limits allow to be said: an interval where
 /// they converge faster than that, from the last change and an order that is far too low for them.
 Extrapolation without_order(std::span<const RefinementLevel> levels,
@@ -83,17 +81,14 @@ Extrapolation without_order(std::span<const RefinementLevel> levels,
   if (!faster_than_any_order(levels))
     return inconclusive(levels,
                         fmt::format("no order between {} and {} fits", least_order, largest_order));
-  const double r21 = levels[1].size / levels[0].size;
-  const double e21 = levels[1].value - levels[0].value;
-  Extrapolation result;
-  result.conclusive = true;
-  result.reason = fmt::format("faster than order {}", largest_order);
-  result.limit = levels[0].value;
-  result.safety = 3;
-  result.uncertainty =
-      std::max(rounding, result.safety * std::abs(e21) /
-                             (std::pow(r21, formal_order.value_or(cautious_order)) - 1));
-  return result;
+  constexpr double safety = 3;
+  const double interval = interval_of(levels, formal_order.value_or(cautious_order), safety);
+  return {true,
+          fmt::format("faster than order {}", largest_order),
+          {},
+          levels[0].value,
+          std::max(rounding, interval),
+          safety};
 }
 
 /// The root of the equation for p.
@@ -139,17 +134,15 @@ Extrapolation grid_convergence(std::span<const RefinementLevel> levels,
   if (!p) return without_order(levels, formal_order, rounding);
   const double r21 = levels[1].size / levels[0].size;
   const double e21 = levels[1].value - levels[0].value;
-  Extrapolation result;
-  result.conclusive = true;
-  result.order = p;
-  result.limit = levels[0].value - e21 / (std::pow(r21, *p) - 1);
   const bool asymptotic = formal_order && std::abs(*p / *formal_order - 1) <= 0.1;
-  result.safety = asymptotic ? 1.25 : 3;
-  if (!asymptotic) result.reason = "the order is not in the asymptotic range";
-  const double cautious = formal_order ? std::min(*p, *formal_order) : *p;
-  result.uncertainty =
-      std::max(rounding, result.safety * std::abs(e21) / (std::pow(r21, cautious) - 1));
-  return result;
+  const double safety = asymptotic ? 1.25 : 3;
+  const double interval = interval_of(levels, std::min(*p, formal_order.value_or(*p)), safety);
+  return {true,
+          asymptotic ? "" : "the order is not in the asymptotic range",
+          p,
+          levels[0].value - e21 / (std::pow(r21, *p) - 1),
+          std::max(rounding, interval),
+          safety};
 }
 
 Extrapolation least_squares_convergence(std::span<const RefinementLevel> levels,
@@ -179,21 +172,20 @@ Extrapolation least_squares_convergence(std::span<const RefinementLevel> levels,
       [](const RefinementLevel& a, const RefinementLevel& b) { return a.value < b.value; });
   const double mean_difference =
       (largest->value - least->value) / static_cast<double>(levels.size() - 1);
-  Extrapolation result;
-  result.conclusive = true;
-  result.order = p;
-  result.limit = best_fit.limit;
   const bool good = p >= 0.5 && p <= formal_order.value_or(cautious_order) + 0.1 &&
                     best_fit.deviation < mean_difference;
-  result.safety = good ? 1.25 : 3;
-  if (!good) result.reason = "the order is not in the asymptotic range, or the levels scatter";
+  const double safety = good ? 1.25 : 3;
   const double misfit =
       std::abs(levels.front().value - best_fit.limit -
                best_fit.slope * std::pow(levels.front().size / levels.back().size, p));
-  result.uncertainty =
-      std::max(rounding, result.safety * std::abs(levels.front().value - best_fit.limit) +
-                             best_fit.deviation + misfit);
-  return result;
+  const double interval =
+      safety * std::abs(levels.front().value - best_fit.limit) + best_fit.deviation + misfit;
+  return {true,
+          good ? "" : "the order is not in the asymptotic range, or the levels scatter",
+          p,
+          best_fit.limit,
+          std::max(rounding, interval),
+          safety};
 }
 
 Extrapolation extrapolate(std::span<const RefinementLevel> levels,
@@ -212,13 +204,12 @@ Extrapolation kept_tolerances(std::span<const RefinementLevel> levels, double sc
                                               "{:.2g}, but the finest value is {:.2g} away",
                                               level.size, level.size * scale, moved));
   }
-  Extrapolation result;
-  result.conclusive = true;
-  result.reason = "all levels are within their tolerances of the finest";
-  result.limit = finest.value;
-  result.uncertainty = finest.size * scale;
-  result.safety = 1;
-  return result;
+  return {true,
+          "all levels are within their tolerances of the finest",
+          {},
+          finest.value,
+          finest.size * scale,
+          1};
 }
 
 }  // namespace ciliaval::compare::convergence

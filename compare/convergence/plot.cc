@@ -21,6 +21,7 @@ struct Series {
   std::string name;
   const ConvergedQuantity* quantity = nullptr;
 };
+using Points = std::vector<std::pair<double, double>>;
 
 /// The tip and each pair's |ΔB| at sensor 0 at one load step, where all levels have them.
 std::vector<Series> series_of(const RefinementStudy& study, std::size_t step) {
@@ -48,10 +49,10 @@ std::string legend(const Series& series) {
 }
 
 /// The points of a curve, (h, |f − f₀|/|f|). A level that has no distance has no point.
-std::vector<std::pair<double, double>> points_of(const ConvergedQuantity& q) {
+Points points_of(const ConvergedQuantity& q) {
   const double finest = q.levels.front().value;
   const double limit = q.extrapolation.conclusive ? q.extrapolation.limit : finest;
-  std::vector<std::pair<double, double>> points;
+  Points points;
   for (const RefinementLevel& level : q.levels) {
     const double error = std::abs(level.value - limit) / std::abs(finest);
     if (std::isfinite(error) && error > 0) points.emplace_back(level.size, error);
@@ -59,16 +60,14 @@ std::vector<std::pair<double, double>> points_of(const ConvergedQuantity& q) {
   return points;
 }
 
-std::string data_block(const std::string& name,
-                       const std::vector<std::pair<double, double>>& points) {
+std::string data_block(const std::string& name, const Points& points) {
   std::string text = fmt::format("${} << EOD\n", name);
   for (const auto& [x, y] : points) text += fmt::format("{} {}\n", x, y);
   return text + "EOD\n";
 }
 
 /// α h^p from the coarsest to the finest level, α the geometric mean of the points.
-std::vector<std::pair<double, double>> fitted_line(
-    const std::vector<std::pair<double, double>>& points, double order) {
+Points fitted_line(const Points& points, double order) {
   double logarithm = 0;
   for (const auto& [h, error] : points)
     logarithm += (std::log(error) - order * std::log(h)) / static_cast<double>(points.size());

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,7 @@
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/csv_writer.h"
+#include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
 #include "compare/regression/quantities.h"
 #include "problem/error.h"
@@ -25,36 +27,24 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// What one level gave, by id.
-struct LevelResult {
-  double size = 0;
-  std::map<std::string, regression::Measurement> quantities;
-};
+using Quantities = std::map<std::string, regression::Measurement>;
 
 /// Adds the lengths of the vectors that people look at first.
-void add_lengths(std::map<std::string, regression::Measurement>& quantities) {
-  std::vector<regression::Measurement> lengths;
+void add_lengths(Quantities& quantities) {
+  Quantities lengths;
   for (const auto& [id, x] : quantities) {
     if (!id.ends_with("/x")) continue;
     const std::string vector = id.substr(0, id.size() - 2);
+    const bool is_tip = vector.ends_with("/tip");
+    if (!is_tip && vector.find("/dB/") == std::string::npos) continue;
     const double y = quantities.at(vector + "/y").value;
     regression::Measurement length = x;
-    if (vector.ends_with("/tip")) {
-      length.id = vector + "/deflection";
-      length.value = std::hypot(x.value, y);
-      lengths.push_back(std::move(length));
-    } else if (vector.find("/dB/") != std::string::npos) {
-      length.id = vector + "/norm";
-      length.value = std::hypot(x.value, y, quantities.at(vector + "/z").value);
-      lengths.push_back(std::move(length));
-    }
+    length.id = vector + (is_tip ? "/deflection" : "/norm");
+    length.value = is_tip ? std::hypot(x.value, y)
+                          : std::hypot(x.value, y, quantities.at(vector + "/z").value);
+    lengths.emplace(length.id, std::move(length));
   }
-  for (regression::Measurement& length : lengths) quantities.emplace(length.id, std::move(length));
-}
-
-Progress named(const Progress& progress, const ModelRefinement& refinement, double value) {
-  if (!progress) return {};
-  return [&progress, prefix = fmt::format("{} {:g}: ", refinement.option.name, value)](
-             const std::string& text) { progress(prefix + text); };
+  quantities.merge(lengths);
 }
 
 /// The first of the case's mechanics models, the cheapest first, that gives the field model what it
@@ -99,52 +89,46 @@ double seconds_of(const models::CaseResult& result, bool is_field) {
   return seconds;
 }
 
-/// Runs a mechanics model, and the fields on it, at each value of its option.
-std::vector<models::CaseResult> run_mechanics_levels(input::Case problem,
-                                                     const ModelRefinement& refinement,
-                                                     std::span<const double> values,
-                                                     const Progress& progress) {
-  std::vector<models::CaseResult> results;
-  problem.mechanics = {refinement.model};
-  problem.external.clear();  // the same at every level
-  if (refinement.sequence.law == input::Refinement::Law::tolerance) problem.fields.clear();
-  for (const double value : values) {
-    refinement.set(problem.options, value);
-    results.push_back(models::run(problem, models::mechanics_models(), models::field_models(),
-                                  named(progress, refinement, value)));
-  }
-  return results;
-}
-
-/// Runs a field model at each value of its option, on one deformation.
-std::vector<models::CaseResult> run_field_levels(input::Case problem,
-                                                 const ModelRefinement& refinement,
-                                                 std::span<const double> values,
-                                                 const Progress& progress) {
-  const models::FieldEntry& entry = models::entry_of(models::field_models(), refinement.model);
+/// Runs at each value of the option a mechanics model, and the fields on it, or a field model on
+/// one deformation.
+std::vector<models::CaseResult> run_levels(input::Case problem, const ModelRefinement& refinement,
+                                           std::span<const double> values,
+                                           const Progress& progress) {
   std::vector<models::CaseResult> results;
   std::optional<models::MechanicsRun> mechanics;
+  if (!refinement.is_field) {
+    problem.mechanics = {refinement.model};
+    problem.external.clear();  // the same at every level
+    if (refinement.sequence.law == input::Refinement::Law::tolerance) problem.fields.clear();
+  }
   for (const double value : values) {
     refinement.set(problem.options, value);
+    const Progress of_level =
+        with_prefix(progress, fmt::format("{} {:g}: ", refinement.option.name, value));
+    if (!refinement.is_field) {
+      results.push_back(
+          models::run(problem, models::mechanics_models(), models::field_models(), of_level));
+      continue;
+    }
+    const models::FieldEntry& entry = models::entry_of(models::field_models(), refinement.model);
     const auto field = entry.make(problem.options);
     if (!mechanics) mechanics = mechanics_for(entry, problem, progress);
-    results.push_back({problem,
-                       {*mechanics},
-                       {models::run_field(refinement.model, *field, *mechanics, problem,
-                                          named(progress, refinement, value))}});
+    results.push_back(
+        {problem,
+         {*mechanics},
+         {models::run_field(refinement.model, *field, *mechanics, problem, of_level)}});
   }
   return results;
 }
 
-LevelResult level_of(const models::CaseResult& result, const ModelRefinement& refinement,
-                     double value) {
-  LevelResult level{refinement.sequence.size(value), {}};
+Quantities quantities_of(const models::CaseResult& result, const ModelRefinement& refinement) {
+  Quantities quantities;
   for (regression::Measurement& quantity : regression::measurements(result).quantities)
     if (!quantity.id.ends_with("/tip_uncertainty") &&
         (!refinement.is_field || quantity.id.find("/mechanics/") == std::string::npos))
-      level.quantities.emplace(quantity.id, std::move(quantity));
-  add_lengths(level.quantities);
-  return level;
+      quantities.emplace(quantity.id, std::move(quantity));
+  add_lengths(quantities);
+  return quantities;
 }
 
 Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
@@ -159,17 +143,14 @@ Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
 }
 
 /// The quantities that every level has.
-void extrapolate_all(const std::vector<LevelResult>& levels, const ModelRefinement& refinement,
+void extrapolate_all(const std::vector<Quantities>& levels, const ModelRefinement& refinement,
                      RefinementStudy& study) {
-  for (const auto& [id, finest] : levels.front().quantities) {
+  for (const auto& [id, finest] : levels.front()) {
     ConvergedQuantity quantity{id, finest.unit, {}, {}};
-    bool everywhere = true;
-    for (const LevelResult& level : levels) {
-      const auto found = level.quantities.find(id);
-      everywhere = everywhere && found != level.quantities.end();
-      if (everywhere) quantity.levels.push_back({level.size, found->second.value});
-    }
-    if (everywhere)
+    for (std::size_t i = 0; i < levels.size() && levels[i].contains(id); ++i)
+      quantity.levels.push_back(
+          {refinement.sequence.size(study.settings[i]), levels[i].at(id).value});
+    if (quantity.levels.size() == levels.size())
       quantity.extrapolation = extrapolation_of(quantity.levels, finest, refinement);
     else
       quantity.extrapolation.reason = "not every level has it";
@@ -183,22 +164,26 @@ bool is_shown(const std::string& id) {
          id.find("slip_off") != std::string::npos || id.find("/dB/") != std::string::npos;
 }
 
+/// The numbers of an extrapolation; a limit that is not conclusive is none.
+std::array<std::pair<const char*, std::optional<double>>, 4> numbers_of(const Extrapolation& e) {
+  const auto if_conclusive = [&](double value) {
+    return e.conclusive ? std::optional(value) : std::nullopt;
+  };
+  return {{{"order", e.order},
+           {"limit", if_conclusive(e.limit)},
+           {"uncertainty", if_conclusive(e.uncertainty)},
+           {"safety", if_conclusive(e.safety)}}};
+}
+
 Json quantity_json(const ConvergedQuantity& quantity) {
   const Extrapolation& e = quantity.extrapolation;
   Json json{{"id", quantity.id}, {"unit", quantity.unit}, {"levels", Json::array()}};
   for (const RefinementLevel& level : quantity.levels)
     json["levels"].push_back({{"size", level.size}, {"value", level.value}});
   json["conclusive"] = e.conclusive;
-  json["reason"] = e.reason.empty() ? Json(nullptr) : Json(e.reason);
-  json["order"] = e.order ? Json(*e.order) : Json(nullptr);
-  json["limit"] = e.conclusive ? Json(e.limit) : Json(nullptr);
-  json["uncertainty"] = e.conclusive ? Json(e.uncertainty) : Json(nullptr);
-  json["safety"] = e.conclusive ? Json(e.safety) : Json(nullptr);
+  json["reason"] = output::or_null(e.reason);
+  for (const auto& [name, value] : numbers_of(e)) json[name] = output::or_null(value);
   return json;
-}
-
-std::string text_or_none(const Json& json) {
-  return json.is_null() ? std::string() : json.get<std::string>();
 }
 
 ConvergedQuantity read_quantity(const Json& json) {
@@ -208,8 +193,8 @@ ConvergedQuantity read_quantity(const Json& json) {
     quantity.levels.push_back({level.at("size").get<double>(), level.at("value").get<double>()});
   Extrapolation& e = quantity.extrapolation;
   e.conclusive = json.at("conclusive").get<bool>();
-  e.reason = text_or_none(json.at("reason"));
-  if (!json.at("order").is_null()) e.order = json["order"].get<double>();
+  e.reason = output::text_or_none(json.at("reason"));
+  e.order = output::number_or_none(json.at("order"));
   if (e.conclusive) {
     e.limit = json.at("limit").get<double>();
     e.uncertainty = json.at("uncertainty").get<double>();
@@ -220,27 +205,48 @@ ConvergedQuantity read_quantity(const Json& json) {
 
 }  // namespace
 
+void ModelRefinement::set(input::ModelOptions& options, double value) const {
+  option.set_number(options, value);
+  if (sequence.also) sequence.also(options);
+}
+
+std::vector<ModelRefinement> refinements(const input::Case& problem) {
+  std::vector<ModelRefinement> result;
+  const auto add = [&](const auto& entries, const std::vector<std::string>& asked, bool is_field) {
+    for (const auto& entry : entries) {
+      if (std::find(asked.begin(), asked.end(), entry.id) == asked.end()) continue;
+      for (const input::Refinement& sequence : entry.refinements)
+        if (!sequence.applies || sequence.applies(problem.options)) {
+          const auto is_its_option = [&](const input::Option& option) {
+            return option.name == sequence.option;
+          };
+          result.push_back(
+              {entry.id, is_field, entry.accuracy / 10,
+               *std::find_if(entry.options.begin(), entry.options.end(), is_its_option), sequence});
+        }
+    }
+  };
+  add(models::mechanics_models(), problem.mechanics, false);
+  add(models::field_models(), problem.fields, true);
+  return result;
+}
+
 RefinementStudy refinement_study(const input::Case& problem, const ModelRefinement& refinement,
                                  unsigned int count, const Progress& progress) {
-  RefinementStudy study{refinement.model,
-                        std::string(refinement.option.name),
-                        std::string(refinement.sequence.size_name),
-                        {},
-                        {},
-                        {},
-                        {}};
+  RefinementStudy study;
+  study.model = refinement.model;
+  study.option = refinement.option.name;
+  study.size_name = refinement.sequence.size_name;
   if (count < 3)
     throw InputError(fmt::format("a study needs 3 levels of refinement or more, not {}", count));
   const auto values = std::span(refinement.sequence.values)
                           .first(std::min<std::size_t>(count, refinement.sequence.values.size()));
-  const std::vector<models::CaseResult> results =
-      refinement.is_field ? run_field_levels(problem, refinement, values, progress)
-                          : run_mechanics_levels(problem, refinement, values, progress);
-  std::vector<LevelResult> levels;
+  const auto results = run_levels(problem, refinement, values, progress);
+  std::vector<Quantities> levels;
   for (std::size_t i = results.size(); i-- > 0;) {
     study.settings.push_back(values[i]);
     study.seconds.push_back(seconds_of(results[i], refinement.is_field));
-    levels.push_back(level_of(results[i], refinement, values[i]));
+    levels.push_back(quantities_of(results[i], refinement));
     if (const std::string failure = failure_of(results[i], refinement); !failure.empty())
       study.failure = fmt::format("{} {:g}: {}", refinement.option.name, values[i], failure);
   }
@@ -286,30 +292,27 @@ std::string study_json(const std::string& case_name, const std::vector<Refinemen
             {"provenance", output::to_json(provenance)},
             {"studies", Json::array()}};
   for (const RefinementStudy& study : studies) {
-    Json entry{{"model", study.model},
-               {"option", study.option},
-               {"size_name", study.size_name},
-               {"settings", study.settings},
-               {"seconds", study.seconds},
-               {"failure", study.failure.empty() ? Json(nullptr) : Json(study.failure)},
+    Json entry{{"model", study.model},         {"option", study.option},
+               {"size_name", study.size_name}, {"settings", study.settings},
+               {"seconds", study.seconds},     {"failure", output::or_null(study.failure)},
                {"quantities", Json::array()}};
     for (const ConvergedQuantity& quantity : study.quantities)
       entry["quantities"].push_back(quantity_json(quantity));
     json["studies"].push_back(std::move(entry));
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return output::to_text(json);
 }
 
 std::vector<RefinementStudy> read_studies(const Json& json) {
   std::vector<RefinementStudy> studies;
   for (const Json& entry : json.at("studies")) {
-    RefinementStudy study{};
+    RefinementStudy study;
     study.model = entry.at("model").get<std::string>();
     study.option = entry.at("option").get<std::string>();
     study.size_name = entry.value("size_name", "size of the level");
     study.settings = entry.at("settings").get<std::vector<double>>();
     study.seconds = entry.at("seconds").get<std::vector<double>>();
-    study.failure = text_or_none(entry.at("failure"));
+    study.failure = output::text_or_none(entry.at("failure"));
     for (const Json& quantity : entry.at("quantities"))
       study.quantities.push_back(read_quantity(quantity));
     studies.push_back(std::move(study));
@@ -332,20 +335,16 @@ std::string study_csv(const std::vector<RefinementStudy>& studies) {
   for (const RefinementStudy& study : studies)
     for (const ConvergedQuantity& quantity : study.quantities) {
       const Extrapolation& e = quantity.extrapolation;
-      const auto number = [&](double value) {
-        return e.conclusive ? std::optional(value) : std::nullopt;
-      };
       for (const std::string& text : {study.model, study.option, quantity.id, quantity.unit})
         csv.add(text);
       csv.add(e.conclusive ? 1 : 0);
-      for (const auto& value : {e.order, number(e.limit), number(e.uncertainty), number(e.safety)})
-        csv.add(value);
+      for (const auto& [name, value] : numbers_of(e)) csv.add(value);
       csv.add(e.reason);
-      for (std::size_t i = 0; i < levels; ++i) {
-        const bool is_there = i < quantity.levels.size();
-        csv.add(is_there ? std::optional(quantity.levels[i].size) : std::nullopt);
-        csv.add(is_there ? std::optional(quantity.levels[i].value) : std::nullopt);
+      for (const RefinementLevel& level : quantity.levels) {
+        csv.add(level.size);
+        csv.add(level.value);
       }
+      for (std::size_t i = 2 * quantity.levels.size(); i < 2 * levels; ++i) csv.add("");
       csv.end_row();
     }
   return csv.text();

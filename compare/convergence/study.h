@@ -6,12 +6,25 @@
 #include <vector>
 
 #include "compare/convergence/extrapolation.h"
-#include "compare/convergence/refinement.h"
 #include "compare/input/case.h"
 #include "compare/output/provenance.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::compare::convergence {
+
+/// A refinement of a model of a case, and the option that it sets.
+struct ModelRefinement {
+  std::string model;      ///< id of the mechanics model, or of the field model
+  bool is_field = false;  ///< … which then runs on one of the case's mechanics models
+  double rounding = 0;    ///< two computations agree to it, relative to the scale
+  input::Option option;
+  input::Refinement sequence;
+
+  void set(input::ModelOptions& options, double value) const;
+};
+
+/// Those of the models that the case asks for, with the method that it asks for.
+std::vector<ModelRefinement> refinements(const input::Case& problem);
 
 /// One quantity of a case on all levels, finest first: those of compare/regression/quantities.h,
 /// and made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and

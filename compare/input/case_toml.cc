@@ -131,6 +131,17 @@ std::optional<double> Section::value(const QuantityKey& key) {
   return read_value(*node, key.name, key.quantity, key.range, *faults_);
 }
 
+void Section::read(std::string_view key, const Quantity& quantity, const Range& range,
+                   double& value) {
+  if (const toml::node* node = find(key))
+    value = read_value(*node, key, quantity, range, *faults_).value_or(value);
+}
+
+void Section::read(std::string_view key, const Range& range, unsigned int& value) {
+  if (const toml::node* node = find(key))
+    value = read_whole_number(*node, key, range, *faults_).value_or(value);
+}
+
 void Section::tables(std::string_view key, std::size_t fewest, std::size_t most,
                      const std::function<void(Section&)>& f) {
   const toml::node* node = find(key);

@@ -64,6 +64,9 @@ class Section {
   Section section(std::string_view key);
   /// The value of a key, which is required if it has no fallback; none if it is missing or a fault.
   std::optional<double> value(const QuantityKey& key);
+  /// Reads the value of a key, if it is there and no fault.
+  void read(std::string_view key, const Quantity& quantity, const Range& range, double& value);
+  void read(std::string_view key, const Range& range, unsigned int& value);
   /// Calls f with each table of a list [[…]], and finishes it. A value that is no list of at least
   /// `fewest` and at most `most` tables is a fault.
   void tables(std::string_view key, std::size_t fewest, std::size_t most,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -50,6 +51,17 @@ std::string number_cell(std::optional<double> value, double unit, std::string_vi
   const std::string text = fmt::format(fmt::runtime(format), *value / unit);
   const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
   return is_zero && text.starts_with('-') ? text.substr(1) : text;
+}
+
+ShownUnit shown_unit(std::string_view si) {
+  if (si == "m") return {"mm", 1e-3};
+  if (si == "N") return {"mN", 1e-3};
+  if (si == "rad") return {"deg", std::numbers::pi / 180};
+  if (si == "T") return {"uT", 1e-6};
+  if (si == "T/N") return {"uT/mN", 1e-3};
+  if (si == "T/m") return {"uT/mm", 1e-3};
+  if (si == "T/(N/m)") return {"uT/(N/m)", 1e-6};
+  return {std::string(si), 1};
 }
 
 std::vector<std::size_t> evenly(std::size_t count, std::size_t shown) {

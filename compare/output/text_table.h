@@ -19,6 +19,14 @@ std::string text_table(const TextRows& rows, std::string_view alignment = ">");
 /// rounds to zero has no sign.
 std::string number_cell(std::optional<double> value, double unit, std::string_view format);
 
+/// A unit that people read: an SI value is divided by `size`.
+struct ShownUnit {
+  std::string name;  ///< "uT", "uT/mN"
+  double size = 1;
+};
+/// "mm" for "m"; a unit without a handier one is itself.
+ShownUnit shown_unit(std::string_view si);
+
 /// The indices of `shown` of `count` things, evenly chosen, the first and the last among them.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t shown);
 

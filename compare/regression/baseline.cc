@@ -36,10 +36,6 @@ class Reader {
     if (!json_.contains(key)) fail(fmt::format("`{}` is missing", key));
     return json_.at(key);
   }
-  bool has(const char* key) {
-    read_.insert(key);
-    return json_.contains(key);
-  }
   std::string text(const char* key) {
     const Json& value = get(key);
     if (!value.is_string()) fail(fmt::format("`{}` must be a text", key));
@@ -70,7 +66,6 @@ class Reader {
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{}: {}: {}", file_, where_, what));
   }
-  const std::string& file() const { return file_; }
 
  private:
   const Json& json_;
@@ -97,7 +92,7 @@ Expected read_expected(const Json& json, const std::string& file) {
   expected.unit = reader.text("unit");
   expected.value = reader.number("value");
   expected.allowed = read_allowed(reader, expected.value);
-  if (reader.has("reference")) {
+  if (json.contains("reference")) {
     Reader from(reader.get("reference"), file, id + "/reference");
     Reference reference{from.text("label"), from.number("value"), {}};
     reference.allowed = read_allowed(from, reference.value);
@@ -171,23 +166,6 @@ std::string lines(const std::vector<Json>& elements) {
   return text + "\n ]";
 }
 
-std::vector<Change> changes(const Baseline& old, const std::vector<Expected>& quantities) {
-  std::vector<Change> result;
-  std::map<std::string, double> before;
-  for (const Expected& expected : old.quantities) before[expected.id] = expected.value;
-  for (const Expected& now : quantities) {
-    const auto then = before.find(now.id);
-    if (then == before.end()) {
-      result.push_back({now.id, std::nullopt, now.value});
-      continue;
-    }
-    if (then->second != now.value) result.push_back({now.id, then->second, now.value});
-    before.erase(then);
-  }
-  for (const auto& [id, value] : before) result.push_back({id, value, std::nullopt});
-  return result;
-}
-
 /// The part of its scale to which a number of a model is the same on any machine.
 double accuracy_class(const std::string& model) {
   double accuracy = 1e-10;
@@ -253,8 +231,7 @@ std::string to_json(const Baseline& baseline) {
                        {"old", output::or_null(c.old_value)},
                        {"new", output::or_null(c.new_value)}});
   std::vector<Json> outcomes;
-  for (const ExpectedOutcome& o : baseline.outcomes)
-    outcomes.push_back({{"id", o.id}, {"value", o.value}});
+  for (const Outcome& o : baseline.outcomes) outcomes.push_back({{"id", o.id}, {"value", o.value}});
   std::vector<Json> quantities;
   for (const Expected& q : baseline.quantities) {
     Json json = with_allowed({{"id", q.id}, {"unit", q.unit}, {"value", q.value}}, q.allowed);
@@ -264,17 +241,11 @@ std::string to_json(const Baseline& baseline) {
     quantities.push_back(std::move(json));
   }
   const std::vector<Json> text(baseline.case_text.begin(), baseline.case_text.end());
-  const output::Provenance& o = baseline.origin;
-  const Json origin{{"version", o.version},
-                    {"git", o.git},
-                    {"libraries", o.libraries},
-                    {"command", o.command},
-                    {"date", o.date}};
   return fmt::format(
       "{{\n \"schema\": 1,\n \"case\": {},\n \"case_text\": {},\n \"origin\": {},\n \"changes\": "
       "{},\n \"outcomes\": {},\n \"quantities\": {}\n}}\n",
-      Json(baseline.case_name).dump(), lines(text), origin.dump(), lines(changed), lines(outcomes),
-      lines(quantities));
+      Json(baseline.case_name).dump(), lines(text), output::to_json(baseline.origin).dump(),
+      lines(changed), lines(outcomes), lines(quantities));
 }
 
 AllowedDeviation allowed_deviation(const Measurement& quantity) {
@@ -300,13 +271,11 @@ std::string references(const Baseline& baseline) {
 
 Baseline make_baseline(const input::Case& problem, const Measurements& measured,
                        const output::Provenance& origin, const Baseline* old) {
-  Baseline baseline{problem.name, case_text(problem), origin, {}, {}, {}};
-  for (const Outcome& outcome : measured.outcomes) {
+  Baseline baseline{problem.name, case_text(problem), origin, {}, {}, measured.outcomes};
+  for (const Outcome& outcome : measured.outcomes)
     if (outcome.value == "failed")
       throw SolverError(fmt::format("case \"{}\": `{}` is \"failed\": that is no baseline",
                                     problem.name, outcome.id));
-    baseline.outcomes.push_back({outcome.id, outcome.value});
-  }
   std::map<std::string, Expected> before;
   if (old != nullptr)
     for (const Expected& expected : old->quantities) before[expected.id] = expected;
@@ -315,19 +284,23 @@ Baseline make_baseline(const input::Case& problem, const Measurements& measured,
       throw SolverError(
           fmt::format("case \"{}\": `{}` is not finite: that is no baseline", problem.name, q.id));
     Expected expected{q.id, q.unit, q.value, allowed_deviation(q), {}};
-    if (const auto then = before.find(q.id); then != before.end()) {
-      expected.reference = then->second.reference;
+    std::optional<double> old_value;
+    if (const auto then = before.extract(q.id)) {
+      old_value = then.mapped().value;
+      expected.reference = then.mapped().reference;
       // Rounding is no change, and does not add up from baseline to baseline.
-      if (std::abs(q.value - then->second.value) <=
-          then->second.allowed.limit(q.value, then->second.value))
-        expected.value = then->second.value;
+      if (std::abs(q.value - *old_value) <= then.mapped().allowed.limit(q.value, *old_value))
+        expected.value = *old_value;
     }
+    if (old != nullptr && old_value != expected.value)
+      baseline.changes.push_back({q.id, old_value, expected.value});
     baseline.quantities.push_back(std::move(expected));
   }
+  for (const auto& [id, expected] : before)
+    baseline.changes.push_back({id, expected.value, std::nullopt});
   if (baseline.quantities.empty())
     throw SolverError(
         fmt::format("case \"{}\" gives no quantity: that is no baseline", problem.name));
-  if (old != nullptr) baseline.changes = changes(*old, baseline.quantities);
   return baseline;
 }
 

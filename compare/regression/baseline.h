@@ -36,11 +36,6 @@ struct Expected {
   std::optional<Reference> reference;
 };
 
-struct ExpectedOutcome {
-  std::string id;
-  std::string value;
-};
-
 /// A quantity that changed when a candidate was made of a baseline; none: it was not there.
 struct Change {
   std::string id;
@@ -55,7 +50,7 @@ struct Baseline {
   output::Provenance origin;           ///< of the run that was accepted
   std::vector<Change> changes;         ///< from the baseline before
   std::vector<Expected> quantities;
-  std::vector<ExpectedOutcome> outcomes;
+  std::vector<Outcome> outcomes;
 };
 
 /// `dir/fig3b.baseline.json` of `dir/fig3b.toml`.

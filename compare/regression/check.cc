@@ -25,23 +25,14 @@ void fail(CheckReport& report, std::string id, std::string message) {
       {false, std::move(id), "baseline", std::move(message), {}, {}, {}, {}, {}});
 }
 
-/// Which entries belong to models that are left out: `steps/0/mechanics/solid/…`,
+/// Whether an entry belongs to one of the models: `steps/0/mechanics/solid/…`,
 /// `…/fields/solid/mesh/…`.
-class LeftOut {
- public:
-  explicit LeftOut(const std::vector<std::string>& models) : models_(models) {}
-  bool contains(const std::string& id) const {
-    const auto slash =
-        id.find("mechanics/") != std::string::npos ? id.find("mechanics/") : id.find("fields/");
-    return std::any_of(models_.begin(), models_.end(), [&](const std::string& model) {
-      return id.find("/" + model + "/", slash) != std::string::npos;
-    });
-  }
-  bool none() const { return models_.empty(); }
-
- private:
-  const std::vector<std::string>& models_;
-};
+bool belongs_to(const std::string& id, const std::vector<std::string>& models) {
+  const auto slash = std::min(id.find("mechanics/"), id.find("fields/"));
+  return std::any_of(models.begin(), models.end(), [&](const std::string& model) {
+    return id.find("/" + model + "/", slash) != std::string::npos;
+  });
+}
 
 /// " It looks like …", if the wrong value looks like a known mistake.
 std::string likely_cause(const Measurement& measured, const Expected& expected, double limit,
@@ -72,14 +63,15 @@ std::string likely_cause(const Measurement& measured, const Expected& expected, 
 /// Holds one number against another. No part of the tolerance may be wider than `widest`.
 Finding compare(const Measurement& measured, double expected, const AllowedDeviation& tolerance,
                 const AllowedDeviation& widest, std::string against) {
-  Finding finding;
-  finding.id = measured.id;
-  finding.against = std::move(against);
-  finding.unit = measured.unit;
-  finding.measured = measured.value;
-  finding.expected = expected;
-  finding.limit = tolerance.limit(measured.value, expected);
-  finding.uncertainty = measured.uncertainty;
+  Finding finding{false,
+                  measured.id,
+                  std::move(against),
+                  {},
+                  measured.unit,
+                  measured.value,
+                  expected,
+                  tolerance.limit(measured.value, expected),
+                  measured.uncertainty};
   if (!std::isfinite(measured.value)) {
     finding.limit.reset();
     finding.message = "is not finite";
@@ -119,12 +111,12 @@ void check_case(const input::Case& asked, const Baseline& baseline, CheckReport&
 }
 
 void check_outcomes(const std::vector<Outcome>& measured, const Baseline& baseline,
-                    const LeftOut& left_out, CheckReport& report) {
+                    const std::vector<std::string>& left_out, CheckReport& report) {
   std::map<std::string, std::string> now;
   for (const Outcome& outcome : measured) now[outcome.id] = outcome.value;
-  for (const ExpectedOutcome& expected : baseline.outcomes) {
+  for (const Outcome& expected : baseline.outcomes) {
     const auto found = now.find(expected.id);
-    if (left_out.contains(expected.id)) {
+    if (belongs_to(expected.id, left_out)) {
       ++report.left_out;
     } else if (found == now.end()) {
       fail(report, expected.id, "is in the baseline but was not computed: is a model missing?");
@@ -144,13 +136,13 @@ void check_outcomes(const std::vector<Outcome>& measured, const Baseline& baseli
 }
 
 void check_quantities(const std::vector<Measurement>& measured, const Baseline& baseline,
-                      const LeftOut& left_out, CheckReport& report) {
+                      const std::vector<std::string>& left_out, CheckReport& report) {
   ById now;
   for (const Measurement& quantity : measured) now[quantity.id] = &quantity;
   std::map<std::string, double> accepted;
   for (const Expected& expected : baseline.quantities) accepted[expected.id] = expected.value;
   for (const Expected& expected : baseline.quantities) {
-    if (left_out.contains(expected.id)) {
+    if (belongs_to(expected.id, left_out)) {
       ++report.left_out;
       continue;
     }
@@ -202,41 +194,34 @@ void check_differences(const models::CaseResult& result, CheckReport& report) {
     }
 }
 
-/// Whether two deformations are the same to the last bit at eight material points.
-bool same_bits(const Deformation& a, const Deformation& b) {
-  const double L = a.centreline.length();
-  if (L != b.centreline.length()) return false;
+/// The length and eight points of a step's centreline; empty without a deformation.
+std::vector<Vector3> bits(const MechanicsStep& step) {
+  if (!step.deformation) return {};
+  const double L = step.deformation->centreline.length();
+  std::vector<Vector3> points{{L, 0, 0}};
   for (int i = 1; i <= 8; ++i)
-    if (a.centreline.at(L * i / 8).position != b.centreline.at(L * i / 8).position) return false;
-  return true;
+    points.push_back(step.deformation->centreline.at(L * i / 8).position);
+  return points;
 }
 
-/// Whether two lists of steps have a pair to compare, by `any`, and all such pairs are the same.
-template <class Step, class Any, class Same>
-bool all_same(const std::vector<Step>& a, const std::vector<Step>& b, const Any& any,
-              const Same& same) {
+/// B of a step; empty without a field.
+models::AtSensors bits(const std::optional<models::FieldStep>& step) {
+  return step && step->any() ? step->B : models::AtSensors();
+}
+
+/// Whether two lists of steps have a pair with results, and in all such pairs they are the same to
+/// the last bit.
+template <class Step>
+bool all_same(const std::vector<Step>& a, const std::vector<Step>& b) {
   bool found = false;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (!any(a[i]) || !any(b[i])) continue;
-    if (!same(a[i], b[i])) return false;
+    const auto one = bits(a[i]);
+    const auto other = bits(b[i]);
+    if (one.empty() || other.empty()) continue;
+    if (one != other) return false;
     found = true;
   }
   return found;
-}
-
-bool same_mechanics(const models::MechanicsRun& a, const models::MechanicsRun& b) {
-  return all_same(
-      a.result.steps, b.result.steps,
-      [](const MechanicsStep& step) { return step.deformation.has_value(); },
-      [](const auto& one, const auto& other) {
-        return same_bits(*one.deformation, *other.deformation);
-      });
-}
-
-bool same_field(const models::FieldRun& a, const models::FieldRun& b) {
-  return all_same(
-      a.steps, b.steps, [](const auto& step) { return step && step->any(); },
-      [](const auto& one, const auto& other) { return one->B == other->B; });
 }
 
 /// Models that are compared must be two, and something must be compared.
@@ -253,11 +238,14 @@ void check_independence(const models::CaseResult& result, const Baseline& baseli
       }
   };
   check_pairs(
-      result.mechanics, [](const models::MechanicsRun& run) { return run.model; }, same_mechanics);
+      result.mechanics, [](const models::MechanicsRun& run) { return run.model; },
+      [](const models::MechanicsRun& a, const models::MechanicsRun& b) {
+        return all_same(a.result.steps, b.result.steps);
+      });
   check_pairs(
       result.fields, [](const models::FieldRun& run) { return run.name(); },
       [](const models::FieldRun& a, const models::FieldRun& b) {
-        return a.mechanics == b.mechanics && same_field(a, b);
+        return a.mechanics == b.mechanics && all_same(a.steps, b.steps);
       });
   if (complete && references(baseline).empty() && models::compare_models(result).empty())
     fail(report, "comparison",
@@ -283,13 +271,12 @@ CheckReport check(const input::Case& asked, const models::CaseResult& result,
   report.case_name = asked.name;
   for (const models::MechanicsRun& run : result.mechanics)
     for (const MechanicsStep& step : run.result.steps) report.seconds += step.seconds;
-  const LeftOut absent(left_out);
   const Measurements measured = measurements(result);
   check_case(asked, baseline, report);
-  check_outcomes(measured.outcomes, baseline, absent, report);
-  check_quantities(measured.quantities, baseline, absent, report);
+  check_outcomes(measured.outcomes, baseline, left_out, report);
+  check_quantities(measured.quantities, baseline, left_out, report);
   check_differences(result, report);
-  check_independence(result, baseline, absent.none(), report);
+  check_independence(result, baseline, left_out.empty(), report);
   if (report.compared() == 0) fail(report, "comparison", "no number was compared with any other");
   return report;
 }

@@ -49,4 +49,16 @@ struct CheckReport {
 CheckReport check(const input::Case& asked, const models::CaseResult& result,
                   const Baseline& baseline, const std::vector<std::string>& left_out = {});
 
+/// A line for each case, below it one for each failure, and a line that sums up.
+std::string report_text(const std::vector<CheckReport>& reports);
+
+/// {"schema": 1, "passed": …, "cases": [{"case", "passed", "compared", "failures", "left_out",
+/// "findings": [{"id", "against", "passed", "message", "unit", "measured", "expected", "limit",
+/// "uncertainty"}]}]}; an unknown or infinite value is null.
+std::string report_json(const std::vector<CheckReport>& reports);
+
+/// JUnit's XML as continuous integration reads it: a test suite for each case, a test case for each
+/// finding with measured value, expected value, limit and uncertainty as its properties.
+std::string report_junit(const std::vector<CheckReport>& reports);
+
 }  // namespace ciliaval::compare::regression

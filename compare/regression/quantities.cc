@@ -82,8 +82,7 @@ void add_mechanics(const models::MechanicsRun& run, Measurements& out) {
   for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
     const MechanicsStep& step = run.result.steps[i];
     const std::string prefix = fmt::format("steps/{}/mechanics/{}", i, run.model);
-    out.outcomes.push_back(
-        {prefix + "/status", run.model, std::string(output::to_string(step.status))});
+    out.outcomes.push_back({prefix + "/status", std::string(output::to_string(step.status))});
     add_step(prefix, run, step, largest, out);
   }
 }
@@ -116,8 +115,7 @@ void add_fields(const models::FieldRun& run, Measurements& out) {
   const LargestFields largest(run);
   const auto add_step = [&](const std::string& prefix, const models::FieldStep& step,
                             bool deformed) {
-    out.outcomes.push_back(
-        {prefix + "/status", run.mechanics, step.failure.empty() ? "computed" : "failed"});
+    out.outcomes.push_back({prefix + "/status", step.failure.empty() ? "computed" : "failed"});
     const auto add = [&](const char* name, const models::AtSensors& values,
                          const models::AtSensors& uncertainties, const std::vector<double>& group) {
       for (std::size_t s = 0; s < values.size(); ++s)

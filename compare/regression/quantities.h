@@ -32,7 +32,6 @@ struct Measurement {
 /// "failed"; of a field "computed" or "failed".
 struct Outcome {
   std::string id;
-  std::string mechanics;
   std::string value;
 };
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/regression/report.h"
-
+// The findings as text, JSON and JUnit's XML.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <boost/property_tree/ptree.hpp>
 #include <boost/property_tree/xml_parser.hpp>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "compare/output/json_file.h"
+#include "compare/regression/check.h"
 
 namespace ciliaval::compare::regression {
 namespace {
@@ -17,21 +19,26 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Tree = boost::property_tree::ptree;
 
+/// The numbers of a finding, in its unit.
+constexpr std::array<std::pair<const char*, std::optional<double> Finding::*>, 4> numbers{
+    {{"measured", &Finding::measured},
+     {"expected", &Finding::expected},
+     {"limit", &Finding::limit},
+     {"uncertainty", &Finding::uncertainty}}};
+
 bool all_passed(const std::vector<CheckReport>& reports) {
   return std::all_of(reports.begin(), reports.end(),
                      [](const CheckReport& report) { return report.passed(); });
 }
 
 Json finding_json(const Finding& f) {
-  return {{"id", f.id},
-          {"against", f.against},
-          {"passed", f.passed},
-          {"message", output::or_null(f.message)},
-          {"unit", output::or_null(f.unit)},
-          {"measured", output::or_null(f.measured)},
-          {"expected", output::or_null(f.expected)},
-          {"limit", output::or_null(f.limit)},
-          {"uncertainty", output::or_null(f.uncertainty)}};
+  Json json{{"id", f.id},
+            {"against", f.against},
+            {"passed", f.passed},
+            {"message", output::or_null(f.message)},
+            {"unit", output::or_null(f.unit)}};
+  for (const auto& [name, number] : numbers) json[name] = output::or_null(f.*number);
+  return json;
 }
 
 Tree test_case(const CheckReport& report, const Finding& finding) {
@@ -39,18 +46,13 @@ Tree test_case(const CheckReport& report, const Finding& finding) {
   node.put("<xmlattr>.classname", report.case_name);
   node.put("<xmlattr>.name", fmt::format("{} against {}", finding.id, finding.against));
   Tree properties;
-  const auto add = [&](const char* name, const std::optional<double>& value) {
-    if (!value) return;
-    Tree property;
+  for (const auto& [name, number] : numbers) {
+    if (!(finding.*number)) continue;
+    Tree& property = properties.add("property", "");
     property.put("<xmlattr>.name",
                  fmt::format("{}{}{}", name, finding.unit.empty() ? "" : ", ", finding.unit));
-    property.put("<xmlattr>.value", fmt::format("{}", *value));
-    properties.add_child("property", property);
-  };
-  add("measured", finding.measured);
-  add("expected", finding.expected);
-  add("limit", finding.limit);
-  add("uncertainty", finding.uncertainty);
+    property.put("<xmlattr>.value", fmt::format("{}", *(finding.*number)));
+  }
   if (!properties.empty()) node.add_child("properties", properties);
   if (!finding.passed) node.put("failure.<xmlattr>.message", finding.message);
   return node;
@@ -97,14 +99,13 @@ std::string report_junit(const std::vector<CheckReport>& reports) {
   Tree root;
   Tree& suites = root.add_child("testsuites", Tree());
   for (const CheckReport& report : reports) {
-    Tree suite;
+    Tree& suite = suites.add_child("testsuite", Tree());
     suite.put("<xmlattr>.name", report.case_name);
     suite.put("<xmlattr>.tests", report.findings.size());
     suite.put("<xmlattr>.failures", report.failures());
     suite.put("<xmlattr>.time", fmt::format("{:.3f}", report.seconds));
     for (const Finding& finding : report.findings)
       suite.add_child("testcase", test_case(report, finding));
-    suites.add_child("testsuite", suite);
   }
   std::ostringstream text;
   boost::property_tree::write_xml(text, root);

@@ -44,69 +44,49 @@ struct Errors {
   }
 };
 
-/// Sums of squares that become BenchErrors.
-class MeanErrors {
- public:
-  explicit MeanErrors(const std::optional<FlowLaw>& flow) : flow_(flow) {}
-  void add(std::size_t draw, const Vector2& truth, const Vector2& found) {
-    const double relative = found.norm() / truth.norm() - 1;
-    const double angle = std::abs(std::remainder(
-        std::atan2(found.y(), found.x()) - std::atan2(truth.y(), truth.x()), 2 * std::numbers::pi));
-    errors_.magnitude_rms += relative * relative;
-    if (flow_) {
-      const double speed = flow_->velocity(found.norm()) - flow_->velocity(truth.norm());
-      errors_.speed_rms += speed * speed;
-    }
-    errors_.azimuth_rms += angle * angle;
-    errors_.azimuth_largest = std::max(errors_.azimuth_largest, angle);
-    errors_.below_ten_degrees += angle < std::numbers::pi / 18 ? 1 : 0;
-    ++errors_.readings;
-    azimuths_of_draw_[draw].add(angle * angle);
-  }
-  BenchErrors mean() const {
-    BenchErrors result = errors_;
-    const auto n = static_cast<double>(std::max<std::size_t>(1, errors_.readings));
-    result.magnitude_rms = std::sqrt(errors_.magnitude_rms / n);
-    result.speed_rms = std::sqrt(errors_.speed_rms / n);
-    result.azimuth_rms = std::sqrt(errors_.azimuth_rms / n);
-    result.below_ten_degrees = errors_.below_ten_degrees / n;
-    result.azimuth_rms_interval = interval(result.azimuth_rms);
-    return result;
-  }
-
- private:
-  struct Mean {
-    double sum = 0;
-    double n = 0;
-    void add(double value) {
-      sum += value;
-      ++n;
-    }
-    double value() const { return sum / n; }
-  };
-
-  /// d√x = dx/(2√x) with dx of the mean square x.
-  double interval(double rms) const {
-    const auto draws = static_cast<double>(azimuths_of_draw_.size());
-    if (draws < 2 || rms == 0) return 0;
-    double squares = 0;
-    for (const auto& [draw, mean] : azimuths_of_draw_)
-      squares += std::pow(mean.value() - rms * rms, 2);
-    const double standard_error = std::sqrt(squares / (draws - 1) / draws);
-    return boost::math::quantile(boost::math::students_t(draws - 1), 0.975) * standard_error /
-           (2 * rms);
-  }
-
-  std::optional<FlowLaw> flow_;
-  BenchErrors errors_;
-  std::map<std::size_t, Mean> azimuths_of_draw_;  ///< squares
+/// What an estimator made of a reading.
+struct Found {
+  std::size_t draw;
+  Vector2 truth;
+  Vector2 load;
 };
+
+/// The errors of an estimator; each draw has as many readings.
+BenchErrors errors_of(const std::vector<Found>& all, const std::optional<FlowLaw>& flow) {
+  BenchErrors e;
+  std::map<std::size_t, double> squares_of_draw;  // of the azimuth's error
+  for (const auto& [draw, truth, load] : all) {
+    const double relative = load.norm() / truth.norm() - 1;
+    const double speed = flow ? flow->velocity(load.norm()) - flow->velocity(truth.norm()) : 0;
+    const double angle = std::abs(std::remainder(
+        std::atan2(load.y(), load.x()) - std::atan2(truth.y(), truth.x()), 2 * std::numbers::pi));
+    e.magnitude_rms += relative * relative;
+    e.speed_rms += speed * speed;
+    e.azimuth_rms += angle * angle;
+    e.azimuth_largest = std::max(e.azimuth_largest, angle);
+    e.below_ten_degrees += angle < std::numbers::pi / 18 ? 1 : 0;
+    squares_of_draw[draw] += angle * angle;
+  }
+  e.readings = all.size();
+  const auto n = static_cast<double>(std::max<std::size_t>(1, all.size()));
+  for (double* rms : {&e.magnitude_rms, &e.speed_rms, &e.azimuth_rms}) *rms = std::sqrt(*rms / n);
+  e.below_ten_degrees /= n;
+  const auto draws = static_cast<double>(squares_of_draw.size());
+  if (draws < 2 || e.azimuth_rms == 0) return e;
+  // d√x = dx/(2√x) with dx of the mean square x.
+  double variance = 0;
+  for (const auto& [draw, sum] : squares_of_draw)
+    variance += std::pow(sum / (n / draws) - e.azimuth_rms * e.azimuth_rms, 2);
+  const double standard_error = std::sqrt(variance / (draws - 1) / draws);
+  e.azimuth_rms_interval = boost::math::quantile(boost::math::students_t(draws - 1), 0.975) *
+                           standard_error / (2 * e.azimuth_rms);
+  return e;
+}
 
 /// The bench with all that its readings are made and inverted with.
 class Simulation {
  public:
   Simulation(const Bench& bench, const Progress& progress);
-
   BenchResult run(const Progress& progress) const;
 
  private:
@@ -119,8 +99,6 @@ class Simulation {
   void simulate(const Errors& errors, std::size_t draw, std::vector<Reading>& readings) const;
 
   const Bench& bench_;
-  std::optional<FlowLaw> flow_;
-  double largest_ = 0;
   Shapes model_shapes_;
   Shapes truth_shapes_;  ///< empty if the truth is the model
   std::unique_ptr<Response> response_;
@@ -129,24 +107,18 @@ class Simulation {
   std::unique_ptr<LinearFit> fit_;
 };
 
-Simulation::Simulation(const Bench& bench, const Progress& progress)
-    : bench_(bench), flow_(flow_law(bench.problem)) {
-  for (const Load& load : bench.problem.load_path) largest_ = std::max(largest_, magnitude(load));
-  const auto named = [&](const std::string& name) {
-    return progress ? Progress([&progress, name](const std::string& text) {
-      progress(name + ": " + text);
-    })
-                    : Progress();
-  };
-  model_shapes_ = shapes_up_to(bench.problem, bench.models.mechanics, beyond_the_largest * largest_,
-                               named(bench.models.mechanics));
+Simulation::Simulation(const Bench& bench, const Progress& progress) : bench_(bench) {
+  double largest = 0;
+  for (const Load& load : bench.problem.load_path) largest = std::max(largest, magnitude(load));
+  model_shapes_ = shapes_up_to(bench.problem, bench.models.mechanics, beyond_the_largest * largest,
+                               with_prefix(progress, bench.models.mechanics + ": "));
   response_ = std::make_unique<Response>(bench.problem, bench.models.field, model_shapes_,
                                          bench.problem.sensors);
   if (bench.truth.name() != bench.models.name()) {
     truth_shapes_ = bench.truth.mechanics == bench.models.mechanics
                         ? model_shapes_
-                        : shapes_up_to(bench.problem, bench.truth.mechanics, largest_,
-                                       named(bench.truth.mechanics));
+                        : shapes_up_to(bench.problem, bench.truth.mechanics, largest,
+                                       with_prefix(progress, bench.truth.mechanics + ": "));
     truth_ = std::make_unique<Response>(bench.problem, bench.truth.field, truth_shapes_,
                                         bench.problem.sensors);
   }
@@ -202,7 +174,8 @@ void Simulation::simulate(const Errors& errors, std::size_t draw,
 BenchResult Simulation::run(const Progress& progress) const {
   BenchResult result;
   result.linear_misfit = fit_->misfit();
-  std::vector<MeanErrors> by_magnitude(bench_.problem.load_path.size(), MeanErrors(flow_));
+  const std::optional<FlowLaw> flow = flow_law(bench_.problem);
+  std::vector<std::vector<Found>> by_magnitude(bench_.problem.load_path.size());
   for (const ErrorSource source :
        {ErrorSource::none, ErrorSource::noise, ErrorSource::quantum, ErrorSource::sensor_position,
         ErrorSource::stage_azimuth, ErrorSource::ambient, ErrorSource::models, ErrorSource::all}) {
@@ -215,20 +188,21 @@ BenchResult Simulation::run(const Progress& progress) const {
         progress(fmt::format("{}: sensor {} of {}", to_string(source), draw + 1, bench_.draws));
       simulate(errors, draw, readings);
     }
-    MeanErrors inversion(flow_);
-    MeanErrors linear(flow_);
+    std::vector<Found> inversion;
+    std::vector<Found> linear;
     for (const Reading& reading : readings) {
       const SensedLoad sensed = (*invert_)(reading.change);
       if (!sensed.converged) throw SolverError("the least squares of the bench did not converge");
-      inversion.add(reading.draw, reading.truth, sensed.load);
-      linear.add(reading.draw, reading.truth, (*fit_)(reading.change));
+      inversion.push_back({reading.draw, reading.truth, sensed.load});
+      linear.push_back({reading.draw, reading.truth, (*fit_)(reading.change)});
       if (source != ErrorSource::all) continue;
-      by_magnitude[reading.magnitude].add(reading.draw, reading.truth, sensed.load);
+      by_magnitude[reading.magnitude].push_back(inversion.back());
       if (reading.draw == 0) result.first_draw.push_back({reading.truth, sensed.load});
     }
-    result.rows.push_back({source, inversion.mean(), linear.mean()});
+    result.rows.push_back({source, errors_of(inversion, flow), errors_of(linear, flow)});
   }
-  for (const MeanErrors& errors : by_magnitude) result.by_magnitude.push_back(errors.mean());
+  for (const std::vector<Found>& found : by_magnitude)
+    result.by_magnitude.push_back(errors_of(found, flow));
   return result;
 }
 

@@ -24,19 +24,6 @@ constexpr Range ambient_range{-1, 1, false, unit_slip};
 constexpr Range position_range{0, 1, false, unit_slip};
 constexpr Range angle_range{0, 1.6, false, "a stage is not that far off"};
 
-/// The value under a key, or as it was.
-void read_if_there(input::Section& table, std::string_view name, const Quantity& quantity,
-                   const Range& range, double& value) {
-  if (const toml::node* node = table.find(name))
-    value = input::read_value(*node, name, quantity, range, table.faults()).value_or(value);
-}
-
-void read_if_there(input::Section& table, std::string_view name, const Range& range,
-                   unsigned int& value) {
-  if (const toml::node* node = table.find(name))
-    value = input::read_whole_number(*node, name, range, table.faults()).value_or(value);
-}
-
 /// A pair of models; one that there is not is a fault at its place.
 void read_pair(input::Section& table, std::string_view name, models::ModelPair& pair) {
   const toml::node* node = table.find(name);
@@ -96,15 +83,15 @@ Bench read_bench(const std::filesystem::path& file) {
   read_pair(table, "models", bench.models);
   bench.truth = bench.models;
   read_pair(table, "truth", bench.truth);
-  read_if_there(table, "azimuths", azimuth_count, bench.azimuths);
-  read_if_there(table, "draws", draw_count, bench.draws);
-  read_if_there(table, "seed", seed_range, bench.seed);
+  table.read("azimuths", azimuth_count, bench.azimuths);
+  table.read("draws", draw_count, bench.draws);
+  table.read("seed", seed_range, bench.seed);
   table.finish();
   input::Section errors = input::require_section(top, "errors");
-  read_if_there(errors, "noise", quantity::flux_density, field_range, bench.noise);
-  read_if_there(errors, "quantum", quantity::flux_density, field_range, bench.quantum);
-  read_if_there(errors, "sensor_position", quantity::length, position_range, bench.sensor_position);
-  read_if_there(errors, "stage_azimuth", quantity::angle, angle_range, bench.stage_azimuth);
+  errors.read("noise", quantity::flux_density, field_range, bench.noise);
+  errors.read("quantum", quantity::flux_density, field_range, bench.quantum);
+  errors.read("sensor_position", quantity::length, position_range, bench.sensor_position);
+  errors.read("stage_azimuth", quantity::angle, angle_range, bench.stage_azimuth);
   read_ambient(errors, bench.ambient);
   errors.finish();
   top.finish();

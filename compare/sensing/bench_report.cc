@@ -16,15 +16,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double degree = std::numbers::pi / 180;
 
-std::vector<std::string> error_cells(const BenchErrors& errors, bool flow) {
-  std::vector<std::string> cells{fmt::format("{:.2f}", 100 * errors.magnitude_rms)};
-  if (flow) cells.push_back(fmt::format("{:.4f}", errors.speed_rms));
-  cells.push_back(fmt::format("{:.2f}", errors.azimuth_rms / degree));
-  cells.push_back(fmt::format("{:.2f}", errors.azimuth_largest / degree));
-  cells.push_back(fmt::format("{:.1f}", 100 * errors.below_ten_degrees));
-  return cells;
-}
-
 Json errors_json(const BenchErrors& errors) {
   return {{"magnitude_rms", errors.magnitude_rms},
           {"speed_rms", errors.speed_rms},
@@ -41,9 +32,8 @@ std::string magnitude_text(const Bench& bench, std::size_t step) {
   if (const auto velocity = input::stated_values(problem, "velocity"); !velocity.empty())
     return fmt::format("{:g} m/s", velocity[step]);
   const Load& load = problem.load_path[step];
-  const std::string_view unit = magnitude_unit(load);
-  if (unit == "N/m") return fmt::format("{:g} N/m", magnitude(load));
-  return fmt::format("{:g} m{}", 1e3 * magnitude(load), unit);
+  const auto [unit, size] = output::shown_unit(magnitude_unit(load));
+  return fmt::format("{:g} {}", 1 / size * magnitude(load), unit);
 }
 
 }  // namespace
@@ -63,8 +53,11 @@ std::string bench_text(const Bench& bench, const BenchResult& result) {
   const auto add = [&](const std::string& label, const std::string& method,
                        const BenchErrors& errors) {
     std::vector<std::string>& row = rows.emplace_back();
-    row = {label, method};
-    for (std::string& cell : error_cells(errors, flow)) row.push_back(std::move(cell));
+    row = {label, method, fmt::format("{:.2f}", 100 * errors.magnitude_rms)};
+    if (flow) row.push_back(fmt::format("{:.4f}", errors.speed_rms));
+    row.push_back(fmt::format("{:.2f}", errors.azimuth_rms / degree));
+    row.push_back(fmt::format("{:.2f}", errors.azimuth_largest / degree));
+    row.push_back(fmt::format("{:.1f}", 100 * errors.below_ten_degrees));
   };
   for (const BenchRow& row : result.rows) {
     add(std::string(to_string(row.source)), "full inversion", row.inversion);
@@ -120,16 +113,15 @@ std::string bench_json(const Bench& bench, const BenchResult& result,
 }
 
 std::string bench_script(const Bench& bench, const BenchResult& result) {
-  const std::string_view unit = magnitude_unit(bench.problem.load_path.front());
-  const double factor = unit == "N/m" ? 1 : 1e3;
-  const std::string shown = unit == "N/m" ? "N/m" : fmt::format("m{}", unit);
-  std::string text = "$truth << EOD\n";
-  for (const BenchPoint& p : result.first_draw)
-    text += fmt::format("{} {}\n", factor * p.truth.x(), factor * p.truth.y());
-  text += "EOD\n$found << EOD\n";
-  for (const BenchPoint& p : result.first_draw)
-    text += fmt::format("{} {}\n", factor * p.found.x(), factor * p.found.y());
-  return text +
+  const auto [shown, size] = output::shown_unit(magnitude_unit(bench.problem.load_path.front()));
+  const double factor = 1 / size;
+  std::string truth;
+  std::string found;
+  for (const BenchPoint& p : result.first_draw) {
+    truth += fmt::format("{} {}\n", factor * p.truth.x(), factor * p.truth.y());
+    found += fmt::format("{} {}\n", factor * p.found.x(), factor * p.found.y());
+  }
+  return "$truth << EOD\n" + truth + "EOD\n$found << EOD\n" + found +
          fmt::format(
              "EOD\nset title {}\nset size ratio -1\nset grid\n"
              "set xlabel {}\nset ylabel {}\nset key outside bottom center horizontal\n"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/sensing/readings.h"
-
+// A file of readings, less all offsets.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "compare/input/csv.h"
 #include "compare/input/external/background.h"
+#include "compare/sensing/sensing.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::sensing {
@@ -75,29 +75,24 @@ std::vector<std::pair<std::string, Rows>> samples_of(const input::CsvTable& tabl
   return samples;
 }
 
-/// A row's reading less the background at its azimuth.
-Vector3 without_background(const input::CsvTable& table, std::size_t row, std::size_t sensor,
-                           const input::external::Background* background, input::Faults& faults) {
-  Vector3 B = input::external::row_vector(table, field_column, row);
-  if (background == nullptr) return B;
-  const auto ambient = background->at(table.numbers[azimuth_column][row], sensor);
-  if (!ambient) {
-    faults.add(table.rows[row],
-               "the background has a single azimuth, which is not this row's: measure it at more");
-    return B;
-  }
-  return B - *ambient;
-}
-
-/// The mean of each sensor's rows.
+/// The mean of each sensor's rows, each less the background at its azimuth.
 Eigen::VectorXd mean_of(const input::CsvTable& table, const Rows& rows,
                         const input::external::Background* background, input::Faults& faults) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * rows.size()));
   for (std::size_t s = 0; s < rows.size(); ++s)
-    for (const std::size_t row : rows[s])
+    for (const std::size_t row : rows[s]) {
+      Vector3 B = input::external::row_vector(table, field_column, row);
+      if (background != nullptr) {
+        if (const auto ambient = background->at(table.numbers[azimuth_column][row], s))
+          B -= *ambient;
+        else
+          faults.add(
+              table.rows[row],
+              "the background has a single azimuth, which is not this row's: measure it at more");
+      }
       result.segment<3>(static_cast<Eigen::Index>(3 * s)) +=
-          without_background(table, row, s, background, faults) /
-          static_cast<double>(rows[s].size());
+          B / static_cast<double>(rows[s].size());
+    }
   return result;
 }
 

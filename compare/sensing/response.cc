@@ -83,16 +83,6 @@ double largest_column(const Eigen::Matrix3Xd& values) {
   return values.cols() == 0 ? 0 : values.colwise().norm().maxCoeff();
 }
 
-void require_round(const input::Case& problem, const models::MechanicsEntry& mechanics) {
-  for (const auto& [option, mesh] : input::user_meshes({{mechanics}, {}}, problem.options))
-    throw InputError("a solid with a mesh of the user is not the same from all sides: leave out " +
-                     option);
-}
-
-Load along_x(const Load& load) {
-  return with_azimuth(load, 0);
-}
-
 }  // namespace
 
 models::ModelPair parse_pair(const std::string& text) {
@@ -111,25 +101,24 @@ models::ModelPair parse_pair(const std::string& text) {
 Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
                     const Progress& progress) {
   const models::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), mechanics);
-  require_round(problem, entry);
+  for (const auto& [option, mesh] : input::user_meshes({{entry}, {}}, problem.options))
+    throw InputError("a solid with a mesh of the user is not the same from all sides: leave out " +
+                     option);
   if (!(largest > 0) || !std::isfinite(largest))
     throw InputError("the largest load must be finite and positive");
   Shapes shapes;
-  shapes.largest = largest;
   const auto node = [&](std::size_t k) {
     return largest / 2 *
            (1 - std::cos(std::numbers::pi * static_cast<double>(k) / magnitude_intervals));
   };
   std::vector<std::pair<double, bool>> path;
-  for (std::size_t k = 1; k <= magnitude_intervals; ++k) {
-    const bool last = k == magnitude_intervals;
-    path.emplace_back(last ? largest : node(k), false);
-  }
+  for (std::size_t k = 1; k < magnitude_intervals; ++k) path.emplace_back(node(k), false);
+  path.emplace_back(largest, false);
   for (const std::size_t k : check_places) path.emplace_back((node(k) + node(k + 1)) / 2, true);
   std::sort(path.begin(), path.end());
   LoadPath loads;
   for (const auto& [magnitude, is_check] : path)
-    loads.push_back(with_magnitude(along_x(problem.load_path.front()), magnitude));
+    loads.push_back(with_magnitude(with_azimuth(problem.load_path.front(), 0), magnitude));
   const auto model = entry.make(problem.options);
   const MechanicsResult result = model->solve(problem.cilium, loads, progress);
   shapes.undeformed = result.undeformed;

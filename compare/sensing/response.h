@@ -21,11 +21,10 @@ models::ModelPair parse_pair(const std::string& text);
 /// A round cilium's shapes under one load of growing magnitude and azimuth 0.
 struct Shapes {
   Deformation undeformed;
-  std::vector<Deformation> nodes;   ///< at the Chebyshev–Lobatto magnitudes but 0
-  std::vector<Deformation> checks;  ///< between some of them
-  std::vector<double> node_magnitudes;
+  std::vector<Deformation> nodes;       ///< at the Chebyshev–Lobatto magnitudes but 0
+  std::vector<Deformation> checks;      ///< between some of them
+  std::vector<double> node_magnitudes;  ///< F, q or δ, as the load's type has it
   std::vector<double> check_magnitudes;
-  double largest = 0;  ///< F, q or δ, as the load's type has it
 };
 
 /// The shapes of the case's load up to the largest magnitude, by the mechanics model. Throws

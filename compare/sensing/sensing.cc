@@ -28,13 +28,6 @@ std::array<double, 3> velocities(const FlowLaw& flow, const SensedLoad& sensed) 
           flow.velocity(sensed.magnitude() + sensed.magnitude_interval())};
 }
 
-/// A millinewton reads better than a newton.
-std::pair<double, std::string> display_unit(const std::string& unit) {
-  if (unit == "N") return {1e3, "mN"};
-  if (unit == "m") return {1e3, "mm"};
-  return {1, unit};
-}
-
 }  // namespace
 
 std::string_view to_string(SenseStatus status) {
@@ -67,7 +60,8 @@ std::optional<FlowLaw> flow_law(const input::Case& problem) {
 }
 
 std::string sensing_text(const Sensing& s) {
-  const auto [factor, unit] = display_unit(s.unit);
+  const auto [unit, size] = output::shown_unit(s.unit);
+  const double factor = 1 / size;
   std::string text = fmt::format(
       "{}: loads up to {:.4g} {} from readings, by {}; noise {:.3g}, {:.3g}, {:.3g} uT; response "
       "interpolated to {:.1g} of the largest |dB|, {:.4g} uT\n",

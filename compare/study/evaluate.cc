@@ -1,20 +1,43 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/study/evaluate.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <exception>
+#include <map>
 #include <memory>
 
-#include "analytic/elastica/elastica.h"
 #include "compare/budget/sensitivity.h"
 #include "compare/models/errors.h"
 #include "compare/models/run.h"
-#include "compare/study/range.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::study {
 namespace {
+
+/// The limit that the step knows, if it does.
+std::optional<double> known_limit(const MechanicsStep& step) {
+  return step.load.is<ProbeLoad>() ? step.slip_off_displacement : step.slip_off_force;
+}
+
+MechanicsStep solve_one(const MechanicsModel& model, const Cilium& cilium, const Load& load,
+                        const Progress& progress) {
+  return model.solve(cilium, {load}, progress).steps.at(0);
+}
+
+/// The magnitude that bends the softest material by some radians over the whole length.
+double soft_magnitude(const Cilium& cilium, const Load& load) {
+  double E = 0;
+  for (const Segment& s : cilium.segments)
+    E = E == 0 ? s.young_modulus : std::min(E, s.young_modulus);
+  const double L = cilium.length();
+  const double force = E * cilium.second_moment() / (L * L);
+  return load.is<SectionLoad>() ? force : force / L;
+}
 
 void append(std::string& message, const std::string& text) {
   if (!text.empty()) message += (message.empty() ? "" : "; ") + text;
@@ -41,36 +64,28 @@ PairResult result_of(const Study& study, const MechanicsStep& step, const models
     return result;
   }
   const Vector3 dB = *field.dB.front();
-  const bool needs_slope =
-      study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution);
+  const bool needs_slope = study.needs_slope();
   const auto slope = needs_slope ? slope_of_norm(run, path, dB) : std::nullopt;
   if (needs_slope && !slope)
     append(result.message, path.around.front()
                                ? "sensitivity: a load 2 % higher or lower has no field"
                                : "sensitivity: the load is zero");
   const Vector3 B = *field.B.front();
-  const auto value = [&](Output output) -> std::optional<double> {
-    switch (output) {
-      case Output::B_x:
-      case Output::B_y:
-      case Output::B_z:
-        return B[static_cast<int>(output) - static_cast<int>(Output::B_x)];
-      case Output::dB_x:
-      case Output::dB_y:
-      case Output::dB_z:
-        return dB[static_cast<int>(output) - static_cast<int>(Output::dB_x)];
-      case Output::dB_norm:
-        return dB.norm();
-      case Output::sensitivity:
-        return slope;
-      case Output::resolution:
-        return slope && *slope != 0 ? std::optional(*study.noise / std::abs(*slope)) : std::nullopt;
-      case Output::range:
-        break;
-    }
-    return std::nullopt;
-  };
-  for (std::size_t i = 0; i < study.outputs.size(); ++i) result.values[i] = value(study.outputs[i]);
+  const std::map<Output, std::optional<double>> known{
+      {Output::B_x, B.x()},
+      {Output::B_y, B.y()},
+      {Output::B_z, B.z()},
+      {Output::dB_x, dB.x()},
+      {Output::dB_y, dB.y()},
+      {Output::dB_z, dB.z()},
+      {Output::dB_norm, dB.norm()},
+      {Output::sensitivity, slope},
+      {Output::range, std::nullopt},
+      {Output::resolution, slope && *slope != 0 && study.noise
+                               ? std::optional(*study.noise / std::abs(*slope))
+                               : std::nullopt}};
+  for (std::size_t i = 0; i < study.outputs.size(); ++i)
+    result.values[i] = known.at(study.outputs[i]);
   return result;
 }
 
@@ -104,12 +119,64 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
 
 }  // namespace
 
+double slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
+                const analytic::elastica::ElasticaOptions& elastica, const Progress& progress) {
+  if (const auto limit = known_limit(step)) return *limit;
+  // A model that meets its limit on the way says so: any load beyond will do, and that of the
+  // elastica is near.
+  const MechanicsStep guess =
+      solve_one(analytic::elastica::Elastica(elastica), cilium, step.load, progress);
+  double magnitude = 1.5 * known_limit(guess).value_or(ciliaval::magnitude(step.load));
+  constexpr int most_trials = 8;
+  for (int i = 0; i < most_trials; ++i, magnitude *= 2) {
+    const MechanicsStep trial =
+        solve_one(model, cilium, with_magnitude(step.load, magnitude), progress);
+    if (const auto limit = known_limit(trial)) return *limit;
+    if (trial.status == Status::failed)
+      throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
+                                    magnitude_unit(step.load), trial.message));
+  }
+  throw SolverError(fmt::format("range: the contact does not slip off up to {:g} {}", magnitude / 2,
+                                magnitude_unit(step.load)));
+}
+
+double magnitude_at_rotation(const MechanicsModel& model, const Cilium& cilium, const Load& load,
+                             double rotation, const Progress& progress) {
+  const auto excess = [&](double magnitude) {
+    if (magnitude == 0) return -rotation;
+    const MechanicsStep step = solve_one(model, cilium, with_magnitude(load, magnitude), progress);
+    if (step.status != Status::converged)
+      throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
+                                    magnitude_unit(load), step.message));
+    const Centreline& centreline = step.deformation->centreline;
+    return centreline.at(centreline.length()).theta() - rotation;
+  };
+  double lower = 0;
+  double at_lower = -rotation;
+  double upper = magnitude(load) > 0 ? magnitude(load) : soft_magnitude(cilium, load);
+  double at_upper = excess(upper);
+  constexpr int most_doublings = 60;
+  for (int i = 0; at_upper < 0; ++i) {
+    if (i == most_doublings)
+      throw SolverError("range: no load turns the tip as far as the rotation asked for");
+    lower = upper;
+    at_lower = at_upper;
+    upper *= 2;
+    at_upper = excess(upper);
+  }
+  constexpr double tolerance = 1e-6;
+  std::uintmax_t trials = 100;
+  const auto close = [](double a, double b) { return b - a <= tolerance * b; };
+  const auto [a, b] =
+      boost::math::tools::toms748_solve(excess, lower, upper, at_lower, at_upper, close, trials);
+  return (a + b) / 2;
+}
+
 std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::string& mechanics,
                                  std::span<const models::MechanicsEntry> mechanics_models,
                                  std::span<const models::FieldEntry> field_models,
                                  const Progress& progress) {
-  const budget::SurroundedPath path = budget::surround(
-      c.load_path, study.asks_for(Output::sensitivity) || study.asks_for(Output::resolution));
+  const budget::SurroundedPath path = budget::surround(c.load_path, study.needs_slope());
   c.load_path = path.loads;
   const auto model = models::entry_of(mechanics_models, mechanics).make(c.options);
   const models::MechanicsRun run = models::run_mechanics(mechanics, *model, c, progress);

@@ -18,11 +18,31 @@
 namespace ciliaval::compare::study {
 namespace {
 
-std::string numbers(const std::vector<double>& values) {
-  std::vector<std::string> texts;
-  texts.reserve(values.size());
-  for (const double v : values) texts.push_back(input::format_number(v));
-  return fmt::format("{}", fmt::join(texts, " "));
+struct Names {
+  Output output;
+  std::string_view id;
+  std::string_view symbol;
+  std::string_view title;
+};
+constexpr std::array<Names, 10> names{{
+    {Output::B_x, "B_x", "B_x", "B_x"},
+    {Output::B_y, "B_y", "B_y", "B_y"},
+    {Output::B_z, "B_z", "B_z", "B_z"},
+    {Output::dB_x, "dB_x", "dB_x", "ΔB_x"},
+    {Output::dB_y, "dB_y", "dB_y", "ΔB_y"},
+    {Output::dB_z, "dB_z", "dB_z", "ΔB_z"},
+    {Output::dB_norm, "dB_norm", "|dB|", "|ΔB|"},
+    {Output::sensitivity, "sensitivity", "d|dB|/dF", "sensitivity d|ΔB|/dF"},
+    {Output::range, "range", "range", "range: largest load"},
+    {Output::resolution, "resolution", "resolution", "resolution: smallest change of the load"},
+}};
+constexpr auto outputs = [] {
+  std::array<Output, names.size()> all{};
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = names[i].output;
+  return all;
+}();
+const Names& names_of(Output output) {
+  return names[static_cast<std::size_t>(output)];  // in the order of the enumeration
 }
 
 /// Where the differences are taken, in steps.
@@ -62,17 +82,51 @@ void append_optimisation(const Optimisation& o, support::Fingerprint& all) {
   for (const Limit& limit : o.limits)
     all.emplace_back(
         fmt::format("{} {}", limit.is_lower ? "at_least" : "at_most", id(limit.output)),
-        input::format_number(limit.value));
+        fmt::to_string(limit.value));
   for (std::size_t i = 0; i < o.parameters.size(); ++i) {
     const Parameter& p = o.parameters[i];
-    all.emplace_back(
-        fmt::format("parameter {}", i + 1),
-        fmt::format("{} = {}, {}, from {}", p.number.path, numbers(p.values),
-                    p.is_logarithmic ? "logarithmic" : "linear", input::format_number(o.start[i])));
+    all.emplace_back(fmt::format("parameter {}", i + 1),
+                     fmt::format("{} = {}, {}, from {}", p.number.path, fmt::join(p.values, " "),
+                                 p.is_logarithmic ? "logarithmic" : "linear", o.start[i]));
   }
 }
 
+/// The case with the study's fixed numbers and these values of parameters.
+input::Case with_values(const Study& study, const std::vector<Parameter>& parameters,
+                        const std::vector<double>& values) {
+  std::vector<Setting> settings = study.fixed;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    settings.push_back({parameters[i].number, values[i]});
+  return with_settings(study.base, settings);
+}
+
 }  // namespace
+
+std::span<const Output> all_outputs() {
+  return outputs;
+}
+std::string_view id(Output output) {
+  return names_of(output).id;
+}
+std::string_view symbol(Output output) {
+  return names_of(output).symbol;
+}
+std::string_view title(Output output) {
+  return names_of(output).title;
+}
+
+Quantity quantity_of(Output output, const Load& load) {
+  const Quantity& magnitude = load.type().parameters.front().key.quantity;
+  if (output == Output::range || output == Output::resolution) return magnitude;
+  if (output != Output::sensitivity) return quantity::flux_density;
+  if (magnitude.unit == "N") return {"a", "flux density per force", "T/N", "50 uT/mN"};
+  if (magnitude.unit == "m") return {"a", "flux density per length", "T/m", "50 uT/mm"};
+  return {"a", "flux density per force per length", "T/(N/m)", "50 uT m/N"};
+}
+
+output::ShownUnit unit_of(Output output, const Load& load) {
+  return output::shown_unit(quantity_of(output, load).unit);
+}
 
 std::size_t Study::point_count() const {
   std::size_t count = parameters.empty() ? 0 : 1;
@@ -96,23 +150,14 @@ std::vector<double> Study::values_at(std::size_t point) const {
 }
 
 input::Case Study::case_at(std::size_t point) const {
-  if (point >= point_count()) {
-    const input::Case nominal = with_settings(base, fixed);
-    const auto moved = moved_number(*this, point);
-    return moved ? with_settings(nominal, {*moved}) : nominal;
-  }
-  std::vector<Setting> settings = fixed;
-  const std::vector<double> values = values_at(point);
-  for (std::size_t i = 0; i < parameters.size(); ++i)
-    settings.push_back({parameters[i].number, values[i]});
-  return with_settings(base, settings);
+  if (point < point_count()) return with_values(*this, parameters, values_at(point));
+  const input::Case nominal = with_settings(base, fixed);
+  const auto moved = moved_number(*this, point);
+  return moved ? with_settings(nominal, {*moved}) : nominal;
 }
 
 input::Case Study::design(const std::vector<double>& values) const {
-  std::vector<Setting> settings = fixed;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    settings.push_back({optimisation->parameters[i].number, values[i]});
-  return with_settings(base, settings);
+  return with_values(*this, optimisation->parameters, values);
 }
 
 std::string Study::describe(std::size_t point) const {
@@ -161,17 +206,15 @@ support::Fingerprint fingerprint(const Study& study) {
   for (const auto& [option, mesh] : input::user_meshes(models::known(), study.base.options))
     all.emplace_back("content of " + option, support::describe_content(mesh));
   for (const Setting& s : study.fixed)
-    all.emplace_back("fixed " + s.number.path, input::format_number(s.value));
-  for (std::size_t i = 0; i < study.parameters.size(); ++i) {
-    const Parameter& p = study.parameters[i];
-    all.emplace_back(fmt::format("parameter {}", i + 1),
-                     fmt::format("{} = {}", p.number.path, numbers(p.values)));
-  }
-  for (std::size_t i = 0; i < study.tolerances.size(); ++i) {
-    const Tolerance& t = study.tolerances[i];
-    all.emplace_back(fmt::format("tolerance {}", i + 1),
-                     fmt::format("{} = {}", t.number.path, input::format_number(t.deviation)));
-  }
+    all.emplace_back("fixed " + s.number.path, fmt::to_string(s.value));
+  std::size_t count = 0;
+  for (const Parameter& p : study.parameters)
+    all.emplace_back(fmt::format("parameter {}", ++count),
+                     fmt::format("{} = {}", p.number.path, fmt::join(p.values, " ")));
+  count = 0;
+  for (const Tolerance& t : study.tolerances)
+    all.emplace_back(fmt::format("tolerance {}", ++count),
+                     fmt::format("{} = {}", t.number.path, t.deviation));
   all.emplace_back("combine", study.is_zipped ? "zip" : "product");
   std::vector<std::string> names;
   for (const models::ModelPair& pair : study.pairs) names.push_back(pair.name());
@@ -180,8 +223,8 @@ support::Fingerprint fingerprint(const Study& study) {
   for (const Output output : study.outputs) names.emplace_back(id(output));
   all.emplace_back("outputs", fmt::format("{}", fmt::join(names, " ")));
   if (study.optimisation) append_optimisation(*study.optimisation, all);
-  if (study.noise) all.emplace_back("noise", input::format_number(*study.noise));
-  if (study.rotation) all.emplace_back("rotation", input::format_number(*study.rotation));
+  if (study.noise) all.emplace_back("noise", fmt::to_string(*study.noise));
+  if (study.rotation) all.emplace_back("rotation", fmt::to_string(*study.rotation));
   return all;
 }
 

@@ -3,16 +3,45 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compare/input/case.h"
 #include "compare/models/model_pair.h"
+#include "compare/output/text_table.h"
 #include "compare/study/case_number.h"
-#include "compare/study/output.h"
 #include "problem/support/fingerprint.h"
 
 namespace ciliaval::compare::study {
+
+/// What a study computes for each pair of models at each point, SI units.
+enum class Output {
+  B_x,          ///< B at the sensor, T
+  B_y,          ///< …
+  B_z,          ///< …
+  dB_x,         ///< ΔB at the sensor, T
+  dB_y,         ///< …
+  dB_z,         ///< …
+  dB_norm,      ///< |ΔB|, T
+  sensitivity,  ///< d|ΔB|/dF, F the load's magnitude: T/N, T m/N (force per length) or T/m (probe)
+  range,        ///< the largest F: where the contact slips off, or the tip's rotation is `rotation`
+  resolution    ///< the change of F that the sensor's noise hides: noise / |sensitivity|
+};
+std::span<const Output> all_outputs();
+
+/// "dB_norm", as files say it.
+std::string_view id(Output output);
+/// "|dB|", as tables say it.
+std::string_view symbol(Output output);
+/// "|ΔB|", as the axis of a plot says it.
+std::string_view title(Output output);
+
+/// What an output is under this type of load, with its SI unit.
+Quantity quantity_of(Output output, const Load& load);
+/// The unit for people.
+output::ShownUnit unit_of(Output output, const Load& load);
 
 /// One parameter of a study and its values, SI units.
 struct Parameter {
@@ -34,14 +63,15 @@ struct Tolerance {
 };
 
 /// Part of a standard deviation by which a number is moved for the differences of fourth order of
-/// compare/study/summary/tolerances.h, once and twice, to both sides.
+/// compare/study/summary/report.h, once and twice, to both sides.
 inline constexpr double tolerance_step = 0.25;
 
 /// A limit that a design must keep.
 struct Limit {
   Output output{};
-  bool is_lower = true;  ///< the output's magnitude is at least, not at most, the value
-  double value = 0;      ///< positive, SI units
+  bool is_lower = true;      ///< the output's magnitude is at least, not at most, the value
+  double value = 0;          ///< positive, SI units; of its own load the factor
+  bool is_own_load = false;  ///< the range is at least `value` times the design's own load
 };
 
 /// The search for the design whose goal has the largest magnitude.
@@ -88,9 +118,10 @@ struct Study {
   /// The place of a pair among those of its mechanics model.
   std::size_t place(std::size_t pair) const;
   bool asks_for(Output output) const;
+  bool needs_slope() const { return asks_for(Output::sensitivity) || asks_for(Output::resolution); }
 };
 
-inline OutputUnit unit_of(Output output, const Study& study) {
+inline output::ShownUnit unit_of(Output output, const Study& study) {
   return unit_of(output, study.load());
 }
 

@@ -2,14 +2,39 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
+#include <mutex>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "compare/output/store/store.h"
 #include "compare/study/evaluate.h"
-#include "compare/study/solutions.h"
 #include "compare/study/study.h"
 
 namespace ciliaval::compare::study {
+
+/// The solutions of a study, each one of a mechanics model at one point with its fields, by a name
+/// that says so. A store keeps each from add() on, and every number as it was.
+class Solutions {
+ public:
+  /// None, and kept in memory alone.
+  Solutions() = default;
+  /// Reads what the store keeps of the study. Throws CheckpointError, also if that is of another
+  /// study or program.
+  Solutions(output::store::Store& store, const Study& study, const std::string& program);
+
+  /// Null if it is not there. Not while another thread adds.
+  const std::vector<PairResult>* find(const std::string& name) const;
+  /// By any thread; returns how many there are now. Throws CheckpointError.
+  std::size_t add(const std::string& name, std::vector<PairResult> results);
+  std::size_t size() const { return all_.size(); }
+
+ private:
+  output::store::Store* store_ = nullptr;
+  std::map<std::string, std::vector<PairResult>> all_;
+  std::mutex mutex_;
+};
 
 /// A study with the results of all pairs at all points.
 struct StudyResult {

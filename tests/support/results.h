@@ -36,7 +36,7 @@ class Results {
     write_study(folder_.path(),
                 study_text("pairs = [\"elastica/line\", \"beam/volume\"]\n", modulus_range));
     program("study varied.study.toml -o results");
-    const compare::claims::Claim claim{"3.3", "a < b & \"c\"", {{"x", {1, 2}, "%", false}}, "n"};
+    const compare::claims::Claim claim{"3.3", "a < b & \"c\"", "n", {{"x", {1, 2}, "%", false}}};
     std::ofstream(results() / "claims.json")
         << compare::claims::claims_json({claim}, compare::output::provenance("ciliaval claims"));
     std::filesystem::create_directory(results() / "pictures");

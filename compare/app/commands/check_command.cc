@@ -12,7 +12,6 @@
 #include "compare/output/output_file.h"
 #include "compare/regression/baseline.h"
 #include "compare/regression/check.h"
-#include "compare/regression/report.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {

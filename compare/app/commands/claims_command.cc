@@ -3,7 +3,7 @@
 
 #include "compare/app/case_files.h"
 #include "compare/app/terminal.h"
-#include "compare/claims/ledger.h"
+#include "compare/claims/claim.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "problem/error.h"

@@ -17,7 +17,6 @@
 #include "compare/study/optimum/optimise.h"
 #include "compare/study/reader/study_reader.h"
 #include "compare/study/summary/report.h"
-#include "compare/study/summary/tolerances.h"
 #include "compare/study/sweep.h"
 #include "problem/error.h"
 

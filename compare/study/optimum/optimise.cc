@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -25,71 +26,50 @@ constexpr double unknown_violation = 10;
 Study searched(const Study& study) {
   Study s = study;
   s.pairs.resize(1);
-  std::vector<Output> needed{study.optimisation->goal};
-  for (const Constraint& c : constraints_of(study)) needed.push_back(c.output);
-  s.outputs.clear();
-  for (const Output output : all_outputs())
-    if (std::find(needed.begin(), needed.end(), output) != needed.end())
-      s.outputs.push_back(output);
+  std::set<Output> needed{study.optimisation->goal};
+  for (const Limit& c : constraints_of(study)) needed.insert(c.output);
+  s.outputs.assign(needed.begin(), needed.end());
   return s;
 }
 
 /// Evaluates designs, unless they are known.
-class Evaluations {
- public:
-  Evaluations(const Study& study, Solutions& solutions,
-              std::span<const models::MechanicsEntry> mechanics,
-              std::span<const models::FieldEntry> fields, const Progress& progress)
-      : study_(study),
-        search_(searched(study)),
-        solutions_(solutions),
-        mechanics_(mechanics),
-        fields_(fields),
-        progress_(progress) {}
+struct Evaluations {
+  const Study& study;
+  Study search;  ///< the study as the search evaluates it
+  Solutions& solutions;
+  std::span<const models::MechanicsEntry> mechanics_models;
+  std::span<const models::FieldEntry> field_models;
+  const Progress& progress;
 
-  /// The study as the search evaluates it.
-  const Study& search() const { return search_; }
   const PairResult& searched_at(const std::vector<double>& values) {
-    return solve("search", search_, values, study_.pairs.front().mechanics, {}).front();
+    return solve("search", search, values, study.pairs.front().mechanics, {}).front();
   }
 
   /// A design by some of the mechanics models.
   Design design(std::string name, std::vector<double> values,
                 const std::vector<std::string>& mechanics) {
-    Progress inner;
-    if (progress_)
-      inner = [&](const std::string& text) {
-        progress_(fmt::format("{}: {}: {}", study_.name, name, text));
-      };
+    const Progress inner = with_prefix(progress, fmt::format("{}: {}: ", study.name, name));
     Design design{std::move(name), std::move(values), {}, {}};
-    for (std::size_t i = 0; i < study_.pairs.size(); ++i) {
-      const models::ModelPair& pair = study_.pairs[i];
+    for (std::size_t i = 0; i < study.pairs.size(); ++i) {
+      const models::ModelPair& pair = study.pairs[i];
       if (std::find(mechanics.begin(), mechanics.end(), pair.mechanics) == mechanics.end())
         continue;
       design.models.push_back(pair);
       design.pairs.push_back(
-          solve("design", study_, design.values, pair.mechanics, inner).at(study_.place(i)));
+          solve("design", study, design.values, pair.mechanics, inner).at(study.place(i)));
     }
     return design;
   }
 
- private:
-  const std::vector<PairResult>& solve(std::string_view kind, const Study& study,
+  const std::vector<PairResult>& solve(std::string_view kind, const Study& reduced,
                                        const std::vector<double>& values,
-                                       const std::string& mechanics, const Progress& progress) {
+                                       const std::string& mechanics, const Progress& inner) {
     const std::string name = fmt::format("{} of {} at {}", kind, mechanics, fmt::join(values, " "));
-    if (solutions_.find(name) == nullptr)
-      solutions_.add(
-          name, evaluate(study, study_.design(values), mechanics, mechanics_, fields_, progress));
-    return *solutions_.find(name);
+    if (solutions.find(name) == nullptr)
+      solutions.add(name, evaluate(reduced, study.design(values), mechanics, mechanics_models,
+                                   field_models, inner));
+    return *solutions.find(name);
   }
-
-  const Study& study_;
-  Study search_;
-  Solutions& solutions_;
-  std::span<const models::MechanicsEntry> mechanics_;
-  std::span<const models::FieldEntry> fields_;
-  const Progress& progress_;
 };
 
 /// A parameter between its bounds as a number from 0 to 1, and back.
@@ -116,22 +96,17 @@ std::vector<double> from_unit(const Study& study, const std::vector<double>& u) 
 }
 
 /// What the search makes of a result.
-Trial trial_of(const Study& search, const std::vector<Constraint>& constraints, double load,
+Trial trial_of(const Study& search, const std::vector<Limit>& constraints, double load,
                const PairResult& result) {
-  const auto magnitude_of = [&](Output output) -> std::optional<double> {
-    const auto place = std::find(search.outputs.begin(), search.outputs.end(), output);
-    const auto& value = result.values[static_cast<std::size_t>(place - search.outputs.begin())];
-    return value ? std::optional(std::abs(*value)) : std::nullopt;
-  };
   Trial trial{no_gain, {}, false};
   const Output goal = search.optimisation->goal;
-  if (const auto value = magnitude_of(goal)) {
+  if (const auto value = magnitude_of(search, result, goal)) {
     trial.is_defined = true;
     trial.gain = std::max(std::log(*value / unit_of(goal, search).size), no_gain);
   }
-  for (const Constraint& c : constraints) {
+  for (const Limit& c : constraints) {
     const double limit = c.is_own_load ? c.value * load : c.value;
-    const auto value = magnitude_of(c.output);
+    const auto value = magnitude_of(search, result, c.output);
     double g = unknown_violation;
     if (value) g = (c.is_lower ? 1 : -1) * std::log(limit / *value);
     trial.constraints.push_back(std::clamp(g, -unknown_violation, unknown_violation));
@@ -141,15 +116,18 @@ Trial trial_of(const Study& search, const std::vector<Constraint>& constraints, 
 
 }  // namespace
 
-std::vector<Constraint> constraints_of(const Study& study) {
-  const Optimisation& o = *study.optimisation;
-  std::vector<Constraint> all;
-  bool has_slope = o.goal == Output::sensitivity;
-  for (const Limit& limit : o.limits) {
-    all.push_back({limit.output, limit.is_lower, limit.value, false});
+std::optional<double> magnitude_of(const Study& study, const PairResult& result, Output output) {
+  for (std::size_t o = 0; o < study.outputs.size(); ++o)
+    if (study.outputs[o] == output && result.values[o]) return std::abs(*result.values[o]);
+  return std::nullopt;
+}
+
+std::vector<Limit> constraints_of(const Study& study) {
+  std::vector<Limit> all = study.optimisation->limits;
+  bool has_slope = study.optimisation->goal == Output::sensitivity;
+  for (const Limit& limit : all)
     has_slope =
         has_slope || limit.output == Output::sensitivity || limit.output == Output::resolution;
-  }
   // The slope is that between loads somewhat lower and higher.
   constexpr double margin = 1e-3;
   if (contact_height(study.base.load_path.front()))
@@ -163,8 +141,9 @@ Optimum run_optimisation(const Study& study, Solutions& solutions,
                          std::span<const models::FieldEntry> field_models,
                          const Progress& progress) {
   const Optimisation& o = *study.optimisation;
-  Evaluations evaluations(study, solutions, mechanics_models, field_models, progress);
-  const std::vector<Constraint> constraints = constraints_of(study);
+  Evaluations evaluations{study,        searched(study), solutions, mechanics_models,
+                          field_models, progress};
+  const std::vector<Limit> constraints = constraints_of(study);
   const std::string& searcher = study.pairs.front().mechanics;
   Optimum optimum;
   double best = no_gain;
@@ -172,7 +151,7 @@ Optimum run_optimisation(const Study& study, Solutions& solutions,
     const std::vector<double> values = from_unit(study, u);
     const PairResult& result = evaluations.searched_at(values);
     const double load = magnitude(study.design(values).load_path.front());
-    Trial trial = trial_of(evaluations.search(), constraints, load, result);
+    Trial trial = trial_of(evaluations.search, constraints, load, result);
     ++optimum.evaluations;
     if (trial.is_defined && trial.violation() <= feasibility) best = std::max(best, trial.gain);
     if (progress)

@@ -3,14 +3,13 @@
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "compare/study/evaluate.h"
 #include "compare/study/optimum/search.h"
-#include "compare/study/solutions.h"
-#include "compare/study/study.h"
+#include "compare/study/sweep.h"
 
 namespace ciliaval::compare::study::optimum {
 
@@ -32,15 +31,12 @@ struct Optimum {
   bool found() const { return designs.size() > 1; }
 };
 
-/// A constraint of the search: a limit of the study's, or that the contact or probe does not slip
-/// off under the design's own load.
-struct Constraint {
-  Output output{};
-  bool is_lower = true;
-  double value = 0;          ///< SI units; of its own load the factor
-  bool is_own_load = false;  ///< the range is at least `value` times the load
-};
-std::vector<Constraint> constraints_of(const Study& study);
+/// The constraints of the search: the study's limits, and that a contact or probe does not slip off
+/// under the design's own load.
+std::vector<Limit> constraints_of(const Study& study);
+
+/// The magnitude of an output of the study in a result.
+std::optional<double> magnitude_of(const Study& study, const PairResult& result, Output output);
 
 /// Searches with the study's first pair and confirms with all of them. The gain is ln|y| of the
 /// goal y, a constraint ln(limit/|y|) or ln(|y|/limit), so that the multipliers are elasticities:

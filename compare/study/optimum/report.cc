@@ -18,9 +18,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// "range >= 2 mN", "|B_z| <= 3000 uT"
-std::string words(const Study& study, const Constraint& c) {
+std::string words(const Study& study, const Limit& c) {
   if (c.is_own_load) return fmt::format("range >= {:g} times the load", c.value);
-  const OutputUnit unit = unit_of(c.output, study);
+  const output::ShownUnit unit = unit_of(c.output, study);
   return fmt::format("{} {} {:g} {}", symbol(c.output),
                      c.is_lower ? ">=" : "<=", c.value / unit.size, unit.name);
 }
@@ -37,13 +37,6 @@ double bound_elasticity(const Parameter& p, const LocalOptimum& optimum, std::si
 
 bool is_reached(const LocalOptimum& optimum, std::size_t constraint) {
   return optimum.multipliers[constraint] > 0;
-}
-
-/// The magnitude of an output of a pair at a design.
-std::optional<double> magnitude_of(const Study& study, const PairResult& result, Output output) {
-  for (std::size_t o = 0; o < study.outputs.size(); ++o)
-    if (study.outputs[o] == output && result.values[o]) return std::abs(*result.values[o]);
-  return std::nullopt;
 }
 
 /// Which of the study's limits a pair misses at a design, in per cent of the limit.
@@ -71,8 +64,7 @@ std::string parameter_table(const Study& study, const Optimum& optimum) {
     const Parameter& p = o.parameters[i];
     const auto shown = [&](double value) { return fmt::format("{:.5g}", value / p.unit_size); };
     std::vector<std::string>& row = rows.emplace_back();
-    row = {p.unit.empty() ? p.name : fmt::format("{}({})", p.name, p.unit), shown(p.values.front()),
-           shown(p.values.back())};
+    row = {summary::heading(p), shown(p.values.front()), shown(p.values.back())};
     for (const Design& design : optimum.designs) row.push_back(shown(design.values[i]));
   }
   std::vector<std::string> searches{"local searches", "", "", ""};
@@ -85,7 +77,7 @@ std::string parameter_table(const Study& study, const Optimum& optimum) {
 /// What holds the best design where it is, and what it is worth.
 std::string activity(const Study& study, const LocalOptimum& best) {
   const Optimisation& o = *study.optimisation;
-  const std::vector<Constraint> constraints = constraints_of(study);
+  const std::vector<Limit> constraints = constraints_of(study);
   std::string text = "\nOptimum 1:\n";
   for (std::size_t j = 0; j < constraints.size(); ++j) {
     const double spare = std::expm1(-best.trial.constraints[j]);
@@ -115,8 +107,7 @@ std::string activity(const Study& study, const LocalOptimum& best) {
 std::string result_table(const Study& study, const Optimum& optimum) {
   const Output goal = study.optimisation->goal;
   output::TextRows rows{{"", "pair"}};
-  for (const Output output : study.outputs)
-    rows[0].push_back(fmt::format("{}({})", symbol(output), unit_of(output, study).name));
+  for (const Output output : study.outputs) rows[0].push_back(summary::heading(output, study));
   rows[0].insert(rows[0].end(), {"+-dB(uT)", fmt::format("{} of start", symbol(goal)), "limits"});
   for (const Design& design : optimum.designs)
     for (std::size_t i = 0; i < design.models.size(); ++i) {
@@ -124,7 +115,7 @@ std::string result_table(const Study& study, const Optimum& optimum) {
       std::vector<std::string>& row = rows.emplace_back();
       row = {design.name, design.models[i].name()};
       for (std::size_t output = 0; output < study.outputs.size(); ++output)
-        row.push_back(summary::cell(result, output, unit_of(study.outputs[output], study).size));
+        row.push_back(summary::cell(study, result, output));
       row.push_back(result.uncertainty ? fmt::format("{:.1g}", *result.uncertainty / 1e-6) : "-");
       std::optional<double> before;
       for (std::size_t s = 0; s < optimum.designs.front().models.size(); ++s)
@@ -178,7 +169,7 @@ Json design_json(const Study& study, const Optimum& optimum, std::size_t index) 
 std::string text(const Study& study, const Optimum& optimum) {
   const Optimisation& o = *study.optimisation;
   std::vector<std::string> limits;
-  for (const Constraint& c : constraints_of(study)) limits.push_back(words(study, c));
+  for (const Limit& c : constraints_of(study)) limits.push_back(words(study, c));
   std::string text = fmt::format("\nLargest {} by {} within the bounds{}{}\n", symbol(o.goal),
                                  study.pairs.front().name(), limits.empty() ? "" : ", with ",
                                  fmt::join(limits, ", "));
@@ -219,15 +210,9 @@ Json json(const Study& study, const Optimum& optimum) {
             {"constraints", Json::array()},
             {"designs", Json::array()}};
   for (const Parameter& p : o.parameters)
-    json["parameters"].push_back({{"path", p.number.path},
-                                  {"name", p.name},
-                                  {"unit", p.number.quantity.unit},
-                                  {"from", p.values.front()},
-                                  {"to", p.values.back()},
-                                  {"shown_unit", p.unit},
-                                  {"shown_unit_size", p.unit_size},
-                                  {"logarithmic", p.is_logarithmic}});
-  for (const Constraint& c : constraints_of(study))
+    json["parameters"].push_back(
+        summary::parameter_json(p, {{"from", p.values.front()}, {"to", p.values.back()}}));
+  for (const Limit& c : constraints_of(study))
     json["constraints"].push_back(
         {{"output", id(c.output)},
          {c.is_lower ? "at_least" : "at_most", c.value},

@@ -89,10 +89,10 @@ class Objective {
  private:
   Eigen::VectorXd values(const Point& u) {
     const Trial& trial = at(u);
-    Eigen::VectorXd all(static_cast<Eigen::Index>(trial.constraints.size()) + 1);
+    const auto count = static_cast<Eigen::Index>(trial.constraints.size());
+    Eigen::VectorXd all(count + 1);
     all[0] = trial.gain;
-    for (Eigen::Index j = 1; j < all.size(); ++j)
-      all[j] = trial.constraints[static_cast<std::size_t>(j - 1)];
+    all.tail(count) = Eigen::VectorXd::Map(trial.constraints.data(), count);
     return all;
   }
 
@@ -121,9 +121,8 @@ class Objective {
       self.keep(u);
       value = self.at(u).gain;
       if (gradient.empty()) return;
-      const Eigen::MatrixXd derivative = self.derivative(u);
-      for (std::size_t i = 0; i < u.size(); ++i)
-        gradient[i] = derivative(0, static_cast<Eigen::Index>(i));
+      const Eigen::VectorXd derivative = self.derivative(u).row(0);
+      std::copy(derivative.begin(), derivative.end(), gradient.begin());
     });
     return value;
   }
@@ -136,9 +135,8 @@ class Objective {
       const Trial& trial = self.at(point);
       std::copy(trial.constraints.begin(), trial.constraints.end(), result);
       if (gradient == nullptr) return;
-      const Eigen::MatrixXd derivative = self.derivative(point);
-      for (unsigned int j = 0; j < count; ++j)
-        for (unsigned int i = 0; i < n; ++i) gradient[j * n + i] = derivative(j + 1, i);
+      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      RowMajor::Map(gradient, count, n) = self.derivative(point).bottomRows(count);
     });
   }
 

@@ -41,7 +41,4 @@ std::string unit_of(const toml::node& node);
 /// [[parameter]]: what is varied, or searched if the study optimises.
 void read_parameters(input::Section& root, Reading& reading);
 
-/// [optimise]: the goal, the limits and the search's options. The case has been read.
-void read_optimisation(input::Section& table, Reading& reading);
-
 }  // namespace ciliaval::compare::study::reader

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -31,31 +32,28 @@ constexpr Range noise_range{0, 100, true, unit_slip};
 constexpr Range rotation_range{0, std::numbers::pi / 2, true,
                                "under a horizontal force the tip's rotation stays below 90 deg"};
 
-/// A value under a dotted path of the case's keys.
-using Leaf =
-    std::function<void(const std::string& path, const toml::key& key, const toml::node& node)>;
-
-/// The values of [fixed] and [tolerances] stand under the case's own keys, as nested tables.
-void for_leaves(const toml::table& table, const std::string& prefix, const Leaf& leaf) {
+/// Calls f with each number of the case that [fixed] or [tolerances] has, the place of its key and
+/// its value: they stand under the case's own keys, as nested tables.
+void for_numbers(const toml::table& table, const std::string& prefix, const Reading& reading,
+                 input::Faults& faults,
+                 const std::function<void(const CaseNumber&, input::Place, const toml::node&)>& f) {
   for (const auto& [key, node] : table) {
-    const std::string path =
-        prefix.empty() ? std::string(key.str()) : fmt::format("{}.{}", prefix, key.str());
+    const std::string path = prefix + std::string(key.str());
     if (const toml::table* inner = node.as_table())
-      for_leaves(*inner, path, leaf);
-    else
-      leaf(path, key, node);
+      for_numbers(*inner, path + ".", reading, faults, f);
+    else if (const CaseNumber* number = find_number(reading, path, input::place(key), faults))
+      f(*number, input::place(key), node);
   }
 }
 
 /// [fixed].
 void read_fixed(const toml::table& table, Reading& reading, input::Faults& faults) {
-  for_leaves(table, "", [&](const std::string& path, const toml::key& key, const toml::node& node) {
-    const CaseNumber* number = find_number(reading, path, input::place(key), faults);
-    if (number == nullptr) return;
-    check_contradiction(reading.study, *number, input::place(key), faults);
-    if (const auto value = read_number(node, path, *number, faults))
-      reading.study.fixed.push_back({*number, *value});
-  });
+  const auto read = [&](const CaseNumber& number, input::Place where, const toml::node& node) {
+    check_contradiction(reading.study, number, where, faults);
+    if (const auto value = read_number(node, number.path, number, faults))
+      reading.study.fixed.push_back({number, *value});
+  };
+  for_numbers(table, "", reading, faults, read);
 }
 
 /// A part of the nominal value: "5 %"; none if the text is no percentage.
@@ -102,22 +100,21 @@ void read_deviation(const toml::node& node, Tolerance& tolerance, input::Faults&
 /// [tolerances].
 void read_tolerances(const toml::table& table, Reading& reading, input::Faults& faults) {
   const input::Case nominal = with_settings(reading.base, reading.study.fixed);
-  for_leaves(table, "", [&](const std::string& path, const toml::key& key, const toml::node& node) {
-    const CaseNumber* number = find_number(reading, path, input::place(key), faults);
-    if (number == nullptr) return;
-    if (number->is_whole)
-      return faults.add(input::place(key),
-                        fmt::format("'{}' is a whole number: it has no tolerance", path));
-    Tolerance tolerance{*number, number->get(nominal), 0, {}, 1};
+  const auto read = [&](const CaseNumber& number, input::Place where, const toml::node& node) {
+    if (number.is_whole)
+      return faults.add(where,
+                        fmt::format("'{}' is a whole number: it has no tolerance", number.path));
+    Tolerance tolerance{number, number.get(nominal), 0, {}, 1};
     const std::size_t before = faults.size();
     read_deviation(node, tolerance, faults);
     if (faults.size() != before) return;
     if (tolerance.unit.empty())
-      tolerance.unit = number->quantity.unit;
+      tolerance.unit = number.quantity.unit;
     else
-      tolerance.unit_size = input::parse_quantity("1 " + tolerance.unit, number->quantity);
+      tolerance.unit_size = input::parse_quantity("1 " + tolerance.unit, number.quantity);
     reading.study.tolerances.push_back(std::move(tolerance));
-  });
+  };
+  for_numbers(table, "", reading, faults, read);
 }
 
 /// Every pair of models that can be formed.
@@ -167,22 +164,20 @@ void read_pairs(input::Section& table, Study& study) {
 
 /// The outputs that [study] lists, and those that the optimisation needs, in their own order.
 void read_outputs(input::Section& table, Study& study) {
-  std::vector<Output> asked{Output::dB_x, Output::dB_y, Output::dB_z, Output::dB_norm};
+  std::set<Output> asked{Output::dB_x, Output::dB_y, Output::dB_z, Output::dB_norm};
   if (const toml::node* node = table.find("outputs")) {
     std::vector<std::string_view> choices;
     for (const Output output : all_outputs()) choices.push_back(id(output));
     const std::vector<std::string> ids = read_choices(*node, "outputs", choices, table.faults());
     asked.clear();
     for (const Output output : all_outputs())
-      if (std::find(ids.begin(), ids.end(), id(output)) != ids.end()) asked.push_back(output);
+      if (std::find(ids.begin(), ids.end(), id(output)) != ids.end()) asked.insert(output);
   }
   if (study.optimisation) {
-    asked.push_back(study.optimisation->goal);
-    for (const Limit& limit : study.optimisation->limits) asked.push_back(limit.output);
+    asked.insert(study.optimisation->goal);
+    for (const Limit& limit : study.optimisation->limits) asked.insert(limit.output);
   }
-  for (const Output output : all_outputs())
-    if (std::find(asked.begin(), asked.end(), output) != asked.end())
-      study.outputs.push_back(output);
+  study.outputs.assign(asked.begin(), asked.end());
 }
 
 /// A quantity that goes with an output.
@@ -306,6 +301,51 @@ void check_points(const Study& study, input::Place where, input::Faults& faults)
     faults.add(where, fmt::format("at {}: {}", study.describe(i), fault));
     return;
   }
+}
+
+constexpr Range evaluations_range{0, 1e6, false, "a search must end"};
+constexpr Range starts_range{0, 1000, false, "a search must end"};
+
+/// [optimise.at_least] or [optimise.at_most].
+void read_limits(input::Section& parent, std::string_view key, bool is_lower, Reading& reading) {
+  static constexpr Range positive{0, 1e12, true, "magnitudes are limited, and they are positive"};
+  input::Section table = parent.section(key);
+  if (!table.exists()) return;
+  std::vector<Limit>& limits = reading.study.optimisation->limits;
+  for (const Output output : all_outputs()) {
+    const toml::node* node = table.find(id(output));
+    if (node == nullptr || reading.numbers.empty()) continue;
+    const auto value =
+        input::read_value(*node, id(output), quantity_of(output, reading.base.load_path.front()),
+                          positive, table.faults());
+    if (!value) continue;
+    for (const Limit& other : limits)
+      if (other.output == output && other.value >= *value)
+        table.faults().add(input::place(*node),
+                           fmt::format("'{}' cannot be at least {:g} and at most {:g}", id(output),
+                                       other.value, *value));
+    limits.push_back({output, is_lower, *value});
+  }
+  table.finish();
+}
+
+/// [optimise]: the goal, the limits and the search's options. The case has been read.
+void read_optimisation(input::Section& table, Reading& reading) {
+  input::Faults& faults = table.faults();
+  Optimisation& optimisation = reading.study.optimisation.emplace();
+  // Of the resolution the smallest would be wanted, which is the largest sensitivity.
+  std::vector<std::string_view> goals;
+  for (const Output output : all_outputs())
+    if (output != Output::resolution) goals.push_back(id(output));
+  if (const toml::node* node = table.require("maximise"))
+    if (const auto goal = input::read_choice(*node, "maximise", goals, faults))
+      for (const Output output : all_outputs())
+        if (id(output) == *goal) optimisation.goal = output;
+  table.read("global_evaluations", evaluations_range, optimisation.global_evaluations);
+  table.read("starts", starts_range, optimisation.starts);
+  read_limits(table, "at_least", true, reading);
+  read_limits(table, "at_most", false, reading);
+  table.finish();
 }
 
 /// What must hold among tables of which each is right by itself.

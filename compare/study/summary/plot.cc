@@ -29,25 +29,19 @@ struct Family {
 
 /// Of many families some, evenly chosen.
 std::vector<Family> families_of(const Study& study, bool& thinned) {
-  std::vector<Family> all;
-  if (study.is_zipped || study.parameters.size() == 1) {
-    Family& only = all.emplace_back();
-    for (std::size_t i = 0; i < study.point_count(); ++i) only.points.push_back(i);
-    return all;
-  }
+  const bool is_single = study.is_zipped || study.parameters.size() == 1;
   // The first parameter runs slowest: the first of its values has a point of each family.
-  const std::size_t count = study.point_count() / study.parameters.front().values.size();
-  for (std::size_t f = 0; f < count; ++f) {
-    Family& family = all.emplace_back();
+  const std::size_t count =
+      is_single ? 1 : study.point_count() / study.parameters.front().values.size();
+  thinned = count > most_families;
+  std::vector<Family> families;
+  for (const std::size_t f : output::evenly(count, most_families)) {
+    Family& family = families.emplace_back();
     for (std::size_t i = f; i < study.point_count(); i += count) family.points.push_back(i);
     const std::string text = study.describe(f);
-    family.name = text.substr(text.find(", ") + 2);
+    if (!is_single) family.name = text.substr(text.find(", ") + 2);
   }
-  thinned = count > most_families;
-  if (!thinned) return all;
-  std::vector<Family> some;
-  for (const std::size_t i : output::evenly(count, most_families)) some.push_back(all[i]);
-  return some;
+  return families;
 }
 
 /// What a drawing shows along its vertical axis.
@@ -101,28 +95,20 @@ std::string marks(const Curve& curve, double height, bool& slipped, bool& failed
   return text;
 }
 
-/// The pair, the family, and the peak if there is one.
-std::string legend(const Curve& curve) {
+/// The rest of a curve's line: its legend, the pair, the family, and the peak if there is one; then
+/// a point at the peak.
+std::string legend_and_peak(const Curve& curve, std::string_view colour) {
   const Study& study = curve.result.study;
-  std::string text = study.pairs[curve.pair].name();
-  if (!curve.family.name.empty()) return text + ", " + curve.family.name;
+  const std::string name = study.pairs[curve.pair].name();
+  if (!curve.family.name.empty()) return plot::quoted(name + ", " + curve.family.name);
   const Trend t = trend(curve.result, curve.pair, curve.output);
-  if (t.kind == Trend::Kind::peak)
-    text += fmt::format(", peak at {:.3g} {}", t.extreme_at / study.parameters.front().unit_size,
-                        study.parameters.front().unit);
-  return text;
-}
-
-/// A point at the peak.
-std::string peak_curve(const Curve& curve, std::string_view colour) {
-  const Study& study = curve.result.study;
-  if (!curve.family.name.empty()) return {};
-  const Trend t = trend(curve.result, curve.pair, curve.output);
-  if (t.kind != Trend::Kind::peak) return {};
+  if (t.kind != Trend::Kind::peak) return plot::quoted(name);
+  const Parameter& x = study.parameters.front();
+  const double at = t.extreme_at / x.unit_size;
   return fmt::format(
-      ", \\\n  '+' using ({}):({}) every ::0::0 with points pt 7 ps 0.9 lc rgb '{}' "
+      "{}, \\\n  '+' using ({}):({}) every ::0::0 with points pt 7 ps 0.9 lc rgb '{}' "
       "notitle",
-      t.extreme_at / study.parameters.front().unit_size,
+      plot::quoted(fmt::format("{}, peak at {:.3g} {}", name, at, x.unit)), at,
       t.largest / unit_of(study.outputs[curve.output], study).size, colour);
 }
 
@@ -145,7 +131,7 @@ std::string x_axis(const Parameter& x) {
 /// off a linear one, unless there is a peak or a trough to be seen.
 std::string y_axis(const StudyResult& result, std::size_t output, const Extremes& extremes) {
   const Study& study = result.study;
-  const OutputUnit unit = unit_of(study.outputs[output], study);
+  const output::ShownUnit unit = unit_of(study.outputs[output], study);
   const std::string script = fmt::format(
       "set ylabel {}\n", axis_label(std::string(title(study.outputs[output])), with_mu(unit.name)));
   bool turns = false;
@@ -184,8 +170,7 @@ StudyPlot plot_of(const StudyResult& result, std::size_t output) {
         blocks += marks(curve, 0.015 + 0.02 * static_cast<double>(pair), slipped, failed);
       curves += fmt::format("{}  ${} with {} lc rgb '{}' dt {} lw 1.8 title {}",
                             curves.empty() ? "" : ", \\\n", name, style, colour, f + 1,
-                            plot::quoted(legend(curve)));
-      curves += peak_curve(curve, colour);
+                            legend_and_peak(curve, colour));
     }
   if (!extremes.any()) return {};
   if (slipped) curves += ", \\\n  NaN with points pt 2 ps 0.7 lc rgb 'gray40' title 'slipped off'";

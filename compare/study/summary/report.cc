@@ -30,17 +30,15 @@ std::vector<std::size_t> shown_points(const Study& study) {
 std::string point_table(const StudyResult& result, std::size_t pair) {
   const Study& study = result.study;
   output::TextRows rows(1);
-  for (const Parameter& p : study.parameters)
-    rows[0].push_back(p.unit.empty() ? p.name : fmt::format("{}({})", p.name, p.unit));
-  for (const Output output : study.outputs)
-    rows[0].push_back(fmt::format("{}({})", symbol(output), unit_of(output, study).name));
+  for (const Parameter& p : study.parameters) rows[0].push_back(heading(p));
+  for (const Output output : study.outputs) rows[0].push_back(heading(output, study));
   for (const std::size_t point : shown_points(study)) {
     std::vector<std::string>& row = rows.emplace_back();
     const std::vector<double> values = study.values_at(point);
     for (std::size_t i = 0; i < values.size(); ++i)
       row.push_back(fmt::format("{:.5g}", values[i] / study.parameters[i].unit_size));
     for (std::size_t o = 0; o < study.outputs.size(); ++o)
-      row.push_back(cell(result.points[point][pair], o, unit_of(study.outputs[o], study).size));
+      row.push_back(cell(study, result.points[point][pair], o));
   }
   return output::text_table(rows);
 }
@@ -64,13 +62,11 @@ std::string trend_text(const StudyResult& result, std::size_t pair, std::size_t 
     case Trend::Kind::constant:
       return fmt::format("constant, {:.5g}", t.first / unit);
     case Trend::Kind::rising:
-      return "rises " + from_to + ratio + settled;
     case Trend::Kind::falling:
-      return "falls " + from_to + ratio + settled;
+      return (t.kind == Trend::Kind::rising ? "rises " : "falls ") + from_to + ratio + settled;
     case Trend::Kind::peak:
-      return "peak " + at;
     case Trend::Kind::trough:
-      return "trough " + at;
+      return (t.kind == Trend::Kind::peak ? "peak " : "trough ") + at;
     case Trend::Kind::other:
       break;
   }
@@ -110,9 +106,18 @@ std::string exceptions(const StudyResult& result) {
 
 }  // namespace
 
-std::string cell(const PairResult& result, std::size_t output, double unit) {
+std::string heading(const Parameter& p) {
+  return p.unit.empty() ? p.name : fmt::format("{}({})", p.name, p.unit);
+}
+
+std::string heading(Output output, const Study& study) {
+  return fmt::format("{}({})", symbol(output), unit_of(output, study).name);
+}
+
+std::string cell(const Study& study, const PairResult& result, std::size_t output) {
   if (!result.values[output] && result.status != Status::converged)
     return std::string(output::to_string(result.status));
+  const double unit = unit_of(study.outputs[output], study).size;
   return output::number_cell(result.values[output], unit, "{:.5g}");
 }
 
@@ -160,6 +165,15 @@ Json number_json(const std::optional<double>& value) {
   return value ? Json(*value + 0.0) : Json(nullptr);
 }
 
+Json parameter_json(const Parameter& p, const Json& values) {
+  Json json{{"path", p.number.path}, {"name", p.name}, {"unit", p.number.quantity.unit}};
+  json.update(values);
+  json["shown_unit"] = p.unit;
+  json["shown_unit_size"] = p.unit_size;
+  json["logarithmic"] = p.is_logarithmic;
+  return json;
+}
+
 Json pair_json(const Study& study, const PairResult& result) {
   Json json{{"status", output::to_string(result.status)}, {"message", result.message}};
   for (std::size_t o = 0; o < study.outputs.size(); ++o)
@@ -197,13 +211,7 @@ Json json(const StudyResult& result, const output::Provenance& provenance) {
   for (const auto& [name, value] : fingerprint(study))
     json["resolved"].push_back(fmt::format("{} = {}", name, value));
   for (const Parameter& p : study.parameters)
-    json["parameters"].push_back({{"path", p.number.path},
-                                  {"name", p.name},
-                                  {"unit", p.number.quantity.unit},
-                                  {"values", p.values},
-                                  {"shown_unit", p.unit},
-                                  {"shown_unit_size", p.unit_size},
-                                  {"logarithmic", p.is_logarithmic}});
+    json["parameters"].push_back(parameter_json(p, {{"values", p.values}}));
   for (const Output output : study.outputs)
     json["outputs"].push_back(
         {{"id", id(output)}, {"unit", quantity_of(output, study.load()).unit}});

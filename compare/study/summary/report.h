@@ -14,8 +14,11 @@
 
 namespace ciliaval::compare::study::summary {
 
-/// An output of a result in this unit, or what has become of it.
-std::string cell(const PairResult& result, std::size_t output, double unit);
+/// "E1(MPa)", "|dB|(uT)", for a column of a table.
+std::string heading(const Parameter& parameter);
+std::string heading(Output output, const Study& study);
+/// An output of a result in its unit for people, or what has become of it.
+std::string cell(const Study& study, const PairResult& result, std::size_t output);
 
 /// For a terminal: a table of the points, thinned to at most 25 of them, then what each output does
 /// along the parameter if there is one alone: monotone, or its peak.
@@ -34,6 +37,9 @@ void add_csv_row(output::CsvWriter& csv, std::string_view first, const std::vect
 
 /// A number, or null; without negative zero.
 nlohmann::ordered_json number_json(const std::optional<double>& value);
+/// {"path", "name", "unit", members of `values`, "shown_unit", "shown_unit_size", "logarithmic"}
+nlohmann::ordered_json parameter_json(const Parameter& parameter,
+                                      const nlohmann::ordered_json& values);
 /// What a pair made of a point: {"status", "message", OUTPUT…, "dB_uncertainty"}, SI units.
 nlohmann::ordered_json pair_json(const Study& study, const PairResult& result);
 
@@ -53,6 +59,31 @@ struct Trend {
   std::size_t missing = 0;  ///< points without a value
 };
 Trend trend(const StudyResult& result, std::size_t pair, std::size_t output);
+
+/// What the tolerances do to one output y of one pair at the case with its fixed numbers.
+struct Propagation {
+  /// By one number p with the standard deviation σ_p.
+  struct Share {
+    std::optional<double> slope;  ///< ∂y/∂p = (4 D(h) − D(2h))/3, central differences, h = σ_p/4
+    double error = 0;             ///< |∂y/∂p − D(h)|: its truncation, seen from below
+    std::optional<double> spread;  ///< |∂y/∂p| σ_p
+  };
+  std::optional<double> nominal;  ///< y
+  std::vector<Share> shares;      ///< in the order of the study's tolerances
+  std::optional<double> deviation;  ///< σ_y = √Σ (∂y/∂p σ_p)²: first order, independent numbers;
+                                    ///< none if a slope is missing
+};
+Propagation propagate(const StudyResult& result, std::size_t pair, std::size_t output);
+
+/// For a terminal: for each pair a table of the spreads and their sum; empty without tolerances.
+std::string tolerance_text(const StudyResult& result);
+
+/// A line for each pair, output and number: path, deviation, slope, its error, spread; SI units.
+std::string tolerance_csv(const StudyResult& result);
+
+/// {"numbers": [{"path", "nominal", "deviation", "unit"}], "pairs": {PAIR: {OUTPUT: {"nominal",
+/// "deviation", "slopes": […], "errors": […]}}}}, SI units.
+nlohmann::ordered_json tolerance_json(const StudyResult& result);
 
 /// A drawing of one output over the first parameter, a curve for each pair and for each
 /// combination of the others' values, of many some.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/summary/tolerances.h"
-
 #include <fmt/core.h>
 
 #include <cmath>
@@ -25,13 +23,15 @@ std::string pair_table(const StudyResult& result, std::size_t pair) {
     rows.push_back({t.number.path, fmt::format("{:.6g} {}", t.nominal / t.unit_size, t.unit),
                     fmt::format("{:.4g} {}", t.deviation / t.unit_size, t.unit)});
   for (std::size_t o = 0; o < study.outputs.size(); ++o) {
-    const OutputUnit unit = unit_of(study.outputs[o], study);
     const Propagation p = propagate(result, pair, o);
-    rows[0].push_back(fmt::format("{}({})", symbol(study.outputs[o]), unit.name));
-    nominal.push_back(output::number_cell(p.nominal, unit.size, "{:.4g}"));
+    const auto cell = [&](const std::optional<double>& value) {
+      return output::number_cell(value, unit_of(study.outputs[o], study).size, "{:.4g}");
+    };
+    rows[0].push_back(heading(study.outputs[o], study));
+    nominal.push_back(cell(p.nominal));
     for (std::size_t i = 0; i < p.shares.size(); ++i)
-      rows[i + 1].push_back(output::number_cell(p.shares[i].spread, unit.size, "{:.4g}"));
-    total.push_back(output::number_cell(p.deviation, unit.size, "{:.4g}"));
+      rows[i + 1].push_back(cell(p.shares[i].spread));
+    total.push_back(cell(p.deviation));
   }
   rows.insert(rows.begin() + 1, std::move(nominal));
   rows.push_back(std::move(total));

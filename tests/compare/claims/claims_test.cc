@@ -13,7 +13,6 @@
 
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
-#include "compare/claims/ledger.h"
 #include "compare/claims/misprint.h"
 #include "tests/support/program.h"
 
@@ -36,7 +35,7 @@ TEST(Claims, TheVerdictIsThatOfTheFindings) {
   const claims::Evidence no{"b", {1, 1}, "", false};
   const claims::Evidence open = claims::in_range("c", {1, 1, 0.1}, "", 1.05, 2);
   const auto verdict = [](std::vector<claims::Evidence> findings) {
-    return claims::Claim{"1", "s", std::move(findings), ""}.verdict();
+    return claims::Claim{"1", "s", "", std::move(findings)}.verdict();
   };
   EXPECT_EQ(verdict({yes, yes}), claims::ClaimVerdict::reproduced);
   EXPECT_EQ(verdict({yes, open}), claims::ClaimVerdict::reproduced);

@@ -12,7 +12,7 @@
 #include "analytic/elastica/elastica.h"
 #include "compare/models/registry.h"
 #include "compare/output/table.h"
-#include "compare/study/range.h"
+#include "compare/study/evaluate.h"
 #include "compare/study/reader/study_reader.h"
 #include "compare/study/sweep.h"
 #include "fem/beam/beam.h"

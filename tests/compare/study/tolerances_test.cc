@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/study/summary/tolerances.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
