@@ -63,11 +63,16 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   Faults faults;
   Section root(&table, "the case file", "", {}, faults);
   Case c;
+  const auto is_right = [&](const auto& read) {
+    const std::size_t before = faults.size();
+    read();
+    return faults.size() == before;
+  };
   read_header(root, c);
-  const bool cilium = read_cilium(root, c);
-  const bool load = read_load(root, c);
+  const bool cilium = is_right([&] { read_cilium(root, c); });
+  const bool load = is_right([&] { read_load(root, c); });
   read_sensor(root, c);
-  const bool models = read_models(root, known, c);
+  const bool models = is_right([&] { read_models(root, known, c); });
   change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {
     if (kind != Option::File::program || name.has_parent_path()) put_beside(file, name);
   });

@@ -32,12 +32,6 @@ struct Cell {
   Place place;
 };
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
 /// The cells of a line, of very many the first; quotes as in RFC 4180, but not over several lines.
 std::vector<Cell> cells_of(std::string_view line, std::size_t number) {
   std::vector<Cell> cells{{{}, {number, 1}}};
@@ -53,7 +47,7 @@ std::vector<Cell> cells_of(std::string_view line, std::size_t number) {
       cells.back().text += line[i];
     }
   }
-  for (Cell& cell : cells) cell.text = trimmed(cell.text);
+  for (Cell& cell : cells) cell.text = std::string(support::trimmed(cell.text));
   return cells;
 }
 
@@ -68,9 +62,9 @@ Header header_of(const Cell& cell, const std::map<std::string, std::string>& uni
   Header header{cell.text, std::nullopt, cell.place};
   const auto open = cell.text.find_first_of("[(");
   if (open != std::string::npos && cell.text.back() == (cell.text[open] == '[' ? ']' : ')')) {
-    header.name = trimmed(std::string_view(cell.text).substr(0, open));
-    header.unit =
-        trimmed(std::string_view(cell.text).substr(open + 1, cell.text.size() - open - 2));
+    const std::string_view text = cell.text;
+    header.name = support::trimmed(text.substr(0, open));
+    header.unit = support::trimmed(text.substr(open + 1, text.size() - open - 2));
   } else if (const auto found = units.find(cell.text); found != units.end()) {
     header.unit = found->second;
   }
@@ -84,7 +78,8 @@ std::map<std::string, std::string> units_of(std::string_view comment) {
   if (begin == std::string_view::npos) return units;
   for (const Cell& cell : cells_of(comment.substr(begin + 6), 1))
     if (const auto blank = cell.text.find(' '); blank != std::string::npos)
-      units[cell.text.substr(0, blank)] = trimmed(std::string_view(cell.text).substr(blank));
+      units[cell.text.substr(0, blank)] =
+          support::trimmed(std::string_view(cell.text).substr(blank));
   return units;
 }
 
