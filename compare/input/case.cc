@@ -5,7 +5,6 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
-#include "compare/input/external/external_files.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::input {

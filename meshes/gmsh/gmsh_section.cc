@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "meshes/gmsh/gmsh_section.h"
 
+#include <deal.II/base/bounding_box.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -93,18 +94,13 @@ Rim measure(const Extrusion& extrusion, const std::set<Edge>& edges) {
     rim.columns.insert(a);
     rim.columns.insert(b);
   }
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Point<2> low(infinity, infinity);
-  Point<2> high(-infinity, -infinity);
+  std::vector<Point<2>> points;
   for (const std::size_t c : rim.columns) {
-    const Point<2>& x = extrusion.columns[c];
+    const Point<2>& x = points.emplace_back(extrusion.columns[c]);
     rim.smallest = std::min(rim.smallest, x.norm());
     rim.largest = std::max(rim.largest, x.norm());
-    for (unsigned int i = 0; i < 2; ++i) {
-      low[i] = std::min(low[i], x[i]);
-      high[i] = std::max(high[i], x[i]);
-    }
   }
+  const auto [low, high] = dealii::BoundingBox<2>(points).get_boundary_points();
   rim.centre = Point<2>((low + high) / 2);
   return rim;
 }
@@ -198,39 +194,31 @@ void curve(const UserMesh& mesh, Extrusion& extrusion, Section& section,
 /// must be above them, half-way up or on a plane.
 void take_nodes(const UserMesh& mesh, const Extrusion& extrusion, Section& section) {
   section.centres.resize(extrusion.quads.size());
-  const auto place = [&](const Extrusion::Cell& cell, std::size_t i) -> Point<2>& {
-    std::array<std::size_t, 4> corner{};
+  const auto corners = [&](const Extrusion::Cell& cell) {
+    Quad quad{};
     for (std::size_t v = 0; v < 4; ++v)
-      corner[v] = extrusion.column(extrusion.vertices[cell.nodes[2 * (v & 1) + 6 * (v >> 1)]]);
-    switch (i) {
-      case 1:
-        return section.middles[edge(corner[0], corner[1])];
-      case 3:
-        return section.middles[edge(corner[0], corner[2])];
-      case 5:
-        return section.middles[edge(corner[1], corner[3])];
-      case 7:
-        return section.middles[edge(corner[2], corner[3])];
-      default:
-        return section.centres[cell.quad];
-    }
+      quad[v] = extrusion.column(extrusion.vertices[cell.nodes[2 * (v & 1) + 6 * (v >> 1)]]);
+    return quad;
   };
   for (const std::size_t e : extrusion.cell_of.front()) {
     const Extrusion::Cell& cell = extrusion.cells[e];
-    for (const std::size_t i : {1, 3, 4, 5, 7}) {
+    const Quad quad = corners(cell);
+    const auto lower = [&](std::size_t i) {
       const Point<3> x = mesh.position(cell.nodes[i]);
-      place(cell, i) = Point<2>(x[0], x[1]);
-    }
+      return Point<2>(x[0], x[1]);
+    };
+    section.middles[edge(quad[0], quad[1])] = lower(1);
+    section.middles[edge(quad[0], quad[2])] = lower(3);
+    section.middles[edge(quad[1], quad[3])] = lower(5);
+    section.middles[edge(quad[2], quad[3])] = lower(7);
+    section.centres[cell.quad] = lower(4);
   }
   for (std::size_t e = 0; e < extrusion.cells.size(); ++e) {
     const Extrusion::Cell& cell = extrusion.cells[e];
+    const auto nodes = section.nodes(extrusion, cell.quad, corners(cell));
     for (std::size_t a = 0; a < cell.nodes.size(); ++a) {
-      const std::size_t i = a % 9;
       const std::size_t level = a / 9;  // lower, middle, upper plane
-      const bool corner = i == 0 || i == 2 || i == 6 || i == 8;
-      const Point<2> xy =
-          corner ? extrusion.columns[extrusion.column(extrusion.vertices[cell.nodes[i]])]
-                 : place(cell, i);
+      const Point<2>& xy = nodes[a % 9];
       const double z = extrusion.planes[cell.layer] +
                        static_cast<double>(level) / 2 *
                            (extrusion.planes[cell.layer + 1] - extrusion.planes[cell.layer]);
@@ -319,7 +307,8 @@ void check_shape(UserMesh& mesh, const Extrusion& extrusion, const Section& sect
 std::array<Point<2>, 9> Section::nodes(const Extrusion& extrusion, std::size_t index,
                                        const Quad& quad) const {
   const auto middle = [&](std::size_t a, std::size_t b) {
-    return middles.at(edge(quad[a], quad[b]));
+    const auto found = middles.find(edge(quad[a], quad[b]));
+    return found == middles.end() ? Point<2>() : found->second;  // none: take_nodes() refuses it
   };
   const auto corner = [&](std::size_t a) { return extrusion.columns[quad[a]]; };
   return {corner(0),    middle(0, 1), corner(1),    middle(0, 2), centres[index],

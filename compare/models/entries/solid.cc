@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "compare/input/case.h"
-#include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 #include "fem/solid/material/hyperelastic.h"
 #include "meshes/cylinder/cylinder_mesh.h"

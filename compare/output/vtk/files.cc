@@ -37,14 +37,14 @@ vtkSmartPointer<vtkXMLWriter> writer_for(const vtkDataSet& data) {
   }
 }
 
-void add_string(vtkDataSet& data, const char* name, const std::vector<std::string>& values) {
+}  // namespace
+
+void add_strings(vtkDataSet& data, const char* name, const std::vector<std::string>& values) {
   const vtkNew<vtkStringArray> array;
   array->SetName(name);
   for (const std::string& value : values) array->InsertNextValue(value);
   data.GetFieldData()->AddArray(array);
 }
-
-}  // namespace
 
 std::string extension(const vtkDataSet& data) {
   return writer_for(data)->GetDefaultFileExtension();
@@ -55,12 +55,12 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance) {
                                  "command: " + provenance.command, "date: " + provenance.date};
   for (const auto& [library, version] : provenance.libraries)
     lines.push_back(fmt::format("{} {}", library, version));
-  add_string(data, "provenance", lines);
+  add_strings(data, "provenance", lines);
 }
 
 void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load) {
   add_provenance(data, provenance);
-  add_string(data, "load_unit", {std::string(magnitude_unit(load))});
+  add_strings(data, "load_unit", {std::string(magnitude_unit(load))});
   const vtkNew<vtkDoubleArray> value;
   value->SetName("load");
   value->InsertNextValue(magnitude(load));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/input/external/external_files.h"
+#include "compare/input/external/external.h"
 
 #include <fmt/format.h>
 
