@@ -171,6 +171,14 @@ void print_error(const std::string& message, bool of_this_rank_alone) {
   if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
 }
 
+/// Of SolverError, RankFailure and what no model should throw: `solver`.
+ExitCode code_of(const std::exception& error) {
+  if (dynamic_cast<const ciliaval::InputError*>(&error) != nullptr) return ExitCode::usage;
+  const bool is_of_file = dynamic_cast<const ciliaval::FileError*>(&error) != nullptr ||
+                          dynamic_cast<const std::filesystem::filesystem_error*>(&error) != nullptr;
+  return is_of_file ? ExitCode::input_output : ExitCode::solver;
+}
+
 }  // namespace
 
 /// The one place where errors become exit codes.
@@ -183,22 +191,10 @@ int main(int argc, char** argv) {
     spare_open_mpi_the_network();
     if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
     code = execute(argc, argv);
-  } catch (const ciliaval::InputError& error) {
-    code = ExitCode::usage;
+  } catch (const std::exception& error) {
+    code = code_of(error);
     message = error.what();
-  } catch (const ciliaval::FileError& error) {
-    code = ExitCode::input_output;
-    message = error.what();
-  } catch (const std::filesystem::filesystem_error& error) {
-    code = ExitCode::input_output;
-    message = error.what();
-  } catch (const ciliaval::RankFailure& error) {
-    code = ExitCode::solver;
-    message = error.what();
-    alone = true;
-  } catch (const std::exception& error) {  // SolverError, and what no model should throw
-    code = ExitCode::solver;
-    message = error.what();
+    alone = dynamic_cast<const ciliaval::RankFailure*>(&error) != nullptr;
   }
   if (!message.empty()) {
     print_error(message, alone);

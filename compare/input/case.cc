@@ -17,19 +17,6 @@ void put_beside(std::string_view case_file, std::filesystem::path& file) {
                .lexically_normal();
 }
 
-/// Reads the files of all external models. Throws InputError with all their faults.
-void read_files(std::vector<external::ExternalModel>& external, const Case& c) {
-  std::string faults;
-  for (external::ExternalModel& model : external) {
-    try {
-      external::read_external_files(model, c.cilium, c.load_path, c.sensors.size());
-    } catch (const InputError& error) {
-      faults += (faults.empty() ? "" : "\n") + std::string(error.what());
-    }
-  }
-  if (!faults.empty()) throw InputError(faults);
-}
-
 }  // namespace
 
 void change_files(const Models& models, ModelOptions& options,
@@ -88,7 +75,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   // What the models themselves demand; a case that comes so far has it.
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
-  read_files(c.external, c);
+  external::read_external_files(c);
   return c;
 }
 

@@ -32,7 +32,37 @@ class PathReader {
   explicit PathReader(Section& table) : table_(&table) {}
 
   /// The values of a parameter; its fallback, if it has one, stands for a missing key.
-  Values read(const LoadParameter& parameter);
+  Values read(const LoadParameter& parameter) {
+    const QuantityKey& k = parameter.key;
+    const toml::node* node = k.fallback.empty() ? table_->require(k.name) : table_->find(k.name);
+    if (node == nullptr) return k.fallback.empty() ? Values{} : Values{{parameter.fallback}};
+    Faults& faults = table_->faults();
+    Values values;
+    const auto read_one = [&](const toml::node& element) {
+      if (const auto value = read_value(element, k.name, k.quantity, k.range, faults))
+        values.value.push_back(*value);
+    };
+    const toml::array* list = node->as_array();
+    if (list == nullptr) {
+      read_one(*node);
+      return values;
+    }
+    values.is_list = true;
+    if (list->empty() || list->size() > most_steps) {
+      faults.add(place(*node), fmt::format("'{}' lists {} values: a load path has 1 to {} steps",
+                                           k.name, list->size(), most_steps));
+      return values;
+    }
+    if (!listed_.empty() && list->size() != steps_)
+      faults.add(place(*node),
+                 fmt::format("'{}' lists {} values, but '{}' lists {}: all lists of a "
+                             "load path have the same length",
+                             k.name, list->size(), listed_, steps_));
+    listed_ = k.name;
+    steps_ = list->size();
+    for (const toml::node& element : *list) read_one(element);
+    return values;
+  }
   std::size_t steps() const { return steps_; }
 
  private:
@@ -40,37 +70,6 @@ class PathReader {
   std::size_t steps_ = 1;
   std::string_view listed_;  ///< the key whose list set steps_
 };
-
-Values PathReader::read(const LoadParameter& parameter) {
-  const QuantityKey& k = parameter.key;
-  const toml::node* node = k.fallback.empty() ? table_->require(k.name) : table_->find(k.name);
-  if (node == nullptr) return k.fallback.empty() ? Values{} : Values{{parameter.fallback}};
-  Faults& faults = table_->faults();
-  Values values;
-  const auto read_one = [&](const toml::node& element) {
-    if (const auto value = read_value(element, k.name, k.quantity, k.range, faults))
-      values.value.push_back(*value);
-  };
-  const toml::array* list = node->as_array();
-  if (list == nullptr) {
-    read_one(*node);
-    return values;
-  }
-  values.is_list = true;
-  if (list->empty() || list->size() > most_steps) {
-    faults.add(place(*node), fmt::format("'{}' lists {} values: a load path has 1 to {} steps",
-                                         k.name, list->size(), most_steps));
-    return values;
-  }
-  if (!listed_.empty() && list->size() != steps_)
-    faults.add(place(*node), fmt::format("'{}' lists {} values, but '{}' lists {}: all lists of a "
-                                         "load path have the same length",
-                                         k.name, list->size(), listed_, steps_));
-  listed_ = k.name;
-  steps_ = list->size();
-  for (const toml::node& element : *list) read_one(element);
-  return values;
-}
 
 /// Reads the table of a load whose type is missing or unknown: which keys it should have cannot be
 /// told, but those that some type has must be right by themselves.

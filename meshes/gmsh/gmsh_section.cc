@@ -21,6 +21,8 @@ using Quad = Extrusion::Quad;
 constexpr double rim_tolerance = 1e-3;   ///< of the rim's nodes from the circle, in R
 constexpr double area_tolerance = 0.02;  ///< of the section, relative
 constexpr double area_remark = 1e-4;
+constexpr double least_scaled_jacobian = 0.1;  ///< less is an error
+constexpr double poor_scaled_jacobian = 0.3;   ///< less is a remark
 
 double cross(const Tensor<1, 2>& a, const Tensor<1, 2>& b) {
   return a[0] * b[1] - a[1] * b[0];
@@ -260,6 +262,20 @@ double area(const std::array<Point<2>, 9>& nodes) {
   return sum;
 }
 
+/// Smallest scaled Jacobian det(a, b)/(|a||b|), a and b the tangents of the quadratic map, at its
+/// nine nodes: 1 for a rectangle, 0 or less for a degenerate or folded cell.
+double scaled_jacobian(const std::array<Point<2>, 9>& nodes) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] = tangents(nodes, i, j);
+      const double size = a.norm() * b.norm();
+      least = std::min(least, size > 0 ? cross(a, b) / size : 0.0);
+    }
+  }
+  return least;
+}
+
 /// Area of the section and shape of its cells.
 void check_shape(UserMesh& mesh, const Extrusion& extrusion, const Section& section) {
   double total = 0;
@@ -313,18 +329,6 @@ std::array<Point<2>, 9> Section::nodes(const Extrusion& extrusion, std::size_t i
   const auto corner = [&](std::size_t a) { return extrusion.columns[quad[a]]; };
   return {corner(0),    middle(0, 1), corner(1),    middle(0, 2), centres[index],
           middle(1, 3), corner(2),    middle(2, 3), corner(3)};
-}
-
-double scaled_jacobian(const std::array<Point<2>, 9>& nodes) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < 3; ++j) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = tangents(nodes, i, j);
-      const double size = a.norm() * b.norm();
-      least = std::min(least, size > 0 ? cross(a, b) / size : 0.0);
-    }
-  }
-  return least;
 }
 
 Section make_section(UserMesh& mesh, Extrusion& extrusion) {

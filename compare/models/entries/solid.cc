@@ -157,6 +157,8 @@ input::MechanicsEntry solid() {
       .accuracy = 1e-8,
       .check = check,
       .remarks = remarks,
+      // These may be raised to go on after a failure.
+      .checkpoint_without = std::vector<std::string_view>{"max_iterations", "max_cutbacks"},
   };
 }
 

@@ -9,9 +9,7 @@
 #include <vtkNew.h>
 #include <vtkObject.h>
 #include <vtkStringArray.h>
-#include <vtkXMLImageDataWriter.h>
-#include <vtkXMLPolyDataWriter.h>
-#include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkXMLDataObjectWriter.h>
 #include <vtkXMLWriter.h>
 
 #include <algorithm>
@@ -25,16 +23,10 @@ namespace ciliaval::compare::output::vtk {
 namespace {
 
 vtkSmartPointer<vtkXMLWriter> writer_for(const vtkDataSet& data) {
-  switch (const_cast<vtkDataSet&>(data).GetDataObjectType()) {  // not const in VTK
-    case VTK_UNSTRUCTURED_GRID:
-      return vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New();
-    case VTK_POLY_DATA:
-      return vtkSmartPointer<vtkXMLPolyDataWriter>::New();
-    case VTK_IMAGE_DATA:
-      return vtkSmartPointer<vtkXMLImageDataWriter>::New();
-    default:
-      throw InputError("this kind of VTK data set has no writer here");
-  }
+  const int type = const_cast<vtkDataSet&>(data).GetDataObjectType();  // not const in VTK
+  auto writer = vtkSmartPointer<vtkXMLWriter>::Take(vtkXMLDataObjectWriter::NewWriter(type));
+  if (!writer) throw InputError("this kind of VTK data set has no writer here");
+  return writer;
 }
 
 }  // namespace
