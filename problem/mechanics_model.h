@@ -12,7 +12,6 @@
 #include "problem/cilium.h"
 #include "problem/deformation.h"
 #include "problem/load.h"
-#include "problem/support/fingerprint.h"
 
 namespace ciliaval {
 
@@ -84,13 +83,6 @@ class MechanicsModel {
   /// so and the rest goes on where it can. Throws InputError if the cilium or a load is not valid.
   virtual MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                                 const Progress& progress = {}) const = 0;
-
-  /// What a checkpoint depends on: one of another fingerprint must not be gone on from. Nothing for
-  /// a model that keeps none because it takes but a moment.
-  virtual std::optional<support::Fingerprint> fingerprint(const Cilium& /*cilium*/,
-                                                          const LoadPath& /*path*/) const {
-    return std::nullopt;
-  }
 
   /// solve() that goes on from the checkpoint and keeps it up to date; the steps are those of
   /// solve(). Steps from the first failed one on are not kept: they are solved again. Of several

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -99,18 +100,8 @@ ExitCode print_parse_result(const CLI::App& app, const CLI::ParseError& error) {
 
 /// Whether a message starts with `file:line:column: `, which editors jump to.
 bool is_located(std::string_view message) {
-  message = message.substr(0, message.find('\n'));
-  const auto number_ends =
-      [&](std::size_t begin) {  // where its colon stands; npos if there is none
-        const std::size_t end = message.find_first_not_of("0123456789", begin);
-        return end == begin || end == message.npos || message[end] != ':' ? message.npos : end;
-      };
-  for (std::size_t at = message.find(':', 1); at != message.npos; at = message.find(':', at + 1)) {
-    const std::size_t line = number_ends(at + 1);
-    const std::size_t column = line == message.npos ? line : number_ends(line + 1);
-    if (column != message.npos && message.substr(column).starts_with(": ")) return true;
-  }
-  return false;
+  const std::string first_line(message.substr(0, message.find('\n')));
+  return std::regex_search(first_line, std::regex("[^]:[0-9]{1,9}:[0-9]{1,9}: "));
 }
 
 /// A file that the program opens must not become the standard output of a user who has closed it.
@@ -180,6 +171,14 @@ void print_error(const std::string& message, bool of_this_rank_alone) {
   if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
 }
 
+/// Of SolverError, RankFailure and what no model should throw: `solver`.
+ExitCode code_of(const std::exception& error) {
+  if (dynamic_cast<const ciliaval::InputError*>(&error) != nullptr) return ExitCode::usage;
+  const bool is_of_file = dynamic_cast<const ciliaval::FileError*>(&error) != nullptr ||
+                          dynamic_cast<const std::filesystem::filesystem_error*>(&error) != nullptr;
+  return is_of_file ? ExitCode::input_output : ExitCode::solver;
+}
+
 }  // namespace
 
 /// The one place where errors become exit codes.
@@ -192,22 +191,10 @@ int main(int argc, char** argv) {
     spare_open_mpi_the_network();
     if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
     code = execute(argc, argv);
-  } catch (const ciliaval::InputError& error) {
-    code = ExitCode::usage;
+  } catch (const std::exception& error) {
+    code = code_of(error);
     message = error.what();
-  } catch (const ciliaval::FileError& error) {
-    code = ExitCode::input_output;
-    message = error.what();
-  } catch (const std::filesystem::filesystem_error& error) {
-    code = ExitCode::input_output;
-    message = error.what();
-  } catch (const ciliaval::RankFailure& error) {
-    code = ExitCode::solver;
-    message = error.what();
-    alone = true;
-  } catch (const std::exception& error) {  // SolverError, and what no model should throw
-    code = ExitCode::solver;
-    message = error.what();
+    alone = dynamic_cast<const ciliaval::RankFailure*>(&error) != nullptr;
   }
   if (!message.empty()) {
     print_error(message, alone);

@@ -5,7 +5,6 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
-#include "compare/input/external/external_files.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::input {
@@ -16,19 +15,6 @@ void put_beside(std::string_view case_file, std::filesystem::path& file) {
   if (!file.empty())
     file = std::filesystem::absolute(std::filesystem::path(case_file).parent_path() / file)
                .lexically_normal();
-}
-
-/// Reads the files of all external models. Throws InputError with all their faults.
-void read_files(std::vector<external::ExternalModel>& external, const Case& c) {
-  std::string faults;
-  for (external::ExternalModel& model : external) {
-    try {
-      external::read_external_files(model, c.cilium, c.load_path, c.sensors.size());
-    } catch (const InputError& error) {
-      faults += (faults.empty() ? "" : "\n") + std::string(error.what());
-    }
-  }
-  if (!faults.empty()) throw InputError(faults);
 }
 
 }  // namespace
@@ -63,11 +49,16 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   Faults faults;
   Section root(&table, "the case file", "", {}, faults);
   Case c;
+  const auto is_right = [&](const auto& read) {
+    const std::size_t before = faults.size();
+    read();
+    return faults.size() == before;
+  };
   read_header(root, c);
-  const bool cilium = read_cilium(root, c);
-  const bool load = read_load(root, c);
+  const bool cilium = is_right([&] { read_cilium(root, c); });
+  const bool load = is_right([&] { read_load(root, c); });
   read_sensor(root, c);
-  const bool models = read_models(root, known, c);
+  const bool models = is_right([&] { read_models(root, known, c); });
   change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {
     if (kind != Option::File::program || name.has_parent_path()) put_beside(file, name);
   });
@@ -84,7 +75,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   // What the models themselves demand; a case that comes so far has it.
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
-  read_files(c.external, c);
+  external::read_external_files(c);
   return c;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,15 +59,5 @@ inline constexpr QuantityKey field_uncertainty{external_table,
                                                "not known",
                                                "Uncertainty of each component of each reading."};
 }  // namespace key
-
-/// What a later version will read: a dotted key ("environment") or a value, and what it is.
-struct LaterKey {
-  std::string_view name;
-  std::string_view doc;
-};
-std::span<const LaterKey> later_keys();
-
-/// Every key of a case file as a Markdown table: key, value, range, default, meaning.
-std::string key_table(const Models& models);
 
 }  // namespace ciliaval::compare::input

@@ -32,50 +32,44 @@ class PathReader {
   explicit PathReader(Section& table) : table_(&table) {}
 
   /// The values of a parameter; its fallback, if it has one, stands for a missing key.
-  Values read(const LoadParameter& parameter);
+  Values read(const LoadParameter& parameter) {
+    const QuantityKey& k = parameter.key;
+    const toml::node* node = k.fallback.empty() ? table_->require(k.name) : table_->find(k.name);
+    if (node == nullptr) return k.fallback.empty() ? Values{} : Values{{parameter.fallback}};
+    Faults& faults = table_->faults();
+    Values values;
+    const auto read_one = [&](const toml::node& element) {
+      if (const auto value = read_value(element, k.name, k.quantity, k.range, faults))
+        values.value.push_back(*value);
+    };
+    const toml::array* list = node->as_array();
+    if (list == nullptr) {
+      read_one(*node);
+      return values;
+    }
+    values.is_list = true;
+    if (list->empty() || list->size() > most_steps) {
+      faults.add(place(*node), fmt::format("'{}' lists {} values: a load path has 1 to {} steps",
+                                           k.name, list->size(), most_steps));
+      return values;
+    }
+    if (!listed_.empty() && list->size() != steps_)
+      faults.add(place(*node),
+                 fmt::format("'{}' lists {} values, but '{}' lists {}: all lists of a "
+                             "load path have the same length",
+                             k.name, list->size(), listed_, steps_));
+    listed_ = k.name;
+    steps_ = list->size();
+    for (const toml::node& element : *list) read_one(element);
+    return values;
+  }
   std::size_t steps() const { return steps_; }
 
  private:
-  Values read(const QuantityKey& k, const toml::node& node);
-
   Section* table_;
   std::size_t steps_ = 1;
   std::string_view listed_;  ///< the key whose list set steps_
 };
-
-Values PathReader::read(const LoadParameter& parameter) {
-  const QuantityKey& k = parameter.key;
-  const toml::node* node = k.fallback.empty() ? table_->require(k.name) : table_->find(k.name);
-  if (node != nullptr) return read(k, *node);
-  return k.fallback.empty() ? Values{} : Values{{parameter.fallback}};
-}
-
-Values PathReader::read(const QuantityKey& k, const toml::node& node) {
-  Faults& faults = table_->faults();
-  Values values;
-  const toml::array* list = node.as_array();
-  if (list == nullptr) {
-    if (const auto value = read_value(node, k.name, k.quantity, k.range, faults))
-      values.value.push_back(*value);
-    return values;
-  }
-  values.is_list = true;
-  if (list->empty() || list->size() > most_steps) {
-    faults.add(place(node), fmt::format("'{}' lists {} values: a load path has 1 to {} steps",
-                                        k.name, list->size(), most_steps));
-    return values;
-  }
-  if (!listed_.empty() && list->size() != steps_)
-    faults.add(place(node), fmt::format("'{}' lists {} values, but '{}' lists {}: all lists of a "
-                                        "load path have the same length",
-                                        k.name, list->size(), listed_, steps_));
-  listed_ = k.name;
-  steps_ = list->size();
-  for (const toml::node& element : *list)
-    if (const auto value = read_value(element, k.name, k.quantity, k.range, faults))
-      values.value.push_back(*value);
-  return values;
-}
 
 /// Reads the table of a load whose type is missing or unknown: which keys it should have cannot be
 /// told, but those that some type has must be right by themselves.
@@ -166,33 +160,24 @@ void set_stated_magnitudes(Case& c) {
   }
 }
 
-bool read_load(Section& root, Case& c) {
+void read_load(Section& root, Case& c) {
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
-  Section table = root.section("load");
-  if (!table.exists()) {
-    if (root.find("load") == nullptr) faults.add({}, "the table [load] is missing");
-    return false;
-  }
+  Section table = require_section(root, "load");
+  if (!table.exists()) return;
   const toml::node* node = table.require("type");
   std::optional<std::string> type;
   std::vector<std::string_view> names;
   for (const LoadType* known : load_types()) names.push_back(known->name);
   if (node != nullptr) type = read_choice(*node, "type", names, faults);
-  if (!type) {
-    read_any_type(table);
-    return false;
-  }
-
+  if (!type) return read_any_type(table);
   Section typed(table.table(), fmt::format("[load] of type '{}'", *type), "load", table.where(),
                 faults);
   typed.find("type");
   PathReader reader(typed);
   const std::function<void(Case&)> make_steps = read_steps(typed, *find_load_type(*type), reader);
   typed.finish();
-  if (faults.size() != before) return false;
-  make_steps(c);
-  return true;
+  if (faults.size() == before) make_steps(c);
 }
 
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path) {

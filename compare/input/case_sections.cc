@@ -15,10 +15,6 @@ constexpr std::size_t most_sensors = 10000;
 constexpr std::size_t longest_title = 200;  ///< bytes
 constexpr std::size_t longest_name = 100;
 
-bool is_alphanumeric(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-}
-
 bool has_control_character(std::string_view text) {
   return std::any_of(text.begin(), text.end(),
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
@@ -130,10 +126,9 @@ void read_options(Section& models, const Models& known, ModelOptions& options) {
 }  // namespace
 
 bool is_plain_file_name(std::string_view name) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
   return !name.empty() && name.size() <= longest_name && name.front() != '.' &&
-         name.front() != '-' && std::all_of(name.begin(), name.end(), [](char c) {
-           return is_alphanumeric(c) || c == '.' || c == '_' || c == '-';
-         });
+         name.front() != '-' && name.find_first_not_of(plain) == std::string_view::npos;
 }
 
 std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults) {
@@ -150,10 +145,8 @@ std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, 
   bool right = true;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto value = read_value((*list)[i], k.name, k.quantity, k.range, faults);
-    if (value)
-      point[static_cast<Eigen::Index>(i)] = *value;
-    else
-      right = false;
+    point[static_cast<Eigen::Index>(i)] = value.value_or(0);
+    right = right && value;
   }
   return right ? std::optional<Vector3>(point) : std::nullopt;
 }
@@ -194,29 +187,23 @@ void read_name_and_title(Section& table, std::string& name, std::string& title) 
     title = read_line(*node, "title", longest_title, faults).value_or("");
 }
 
-bool read_header(Section& root, Case& c) {
-  const std::size_t before = root.faults().size();
+void read_header(Section& root, Case& c) {
   Section table = require_section(root, "case");
   read_name_and_title(table, c.name, c.title);
   if (const toml::node* node = table.find("references"))
     c.references = read_line(*node, "references", longest_name, root.faults()).value_or("");
   table.finish();
-  return root.faults().size() == before;
 }
 
-bool read_cilium(Section& root, Case& c) {
-  Faults& faults = root.faults();
-  const std::size_t before = faults.size();
+void read_cilium(Section& root, Case& c) {
   Section table = require_section(root, "cilium");
   c.cilium.diameter = table.value(key::diameter).value_or(0);
   read_segments(table, c.cilium.segments);
   table.finish();
-  return faults.size() == before;
 }
 
-bool read_sensor(Section& root, Case& c) {
+void read_sensor(Section& root, Case& c) {
   Faults& faults = root.faults();
-  const std::size_t before = faults.size();
   Section table = root.section("sensor");
   if (const toml::node* node = table.require("position")) {
     const toml::array* list = node->as_array();
@@ -237,12 +224,10 @@ bool read_sensor(Section& root, Case& c) {
     }
   }
   table.finish();
-  return faults.size() == before;
 }
 
-bool read_models(Section& root, const Models& known, Case& c) {
+void read_models(Section& root, const Models& known, Case& c) {
   Faults& faults = root.faults();
-  const std::size_t before = faults.size();
   const std::vector<std::string_view> mechanics = ids(known.mechanics);
   Section table = require_section(root, "models");
   if (const toml::node* node = table.require("mechanics")) {
@@ -257,7 +242,6 @@ bool read_models(Section& root, const Models& known, Case& c) {
   read_options(table, known, c.options);
   read_external(table, known, c.external);
   table.finish();
-  return faults.size() == before;
 }
 
 }  // namespace ciliaval::compare::input

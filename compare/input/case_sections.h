@@ -13,15 +13,14 @@
 namespace ciliaval::compare::input {
 
 /// Each function reads one table of a case file into the case and adds a fault for everything in it
-/// that is wrong by itself; what contradicts another table is check_together()'s. They return
-/// whether the table had no fault.
+/// that is wrong by itself; what contradicts another table is check_together()'s.
 
-bool read_header(Section& root, Case& c);  ///< [case]
-bool read_cilium(Section& root, Case& c);  ///< [cilium], [[cilium.segment]]
-bool read_load(Section& root, Case& c);    ///< [load]; needs the diameter for `velocity`
-bool read_sensor(Section& root, Case& c);  ///< [sensor]
+void read_header(Section& root, Case& c);  ///< [case]
+void read_cilium(Section& root, Case& c);  ///< [cilium], [[cilium.segment]]
+void read_load(Section& root, Case& c);    ///< [load]; needs the diameter for `velocity`
+void read_sensor(Section& root, Case& c);  ///< [sensor]
 /// [models], [models.<id>]
-bool read_models(Section& root, const Models& known, Case& c);
+void read_models(Section& root, const Models& known, Case& c);
 
 /// [[models.external]], a part of [models]: the tables, not the files that they name.
 void read_external(Section& models, const Models& known,

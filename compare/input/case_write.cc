@@ -109,10 +109,7 @@ std::string external(const external::ExternalModel& model) {
 
 std::string models(const Case& c, const Models& known) {
   const auto ids = [](const std::vector<std::string>& names) {
-    std::vector<std::string> texts;
-    texts.reserve(names.size());
-    for (const std::string& name : names) texts.push_back(fmt::format("\"{}\"", name));
-    return list(texts);
+    return names.empty() ? "[]" : fmt::format("[\"{}\"]", fmt::join(names, "\", \""));
   };
   std::string text =
       fmt::format("\n[models]\nmechanics = {}\nfields = {}\n", ids(c.mechanics), ids(c.fields));

@@ -32,12 +32,6 @@ struct Cell {
   Place place;
 };
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
 /// The cells of a line, of very many the first; quotes as in RFC 4180, but not over several lines.
 std::vector<Cell> cells_of(std::string_view line, std::size_t number) {
   std::vector<Cell> cells{{{}, {number, 1}}};
@@ -53,7 +47,7 @@ std::vector<Cell> cells_of(std::string_view line, std::size_t number) {
       cells.back().text += line[i];
     }
   }
-  for (Cell& cell : cells) cell.text = trimmed(cell.text);
+  for (Cell& cell : cells) cell.text = std::string(support::trimmed(cell.text));
   return cells;
 }
 
@@ -68,9 +62,9 @@ Header header_of(const Cell& cell, const std::map<std::string, std::string>& uni
   Header header{cell.text, std::nullopt, cell.place};
   const auto open = cell.text.find_first_of("[(");
   if (open != std::string::npos && cell.text.back() == (cell.text[open] == '[' ? ']' : ')')) {
-    header.name = trimmed(std::string_view(cell.text).substr(0, open));
-    header.unit =
-        trimmed(std::string_view(cell.text).substr(open + 1, cell.text.size() - open - 2));
+    const std::string_view text = cell.text;
+    header.name = support::trimmed(text.substr(0, open));
+    header.unit = support::trimmed(text.substr(open + 1, text.size() - open - 2));
   } else if (const auto found = units.find(cell.text); found != units.end()) {
     header.unit = found->second;
   }
@@ -84,7 +78,8 @@ std::map<std::string, std::string> units_of(std::string_view comment) {
   if (begin == std::string_view::npos) return units;
   for (const Cell& cell : cells_of(comment.substr(begin + 6), 1))
     if (const auto blank = cell.text.find(' '); blank != std::string::npos)
-      units[cell.text.substr(0, blank)] = trimmed(std::string_view(cell.text).substr(blank));
+      units[cell.text.substr(0, blank)] =
+          support::trimmed(std::string_view(cell.text).substr(blank));
   return units;
 }
 
@@ -101,20 +96,147 @@ class Reader {
  public:
   Reader(std::span<const CsvColumn> columns, std::span<const std::string_view> ignored,
          Faults& faults)
-      : columns_(columns), ignored_(ignored), faults_(faults) {
+      : columns_(columns),
+        ignored_(ignored),
+        faults_(faults),
+        index_(columns.size()),
+        factor_(columns.size(), 1) {
     table_.numbers.resize(columns.size());
     table_.words.resize(columns.size());
     table_.header.resize(columns.size());
   }
 
-  CsvTable read(std::string_view text);
+  CsvTable read(std::string_view text) {
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+      faults_.add({}, "the file is in UTF-16: save it as UTF-8");
+      return table_;
+    }
+    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    std::map<std::string, std::string> units;
+    bool header = false;
+    std::size_t number = 0;
+    while (!text.empty() && faults_.size() < most_faults) {
+      const std::string_view line = take_line(text);
+      ++number;
+      const auto first = line.find_first_not_of(" \t");
+      if (first == std::string_view::npos) continue;
+      if (line[first] == '#' || line[first] == '%') {
+        units.merge(units_of(line));
+      } else if (!header) {
+        if (!read_header(line, number, units)) return table_;
+        header = true;
+      } else if (table_.rows.size() == most_rows) {
+        faults_.add({number, 1}, fmt::format("there are more than {} rows", most_rows));
+        return table_;
+      } else {
+        read_row(line, number);
+      }
+    }
+    if (!header)
+      faults_.add({},
+                  "the file is empty: it needs a header line with the names and units of the "
+                  "columns");
+    else if (table_.rows.empty())
+      faults_.add({number, 1}, "there are no rows below the header");
+    return table_;
+  }
 
  private:
   bool read_header(std::string_view line, std::size_t number,
-                   const std::map<std::string, std::string>& units);
-  void take(const Header& header, std::size_t index);
-  void read_row(std::string_view line, std::size_t number);
-  void add_number(std::size_t column, const Cell& cell);
+                   const std::map<std::string, std::string>& units) {
+    const std::size_t before = faults_.size();
+    for (const char separator : {';', '\t'})
+      if (const auto at = line.find(separator); at != std::string_view::npos) {
+        faults_.add({number, at + 1},
+                    fmt::format("the columns are separated by {}: write commas between them, and "
+                                "points, not commas, in the numbers",
+                                separator == ';' ? "semicolons" : "tabs"));
+        return false;
+      }
+    const std::vector<Cell> cells = cells_of(line, number);
+    width_ = cells.size();
+    if (width_ > most_cells) {
+      faults_.add({number, 1}, fmt::format("there are more than {} columns", most_cells));
+      return false;
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i) take(header_of(cells[i], units), i);
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      if (columns_[c].required && !index_[c])
+        faults_.add({number, 1}, fmt::format("there is no column '{}'", columns_[c].name));
+    return faults_.size() == before;
+  }
+
+  void take(const Header& header, std::size_t index) {
+    if (std::find(ignored_.begin(), ignored_.end(), header.name) != ignored_.end()) return;
+    const auto found = std::find_if(columns_.begin(), columns_.end(),
+                                    [&](const CsvColumn& c) { return c.name == header.name; });
+    if (found == columns_.end()) {
+      std::vector<std::string_view> names;
+      for (const CsvColumn& column : columns_) names.push_back(column.name);
+      faults_.add(header.place, fmt::format("unknown column {} (valid: {})", in_quotes(header.name),
+                                            fmt::join(names, ", ")));
+      return;
+    }
+    const auto c = static_cast<std::size_t>(found - columns_.begin());
+    if (index_[c]) {
+      faults_.add(header.place, fmt::format("there is a second column '{}'", header.name));
+      return;
+    }
+    index_[c] = index;
+    table_.header[c] = header.place;
+    if (found->kind == CsvColumn::Kind::word || found->quantity.unit.empty()) {
+      if (header.unit && !header.unit->empty() && *header.unit != "1")
+        faults_.add(header.place, fmt::format("the column '{}' has no unit", header.name));
+      return;
+    }
+    const std::string_view example = found->quantity.example;
+    const std::string unit(example.substr(example.find(' ') + 1));
+    if (!header.unit) {
+      faults_.add(header.place,
+                  fmt::format("the column '{0}' needs the unit of {1} {2}: write \"{0} "
+                              "[{3}]\"",
+                              header.name, found->quantity.article, found->quantity.name, unit));
+      return;
+    }
+    try {
+      factor_[c] = parse_quantity("1 " + *header.unit, found->quantity);
+    } catch (const InputError& fault) {
+      faults_.add(header.place, fmt::format("the column '{}': {}", header.name, fault.what()));
+    }
+  }
+
+  void read_row(std::string_view line, std::size_t number) {
+    const std::vector<Cell> cells = cells_of(line, number);
+    if (cells.size() != width_) {
+      const Place where = cells[std::min(cells.size() - 1, width_)].place;
+      faults_.add(where,
+                  fmt::format("the row has {} cells and the header {}{}", cells.size(), width_,
+                              cells.size() > width_ ? ": are there commas in the numbers?" : ""));
+      return;
+    }
+    table_.rows.push_back({number, 1});
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      if (!index_[c]) continue;
+      if (columns_[c].kind == CsvColumn::Kind::word)
+        table_.words[c].push_back(cells[*index_[c]].text);
+      else
+        add_number(c, cells[*index_[c]]);
+    }
+  }
+
+  void add_number(std::size_t column, const Cell& cell) {
+    std::string_view text = cell.text;
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty())
+      faults_.add(cell.place, fmt::format("the cell of '{}' is empty", columns_[column].name));
+    else if (error != std::errc() || end != text.data() + text.size())
+      faults_.add(cell.place, fmt::format("{} is not a number", in_quotes(cell.text)));
+    else if (!std::isfinite(value))
+      faults_.add(cell.place, fmt::format("{} is not a finite number", in_quotes(cell.text)));
+    table_.numbers[column].push_back(value * factor_[column]);
+  }
 
   std::span<const CsvColumn> columns_;
   std::span<const std::string_view> ignored_;
@@ -124,139 +246,6 @@ class Reader {
   std::vector<std::optional<std::size_t>> index_;  ///< of each column's cell in a row
   std::vector<double> factor_;                     ///< to SI units
 };
-
-CsvTable Reader::read(std::string_view text) {
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    faults_.add({}, "the file is in UTF-16: save it as UTF-8");
-    return table_;
-  }
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  std::map<std::string, std::string> units;
-  bool header = false;
-  std::size_t number = 0;
-  while (!text.empty() && faults_.size() < most_faults) {
-    const std::string_view line = take_line(text);
-    ++number;
-    const auto first = line.find_first_not_of(" \t");
-    if (first == std::string_view::npos) continue;
-    if (line[first] == '#' || line[first] == '%') {
-      units.merge(units_of(line));
-    } else if (!header) {
-      if (!read_header(line, number, units)) return table_;
-      header = true;
-    } else if (table_.rows.size() == most_rows) {
-      faults_.add({number, 1}, fmt::format("there are more than {} rows", most_rows));
-      return table_;
-    } else {
-      read_row(line, number);
-    }
-  }
-  if (!header)
-    faults_.add({},
-                "the file is empty: it needs a header line with the names and units of the "
-                "columns");
-  else if (table_.rows.empty())
-    faults_.add({number, 1}, "there are no rows below the header");
-  return table_;
-}
-
-bool Reader::read_header(std::string_view line, std::size_t number,
-                         const std::map<std::string, std::string>& units) {
-  const std::size_t before = faults_.size();
-  index_.assign(columns_.size(), std::nullopt);
-  factor_.assign(columns_.size(), 1);
-  for (const char separator : {';', '\t'})
-    if (const auto at = line.find(separator); at != std::string_view::npos) {
-      faults_.add({number, at + 1},
-                  fmt::format("the columns are separated by {}: write commas between them, and "
-                              "points, not commas, in the numbers",
-                              separator == ';' ? "semicolons" : "tabs"));
-      return false;
-    }
-  const std::vector<Cell> cells = cells_of(line, number);
-  width_ = cells.size();
-  if (width_ > most_cells) {
-    faults_.add({number, 1}, fmt::format("there are more than {} columns", most_cells));
-    return false;
-  }
-  for (std::size_t i = 0; i < cells.size(); ++i) take(header_of(cells[i], units), i);
-  for (std::size_t c = 0; c < columns_.size(); ++c)
-    if (columns_[c].required && !index_[c])
-      faults_.add({number, 1}, fmt::format("there is no column '{}'", columns_[c].name));
-  return faults_.size() == before;
-}
-
-void Reader::take(const Header& header, std::size_t index) {
-  if (std::find(ignored_.begin(), ignored_.end(), header.name) != ignored_.end()) return;
-  const auto found = std::find_if(columns_.begin(), columns_.end(),
-                                  [&](const CsvColumn& c) { return c.name == header.name; });
-  if (found == columns_.end()) {
-    std::vector<std::string_view> names;
-    for (const CsvColumn& column : columns_) names.push_back(column.name);
-    faults_.add(header.place, fmt::format("unknown column {} (valid: {})", in_quotes(header.name),
-                                          fmt::join(names, ", ")));
-    return;
-  }
-  const auto c = static_cast<std::size_t>(found - columns_.begin());
-  if (index_[c]) {
-    faults_.add(header.place, fmt::format("there is a second column '{}'", header.name));
-    return;
-  }
-  index_[c] = index;
-  table_.header[c] = header.place;
-  if (found->kind == CsvColumn::Kind::word || found->quantity.unit.empty()) {
-    if (header.unit && !header.unit->empty() && *header.unit != "1")
-      faults_.add(header.place, fmt::format("the column '{}' has no unit", header.name));
-    return;
-  }
-  const std::string_view example = found->quantity.example;
-  const std::string unit(example.substr(example.find(' ') + 1));
-  if (!header.unit) {
-    faults_.add(header.place,
-                fmt::format("the column '{0}' needs the unit of {1} {2}: write \"{0} "
-                            "[{3}]\"",
-                            header.name, found->quantity.article, found->quantity.name, unit));
-    return;
-  }
-  try {
-    factor_[c] = parse_quantity("1 " + *header.unit, found->quantity);
-  } catch (const InputError& fault) {
-    faults_.add(header.place, fmt::format("the column '{}': {}", header.name, fault.what()));
-  }
-}
-
-void Reader::read_row(std::string_view line, std::size_t number) {
-  const std::vector<Cell> cells = cells_of(line, number);
-  if (cells.size() != width_) {
-    const Place where = cells[std::min(cells.size() - 1, width_)].place;
-    faults_.add(where,
-                fmt::format("the row has {} cells and the header {}{}", cells.size(), width_,
-                            cells.size() > width_ ? ": are there commas in the numbers?" : ""));
-    return;
-  }
-  table_.rows.push_back({number, 1});
-  for (std::size_t c = 0; c < columns_.size(); ++c) {
-    if (!index_[c]) continue;
-    if (columns_[c].kind == CsvColumn::Kind::word)
-      table_.words[c].push_back(cells[*index_[c]].text);
-    else
-      add_number(c, cells[*index_[c]]);
-  }
-}
-
-void Reader::add_number(std::size_t column, const Cell& cell) {
-  std::string_view text = cell.text;
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty())
-    faults_.add(cell.place, fmt::format("the cell of '{}' is empty", columns_[column].name));
-  else if (error != std::errc() || end != text.data() + text.size())
-    faults_.add(cell.place, fmt::format("{} is not a number", in_quotes(cell.text)));
-  else if (!std::isfinite(value))
-    faults_.add(cell.place, fmt::format("{} is not a finite number", in_quotes(cell.text)));
-  table_.numbers[column].push_back(value * factor_[column]);
-}
 
 }  // namespace
 

@@ -74,6 +74,9 @@ struct Entry {
   /// What there is to remark on the files that the options name. Throws InputError.
   std::function<std::vector<std::string>(const Case&)> remarks{};
   SubTables tables{};
+  /// Options that the model's checkpoint does not depend on; none: it keeps no checkpoint, because
+  /// it takes but a moment.
+  std::optional<std::vector<std::string_view>> checkpoint_without{};
 };
 using MechanicsEntry = Entry<MechanicsModel>;
 using FieldEntry = Entry<FieldModel>;

@@ -12,7 +12,6 @@
 #include <optional>
 #include <span>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -52,12 +51,6 @@ bool is_digit(char c) {
 bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%' ||
          static_cast<unsigned char>(c) >= 0x80;
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 /// A character beyond ASCII and what is read in its place.
@@ -177,45 +170,6 @@ std::string with_degrees(std::string_view unit) {
   return result;
 }
 
-/// What a unit is as a multiple of 1.
-struct Scale {
-  double factor = 1;
-  bool pure = true;  ///< no dimension, no radian, no offset, not logarithmic
-};
-
-ut_status visit_basic(const ut_unit* /*unit*/, void* scale) {
-  static_cast<Scale*>(scale)->pure = false;
-  return UT_SUCCESS;
-}
-ut_status visit_product(const ut_unit* /*unit*/, int count, const ut_unit* const* /*units*/,
-                        const int* /*powers*/, void* scale) {
-  if (count != 0) static_cast<Scale*>(scale)->pure = false;
-  return UT_SUCCESS;
-}
-ut_status visit_timestamp(const ut_unit* /*unit*/, const ut_unit* /*time*/, double /*origin*/,
-                          void* scale) {
-  static_cast<Scale*>(scale)->pure = false;
-  return UT_SUCCESS;
-}
-ut_status visit_logarithmic(const ut_unit* /*unit*/, double /*base*/, const ut_unit* /*reference*/,
-                            void* scale) {
-  static_cast<Scale*>(scale)->pure = false;
-  return UT_SUCCESS;
-}
-ut_status visit_galilean(const ut_unit* unit, double factor, const ut_unit* underlying,
-                         double offset, void* scale);
-
-const ut_visitor scale_visitor{visit_basic, visit_product, visit_galilean, visit_timestamp,
-                               visit_logarithmic};
-
-ut_status visit_galilean(const ut_unit* /*unit*/, double factor, const ut_unit* underlying,
-                         double offset, void* scale) {
-  auto* s = static_cast<Scale*>(scale);
-  s->factor *= factor;
-  if (offset != 0) s->pure = false;
-  return ut_accept_visitor(underlying, &scale_visitor, scale);
-}
-
 /// Units that a person may mean to write, for advice.
 std::span<const std::string_view> usual_units(const Quantity& expected) {
   using Names = std::vector<std::string_view>;
@@ -246,17 +200,20 @@ std::string did_you_mean_unit(std::string_view unit, const Quantity& expected) {
   return unit.size() > longest_symbol ? support::did_you_mean(unit, usual_units(expected)) : "";
 }
 
-/// The factor from one unit to another; none if they do not have the same dimension.
-/// ut_get_converter() would also turn 1/m into m, and takes radians for plain numbers: so the
-/// quotient of the two units is looked at.
+/// The factor from one unit to another; none if they do not have the same dimension, or one has an
+/// offset. ut_get_converter() would also turn 1/m into m, and takes radians for plain numbers: so
+/// the quotient of the two units must be the factor itself.
 std::optional<double> factor_between(const ut_unit* from, std::string_view to) {
   const Unit target(ut_parse(unit_system(), std::string(to).c_str(), UT_UTF8));
   const Unit quotient(ut_divide(from, target.get()));
-  Scale scale;
-  if (!quotient || ut_accept_visitor(quotient.get(), &scale_visitor, &scale) != UT_SUCCESS ||
-      !scale.pure)
-    return std::nullopt;
-  return scale.factor;
+  const Unit one(ut_get_dimensionless_unit_one(unit_system()));
+  const std::unique_ptr<cv_converter, decltype(&cv_free)> converter(
+      ut_get_converter(quotient.get(), one.get()), &cv_free);
+  if (!converter) return std::nullopt;
+  const double factor = cv_convert_double(converter.get(), 1);
+  const Unit scaled(ut_scale(factor, one.get()));
+  if (!scaled || ut_compare(scaled.get(), quotient.get()) != 0) return std::nullopt;
+  return factor;
 }
 
 /// The factor from the unit of a value to the SI unit of `expected`.
@@ -303,13 +260,13 @@ double take_number(std::string_view& text, const Quantity& expected) {
 
 double parse_quantity(std::string_view text, const Quantity& expected) {
   const std::string plain = in_ascii(text);
-  std::string_view rest = trimmed(plain);
+  std::string_view rest = support::trimmed(plain);
   if (rest.empty()) throw InputError(fmt::format("the text is empty: {}", wanted(expected)));
   const double value = take_number(rest, expected);
   if (rest.starts_with(','))
     throw InputError(fmt::format("{} has a comma: write the decimal point, such as \"0.5 mm\"",
                                  in_quotes(text)));
-  const std::string_view unit = trimmed(rest);
+  const std::string_view unit = support::trimmed(rest);
   if (unit.empty())
     throw InputError(fmt::format("{} has no unit: {}", in_quotes(text), wanted(expected)));
   for (const char c : unit)

@@ -73,10 +73,7 @@ CurveDistance distance(const Centreline& a, const Centreline& b) {
   CurveDistance result;
   const auto consider = [&](double S) {
     const double d = (a.at(S).position - b.at(S).position).norm();
-    if (d > result.largest) {
-      result.largest = d;
-      result.largest_at = S;
-    }
+    result.largest = std::max(result.largest, d);
     return d;
   };
   double integral = 0;

@@ -244,15 +244,8 @@ void compare_fields(const CaseResult& result, std::vector<Comparison>& out) {
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::resolved:
-      return "resolved";
-    case Verdict::below_uncertainty:
-      return "below uncertainty";
-    case Verdict::inconclusive:
-      break;
-  }
-  return "inconclusive";
+  if (verdict == Verdict::inconclusive) return "inconclusive";
+  return verdict == Verdict::resolved ? "resolved" : "below uncertainty";
 }
 
 std::optional<double> tip_angle_uncertainty(const MechanicsRun& run, std::size_t step) {

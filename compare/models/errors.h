@@ -41,9 +41,8 @@ struct Comparison {
 
 /// A difference of two curves.
 struct CurveDistance {
-  double largest = 0;     ///< max |r_a − r_b|, m
-  double largest_at = 0;  ///< S of it, m
-  double rms = 0;         ///< √(1/L ∫₀ᴸ |r_a − r_b|² dS), m
+  double largest = 0;  ///< max |r_a − r_b|, m
+  double rms = 0;      ///< √(1/L ∫₀ᴸ |r_a − r_b|² dS), m
 };
 
 /// Distance of two centrelines at common material points S, both evaluated by their own

@@ -44,14 +44,6 @@ const input::Models& known() {
   return all();
 }
 
-const std::vector<MechanicsEntry>& mechanics_models() {
-  return all().mechanics;
-}
-
-const std::vector<FieldEntry>& field_models() {
-  return all().fields;
-}
-
 void add_model(MechanicsEntry entry) {
   all().mechanics.push_back(std::move(entry));
 }

@@ -15,8 +15,12 @@ using input::MechanicsEntry;
 /// Every model, the more detailed ones later: in a comparison the later one is the reference. To
 /// add a model, write its entry in compare/models/entries and its line in registry.cc.
 const input::Models& known();
-const std::vector<MechanicsEntry>& mechanics_models();  ///< known().mechanics
-const std::vector<FieldEntry>& field_models();          ///< known().fields
+inline const std::vector<MechanicsEntry>& mechanics_models() {
+  return known().mechanics;
+}
+inline const std::vector<FieldEntry>& field_models() {
+  return known().fields;
+}
 
 /// Adds a model that a program brings along, before the program uses any other.
 void add_model(MechanicsEntry entry);

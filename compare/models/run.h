@@ -12,6 +12,7 @@
 #include "compare/models/registry.h"
 #include "problem/field_model.h"
 #include "problem/mechanics_model.h"
+#include "problem/support/fingerprint.h"
 
 namespace ciliaval::compare::models {
 
@@ -82,9 +83,10 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
                    const input::Case& problem, const Progress& progress = {});
 
-/// The fingerprints of those mechanics models of the case that keep a checkpoint, by id.
-std::map<std::string, support::Fingerprint> fingerprints(const input::Case& problem,
-                                                         std::span<const MechanicsEntry> mechanics);
+/// What the checkpoint of a mechanics model depends on: cilium, load path, the model's options; of
+/// the user's mesh the content, wherever it lies. None if the model keeps no checkpoint.
+std::optional<support::Fingerprint> fingerprint(const input::Case& problem,
+                                                const MechanicsEntry& entry);
 
 /// Whether no step of the model failed.
 bool all_solved(const MechanicsRun& run);

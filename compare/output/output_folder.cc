@@ -11,7 +11,9 @@
 #include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -125,6 +127,23 @@ std::optional<Series> series_in(const fs::path& folder, const std::string& case_
   return series;
 }
 
+/// The first file (in alphabetical order) in the folder of a case's results that is not one of
+/// those that a run writes (docs/guide/results.md): it is the user's. Every file is, if there is no
+/// summary.json of a run of this case. None in an empty folder.
+std::optional<fs::path> foreign_file(const fs::path& folder, const std::string& case_name) {
+  const std::optional<Series> series = series_in(folder, case_name);
+  std::optional<fs::path> first;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const fs::path name = entry.path().lexically_relative(folder);
+    const fs::file_status status = entry.symlink_status();
+    const bool is_ours = series && (fs::is_directory(status)
+                                        ? name == "vtk"
+                                        : fs::is_regular_file(status) && is_result(name, *series));
+    if (!is_ours && (!first || name < *first)) first = name;
+  }
+  return first;
+}
+
 /// Throws FileError if the results may not take the place of what is there.
 void check_target(const fs::path& target, const std::string& name) {
   const fs::file_status status = fs::symlink_status(target);
@@ -151,20 +170,6 @@ bool is_inside(const fs::path& file, const fs::path& folder) {
 }
 
 }  // namespace
-
-std::optional<fs::path> foreign_file(const fs::path& folder, const std::string& case_name) {
-  const std::optional<Series> series = series_in(folder, case_name);
-  std::optional<fs::path> first;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const fs::path name = entry.path().lexically_relative(folder);
-    const fs::file_status status = entry.symlink_status();
-    const bool is_ours = series && (fs::is_directory(status)
-                                        ? name == "vtk"
-                                        : fs::is_regular_file(status) && is_result(name, *series));
-    if (!is_ours && (!first || name < *first)) first = name;
-  }
-  return first;
-}
 
 OutputFolder::OutputFolder(const fs::path& directory, const std::string& name,
                            const std::vector<fs::path>& inputs)
@@ -214,9 +219,7 @@ void OutputFolder::commit() {
   try {
     check_target(target_, name);  // again: the run may have taken hours
     replace();
-  } catch (const FileError& error) {
-    keep(error.what());
-  } catch (const fs::filesystem_error& error) {
+  } catch (const std::runtime_error& error) {
     keep(error.what());
   }
 }

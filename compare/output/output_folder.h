@@ -2,17 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace ciliaval::compare::output {
-
-/// The first file (in alphabetical order) in the folder of a case's results that is not one of
-/// those that a run writes (docs/guide/results.md): it is the user's. Every file is, if there is no
-/// summary.json of a run of this case. None in an empty folder.
-std::optional<std::filesystem::path> foreign_file(const std::filesystem::path& folder,
-                                                  const std::string& case_name);
 
 /// The results of one case, never half-written: everything goes into the temporary folder
 /// DIR/.NAME.PID.tmp, which commit() exchanges with DIR/NAME in one step. Whenever the program

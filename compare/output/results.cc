@@ -8,22 +8,13 @@
 #include <utility>
 
 #include "compare/output/csv_writer.h"
+#include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
 
 namespace ciliaval::compare::output {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// null if empty; nlohmann itself writes what is not finite as null.
-template <class T>
-Json optional(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
-}
 
 /// −0.0 → 0.0: the sign of a zero means nothing to a reader.
 void unsign_zeros(Json& json) {
@@ -58,22 +49,20 @@ Json load_json(const Load& load) {
 Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   const MechanicsStep& step = run.result.steps[index];
   Json json{{"status", to_string(step.status)}, {"message", step.message}};
-  json["tip"] = nullptr;
-  json["tip_angle"] = nullptr;
-  json["tip_uncertainty"] = nullptr;
-  json["applied_force"] = nullptr;
+  for (const char* name : {"tip", "tip_angle", "tip_uncertainty", "applied_force"})
+    json[name] = nullptr;
   if (step.deformation) {
     const Centreline& centreline = step.deformation->centreline;
     const CentrelinePoint tip = centreline.at(centreline.length());
     json["tip"] = vector(tip.position);
     json["tip_angle"] = tip.theta();
-    json["tip_uncertainty"] = optional(step.tip_uncertainty);
+    json["tip_uncertainty"] = or_null(step.tip_uncertainty);
     json["applied_force"] = step.applied_force;
   }
-  json["slip_off_force"] = optional(step.slip_off_force);
+  json["slip_off_force"] = or_null(step.slip_off_force);
   if (step.load.is<ProbeLoad>())
-    json["slip_off_displacement"] = optional(step.slip_off_displacement);
-  json["contact_arclength"] = optional(step.contact_arclength);
+    json["slip_off_displacement"] = or_null(step.slip_off_displacement);
+  json["contact_arclength"] = or_null(step.contact_arclength);
   json["unknowns"] = step.unknowns;
   json["iterations"] = step.iterations;
   json["seconds"] = step.seconds;
@@ -105,22 +94,22 @@ Json step_json(const models::CaseResult& result, std::size_t index) {
 }
 
 Json comparison_json(const models::Comparison& c) {
-  Json json{{"step", optional(c.step)},
-            {"sensor", optional(c.sensor)},
+  Json json{{"step", c.step ? Json(*c.step) : Json(nullptr)},
+            {"sensor", c.sensor ? Json(*c.sensor) : Json(nullptr)},
             {"quantity", c.quantity},
-            {"component", text_or_null(c.component)},
+            {"component", or_null(c.component)},
             {"statistic", c.statistic},
             {"model", c.model},
             {"reference", c.reference},
-            {"difference", optional(c.difference)},
-            {"relative", optional(c.relative)},
-            {"scale", optional(c.scale)},
+            {"difference", or_null(c.difference)},
+            {"relative", or_null(c.relative)},
+            {"scale", or_null(c.scale)},
             {"unit", c.unit},
-            {"uncertainty", optional(c.uncertainty)},
+            {"uncertainty", or_null(c.uncertainty)},
             {"verdict", to_string(c.verdict)}};
   if (c.statistic == "r2") {
-    json["r2"] = optional(c.r2);
-    json["correlation"] = optional(c.correlation);
+    json["r2"] = or_null(c.r2);
+    json["correlation"] = or_null(c.correlation);
   }
   if (!c.note.empty()) json["note"] = c.note;
   return json;
@@ -129,15 +118,8 @@ Json comparison_json(const models::Comparison& c) {
 }  // namespace
 
 std::string_view to_string(Status status) {
-  switch (status) {
-    case Status::converged:
-      return "converged";
-    case Status::slipped_off:
-      return "slipped_off";
-    case Status::failed:
-      break;
-  }
-  return "failed";
+  if (status == Status::failed) return "failed";
+  return status == Status::converged ? "converged" : "slipped_off";
 }
 
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension) {
@@ -172,7 +154,7 @@ std::string summary_json(const models::CaseResult& result,
   json["comparisons"] = Json::array();
   for (const models::Comparison& c : comparisons) json["comparisons"].push_back(comparison_json(c));
   unsign_zeros(json);
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return to_text(json);
 }
 
 std::string errors_csv(const std::vector<models::Comparison>& comparisons) {

@@ -44,23 +44,19 @@ Coordinates coordinates(const MeshNodes& mesh, const MeshNodes::Cell& cell) {
   return X;
 }
 
-/// Adds ∫ N_a dV of a cell, or ∫ N_a dA of its face ζ = 1, to the nodes.
-void add_integrals(const MeshNodes& mesh, const MeshNodes::Cell& cell, bool face,
+/// Adds ∫ N_a dV of a cell, or with dim = 2 ∫ N_a dA of its face ζ = 1, to the nodes.
+template <int dim>
+void add_integrals(const MeshNodes& mesh, const MeshNodes::Cell& cell,
                    std::vector<double>& integrals) {
   const Coordinates X = coordinates(mesh, cell);
-  const dealii::QGauss<1> line(4);
-  const auto n = line.size();
-  for (std::size_t q = 0; q < n * n * (face ? 1 : n); ++q) {
-    const std::array<std::size_t, 3> at{q % n, q / n % n, q / (n * n)};
+  const dealii::QGauss<dim> rule(4);
+  for (unsigned int q = 0; q < rule.size(); ++q) {
     Vector3 xi = Vector3::Ones();
-    double weight = 1;
-    for (std::size_t d = 0; d < (face ? 2U : 3U); ++d) {
-      xi[static_cast<Eigen::Index>(d)] = 2 * line.point(static_cast<unsigned int>(at[d]))[0] - 1;
-      weight *= 2 * line.weight(static_cast<unsigned int>(at[d]));
-    }
+    for (unsigned int d = 0; d < dim; ++d) xi[d] = 2 * rule.point(q)[d] - 1;
+    double weight = (1 << dim) * rule.weight(q);
     const auto N = serendipity_functions(xi);
     const Matrix3 jacobian = X.transpose() * N.rightCols<3>();
-    weight *= face ? jacobian.col(0).cross(jacobian.col(1)).norm() : jacobian.determinant();
+    weight *= dim == 2 ? jacobian.col(0).cross(jacobian.col(1)).norm() : jacobian.determinant();
     for (std::size_t a = 0; a < calculix_nodes.size(); ++a)
       integrals[cell.nodes[static_cast<std::size_t>(calculix_nodes[a])]] +=
           weight * N(static_cast<Eigen::Index>(a), 0);
@@ -178,10 +174,10 @@ std::vector<Vector3> calculix_forces(const MeshNodes& mesh, const Cilium& cilium
     force = section->force;
     for (const MeshNodes::Cell& cell : mesh.cells)
       if (ends_at(mesh, cell, section->arclength, cilium.length()))
-        add_integrals(mesh, cell, true, integrals);
+        add_integrals<2>(mesh, cell, integrals);
   } else if (const auto dead = load.as<DeadLoad>()) {
     force = dead->force_per_length * cilium.length();
-    for (const MeshNodes::Cell& cell : mesh.cells) add_integrals(mesh, cell, false, integrals);
+    for (const MeshNodes::Cell& cell : mesh.cells) add_integrals<3>(mesh, cell, integrals);
   } else {
     throw InputError("CalculiX takes the loads 'section' and 'dead', not '" +
                      std::string(type(load)) + "', which follows the current height");

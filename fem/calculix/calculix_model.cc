@@ -59,19 +59,93 @@ std::vector<Hyperelastic> materials(const Cilium& cilium) {
 /// One mesh, as CalculiX gets it and as the solid's extraction reads its displacements.
 class CalculixMesh {
  public:
-  CalculixMesh(const Cilium& cilium, const LoadPath& path, unsigned int level);
+  CalculixMesh(const Cilium& cilium, const LoadPath& path, unsigned int level) {
+    meshes::cylinder::CylinderMeshOptions mesh = solid::level_mesh(level);
+    mesh.half = true;
+    for (const Load& load : path)
+      if (const auto section = load.as<SectionLoad>()) mesh.planes.push_back(section->arclength);
+    finest_layer_ = mesh.finest_layer;
+    meshes::cylinder::make_cylinder(cilium, mesh, triangulation_);
+    mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
+    nodes_ = meshes::mesh_nodes(triangulation_, *mapping_);
+    space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials(cilium));
+    quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, Extent::half);
+  }
 
   const meshes::MeshNodes& nodes() const { return nodes_; }
   double finest_layer() const { return finest_layer_; }
-  std::size_t unknowns() const;
+  std::size_t unknowns() const {
+    const std::vector<bool> used = calculix_node_set(nodes_);
+    return 3 * static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+  }
   /// Of the displacements, three for each node, or of none: the undeformed cilium. The load has the
   /// azimuth 0.
   Deformation deformation(const Cilium& cilium, const std::vector<double>& displacements,
-                          const Load& load) const;
+                          const Load& load) const {
+    const SolidState at = state(displacements);
+    SpreadLoad spread;
+    std::optional<PlaneForce> plane;
+    if (const auto dead = load.as<DeadLoad>())
+      spread.per_volume = displacements.empty() ? 0 : dead->force_per_length / quadrature_->area();
+    if (const auto section = load.as<SectionLoad>(); section && !displacements.empty())
+      plane = PlaneForce{section->arclength, section->force * Vector3::UnitX()};
+    return {centreline_by_statics(*space_, *quadrature_, at, spread, plane),
+            std::make_shared<const SolidBody>(solid_body(*space_, *quadrature_, cilium, at))};
+  }
 
  private:
-  SolidState state(const std::vector<double>& displacements) const;
-  void add_pressure(SolidState& state) const;
+  /// The 20-node element's displacement at the 27 nodes of the solid's, which hold it exactly.
+  SolidState state(const std::vector<double>& displacements) const {
+    SolidState result = space_->undeformed();
+    if (displacements.empty()) return result;
+    Eigen::Matrix<double, element_nodes, 20> interpolation;
+    for (int a = 0; a < element_nodes; ++a)
+      interpolation.row(a) =
+          serendipity_functions(Vector3(a % 3 - 1, a / 3 % 3 - 1, a / 9 - 1))  // NOLINT: whole
+              .col(0)
+              .transpose();
+    for (std::size_t e = 0; e < nodes_.cells.size(); ++e) {
+      Eigen::Matrix<double, 20, 3> u;
+      for (std::size_t b = 0; b < calculix_nodes.size(); ++b)
+        u.row(static_cast<Eigen::Index>(b)) = Eigen::Map<const Vector3>(
+            &displacements[3 * nodes_.cells[e].nodes[static_cast<std::size_t>(calculix_nodes[b])]]);
+      const Eigen::Matrix<double, element_nodes, 3> all = interpolation * u;
+      for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t a = 0; a < element_nodes; ++a)
+          result.displacement[space_->elements()[e].dofs[c * element_nodes + a]] =
+              all(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(c));
+    }
+    add_pressure(result);
+    return result;
+  }
+
+  /// p = K(J − 1) at the eight points of reduced integration, where C3D20R has its stress, fitted
+  /// on each element by least squares with the solid's linear pressure.
+  void add_pressure(SolidState& state) const {
+    dealii::FEValues<3> values(
+        *mapping_, space_->scalar_element(), dealii::QGauss<3>(2),
+        dealii::update_gradients | dealii::update_JxW_values | dealii::update_quadrature_points);
+    for (std::size_t e = 0; e < space_->elements().size(); ++e) {
+      const SolidElement& element = space_->elements()[e];
+      values.reinit(element.cell);
+      const auto u = nodal_displacements(element, state.displacement);
+      PressureMatrix mass = PressureMatrix::Zero();
+      PressureVector right = PressureVector::Zero();
+      for (unsigned int q = 0; q < values.n_quadrature_points; ++q) {
+        Matrix3 F = Matrix3::Identity();
+        for (unsigned int a = 0; a < element_nodes; ++a) {
+          const auto g = values.shape_grad(a, q);
+          F += u.row(static_cast<Eigen::Index>(space_->lexicographic()[a])).transpose() *
+               Vector3(g[0], g[1], g[2]).transpose();
+        }
+        const auto& X = values.quadrature_point(q);
+        const PressureVector psi = element.pressure_basis(Vector3(X[0], X[1], X[2]));
+        mass += values.JxW(q) * psi * psi.transpose();
+        right += values.JxW(q) * element.material.bulk_modulus * (F.determinant() - 1) * psi;
+      }
+      state.pressure[e] = mass.ldlt().solve(right);
+    }
+  }
 
   double finest_layer_;
   dealii::Triangulation<3> triangulation_;
@@ -80,91 +154,6 @@ class CalculixMesh {
   std::unique_ptr<SolidSpace> space_;
   std::unique_ptr<ExtrudedQuadrature> quadrature_;
 };
-
-CalculixMesh::CalculixMesh(const Cilium& cilium, const LoadPath& path, unsigned int level) {
-  meshes::cylinder::CylinderMeshOptions mesh = solid::level_mesh(level);
-  mesh.half = true;
-  for (const Load& load : path)
-    if (const auto section = load.as<SectionLoad>()) mesh.planes.push_back(section->arclength);
-  finest_layer_ = mesh.finest_layer;
-  meshes::cylinder::make_cylinder(cilium, mesh, triangulation_);
-  mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
-  nodes_ = meshes::mesh_nodes(triangulation_, *mapping_);
-  space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials(cilium));
-  quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, Extent::half);
-}
-
-std::size_t CalculixMesh::unknowns() const {
-  const std::vector<bool> used = calculix_node_set(nodes_);
-  return 3 * static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-}
-
-/// The 20-node element's displacement at the 27 nodes of the solid's, which hold it exactly.
-SolidState CalculixMesh::state(const std::vector<double>& displacements) const {
-  SolidState result = space_->undeformed();
-  if (displacements.empty()) return result;
-  Eigen::Matrix<double, element_nodes, 20> interpolation;
-  for (int a = 0; a < element_nodes; ++a)
-    interpolation.row(a) =
-        serendipity_functions(Vector3(a % 3 - 1, a / 3 % 3 - 1, a / 9 - 1))  // NOLINT: whole
-            .col(0)
-            .transpose();
-  for (std::size_t e = 0; e < nodes_.cells.size(); ++e) {
-    Eigen::Matrix<double, 20, 3> u;
-    for (std::size_t b = 0; b < calculix_nodes.size(); ++b)
-      u.row(static_cast<Eigen::Index>(b)) = Eigen::Map<const Vector3>(
-          &displacements[3 * nodes_.cells[e].nodes[static_cast<std::size_t>(calculix_nodes[b])]]);
-    const Eigen::Matrix<double, element_nodes, 3> all = interpolation * u;
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t a = 0; a < element_nodes; ++a)
-        result.displacement[space_->elements()[e].dofs[c * element_nodes + a]] =
-            all(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(c));
-  }
-  add_pressure(result);
-  return result;
-}
-
-/// p = K(J − 1) at the eight points of reduced integration, where C3D20R has its stress, fitted on
-/// each element by least squares with the solid's linear pressure.
-void CalculixMesh::add_pressure(SolidState& state) const {
-  dealii::FEValues<3> values(
-      *mapping_, space_->scalar_element(), dealii::QGauss<3>(2),
-      dealii::update_gradients | dealii::update_JxW_values | dealii::update_quadrature_points);
-  for (std::size_t e = 0; e < space_->elements().size(); ++e) {
-    const SolidElement& element = space_->elements()[e];
-    values.reinit(element.cell);
-    const auto u = nodal_displacements(element, state.displacement);
-    PressureMatrix mass = PressureMatrix::Zero();
-    PressureVector right = PressureVector::Zero();
-    for (unsigned int q = 0; q < values.n_quadrature_points; ++q) {
-      Matrix3 F = Matrix3::Identity();
-      for (unsigned int a = 0; a < element_nodes; ++a) {
-        const auto g = values.shape_grad(a, q);
-        F += u.row(static_cast<Eigen::Index>(space_->lexicographic()[a])).transpose() *
-             Vector3(g[0], g[1], g[2]).transpose();
-      }
-      const auto& X = values.quadrature_point(q);
-      const PressureVector psi = element.pressure_basis(Vector3(X[0], X[1], X[2]));
-      mass += values.JxW(q) * psi * psi.transpose();
-      right += values.JxW(q) * element.material.bulk_modulus * (F.determinant() - 1) * psi;
-    }
-    state.pressure[e] = mass.ldlt().solve(right);
-  }
-}
-
-Deformation CalculixMesh::deformation(const Cilium& cilium,
-                                      const std::vector<double>& displacements,
-                                      const Load& load) const {
-  const SolidState at = state(displacements);
-  SpreadLoad spread;
-  std::optional<PlaneForce> plane;
-  if (const auto dead = load.as<DeadLoad>())
-    spread.per_volume = displacements.empty() ? 0 : dead->force_per_length / quadrature_->area();
-  if (const auto section = load.as<SectionLoad>(); section && !displacements.empty())
-    plane = PlaneForce{section->arclength, section->force * Vector3::UnitX()};
-  return {centreline_by_statics(*space_, *quadrature_, at, spread, plane),
-          std::make_shared<const SolidBody>(solid_body(*space_, *quadrature_, cilium, at))};
-}
 
 /// The last error in a log, or its last lines, in one line.
 std::string complaint(const fs::path& log) {
@@ -322,53 +311,49 @@ struct Problem {
   const CalculixMesh& mesh;
   const CalculixMesh* coarser;
 
-  MechanicsStep step(const Load& load, const std::string& label) const;
+  /// Richardson's rule for the order tip_order; none, and a remark, where the coarser run fails.
   std::optional<double> tip_uncertainty(const Load& load, const std::string& label,
-                                        const Vector3& fine_tip, std::string& remark) const;
+                                        const Vector3& fine_tip, std::string& remark) const {
+    if (coarser == nullptr) return std::nullopt;
+    try {
+      const Solution solution = run_on_first_rank(
+          [&] { return run(*coarser, cilium, load, options, label + "_coarser"); });
+      const Vector3 coarse_tip = tip(coarser->deformation(cilium, solution.displacements, load));
+      const double ratio = std::pow(coarser->finest_layer() / mesh.finest_layer(), tip_order);
+      return (fine_tip - coarse_tip).norm() / (ratio - 1);
+    } catch (const SolverError& error) {
+      remark = std::string("no estimate of the tip's error, for the next coarser mesh failed: ") +
+               error.what();
+      return std::nullopt;
+    }
+  }
+
+  MechanicsStep step(const Load& asked, const std::string& label) const {
+    const auto start = std::chrono::steady_clock::now();
+    const double turn = azimuth(asked);
+    const Load load = with_azimuth(asked, 0);
+    MechanicsStep step;
+    step.load = asked;
+    step.unknowns = mesh.unknowns();
+    try {
+      Solution solution;
+      if (magnitude(load) != 0)
+        solution = run_on_first_rank([&] { return run(mesh, cilium, load, options, label); });
+      const Deformation straight_up = mesh.deformation(cilium, solution.displacements, load);
+      if (magnitude(load) != 0)
+        step.tip_uncertainty = tip_uncertainty(load, label, tip(straight_up), step.message);
+      step.deformation = turned(straight_up, turn);
+      step.applied_force = total_force(cilium, load);
+      step.iterations = solution.iterations;
+      step.status = Status::converged;
+    } catch (const SolverError& error) {
+      step.status = Status::failed;
+      step.message = error.what();
+    }
+    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return step;
+  }
 };
-
-/// Richardson's rule for the order tip_order; none, and a remark, where the coarser run fails.
-std::optional<double> Problem::tip_uncertainty(const Load& load, const std::string& label,
-                                               const Vector3& fine_tip, std::string& remark) const {
-  if (coarser == nullptr) return std::nullopt;
-  try {
-    const Solution solution =
-        run_on_first_rank([&] { return run(*coarser, cilium, load, options, label + "_coarser"); });
-    const Vector3 coarse_tip = tip(coarser->deformation(cilium, solution.displacements, load));
-    const double ratio = std::pow(coarser->finest_layer() / mesh.finest_layer(), tip_order);
-    return (fine_tip - coarse_tip).norm() / (ratio - 1);
-  } catch (const SolverError& error) {
-    remark = std::string("no estimate of the tip's error, for the next coarser mesh failed: ") +
-             error.what();
-    return std::nullopt;
-  }
-}
-
-MechanicsStep Problem::step(const Load& asked, const std::string& label) const {
-  const auto start = std::chrono::steady_clock::now();
-  const double turn = azimuth(asked);
-  const Load load = with_azimuth(asked, 0);
-  MechanicsStep step;
-  step.load = asked;
-  step.unknowns = mesh.unknowns();
-  try {
-    Solution solution;
-    if (magnitude(load) != 0)
-      solution = run_on_first_rank([&] { return run(mesh, cilium, load, options, label); });
-    const Deformation straight_up = mesh.deformation(cilium, solution.displacements, load);
-    if (magnitude(load) != 0)
-      step.tip_uncertainty = tip_uncertainty(load, label, tip(straight_up), step.message);
-    step.deformation = turned(straight_up, turn);
-    step.applied_force = total_force(cilium, load);
-    step.iterations = solution.iterations;
-    step.status = Status::converged;
-  } catch (const SolverError& error) {
-    step.status = Status::failed;
-    step.message = error.what();
-  }
-  step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return step;
-}
 
 }  // namespace
 

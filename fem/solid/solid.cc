@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "fem/parallel.h"
-#include "fem/solid/fingerprint.h"
 #include "fem/solid/level.h"
 #include "fem/solid/path_run.h"
 #include "meshes/cylinder/cylinder_mesh.h"
@@ -174,11 +173,6 @@ Solid::Solid(SolidOptions options, MPI_Comm communicator)
 MechanicsResult Solid::solve(const Cilium& cilium, const LoadPath& path,
                              const Progress& progress) const {
   return solve_from(cilium, path, {}, progress);
-}
-
-std::optional<support::Fingerprint> Solid::fingerprint(const Cilium& cilium,
-                                                       const LoadPath& path) const {
-  return solid::fingerprint(cilium, path, options_);
 }
 
 MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,

@@ -3,8 +3,6 @@
 
 #include <mpi.h>
 
-#include <optional>
-
 #include "fem/solid/solid_options.h"
 #include "problem/load.h"
 #include "problem/mechanics_model.h"
@@ -49,8 +47,6 @@ class Solid : public MechanicsModel {
   MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                         const Progress& progress = {}) const override;
 
-  std::optional<support::Fingerprint> fingerprint(const Cilium& cilium,
-                                                  const LoadPath& path) const override;
   MechanicsResult solve_from(const Cilium& cilium, const LoadPath& path,
                              const Checkpoint& checkpoint,
                              const Progress& progress = {}) const override;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "meshes/gmsh/gmsh_boundary.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <compare>
 #include <optional>
 #include <string>
 
 #include "meshes/boundary_ids.h"
 #include "meshes/gmsh/gmsh_mesh.h"
+#include "meshes/gmsh/gmsh_section.h"
 
 namespace ciliaval::meshes::gmsh {
 namespace {
@@ -18,9 +18,7 @@ namespace {
 struct Face {
   unsigned int boundary = 0;
   Extrusion::Edge place;  ///< quadrilateral and 0, or number of the edge and layer
-  bool operator<(const Face& other) const {
-    return std::pair(boundary, place) < std::pair(other.boundary, other.place);
-  }
+  auto operator<=>(const Face&) const = default;
 };
 
 /// All faces of the boundary with an element at each.

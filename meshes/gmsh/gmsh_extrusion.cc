@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "meshes/gmsh/gmsh_extrusion.h"
 
+#include <deal.II/base/bounding_box.h>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <string>
@@ -44,19 +44,14 @@ std::string unit_advice(const UserMesh& mesh, double length) {
 
 /// The mesh spans 0 ≤ Z ≤ L.
 void check_height(const UserMesh& mesh) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Point<3> low(infinity, infinity, infinity);
-  Point<3> high = -1.0 * low;
-  for (const GmshElement& element : mesh.file.hexahedra) {
+  std::vector<Point<3>> points;
+  for (const GmshElement& element : mesh.file.hexahedra)
     for (const std::size_t n : element.nodes) {
-      for (unsigned int c = 0; c < 3; ++c) {
-        if (!std::isfinite(mesh.file.nodes[n][c]))
-          mesh.fail(mesh.node(n) + " has no finite coordinates");
-        low[c] = std::min(low[c], mesh.file.nodes[n][c]);
-        high[c] = std::max(high[c], mesh.file.nodes[n][c]);
-      }
+      const Point<3>& x = points.emplace_back(mesh.file.nodes[n]);
+      if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2]))
+        mesh.fail(mesh.node(n) + " has no finite coordinates");
     }
-  }
+  const auto [low, high] = dealii::BoundingBox<3>(points).get_boundary_points();
   const double L = mesh.in_file(mesh.cilium.length());
   const double tolerance = mesh.in_file(mesh.tolerance());
   const double height = high[2] - low[2];

@@ -142,9 +142,10 @@ std::vector<int> entities_of(int dimension, const GmshFile& file) {
   return entities;
 }
 
-std::vector<GmshElement> read_elements(const fs::path& path, int dimension,
-                                       const std::array<GmshElementType, 2>& types,
-                                       const Indices& index, GmshFile& file) {
+std::vector<GmshElement> read_elements(const fs::path& path, int dimension, const Indices& index,
+                                       GmshFile& file) {
+  const std::array<GmshElementType, 2> types{gmsh_element_type(dimension, false),
+                                             gmsh_element_type(dimension, true)};
   std::vector<GmshElement> elements;
   for (const Block& block : read_blocks(dimension, entities_of(dimension, file))) {
     if (block.tags.empty()) continue;
@@ -208,10 +209,8 @@ GmshFile read_gmsh_file(const fs::path& path) {
     GmshFile read;
     const Indices index = read_nodes(read);
     read_groups(read);
-    read.hexahedra = read_elements(
-        path, 3, {gmsh_element_type(3, false), gmsh_element_type(3, true)}, index, read);
-    read.quadrilaterals = read_elements(
-        path, 2, {gmsh_element_type(2, false), gmsh_element_type(2, true)}, index, read);
+    read.hexahedra = read_elements(path, 3, index, read);
+    read.quadrilaterals = read_elements(path, 2, index, read);
     std::ostringstream packed;
     boost::archive::binary_oarchive(packed) << read;
     return packed.str();

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "meshes/boundary_ids.h"
-#include "meshes/gmsh/gmsh_boundary.h"
+#include "meshes/gmsh/gmsh_section.h"
 #include "problem/error.h"
 
 namespace ciliaval::meshes::gmsh {

@@ -19,50 +19,42 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
   return support::did_you_mean(name, candidates);
 }
 
-std::vector<std::string> segment_names(const Cilium& cilium) {
-  std::vector<std::string> names;
-  for (const Segment& segment : cilium.segments) names.push_back(segment.name);
-  return names;
-}
-
-std::size_t index_of(const std::string& name, const std::vector<std::string>& names) {
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-/// The entities of the named groups of a dimension: the index of the name. `unknown` is called with
-/// the names that are not among `names`, `several` with an entity that has two.
-template <typename Unknown, typename Several>
-std::map<int, std::size_t> name_entities(const GmshFile& file, int dimension,
+/// The entities of the physical groups of a dimension, each with the index of its group's name.
+/// `unknown` is called with a group whose name is not among `names`. Throws if an entity has two
+/// names, or a name has no entity.
+template <typename Unknown>
+std::map<int, std::size_t> name_entities(const UserMesh& mesh, int dimension,
                                          const std::vector<std::string>& names,
-                                         const Unknown& unknown, const Several& several) {
+                                         const Unknown& unknown) {
+  const std::string kind = dimension == 3 ? "volume" : "surface";
   std::map<int, std::size_t> result;
-  for (const GmshGroup& group : file.groups) {
+  std::vector<std::string> found;
+  for (const GmshGroup& group : mesh.file.groups) {
     if (group.dimension != dimension) continue;
-    const std::size_t index = index_of(group.name, names);
-    if (index == names.size()) {
+    found.push_back(group.name);
+    const auto name = std::find(names.begin(), names.end(), group.name);
+    if (name == names.end()) {
       unknown(group);
       continue;
     }
     for (const int entity : group.entities) {
-      const auto [first, added] = result.emplace(entity, index);
-      if (!added && first->second != index) several(entity, first->second, index);
+      const auto [first, added] =
+          result.emplace(entity, static_cast<std::size_t>(name - names.begin()));
+      if (!added && names[first->second] != *name)
+        mesh.fail(fmt::format("{0} {1} is in two physical {0}s, '{2}' and '{3}'{4}", kind, entity,
+                              names[first->second], *name,
+                              dimension == 3 ? ": a cell has one material" : ""));
     }
   }
-  return result;
-}
-
-/// Throws if a name has no entity.
-void require_all(const UserMesh& mesh, const std::map<int, std::size_t>& entities,
-                 const std::vector<std::string>& names, const std::string& kind,
-                 const std::vector<std::string>& found) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto is_named = [i](const auto& entity) { return entity.second == i; };
-    if (std::any_of(entities.begin(), entities.end(), is_named)) continue;
+    if (std::any_of(result.begin(), result.end(), is_named)) continue;
     mesh.fail(fmt::format(
         "there is no physical {} '{}'; the file has {}{}; add `Physical {}(\"{}\") = {{…}};`", kind,
         names[i], found.empty() ? "none" : fmt::format("'{}'", fmt::join(found, "', '")),
-        did_you_mean(names[i], found), kind == "volume" ? "Volume" : "Surface", names[i]));
+        did_you_mean(names[i], found), dimension == 3 ? "Volume" : "Surface", names[i]));
   }
+  return result;
 }
 
 }  // namespace
@@ -97,10 +89,8 @@ const std::vector<std::string>& boundary_names() {
 }
 
 void find_segments(UserMesh& mesh) {
-  const std::vector<std::string> names = segment_names(mesh.cilium);
-  std::vector<std::string> found;
-  for (const GmshGroup& group : mesh.file.groups)
-    if (group.dimension == 3) found.push_back(group.name);
+  std::vector<std::string> names;
+  for (const Segment& segment : mesh.cilium.segments) names.push_back(segment.name);
   const auto unknown = [&](const GmshGroup& group) {
     if (group.name.empty())
       mesh.fail(fmt::format("physical volume {} has no name; it must have that of a segment: '{}'",
@@ -108,13 +98,7 @@ void find_segments(UserMesh& mesh) {
     mesh.fail(fmt::format("the physical volume '{}' is no segment of the cilium, which has '{}'{}",
                           group.name, fmt::join(names, "', '"), did_you_mean(group.name, names)));
   };
-  const auto several = [&](int entity, std::size_t a, std::size_t b) {
-    mesh.fail(
-        fmt::format("volume {} is in two physical volumes, '{}' and '{}': a cell has one material",
-                    entity, names[a], names[b]));
-  };
-  const auto entities = name_entities(mesh.file, 3, names, unknown, several);
-  require_all(mesh, entities, names, "volume", found);
+  const auto entities = name_entities(mesh, 3, names, unknown);
   std::vector<std::size_t> segments;
   for (std::size_t e = 0; e < mesh.file.hexahedra.size(); ++e) {
     const auto segment = entities.find(mesh.file.hexahedra[e].entity);
@@ -127,20 +111,10 @@ void find_segments(UserMesh& mesh) {
 
 std::map<int, unsigned int> find_boundaries(UserMesh& mesh) {
   const std::vector<std::string>& names = boundary_names();
-  std::vector<std::string> found;
-  std::vector<std::string> others;
-  for (const GmshGroup& group : mesh.file.groups)
-    if (group.dimension == 2) found.push_back(group.name);
-  const auto unknown = [&](const GmshGroup& group) { others.push_back(group.name); };
-  const auto several = [&](int entity, std::size_t a, std::size_t b) {
-    mesh.fail(fmt::format("surface {} is in two physical surfaces, '{}' and '{}'", entity, names[a],
-                          names[b]));
-  };
-  const auto entities = name_entities(mesh.file, 2, names, unknown, several);
-  require_all(mesh, entities, names, "surface", found);
-  for (const std::string& name : others)
+  const auto entities = name_entities(mesh, 2, names, [&](const GmshGroup& group) {
     mesh.remarks.push_back(fmt::format("the physical surface '{}' is not used (used are '{}')",
-                                       name, fmt::join(names, "', '")));
+                                       group.name, fmt::join(names, "', '")));
+  });
   return {entities.begin(), entities.end()};
 }
 

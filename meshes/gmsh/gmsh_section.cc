@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "meshes/gmsh/gmsh_section.h"
 
+#include <deal.II/base/bounding_box.h>
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -20,6 +21,8 @@ using Quad = Extrusion::Quad;
 constexpr double rim_tolerance = 1e-3;   ///< of the rim's nodes from the circle, in R
 constexpr double area_tolerance = 0.02;  ///< of the section, relative
 constexpr double area_remark = 1e-4;
+constexpr double least_scaled_jacobian = 0.1;  ///< less is an error
+constexpr double poor_scaled_jacobian = 0.3;   ///< less is a remark
 
 double cross(const Tensor<1, 2>& a, const Tensor<1, 2>& b) {
   return a[0] * b[1] - a[1] * b[0];
@@ -93,18 +96,13 @@ Rim measure(const Extrusion& extrusion, const std::set<Edge>& edges) {
     rim.columns.insert(a);
     rim.columns.insert(b);
   }
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Point<2> low(infinity, infinity);
-  Point<2> high(-infinity, -infinity);
+  std::vector<Point<2>> points;
   for (const std::size_t c : rim.columns) {
-    const Point<2>& x = extrusion.columns[c];
+    const Point<2>& x = points.emplace_back(extrusion.columns[c]);
     rim.smallest = std::min(rim.smallest, x.norm());
     rim.largest = std::max(rim.largest, x.norm());
-    for (unsigned int i = 0; i < 2; ++i) {
-      low[i] = std::min(low[i], x[i]);
-      high[i] = std::max(high[i], x[i]);
-    }
   }
+  const auto [low, high] = dealii::BoundingBox<2>(points).get_boundary_points();
   rim.centre = Point<2>((low + high) / 2);
   return rim;
 }
@@ -198,39 +196,31 @@ void curve(const UserMesh& mesh, Extrusion& extrusion, Section& section,
 /// must be above them, half-way up or on a plane.
 void take_nodes(const UserMesh& mesh, const Extrusion& extrusion, Section& section) {
   section.centres.resize(extrusion.quads.size());
-  const auto place = [&](const Extrusion::Cell& cell, std::size_t i) -> Point<2>& {
-    std::array<std::size_t, 4> corner{};
+  const auto corners = [&](const Extrusion::Cell& cell) {
+    Quad quad{};
     for (std::size_t v = 0; v < 4; ++v)
-      corner[v] = extrusion.column(extrusion.vertices[cell.nodes[2 * (v & 1) + 6 * (v >> 1)]]);
-    switch (i) {
-      case 1:
-        return section.middles[edge(corner[0], corner[1])];
-      case 3:
-        return section.middles[edge(corner[0], corner[2])];
-      case 5:
-        return section.middles[edge(corner[1], corner[3])];
-      case 7:
-        return section.middles[edge(corner[2], corner[3])];
-      default:
-        return section.centres[cell.quad];
-    }
+      quad[v] = extrusion.column(extrusion.vertices[cell.nodes[2 * (v & 1) + 6 * (v >> 1)]]);
+    return quad;
   };
   for (const std::size_t e : extrusion.cell_of.front()) {
     const Extrusion::Cell& cell = extrusion.cells[e];
-    for (const std::size_t i : {1, 3, 4, 5, 7}) {
+    const Quad quad = corners(cell);
+    const auto lower = [&](std::size_t i) {
       const Point<3> x = mesh.position(cell.nodes[i]);
-      place(cell, i) = Point<2>(x[0], x[1]);
-    }
+      return Point<2>(x[0], x[1]);
+    };
+    section.middles[edge(quad[0], quad[1])] = lower(1);
+    section.middles[edge(quad[0], quad[2])] = lower(3);
+    section.middles[edge(quad[1], quad[3])] = lower(5);
+    section.middles[edge(quad[2], quad[3])] = lower(7);
+    section.centres[cell.quad] = lower(4);
   }
   for (std::size_t e = 0; e < extrusion.cells.size(); ++e) {
     const Extrusion::Cell& cell = extrusion.cells[e];
+    const auto nodes = section.nodes(extrusion, cell.quad, corners(cell));
     for (std::size_t a = 0; a < cell.nodes.size(); ++a) {
-      const std::size_t i = a % 9;
       const std::size_t level = a / 9;  // lower, middle, upper plane
-      const bool corner = i == 0 || i == 2 || i == 6 || i == 8;
-      const Point<2> xy =
-          corner ? extrusion.columns[extrusion.column(extrusion.vertices[cell.nodes[i]])]
-                 : place(cell, i);
+      const Point<2>& xy = nodes[a % 9];
       const double z = extrusion.planes[cell.layer] +
                        static_cast<double>(level) / 2 *
                            (extrusion.planes[cell.layer + 1] - extrusion.planes[cell.layer]);
@@ -270,6 +260,20 @@ double area(const std::array<Point<2>, 9>& nodes) {
     }
   }
   return sum;
+}
+
+/// Smallest scaled Jacobian det(a, b)/(|a||b|), a and b the tangents of the quadratic map, at its
+/// nine nodes: 1 for a rectangle, 0 or less for a degenerate or folded cell.
+double scaled_jacobian(const std::array<Point<2>, 9>& nodes) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] = tangents(nodes, i, j);
+      const double size = a.norm() * b.norm();
+      least = std::min(least, size > 0 ? cross(a, b) / size : 0.0);
+    }
+  }
+  return least;
 }
 
 /// Area of the section and shape of its cells.
@@ -319,23 +323,12 @@ void check_shape(UserMesh& mesh, const Extrusion& extrusion, const Section& sect
 std::array<Point<2>, 9> Section::nodes(const Extrusion& extrusion, std::size_t index,
                                        const Quad& quad) const {
   const auto middle = [&](std::size_t a, std::size_t b) {
-    return middles.at(edge(quad[a], quad[b]));
+    const auto found = middles.find(edge(quad[a], quad[b]));
+    return found == middles.end() ? Point<2>() : found->second;  // none: take_nodes() refuses it
   };
   const auto corner = [&](std::size_t a) { return extrusion.columns[quad[a]]; };
   return {corner(0),    middle(0, 1), corner(1),    middle(0, 2), centres[index],
           middle(1, 3), corner(2),    middle(2, 3), corner(3)};
-}
-
-double scaled_jacobian(const std::array<Point<2>, 9>& nodes) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t j = 0; j < 3; ++j) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [a, b] = tangents(nodes, i, j);
-      const double size = a.norm() * b.norm();
-      least = std::min(least, size > 0 ? cross(a, b) / size : 0.0);
-    }
-  }
-  return least;
 }
 
 Section make_section(UserMesh& mesh, Extrusion& extrusion) {

@@ -26,11 +26,9 @@ struct Section {
 /// an area off by 1e-4 and on poor cells.
 Section make_section(UserMesh& mesh, Extrusion& extrusion);
 
-/// Smallest scaled Jacobian det(a, b)/(|a||b|), a and b the tangents of the quadratic map, at its
-/// nine nodes: 1 for a rectangle, 0 or less for a degenerate or folded cell.
-double scaled_jacobian(const std::array<dealii::Point<2>, 9>& nodes);
-
-inline constexpr double least_scaled_jacobian = 0.1;  ///< less is an error
-inline constexpr double poor_scaled_jacobian = 0.3;   ///< less is a remark
+/// Checks that the physical surfaces `base`, `mantle` and `tip` are exactly the boundary faces on Z
+/// = 0, on the mantle and on Z = L. Throws InputError at the first face that is elsewhere, belongs
+/// to no cell, or is missing.
+void check_boundaries(UserMesh& mesh, const Extrusion& extrusion, const Section& section);
 
 }  // namespace ciliaval::meshes::gmsh

@@ -7,6 +7,9 @@
 
 namespace ciliaval::support {
 
+/// The text without blanks and tabs at its ends.
+std::string_view trimmed(std::string_view text);
+
 /// Whether two words are the same but for the case of ASCII letters.
 bool equal_but_case(std::string_view a, std::string_view b);
 

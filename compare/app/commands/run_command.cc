@@ -50,13 +50,16 @@ Prepared prepare(const fs::path& file, const input::Case& problem, const Options
                   output::OutputFolder(options.directory, problem.name, input_files(file, problem)),
                   nullptr,
                   {}};
-  for (auto& [id, fingerprint] : models::fingerprints(problem, models::mechanics_models())) {
+  for (const std::string& id : problem.mechanics) {
+    auto fingerprint =
+        models::fingerprint(problem, models::entry_of(models::mechanics_models(), id));
+    if (!fingerprint) continue;
     if (!result.store)
       result.store = std::make_unique<output::store::Store>(
           options.directory / ("." + problem.name + ".sqlite"), options.fresh);
-    fingerprint.emplace_back("program", version_line());
+    fingerprint->emplace_back("program", version_line());
     output::store::Store& store = *result.store;
-    store.require_fingerprint(id, fingerprint);
+    store.require_fingerprint(id, *fingerprint);
     const Checkpoint& checkpoint =
         result.checkpoints
             .emplace(id, Checkpoint{store.read(id),

@@ -11,6 +11,7 @@
 #include "compare/app/case_files.h"
 #include "compare/app/terminal.h"
 #include "compare/models/registry.h"
+#include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "compare/output/store/store.h"
@@ -157,8 +158,7 @@ ExitCode execute(const Options& options, const std::string& words) {
     json["optimum"] = study::optimum::json(study, *result.optimum);
     text += study::optimum::text(study, *result.optimum);
   }
-  const std::string json_text =
-      json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  const std::string json_text = output::to_text(json);
   output::write_file(folder / "study.json", json_text);
   print(text + fmt::format("\nResults: {}\n", folder.string()));
   if (options.json) output::write_file(*options.json, json_text);  // a full disk costs no table

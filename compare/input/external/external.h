@@ -9,6 +9,10 @@
 #include "problem/centreline.h"
 #include "problem/types.h"
 
+namespace ciliaval::compare::input {
+struct Case;
+}
+
 namespace ciliaval::compare::input::external {
 
 /// Readings at one time: a vector for each sensor, T; none where it is not known.
@@ -32,5 +36,16 @@ struct ExternalModel {
   std::optional<ExternalReading> undeformed;  ///< of the straight cilium
   std::vector<ExternalReading> readings;      ///< one for each load step, or none
 };
+
+/// Reads the files that the case's external models name, which are as many centrelines as load
+/// steps or none (docs/guide/referees.md): fills in centrelines, remarks, undeformed and readings.
+///
+/// Centrelines are interpolated by cubic polynomials between the points; without a column S it is
+/// the length along the points, scaled to the cilium's; without theta the sections are normal to
+/// the curve. Of the readings B the background at the load's azimuth is taken off, that of the row
+/// of this azimuth, or interpolated linearly on the circle.
+///
+/// Throws InputError with every fault found, a line each: `file:line:column: what is wrong`.
+void read_external_files(Case& c);
 
 }  // namespace ciliaval::compare::input::external

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/beam/beam.h"
 
-#include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/input/case.h"
-#include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 #include "fem/calculix/calculix_model.h"
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "compare/input/case.h"
-#include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {

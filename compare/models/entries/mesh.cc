@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "analytic/body/mesh_field.h"
-#include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {

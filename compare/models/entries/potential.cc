@@ -6,7 +6,7 @@
 #include "compare/input/case_sections.h"
 #include "compare/input/case_toml.h"
 #include "compare/input/units.h"
-#include "compare/models/entries/sequences.h"
+#include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "compare/input/case.h"
-#include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 #include "fem/solid/material/hyperelastic.h"
 #include "meshes/cylinder/cylinder_mesh.h"
@@ -158,6 +157,8 @@ input::MechanicsEntry solid() {
       .accuracy = 1e-8,
       .check = check,
       .remarks = remarks,
+      // These may be raised to go on after a failure.
+      .checkpoint_without = std::vector<std::string_view>{"max_iterations", "max_cutbacks"},
   };
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/models/entries/sequences.h"
 #include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/output/vtk/datasets.h"
 
+#include <vtkBiQuadraticQuad.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
@@ -15,12 +16,15 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "compare/output/results.h"
+#include "compare/output/vtk/files.h"
+#include "meshes/gmsh/gmsh_mesh.h"
 
 namespace ciliaval::compare::output::vtk {
 namespace {
@@ -66,10 +70,6 @@ vtkNew<vtkPoints> double_points() {
   return points;
 }
 
-void add_point(vtkPoints& points, const Vector3& x) {
-  points.InsertNextPoint(x.x(), x.y(), x.z());
-}
-
 vtkNew<vtkUnsignedCharArray> mask(const std::string& name) {
   vtkNew<vtkUnsignedCharArray> array;
   array->SetName(name.c_str());
@@ -93,8 +93,7 @@ vtkSmartPointer<vtkPolyData> vertices(const std::vector<Vector3>& positions) {
   const vtkNew<vtkPoints> points = double_points();
   const vtkNew<vtkCellArray> cells;
   for (const Vector3& x : positions) {
-    const vtkIdType id = points->GetNumberOfPoints();
-    add_point(*points, x);
+    const vtkIdType id = points->InsertNextPoint(x.data());
     cells->InsertNextCell(1, &id);
   }
   auto data = vtkSmartPointer<vtkPolyData>::New();
@@ -156,29 +155,64 @@ struct PointOfCell {
   }
 };
 
-/// The points of a triquadratic hexahedron in VTK's order.
-std::vector<PointOfCell> triquadratic_points(const LagrangeBasis& nodes) {
-  const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
-  const double* coordinates = hexahedron->GetParametricCoords();
-  std::vector<PointOfCell> points;
-  points.reserve(static_cast<std::size_t>(hexahedron->GetNumberOfPoints()));
-  for (int i = 0; i < hexahedron->GetNumberOfPoints(); ++i)
-    points.emplace_back(nodes, Vector3(coordinates + std::ptrdiff_t{3} * i));
-  return points;
+/// Triquadratic hexahedra on 27 points each of their own.
+class Hexahedra {
+ public:
+  /// Of cells with Lagrange nodes, which take the points in VTK's order.
+  explicit Hexahedra(const LagrangeBasis& nodes) {
+    const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
+    const double* coordinates = hexahedron->GetParametricCoords();
+    for (int i = 0; i < hexahedron->GetNumberOfPoints(); ++i)
+      points_of_cell_.emplace_back(nodes, Vector3(coordinates + std::ptrdiff_t{3} * i));
+    grid_->SetPoints(points_);
+  }
+  /// Adds a cell; `place` gives the position of each of its points.
+  template <class Place>
+  void add(const Place& place) {
+    std::vector<vtkIdType> ids;
+    for (const PointOfCell& at : points_of_cell_)
+      ids.push_back(points_->InsertNextPoint(place(at).data()));
+    grid_->InsertNextCell(VTK_TRIQUADRATIC_HEXAHEDRON, static_cast<vtkIdType>(ids.size()),
+                          ids.data());
+  }
+  vtkSmartPointer<vtkUnstructuredGrid> grid() const { return grid_; }
+
+ private:
+  std::vector<PointOfCell> points_of_cell_;
+  vtkNew<vtkPoints> points_ = double_points();
+  vtkSmartPointer<vtkUnstructuredGrid> grid_ = vtkSmartPointer<vtkUnstructuredGrid>::New();
+};
+
+/// The lexicographic number of each of a cell's n points in VTK's order.
+template <std::size_t n>
+std::array<std::size_t, n> lexicographic_order(vtkCell& cell) {
+  const double* coordinates = cell.GetParametricCoords();
+  std::array<std::size_t, n> order{};
+  for (std::size_t i = 0; i < n; ++i)
+    order[i] = static_cast<std::size_t>(std::lround(2 * coordinates[3 * i]) +
+                                        3 * std::lround(2 * coordinates[3 * i + 1]) +
+                                        9 * std::lround(2 * coordinates[3 * i + 2]));
+  return order;
+}
+
+template <std::size_t n>
+void add_mesh_cell(vtkUnstructuredGrid& grid, int type, const std::array<std::size_t, n>& nodes,
+                   const std::array<std::size_t, n>& order) {
+  std::array<vtkIdType, n> ids{};
+  for (std::size_t i = 0; i < n; ++i) ids[i] = static_cast<vtkIdType>(nodes[order[i]]);
+  grid.InsertNextCell(type, static_cast<vtkIdType>(n), ids.data());
 }
 
 }  // namespace
 
 vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
-  const std::vector<PointOfCell> points_of_cell = triquadratic_points(body.nodes);
-  const vtkNew<vtkPoints> points = double_points();
+  Hexahedra hexahedra(body.nodes);
   Column displacement("displacement", 3, "m");
   Column jacobian("J", 1, "1");
   Column stress("cauchy_stress", 6, "Pa");
   Column magnetization("magnetization", 3, "A/m");
   const vtkNew<vtkIntArray> material;
   material->SetName("MaterialIDs");
-  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   bool with_jacobian = true;
   bool with_stress = true;
   for (const SolidCell& cell : body.cells) {
@@ -186,24 +220,19 @@ vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
     with_stress = with_stress && !cell.cauchy_stress.empty();
   }
   for (const SolidCell& cell : body.cells) {
-    std::array<vtkIdType, 27> ids{};
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const PointOfCell& at = points_of_cell[i];
+    hexahedra.add([&](const PointOfCell& at) {
       const Vector3 X = at.value.of(cell.reference);
       const Matrix3 F = at.gradient(cell.current) * at.gradient(cell.reference).inverse();
-      ids[i] = points->GetNumberOfPoints();
-      add_point(*points, X);
       displacement.add(Vector3(at.value.of(cell.current) - X));
       magnetization.add(Vector3(F * cell.magnetization / F.determinant()));
       if (with_jacobian) jacobian.add(at.value.of(cell.jacobian, 0.0));
       if (with_stress)
         stress.add_symmetric(at.value.of(cell.cauchy_stress, Matrix3(Matrix3::Zero())));
-    }
-    grid->InsertNextCell(VTK_TRIQUADRATIC_HEXAHEDRON, static_cast<vtkIdType>(ids.size()),
-                         ids.data());
+      return X;
+    });
     material->InsertNextValue(static_cast<int>(cell.segment));
   }
-  grid->SetPoints(points);
+  auto grid = hexahedra.grid();
   grid->GetCellData()->AddArray(material);
   displacement.attach(*grid);
   if (with_jacobian) jacobian.attach(*grid);
@@ -213,8 +242,7 @@ vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh) {
-  const std::vector<PointOfCell> points_of_cell = triquadratic_points(LagrangeBasis({0, 0.5, 1}));
-  const vtkNew<vtkPoints> points = double_points();
+  Hexahedra hexahedra(LagrangeBasis({0, 0.5, 1}));
   Column psi("psi", 1, "A");
   Column H("H", 3, "A/m");
   Column B("B", 3, "T");
@@ -223,32 +251,24 @@ vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh) {
   const vtkNew<vtkDoubleArray> magnetization;
   magnetization->SetName("magnetization");
   magnetization->SetNumberOfComponents(3);
-  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   for (const FieldMesh::Leaf& leaf : mesh.leaves) {
-    std::array<vtkIdType, 27> ids{};
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const PointOfCell& at = points_of_cell[i];
+    hexahedra.add([&](const PointOfCell& at) {
       Vector3 gradient;
       for (std::size_t d = 0; d < 3; ++d)
         gradient[static_cast<Eigen::Index>(d)] = at.slope[d].of(leaf.psi, 0.0) / leaf.size;
-      ids[i] = points->GetNumberOfPoints();
-      add_point(*points, leaf.lower + leaf.size * at.position);
       psi.add(at.value.of(leaf.psi, 0.0));
       H.add(Vector3(-gradient));
       B.add(Vector3(vacuum_permeability *
                     (leaf.magnetization - leaf.relative_permeability * gradient)));
-    }
-    grid->InsertNextCell(VTK_TRIQUADRATIC_HEXAHEDRON, static_cast<vtkIdType>(ids.size()),
-                         ids.data());
+      return Vector3(leaf.lower + leaf.size * at.position);
+    });
     permeability->InsertNextValue(leaf.relative_permeability);
     magnetization->InsertNextTuple(leaf.magnetization.data());
   }
-  grid->SetPoints(points);
+  auto grid = hexahedra.grid();
   grid->GetCellData()->AddArray(permeability);
   grid->GetCellData()->AddArray(magnetization);
-  psi.attach(*grid);
-  H.attach(*grid);
-  B.attach(*grid);
+  for (const Column* column : {&psi, &H, &B}) column->attach(*grid);
   return grid;
 }
 
@@ -272,8 +292,7 @@ vtkSmartPointer<vtkPolyData> rod_polyline(const Cilium& cilium, const Centreline
   line->InsertNextCell(static_cast<int>(material_points.size()));
   for (const double S : material_points) {
     const CentrelinePoint p = centreline.at(S);
-    line->InsertCellPoint(points->GetNumberOfPoints());
-    add_point(*points, p.position);
+    line->InsertCellPoint(points->InsertNextPoint(p.position.data()));
     arclength.add(S);
     radius.add(cilium.radius());
     displacement.add(Vector3(p.position - S * Vector3::UnitZ()));
@@ -345,6 +364,40 @@ vtkSmartPointer<vtkImageData> field_image(const FieldGrid& grid, const FieldGrid
   for (const std::uint8_t flag : step.valid) valid->InsertNextValue(flag);
   image->GetPointData()->AddArray(valid);
   return image;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> mesh_grid(const meshes::MeshNodes& mesh,
+                                               const Cilium& cilium) {
+  const vtkNew<vtkPoints> points = double_points();
+  for (const auto& x : mesh.nodes) points->InsertNextPoint(x[0], x[1], x[2]);
+  const vtkNew<vtkIntArray> materials;
+  materials->SetName("MaterialIDs");
+  const vtkNew<vtkIntArray> boundaries;
+  boundaries->SetName("BoundaryIDs");
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  grid->SetPoints(points);
+  const vtkNew<vtkTriQuadraticHexahedron> hexahedron;
+  const auto volume_order = lexicographic_order<27>(*hexahedron);
+  for (const auto& cell : mesh.cells) {
+    add_mesh_cell(*grid, VTK_TRIQUADRATIC_HEXAHEDRON, cell.nodes, volume_order);
+    materials->InsertNextValue(static_cast<int>(cell.material));
+    boundaries->InsertNextValue(-1);
+  }
+  const vtkNew<vtkBiQuadraticQuad> quadrilateral;
+  const auto face_order = lexicographic_order<9>(*quadrilateral);
+  for (const auto& face : mesh.faces) {
+    add_mesh_cell(*grid, VTK_BIQUADRATIC_QUAD, face.nodes, face_order);
+    materials->InsertNextValue(-1);
+    boundaries->InsertNextValue(static_cast<int>(face.boundary));
+  }
+  grid->GetCellData()->AddArray(materials);
+  grid->GetCellData()->AddArray(boundaries);
+  std::vector<std::string> names;
+  for (const Segment& segment : cilium.segments) names.push_back(segment.name);
+  add_strings(*grid, "materials", names);
+  add_strings(*grid, "boundaries", meshes::gmsh::boundary_names());
+  add_strings(*grid, "units", {"points: m"});
+  return grid;
 }
 
 }  // namespace ciliaval::compare::output::vtk

@@ -11,6 +11,7 @@
 #include "analytic/sources/push_forward.h"
 #include "compare/models/run.h"
 #include "compare/output/field_grid.h"
+#include "meshes/mesh_nodes.h"
 
 /// Results as VTK data sets, SI units, all floating-point arrays Float64. Every data set carries
 /// the units of its arrays in the field data `units` ("displacement: m").
@@ -40,6 +41,12 @@ vtkSmartPointer<vtkPolyData> sensors(const models::CaseResult& result, std::size
 /// the fields may jump between leaves. Point data `psi`, `H` = −∇ψ and `B` = μ₀(μ_r H + m) with the
 /// means of μ_r and m = B_r/μ₀ over the leaf; these two as cell data.
 vtkSmartPointer<vtkUnstructuredGrid> octree_grid(const FieldMesh& mesh);
+
+/// A mesh as it is computed on: triquadratic hexahedra and, for the boundary, biquadratic
+/// quadrilaterals (threshold by `BoundaryIDs`). Cell data: `MaterialIDs`, the index of the segment,
+/// −1 on the boundary; `BoundaryIDs`, −1 in the volume. Field data `materials` and `boundaries`:
+/// the names by id. In metres.
+vtkSmartPointer<vtkUnstructuredGrid> mesh_grid(const meshes::MeshNodes& mesh, const Cilium& cilium);
 
 /// B on a grid, with the mask `valid`.
 vtkSmartPointer<vtkImageData> field_image(const FieldGrid& grid, const FieldGrid::Step& step);

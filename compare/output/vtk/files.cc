@@ -9,9 +9,7 @@
 #include <vtkNew.h>
 #include <vtkObject.h>
 #include <vtkStringArray.h>
-#include <vtkXMLImageDataWriter.h>
-#include <vtkXMLPolyDataWriter.h>
-#include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkXMLDataObjectWriter.h>
 #include <vtkXMLWriter.h>
 
 #include <algorithm>
@@ -25,26 +23,20 @@ namespace ciliaval::compare::output::vtk {
 namespace {
 
 vtkSmartPointer<vtkXMLWriter> writer_for(const vtkDataSet& data) {
-  switch (const_cast<vtkDataSet&>(data).GetDataObjectType()) {  // not const in VTK
-    case VTK_UNSTRUCTURED_GRID:
-      return vtkSmartPointer<vtkXMLUnstructuredGridWriter>::New();
-    case VTK_POLY_DATA:
-      return vtkSmartPointer<vtkXMLPolyDataWriter>::New();
-    case VTK_IMAGE_DATA:
-      return vtkSmartPointer<vtkXMLImageDataWriter>::New();
-    default:
-      throw InputError("this kind of VTK data set has no writer here");
-  }
+  const int type = const_cast<vtkDataSet&>(data).GetDataObjectType();  // not const in VTK
+  auto writer = vtkSmartPointer<vtkXMLWriter>::Take(vtkXMLDataObjectWriter::NewWriter(type));
+  if (!writer) throw InputError("this kind of VTK data set has no writer here");
+  return writer;
 }
 
-void add_string(vtkDataSet& data, const char* name, const std::vector<std::string>& values) {
+}  // namespace
+
+void add_strings(vtkDataSet& data, const char* name, const std::vector<std::string>& values) {
   const vtkNew<vtkStringArray> array;
   array->SetName(name);
   for (const std::string& value : values) array->InsertNextValue(value);
   data.GetFieldData()->AddArray(array);
 }
-
-}  // namespace
 
 std::string extension(const vtkDataSet& data) {
   return writer_for(data)->GetDefaultFileExtension();
@@ -55,12 +47,12 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance) {
                                  "command: " + provenance.command, "date: " + provenance.date};
   for (const auto& [library, version] : provenance.libraries)
     lines.push_back(fmt::format("{} {}", library, version));
-  add_string(data, "provenance", lines);
+  add_strings(data, "provenance", lines);
 }
 
 void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load) {
   add_provenance(data, provenance);
-  add_string(data, "load_unit", {std::string(magnitude_unit(load))});
+  add_strings(data, "load_unit", {std::string(magnitude_unit(load))});
   const vtkNew<vtkDoubleArray> value;
   value->SetName("load");
   value->InsertNextValue(magnitude(load));

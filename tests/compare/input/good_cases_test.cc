@@ -23,6 +23,7 @@
 #include "fem/solid/solid_options.h"
 #include "problem/error.h"
 #include "tests/support/case_texts.h"
+#include "tests/support/key_table.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -529,8 +530,8 @@ TEST(Documentation, HasTheTableOfKeys) {
   std::ifstream in(source("docs/guide/cases.md"));
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (std::getenv("CILIAVAL_PRINT_KEYS") != nullptr)
-    std::fputs(input::key_table(models::known()).c_str(), stdout);
-  EXPECT_THAT(text, testing::HasSubstr(input::key_table(models::known())))
+    std::fputs(test::key_table(models::known()).c_str(), stdout);
+  EXPECT_THAT(text, testing::HasSubstr(test::key_table(models::known())))
       << "run this test with CILIAVAL_PRINT_KEYS=1 and put the table into docs/guide/cases.md";
 }
 

@@ -18,6 +18,7 @@
 #include "compare/study/case_number.h"
 #include "problem/error.h"
 #include "problem/load.h"
+#include "tests/support/key_table.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
@@ -83,7 +84,7 @@ TEST_F(ToyLoad, IsReadFromACaseFileAndWrittenBack) {
       input::read_case(input::to_toml(problem, models::known()), "again.toml", models::known())
           .load_path,
       problem.load_path);
-  EXPECT_THAT(input::key_table(models::known()), HasSubstr("| `load.couple` |"));
+  EXPECT_THAT(test::key_table(models::known()), HasSubstr("| `load.couple` |"));
 }
 
 TEST_F(ToyLoad, IsRefusedWithItsOwnRangeAndKeys) {

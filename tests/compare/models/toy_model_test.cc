@@ -17,6 +17,7 @@
 #include "compare/models/registry.h"
 #include "compare/study/case_number.h"
 #include "problem/error.h"
+#include "tests/support/key_table.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
@@ -190,7 +191,7 @@ TEST_F(ToyModel, IsReadWrittenBackAndDocumentedFromItsDeclaration) {
   EXPECT_THAT(written, HasSubstr("[models.hinge]\nstiffness = \"0.002 N m\"\npieces = 16\n"));
   const input::Case again = input::read_case(written, "again.toml", models::known());
   EXPECT_EQ(input::to_toml(again, models::known()), written);
-  const std::string keys = input::key_table(models::known());
+  const std::string keys = test::key_table(models::known());
   EXPECT_THAT(keys, HasSubstr("| `models.hinge.stiffness` | moment | from 1e-09 N m to 1 N m |"));
   EXPECT_THAT(keys, HasSubstr("`solid`, `hinge` |"));
 }

@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-#include "compare/output/vtk/mesh.h"
+#include "compare/output/vtk/datasets.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 
 namespace ciliaval::compare::vtk {

@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,7 +12,6 @@
 namespace ciliaval::fem::solid {
 namespace {
 
-using testing::Contains;
 using testing::HasSubstr;
 
 /// A checkpoint in memory, which outlives the solution that it is given to.
@@ -128,7 +125,6 @@ TEST(SolidCheckpoint, KeepsTheStateBeforeAFailureForMoreIterations) {
   EXPECT_EQ(memory.checkpoint().finished_steps(), 1u);
   SolidOptions patient = impatient;
   patient.max_iterations = 25;
-  EXPECT_EQ(Solid(patient).fingerprint(stub(), loads), Solid(impatient).fingerprint(stub(), loads));
   const MechanicsResult result = Solid(patient).solve_from(stub(), loads, memory.checkpoint());
   expect_same(result, Solid(patient).solve(stub(), loads), "with more iterations");
 }
@@ -147,64 +143,6 @@ TEST(SolidCheckpoint, OfAFinishedPathIsNotSolvedAgain) {
 TEST(SolidCheckpoint, ThatCannotBeWrittenEndsTheSolution) {
   const Checkpoint full{{}, [](const Checkpoint::Entries&) { throw CheckpointError("full"); }};
   EXPECT_THROW(Solid(coarse()).solve_from(stub(), path({1e-6}), full), CheckpointError);
-}
-
-/// The names under which two fingerprints differ.
-std::vector<std::string> differences(const support::Fingerprint& a, const support::Fingerprint& b) {
-  std::vector<std::string> names;
-  for (const auto& entry : b)
-    if (std::find(a.begin(), a.end(), entry) == a.end()) names.push_back(entry.first);
-  return names;
-}
-
-TEST(SolidFingerprint, HasAllThatTheSolutionDependsOn) {
-  const LoadPath usual = path({1e-6, 2e-6});
-  const auto expect = [&](const Cilium& cilium, const LoadPath& loads, const SolidOptions& options,
-                          const std::string& name) {
-    EXPECT_THAT(differences(*Solid(coarse()).fingerprint(stub(), usual),
-                            *Solid(options).fingerprint(cilium, loads)),
-                Contains(name));
-  };
-  const auto other_cilium = [&](const std::string& name, const std::function<void(Cilium&)>& set) {
-    Cilium cilium = stub();
-    set(cilium);
-    expect(cilium, usual, coarse(), name);
-  };
-  other_cilium("diameter", [](Cilium& c) { c.diameter = 2.9e-3; });
-  other_cilium("length of segment `base`", [](Cilium& c) { c.segments[0].length = 3.1e-3; });
-  other_cilium("young_modulus of segment `magnet`",
-               [](Cilium& c) { c.segments[1].young_modulus = 3000000.0000000005; });
-  other_cilium("poisson_ratio of segment `base`",
-               [](Cilium& c) { c.segments[0].poisson_ratio = 0.48; });
-  other_cilium("magnetization of segment `magnet`",
-               [](Cilium& c) { c.segments[1].magnetization = 7e4; });
-  other_cilium("number of segments", [](Cilium& c) {
-    c.segments.push_back({"top", 1e-3, 1e5, 0.4, 0});
-  });
-  const auto other_loads = [&](const std::string& name, const LoadPath& loads) {
-    expect(stub(), loads, coarse(), name);
-  };
-  other_loads("number of load steps", path({1e-6, 2e-6, 3e-6}));
-  other_loads("load of step 2", path({1e-6, 2.5e-6}));
-  other_loads("load of step 1", {ContactLoad{1e-6, 4.4e-3, 0.4}, usual[1]});
-  other_loads("load of step 2", {usual[0], ContactLoad{2e-6, 4.5e-3, 0.3}});
-  other_loads("load of step 1", {SectionLoad{1e-6, 4.5e-3, 0.4}, SectionLoad{2e-6, 4.5e-3, 0.4}});
-  const auto other_options = [&](const std::string& name,
-                                 const std::function<void(SolidOptions&)>& set) {
-    SolidOptions options = coarse();
-    set(options);
-    expect(stub(), usual, options, "models.solid." + name);
-  };
-  using Material = SolidOptions::Material;
-  other_options("material", [](SolidOptions& o) { o.material = Material::yeoh; });
-  other_options("mooney_ratio", [](SolidOptions& o) { o.mooney_ratio = 0.3; });
-  other_options("yeoh_ratios", [](SolidOptions& o) { o.yeoh_ratios[1] = 0.02; });
-  other_options("refinement", [](SolidOptions& o) { o.refinement = 1; });
-  other_options("initial_guess", [](SolidOptions& o) { o.initial_guess = InitialGuess::none; });
-  other_options("symmetry", [](SolidOptions& o) { o.symmetry = false; });
-  other_options("kernel_width", [](SolidOptions& o) { o.kernel_width = 0.4e-3; });
-  other_options("tolerance", [](SolidOptions& o) { o.tolerance = 1e-8; });
-  other_options("solver", [](SolidOptions& o) { o.solver = solvers::SolverKind::direct; });
 }
 
 }  // namespace

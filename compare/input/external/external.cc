@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/input/external/external_files.h"
+#include "compare/input/external/external.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "compare/input/case.h"
 #include "compare/input/csv.h"
 #include "compare/input/external/background.h"
 #include "problem/centreline.h"
@@ -19,13 +20,6 @@ namespace ciliaval::compare::input::external {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What the files are held against.
-struct Expected {
-  const Cilium& cilium;
-  const LoadPath& path;
-  std::size_t sensors;
-};
 
 using Kind = CsvColumn::Kind;
 
@@ -172,8 +166,8 @@ void check_theta(const Points& points, const CsvTable& table, const Cilium& cili
   }
 }
 
-void read_centreline(std::string_view text, const Expected& expected, const Load& load,
-                     ExternalModel& model, Faults& faults) {
+void read_centreline(std::string_view text, const Case& c, const Load& load, ExternalModel& model,
+                     Faults& faults) {
   const std::array<CsvColumn, 5> columns{{{"S", Kind::quantity, quantity::length, false},
                                           {"x", Kind::quantity, quantity::length, true},
                                           {"y", Kind::quantity, quantity::length, true},
@@ -182,7 +176,7 @@ void read_centreline(std::string_view text, const Expected& expected, const Load
   constexpr std::array<std::string_view, 1> ignored{"kappa"};
   const CsvTable table = read_csv(text, columns, ignored, faults);
   if (!faults.empty()) return;
-  const double L = expected.cilium.length();
+  const double L = c.cilium.length();
   Points points{table.numbers[0], {}, table.numbers[4]};
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     points.r.emplace_back(table.numbers[1][i], table.numbers[2][i], table.numbers[3][i]);
@@ -197,9 +191,9 @@ void read_centreline(std::string_view text, const Expected& expected, const Load
   }
   points.S.front() = 0;
   points.S.back() = L;
-  if (!points.theta.empty()) check_theta(points, table, expected.cilium, load, faults);
+  if (!points.theta.empty()) check_theta(points, table, c.cilium, load, faults);
   if (!faults.empty()) return;
-  model.centrelines.push_back(interpolated(points, expected.cilium, load));
+  model.centrelines.push_back(interpolated(points, c.cilium, load));
   model.remarks.push_back(remark);
 }
 
@@ -231,12 +225,11 @@ CsvTable readings_table(std::string_view text, std::size_t sensors, Faults& faul
 
 /// Puts the rows in their places: [0] undeformed, [1 + step]. A place without a row is empty.
 std::vector<std::vector<std::optional<Vector3>>> sorted_rows(const CsvTable& table,
-                                                             std::size_t first,
-                                                             const Expected& expected,
+                                                             std::size_t first, const Case& c,
                                                              Faults& faults) {
-  const std::size_t steps = expected.path.size();
+  const std::size_t steps = c.load_path.size();
   std::vector<std::vector<std::optional<Vector3>>> at(
-      steps + 1, std::vector<std::optional<Vector3>>(expected.sensors));
+      steps + 1, std::vector<std::optional<Vector3>>(c.sensors.size()));
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const std::string& word = table.words[step_column][i];
     const auto step = index_in(word, steps);
@@ -247,7 +240,7 @@ std::vector<std::vector<std::optional<Vector3>>> sorted_rows(const CsvTable& tab
                              in_quotes(word), steps - 1));
       continue;
     }
-    const auto sensor = sensor_of(table, sensor_column, i, expected.sensors, faults);
+    const auto sensor = sensor_of(table, sensor_column, i, c.sensors.size(), faults);
     if (!sensor) continue;
     auto& place = at[step ? *step + 1 : 0][*sensor];
     if (place)
@@ -277,14 +270,14 @@ void check_complete(const std::vector<std::vector<std::optional<Vector3>>>& at, 
 
 /// Takes the background off every reading of B. The undeformed cilium stands at the azimuth that
 /// all steps have.
-void subtract_background(const Background& background, const Expected& expected,
+void subtract_background(const Background& background, const Case& c,
                          std::vector<std::vector<std::optional<Vector3>>>& at, Faults& faults) {
-  const double first = azimuth(expected.path.front());
+  const double first = azimuth(c.load_path.front());
   const bool one_azimuth =
-      std::all_of(expected.path.begin(), expected.path.end(),
+      std::all_of(c.load_path.begin(), c.load_path.end(),
                   [&](const Load& load) { return apart(azimuth(load), first) <= same_azimuth; });
   for (std::size_t step = 0; step < at.size(); ++step)
-    for (std::size_t s = 0; s < expected.sensors; ++s) {
+    for (std::size_t s = 0; s < c.sensors.size(); ++s) {
       if (!at[step][s]) continue;
       if (step == 0 && !one_azimuth) {
         faults.add({},
@@ -292,7 +285,7 @@ void subtract_background(const Background& background, const Expected& expected,
                    "undeformed cilium's reading is not known: leave its rows out");
         return;
       }
-      const double phi = step == 0 ? first : azimuth(expected.path[step - 1]);
+      const double phi = step == 0 ? first : azimuth(c.load_path[step - 1]);
       const auto ambient = background.at(phi, s);
       if (!ambient) {
         faults.add({}, fmt::format("the background has a single azimuth, and the load's is {:g} "
@@ -317,18 +310,18 @@ ExternalReading reading(const std::vector<std::optional<Vector3>>& rows,
   return result;
 }
 
-void read_readings(std::string_view text, const Background* background, const Expected& expected,
+void read_readings(std::string_view text, const Background* background, const Case& c,
                    ExternalModel& model, Faults& faults) {
-  const CsvTable table = readings_table(text, expected.sensors, faults);
+  const CsvTable table = readings_table(text, c.sensors.size(), faults);
   if (!faults.empty()) return;
   const bool change = table.has(change_column);
-  auto at = sorted_rows(table, change ? change_column : field_column, expected, faults);
+  auto at = sorted_rows(table, change ? change_column : field_column, c, faults);
   if (!faults.empty()) return;
   check_complete(at, change, table, faults);
   if (background != nullptr && change)
     faults.add({}, "the change dB has no background any more: leave 'background' out");
   if (!faults.empty()) return;
-  if (background != nullptr) subtract_background(*background, expected, at, faults);
+  if (background != nullptr) subtract_background(*background, c, at, faults);
   if (at.front().front()) model.undeformed = reading(at.front(), at.front(), change);
   for (std::size_t step = 1; step < at.size(); ++step)
     model.readings.push_back(reading(at[step], at.front(), change));
@@ -351,24 +344,24 @@ void read_file(const fs::path& file, std::string& messages, const Read& read) {
 
 }  // namespace
 
-void read_external_files(ExternalModel& model, const Cilium& cilium, const LoadPath& path,
-                         std::size_t sensors) {
-  const Expected expected{cilium, path, sensors};
+void read_external_files(Case& c) {
   std::string messages;
-  for (std::size_t i = 0; i < model.centreline_files.size(); ++i)
-    read_file(model.centreline_files[i], messages, [&](const std::string& text, Faults& faults) {
-      read_centreline(text, expected, path[i], model, faults);
-    });
-  std::optional<Background> background;
-  if (!model.background_file.empty())
-    read_file(model.background_file, messages, [&](const std::string& text, Faults& faults) {
-      background.emplace(text, sensors, faults);
-      if (!faults.empty()) background.reset();
-    });
-  if (!model.readings_file.empty() && (background || model.background_file.empty()))
-    read_file(model.readings_file, messages, [&](const std::string& text, Faults& faults) {
-      read_readings(text, background ? &*background : nullptr, expected, model, faults);
-    });
+  for (ExternalModel& model : c.external) {
+    for (std::size_t i = 0; i < model.centreline_files.size(); ++i)
+      read_file(model.centreline_files[i], messages, [&](const std::string& text, Faults& faults) {
+        read_centreline(text, c, c.load_path[i], model, faults);
+      });
+    std::optional<Background> background;
+    if (!model.background_file.empty())
+      read_file(model.background_file, messages, [&](const std::string& text, Faults& faults) {
+        background.emplace(text, c.sensors.size(), faults);
+        if (!faults.empty()) background.reset();
+      });
+    if (!model.readings_file.empty() && (background || model.background_file.empty()))
+      read_file(model.readings_file, messages, [&](const std::string& text, Faults& faults) {
+        read_readings(text, background ? &*background : nullptr, c, model, faults);
+      });
+  }
   if (!messages.empty()) throw InputError(messages);
 }
 
