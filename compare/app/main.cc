@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -100,8 +99,18 @@ ExitCode print_parse_result(const CLI::App& app, const CLI::ParseError& error) {
 
 /// Whether a message starts with `file:line:column: `, which editors jump to.
 bool is_located(std::string_view message) {
-  const std::string first_line(message.substr(0, message.find('\n')));
-  return std::regex_search(first_line, std::regex("[^]:[0-9]{1,9}:[0-9]{1,9}: "));
+  message = message.substr(0, message.find('\n'));
+  const auto number_ends =
+      [&](std::size_t begin) {  // where its colon stands; npos if there is none
+        const std::size_t end = message.find_first_not_of("0123456789", begin);
+        return end == begin || end == message.npos || message[end] != ':' ? message.npos : end;
+      };
+  for (std::size_t at = message.find(':', 1); at != message.npos; at = message.find(':', at + 1)) {
+    const std::size_t line = number_ends(at + 1);
+    const std::size_t column = line == message.npos ? line : number_ends(line + 1);
+    if (column != message.npos && message.substr(column).starts_with(": ")) return true;
+  }
+  return false;
 }
 
 /// A file that the program opens must not become the standard output of a user who has closed it.

@@ -44,8 +44,9 @@ TEST(Registry, RefinesByOptionsThatTheModelHasDownToValuesInTheirRange) {
 std::vector<std::string> differences(const input::Case& a, const input::Case& b) {
   const models::MechanicsEntry& solid = models::entry_of(models::mechanics_models(), "solid");
   const auto before = models::fingerprint(a, solid);
+  const auto after = models::fingerprint(b, solid);
   std::vector<std::string> names;
-  for (const auto& entry : *models::fingerprint(b, solid))
+  for (const auto& entry : *after)
     if (std::find(before->begin(), before->end(), entry) == before->end())
       names.push_back(entry.first);
   return names;
