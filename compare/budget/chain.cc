@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -22,14 +22,22 @@ using analytic::sources::PushForward;
 using fem::potential::PotentialOptions;
 using Set = std::function<void(input::ModelOptions&)>;
 
-void require_words(const std::vector<std::string>& without) {
-  constexpr std::array<std::string_view, 7> words{"beam",      "solid",  "volume",     "mesh",
-                                                  "potential", "dipole", "sensitivity"};
+/// Throws InputError unless each word names a model of the stages, which begin with the paper's,
+/// or the sensitivity.
+void require_words(const std::vector<std::string>& without, std::span<const Stage> stages) {
+  const Stage& paper = stages.front();
+  std::vector<std::string_view> words;
+  for (const Stage& stage : stages)
+    for (const std::string* id : {&stage.mechanics, &stage.field})
+      if (*id != paper.mechanics && *id != paper.field &&
+          std::ranges::find(words, *id) == words.end())
+        words.push_back(*id);
+  words.emplace_back("sensitivity");
   for (const std::string& word : without) {
-    if (word == "elastica" || word == "line")
+    if (word == paper.mechanics || word == paper.field)
       throw InputError(fmt::format(
           "--without {0}: {0} is the paper's model, which the budget begins with", word));
-    if (std::find(words.begin(), words.end(), word) == words.end())
+    if (std::ranges::find(words, word) == words.end())
       throw InputError(
           fmt::format("--without {}: there is nothing of that name to leave out{}; "
                       "there are {}",
@@ -100,9 +108,16 @@ std::string Chain::physics(std::size_t from, std::size_t to) const {
 }
 
 Chain make_chain(const input::Case& problem, const std::vector<std::string>& without) {
-  require_words(without);
+  const std::vector<Stage> mechanics = mechanics_stages();
+  const std::string paper = mechanics.front().mechanics;
+  const Stage beside{paper, "dipole", "", [](input::ModelOptions&) {},
+                     "the whole magnet as one dipole at its centroid"};
+  std::vector<Stage> all = mechanics;
+  for (const Stage& stage : field_stages(problem, paper)) all.push_back(stage);
+  all.push_back(beside);
+  require_words(without, all);
   const auto is_left_out = [&](const std::string& word) {
-    return std::find(without.begin(), without.end(), word) != without.end();
+    return std::ranges::find(without, word) != without.end();
   };
   Chain chain;
   const auto add = [&](const Stage& stage, const std::string& missing) {
@@ -111,7 +126,7 @@ Chain make_chain(const input::Case& problem, const std::vector<std::string>& wit
     else
       chain.not_run.push_back(fmt::format("{}: without {}", stage.name(), missing));
   };
-  for (const Stage& stage : mechanics_stages()) {
+  for (const Stage& stage : mechanics) {
     add(stage, is_left_out(stage.mechanics) ? stage.mechanics : "");
     if (!is_left_out(stage.mechanics)) chain.mechanics.push_back(stage.mechanics);
   }
@@ -120,11 +135,10 @@ Chain make_chain(const input::Case& problem, const std::vector<std::string>& wit
     add(stage, is_left_out(stage.field)                   ? stage.field
                : stage.field == "mesh" && best != "solid" ? "solid"
                                                           : "");
-  if (is_left_out("dipole"))
-    chain.not_run.push_back("elastica/dipole: without dipole");
+  if (is_left_out(beside.field))
+    chain.not_run.push_back(fmt::format("{}: without {}", beside.name(), beside.field));
   else
-    chain.beside = Stage{"elastica", "dipole", "", [](input::ModelOptions&) {},
-                         "the whole magnet as one dipole at its centroid"};
+    chain.beside = beside;
   if (is_left_out("sensitivity")) {
     for (Stage& stage : chain.stages) stage.sensitivity = false;
     if (chain.beside) chain.beside->sensitivity = false;

@@ -75,7 +75,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   // What the models themselves demand; a case that comes so far has it.
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
-  external::read_external_files(c);
+  external::read_external_files(c.external, c.cilium, c.load_path, c.sensors.size());
   return c;
 }
 

@@ -244,8 +244,15 @@ void compare_fields(const CaseResult& result, std::vector<Comparison>& out) {
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
-  if (verdict == Verdict::inconclusive) return "inconclusive";
-  return verdict == Verdict::resolved ? "resolved" : "below uncertainty";
+  switch (verdict) {
+    case Verdict::resolved:
+      return "resolved";
+    case Verdict::below_uncertainty:
+      return "below uncertainty";
+    case Verdict::inconclusive:
+      break;
+  }
+  return "inconclusive";
 }
 
 std::optional<double> tip_angle_uncertainty(const MechanicsRun& run, std::size_t step) {

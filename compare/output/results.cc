@@ -118,8 +118,15 @@ Json comparison_json(const models::Comparison& c) {
 }  // namespace
 
 std::string_view to_string(Status status) {
-  if (status == Status::failed) return "failed";
-  return status == Status::converged ? "converged" : "slipped_off";
+  switch (status) {
+    case Status::converged:
+      return "converged";
+    case Status::slipped_off:
+      return "slipped_off";
+    case Status::failed:
+      break;
+  }
+  return "failed";
 }
 
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension) {

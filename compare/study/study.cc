@@ -41,8 +41,10 @@ constexpr auto outputs = [] {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = names[i].output;
   return all;
 }();
+static_assert(std::ranges::is_sorted(outputs) && outputs.front() == Output{} &&
+              static_cast<std::size_t>(outputs.back()) + 1 == outputs.size());
 const Names& names_of(Output output) {
-  return names[static_cast<std::size_t>(output)];  // in the order of the enumeration
+  return names[static_cast<std::size_t>(output)];
 }
 
 /// Where the differences are taken, in steps.

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "compare/input/case.h"
 #include "compare/input/csv.h"
 #include "compare/input/external/background.h"
 #include "problem/centreline.h"
@@ -22,6 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 
 using Kind = CsvColumn::Kind;
+
+/// The case that the files belong to.
+struct Expected {
+  const Cilium& cilium;
+  const LoadPath& path;
+  std::size_t sensors;
+};
 
 // ------------------------------------------------------------------------------------ centrelines
 
@@ -166,8 +172,8 @@ void check_theta(const Points& points, const CsvTable& table, const Cilium& cili
   }
 }
 
-void read_centreline(std::string_view text, const Case& c, const Load& load, ExternalModel& model,
-                     Faults& faults) {
+void read_centreline(std::string_view text, const Expected& c, const Load& load,
+                     ExternalModel& model, Faults& faults) {
   const std::array<CsvColumn, 5> columns{{{"S", Kind::quantity, quantity::length, false},
                                           {"x", Kind::quantity, quantity::length, true},
                                           {"y", Kind::quantity, quantity::length, true},
@@ -225,11 +231,11 @@ CsvTable readings_table(std::string_view text, std::size_t sensors, Faults& faul
 
 /// Puts the rows in their places: [0] undeformed, [1 + step]. A place without a row is empty.
 std::vector<std::vector<std::optional<Vector3>>> sorted_rows(const CsvTable& table,
-                                                             std::size_t first, const Case& c,
+                                                             std::size_t first, const Expected& c,
                                                              Faults& faults) {
-  const std::size_t steps = c.load_path.size();
+  const std::size_t steps = c.path.size();
   std::vector<std::vector<std::optional<Vector3>>> at(
-      steps + 1, std::vector<std::optional<Vector3>>(c.sensors.size()));
+      steps + 1, std::vector<std::optional<Vector3>>(c.sensors));
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const std::string& word = table.words[step_column][i];
     const auto step = index_in(word, steps);
@@ -240,7 +246,7 @@ std::vector<std::vector<std::optional<Vector3>>> sorted_rows(const CsvTable& tab
                              in_quotes(word), steps - 1));
       continue;
     }
-    const auto sensor = sensor_of(table, sensor_column, i, c.sensors.size(), faults);
+    const auto sensor = sensor_of(table, sensor_column, i, c.sensors, faults);
     if (!sensor) continue;
     auto& place = at[step ? *step + 1 : 0][*sensor];
     if (place)
@@ -270,14 +276,14 @@ void check_complete(const std::vector<std::vector<std::optional<Vector3>>>& at, 
 
 /// Takes the background off every reading of B. The undeformed cilium stands at the azimuth that
 /// all steps have.
-void subtract_background(const Background& background, const Case& c,
+void subtract_background(const Background& background, const Expected& c,
                          std::vector<std::vector<std::optional<Vector3>>>& at, Faults& faults) {
-  const double first = azimuth(c.load_path.front());
-  const bool one_azimuth =
-      std::all_of(c.load_path.begin(), c.load_path.end(),
-                  [&](const Load& load) { return apart(azimuth(load), first) <= same_azimuth; });
+  const double first = azimuth(c.path.front());
+  const bool one_azimuth = std::all_of(c.path.begin(), c.path.end(), [&](const Load& load) {
+    return apart(azimuth(load), first) <= same_azimuth;
+  });
   for (std::size_t step = 0; step < at.size(); ++step)
-    for (std::size_t s = 0; s < c.sensors.size(); ++s) {
+    for (std::size_t s = 0; s < c.sensors; ++s) {
       if (!at[step][s]) continue;
       if (step == 0 && !one_azimuth) {
         faults.add({},
@@ -285,7 +291,7 @@ void subtract_background(const Background& background, const Case& c,
                    "undeformed cilium's reading is not known: leave its rows out");
         return;
       }
-      const double phi = step == 0 ? first : azimuth(c.load_path[step - 1]);
+      const double phi = step == 0 ? first : azimuth(c.path[step - 1]);
       const auto ambient = background.at(phi, s);
       if (!ambient) {
         faults.add({}, fmt::format("the background has a single azimuth, and the load's is {:g} "
@@ -310,9 +316,9 @@ ExternalReading reading(const std::vector<std::optional<Vector3>>& rows,
   return result;
 }
 
-void read_readings(std::string_view text, const Background* background, const Case& c,
+void read_readings(std::string_view text, const Background* background, const Expected& c,
                    ExternalModel& model, Faults& faults) {
-  const CsvTable table = readings_table(text, c.sensors.size(), faults);
+  const CsvTable table = readings_table(text, c.sensors, faults);
   if (!faults.empty()) return;
   const bool change = table.has(change_column);
   auto at = sorted_rows(table, change ? change_column : field_column, c, faults);
@@ -344,17 +350,19 @@ void read_file(const fs::path& file, std::string& messages, const Read& read) {
 
 }  // namespace
 
-void read_external_files(Case& c) {
+void read_external_files(std::vector<ExternalModel>& models, const Cilium& cilium,
+                         const LoadPath& path, std::size_t sensors) {
+  const Expected c{cilium, path, sensors};
   std::string messages;
-  for (ExternalModel& model : c.external) {
+  for (ExternalModel& model : models) {
     for (std::size_t i = 0; i < model.centreline_files.size(); ++i)
       read_file(model.centreline_files[i], messages, [&](const std::string& text, Faults& faults) {
-        read_centreline(text, c, c.load_path[i], model, faults);
+        read_centreline(text, c, c.path[i], model, faults);
       });
     std::optional<Background> background;
     if (!model.background_file.empty())
       read_file(model.background_file, messages, [&](const std::string& text, Faults& faults) {
-        background.emplace(text, c.sensors.size(), faults);
+        background.emplace(text, c.sensors, faults);
         if (!faults.empty()) background.reset();
       });
     if (!model.readings_file.empty() && (background || model.background_file.empty()))

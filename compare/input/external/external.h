@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "problem/centreline.h"
+#include "problem/cilium.h"
+#include "problem/load.h"
 #include "problem/types.h"
-
-namespace ciliaval::compare::input {
-struct Case;
-}
 
 namespace ciliaval::compare::input::external {
 
@@ -37,8 +36,8 @@ struct ExternalModel {
   std::vector<ExternalReading> readings;      ///< one for each load step, or none
 };
 
-/// Reads the files that the case's external models name, which are as many centrelines as load
-/// steps or none (docs/guide/referees.md): fills in centrelines, remarks, undeformed and readings.
+/// Reads the files that the models name, which are as many centrelines as load steps or none
+/// (docs/guide/referees.md): fills in centrelines, remarks, undeformed and readings.
 ///
 /// Centrelines are interpolated by cubic polynomials between the points; without a column S it is
 /// the length along the points, scaled to the cilium's; without theta the sections are normal to
@@ -46,6 +45,7 @@ struct ExternalModel {
 /// of this azimuth, or interpolated linearly on the circle.
 ///
 /// Throws InputError with every fault found, a line each: `file:line:column: what is wrong`.
-void read_external_files(Case& c);
+void read_external_files(std::vector<ExternalModel>& models, const Cilium& cilium,
+                         const LoadPath& path, std::size_t sensors);
 
 }  // namespace ciliaval::compare::input::external
