@@ -67,9 +67,10 @@ struct Shape {
 };
 
 std::optional<Shape> shape_of(const MechanicsRun& run, std::size_t step) {
-  const MechanicsStep& s = run.result.steps[step];
-  if (s.status != Status::converged || !s.deformation) return std::nullopt;
-  return Shape(s, run.result.undeformed);
+  const std::vector<MechanicsStep>& steps = run.result.steps;
+  if (step >= steps.size() || steps[step].status != Status::converged || !steps[step].deformation)
+    return std::nullopt;
+  return Shape(steps[step], run.result.undeformed);
 }
 
 /// As if the section's rotation were wrong in proportion to the tip's displacement, rad.
@@ -205,12 +206,12 @@ void compare_component(const FieldPath& model, const FieldPath& reference, std::
   out.push_back(std::move(base));
 }
 
-/// The run that the fields belong to; readings belong to none.
+/// The run that the fields belong to, without a step if it is not there; readings belong to none.
 const MechanicsRun& mechanics_of(const FieldRun& run, const CaseResult& result) {
   static const MechanicsRun none;
   if (run.measured) return none;
-  return *std::find_if(result.mechanics.begin(), result.mechanics.end(),
-                       [&](const MechanicsRun& m) { return m.model == run.mechanics; });
+  const auto found = std::ranges::find(result.mechanics, run.mechanics, &MechanicsRun::model);
+  return found != result.mechanics.end() ? *found : none;
 }
 
 /// Whether both fields are those of one deformation.
