@@ -63,6 +63,7 @@ void check_models(const Case& c, const Models& known, const RightTables& right,
     if (is_asked_for && right.load && !loads.empty() &&
         std::find(loads.begin(), loads.end(), &c.load_path.front().type()) == loads.end()) {
       std::vector<std::string_view> names;
+      names.reserve(loads.size());
       for (const LoadType* type : loads) names.push_back(type->name);
       report(path_of_id("mechanics", c.mechanics, entry.id),
              fmt::format("{0} takes the load types '{1}', not '{2}': leave out '{0}', or state the "

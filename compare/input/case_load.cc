@@ -128,6 +128,7 @@ std::function<void(Case&)> read_steps(Section& table, const LoadType& type, Path
   return [=, &type, &reader](Case& c) {
     for (std::size_t i = 0; i < reader.steps(); ++i) {
       std::vector<double> of_step;
+      of_step.reserve(values.size());
       for (const Values& v : values) of_step.push_back(v.at(i));
       c.load_path.emplace_back(type, of_step);
     }

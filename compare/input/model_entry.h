@@ -96,6 +96,7 @@ struct Models {
 template <class Entries>
 std::vector<std::string_view> ids(const Entries& entries) {
   std::vector<std::string_view> result;
+  result.reserve(entries.size());
   for (const auto& entry : entries) result.emplace_back(entry.id);
   return result;
 }

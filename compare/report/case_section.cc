@@ -285,6 +285,7 @@ std::vector<std::string> remarks(const Json& summary) {
         add(fmt::format("{}: {}", name, message), number_of);
   }
   std::vector<std::string> result;
+  result.reserve(found.size());
   for (const auto& [text, steps] : found)
     result.push_back(
         fmt::format("load step{} {}: {}", steps.size() > 1 ? "s" : "", in_words(steps), text));

@@ -121,6 +121,7 @@ void Octree::refine_largest(const std::vector<double>& indicators, double fracti
     (sum_above(middle) >= fraction * total ? lower : upper) = middle;
   }
   std::vector<bool> flags;
+  flags.reserve(indicators.size());
   for (const double value : indicators) flags.push_back(value > lower);
   refine(flags);
 }

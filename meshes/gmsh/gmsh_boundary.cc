@@ -18,7 +18,7 @@ namespace {
 struct Face {
   unsigned int boundary = 0;
   Extrusion::Edge place;  ///< quadrilateral and 0, or number of the edge and layer
-  auto operator<=>(const Face&) const = default;
+  auto operator<=>(const Face&) const = default;  // NOLINT: clang-tidy 14 takes its 0 for a pointer
 };
 
 /// All faces of the boundary with an element at each.

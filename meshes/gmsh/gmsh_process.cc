@@ -111,7 +111,7 @@ std::string in_gmsh_process(const std::filesystem::path& file, const std::string
     throw fail(fmt::format("it crashed ({}): the file is damaged; write or copy it again",
                            strsignal(WTERMSIG(status))));
   if (text.empty()) throw fail("its process ended without an answer");
-  const std::string rest = text.substr(1);
+  std::string rest = text.substr(1);
   if (text[0] == input_error) throw InputError(rest);
   if (text[0] == file_error) throw FileError(rest);
   if (text[0] == gmsh_error) throw fail(rest);

@@ -221,7 +221,7 @@ vtkSmartPointer<vtkUnstructuredGrid> solid_grid(const SolidBody& body) {
   }
   for (const SolidCell& cell : body.cells) {
     hexahedra.add([&](const PointOfCell& at) {
-      const Vector3 X = at.value.of(cell.reference);
+      Vector3 X = at.value.of(cell.reference);
       const Matrix3 F = at.gradient(cell.current) * at.gradient(cell.reference).inverse();
       displacement.add(Vector3(at.value.of(cell.current) - X));
       magnetization.add(Vector3(F * cell.magnetization / F.determinant()));

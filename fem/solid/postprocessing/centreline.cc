@@ -109,6 +109,7 @@ std::vector<Layer> Extraction::layers() const {
   for (std::size_t e = 0; e < space.elements().size(); ++e)
     add_cell(by_bottom[quadrature.cells()[e].bottom], e);
   std::vector<Layer> result;
+  result.reserve(by_bottom.size());
   for (auto& [bottom, layer] : by_bottom) result.push_back(std::move(layer));
   return result;
 }
@@ -234,6 +235,7 @@ Centreline centreline(const SolidSpace& space, const ExtrudedQuadrature& quadrat
   const Extraction extraction{space, quadrature, state, load};
   const std::vector<Layer> layers = extraction.layers();
   std::vector<Wrench> tops;
+  tops.reserve(layers.size());
   for (const Layer& layer : layers) tops.push_back(extraction.top_wrench(layer));
   return centreline(extraction, layers, tops);
 }

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How often does the error lie inside the stated interval? Random cases, computed with the model's
+// defaults and with finer options.
+//   build/release/tests/coverage/coverage solid|beam [number of cases [first seed]]
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compare/models/errors.h"
+#include "compare/models/registry.h"
+#include "compare/models/run.h"
+#include "fem/beam/beam.h"
+#include "fem/solid/solid.h"
+#include "problem/error.h"
+#include "tests/coverage/random_case.h"
+
+namespace ciliaval::test {
+namespace {
+
+using namespace compare;
+
+/// A model with the field that is computed on it, and what makes it finer.
+struct Subject {
+  std::string mechanics;
+  std::string field;
+  std::function<void(input::ModelOptions&)> refine;
+};
+
+const std::vector<Subject>& subjects() {
+  static const std::vector<Subject> all{
+      {"solid", "mesh",
+       [](input::ModelOptions& options) { options.of<fem::solid::SolidOptions>().refinement = 2; }},
+      {"beam", "line", [](input::ModelOptions& options) {
+         auto& beam = options.of<fem::beam::BeamOptions>();
+         beam.refinement = 2;
+         beam.degree = 8;
+       }}};
+  return all;
+}
+
+/// Error and estimate of a quantity of one case.
+struct Sample {
+  std::string group;
+  double error = 0;
+  std::optional<double> estimate;
+
+  double effectivity() const {
+    if (!estimate) return std::numeric_limits<double>::infinity();
+    return error == 0 ? 0 : error / *estimate;
+  }
+};
+
+input::Case problem_of(const RandomCase& drawn, const Subject& subject) {
+  input::Case problem;
+  problem.name = "random";
+  problem.cilium = drawn.cilium;
+  problem.load_path = {drawn.load};
+  problem.sensors = drawn.sensors;
+  problem.mechanics = {subject.mechanics};
+  problem.fields = {subject.field};
+  problem.options.of<fem::solid::SolidOptions>().kernel_width = drawn.kernel_width;
+  return problem;
+}
+
+/// Errors of a run against a finer one.
+std::vector<Sample> samples(const input::Case& problem, const models::CaseResult& result,
+                            const models::CaseResult& finer) {
+  const models::MechanicsRun& run = result.mechanics.front();
+  const MechanicsStep& step = run.result.steps.front();
+  const MechanicsStep& truth = finer.mechanics.front().result.steps.front();
+  const double L = problem.cilium.length();
+  const CentrelinePoint tip = step.deformation->centreline.at(L);
+  const CentrelinePoint true_tip = truth.deformation->centreline.at(L);
+  const std::string load = " under " + std::string(type(step.load));
+  std::vector<Sample> all{
+      {"tip" + load, (tip.position - true_tip.position).norm(), step.tip_uncertainty},
+      {"tip angle", std::abs(tip.theta() - true_tip.theta()),
+       models::tip_angle_uncertainty(run, 0)}};
+  const auto& fields = result.fields.front();
+  const auto& true_fields = finer.fields.front();
+  for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+    const auto& dB = fields.steps.front()->dB[s];
+    const auto& true_dB = true_fields.steps.front()->dB[s];
+    if (!dB || !true_dB) continue;
+    const double depth = -problem.sensors[s].z();
+    const char* where = depth < problem.cilium.diameter ? "below a diameter"
+                        : depth < L                     ? "below a length"
+                                                        : "farther";
+    all.push_back({std::string("dB at a sensor ") + where, (*dB - *true_dB).cwiseAbs().maxCoeff(),
+                   models::change_uncertainty(run, fields, 0, s)});
+  }
+  return all;
+}
+
+double quantile(const std::vector<double>& sorted, double q) {
+  return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5)];
+}
+
+void print_table(const std::map<std::string, std::vector<double>>& effectivities) {
+  fmt::print("\n{:<32} {:>5} {:>7} {:>9} {:>9} {:>9} {:>9} {:>5}\n", "error/estimate", "n",
+             "inside", "5 %", "median", "95 %", "largest", "> 3");
+  for (auto [group, values] : effectivities) {
+    std::sort(values.begin(), values.end());
+    const auto above = [&](double limit) {
+      return values.end() - std::upper_bound(values.begin(), values.end(), limit);
+    };
+    fmt::print("{:<32} {:>5} {:>6.0f}% {:>9.2g} {:>9.2g} {:>9.2g} {:>9.2g} {:>5}\n", group,
+               values.size(),
+               100 * (1 - static_cast<double>(above(1)) / static_cast<double>(values.size())),
+               quantile(values, 0.05), quantile(values, 0.5), quantile(values, 0.95), values.back(),
+               above(3));
+  }
+}
+
+void cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed) {
+  std::map<std::string, std::vector<double>> effectivities;
+  for (std::uint32_t seed = first_seed; seed < first_seed + cases; ++seed) {
+    const RandomCase drawn = random_case(seed);
+    input::Case problem = problem_of(drawn, subject);
+    fmt::print("seed {}: {}, {} segments, L/d {:.1f}, {:.0f} deg: ", seed, type(drawn.load),
+               drawn.cilium.segments.size(), drawn.cilium.length() / drawn.cilium.diameter,
+               drawn.tip_angle * 180 / std::numbers::pi);
+    const auto solve = [&] {
+      return models::run(problem, models::mechanics_models(), models::field_models());
+    };
+    const models::CaseResult result = solve();
+    subject.refine(problem.options);
+    const models::CaseResult finer = solve();
+    const auto trouble = [](const models::CaseResult& of) {
+      const MechanicsStep& step = of.mechanics.front().result.steps.front();
+      return step.status == Status::converged ? "" : step.message;
+    };
+    if (const std::string why = trouble(result) + trouble(finer); !why.empty()) {
+      fmt::print("{}\n", why);
+      continue;
+    }
+    for (const Sample& sample : samples(problem, result, finer)) {
+      effectivities[sample.group].push_back(sample.effectivity());
+      fmt::print(" {:.2g}", sample.effectivity());
+    }
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
+  print_table(effectivities);
+}
+
+}  // namespace
+}  // namespace ciliaval::test
+
+int main(int argc, char** argv) {
+  using namespace ciliaval;
+  const std::span<char*> arguments(argv, static_cast<std::size_t>(argc));
+  try {
+    for (const test::Subject& subject : test::subjects())
+      if (arguments.size() > 1 && subject.mechanics == arguments[1]) {
+        const auto number = [&](std::size_t i, std::uint32_t fallback) {
+          return arguments.size() > i ? static_cast<std::uint32_t>(std::stoul(arguments[i]))
+                                      : fallback;
+        };
+        test::cover(subject, number(2, 20), number(3, 0));
+        return 0;
+      }
+    throw InputError("usage: coverage solid|beam [number of cases [first seed]]");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "coverage: {}\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "tests/coverage/random_case.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "analytic/elastica/elastica.h"
+
+namespace ciliaval::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+class Draw {
+ public:
+  explicit Draw(std::uint32_t seed) : generator_(seed) {}
+  double even(double low, double high) { return low + (high - low) * unit(); }
+  double log_even(double low, double high) { return low * std::pow(high / low, unit()); }
+  std::size_t choice(std::size_t n) {
+    return std::min(n - 1, static_cast<std::size_t>(unit() * n));
+  }
+
+ private:
+  /// The same on every machine, as distributions of the standard library are not.
+  double unit() { return (static_cast<double>(generator_()) + 0.5) / 4294967296.0; }
+  std::mt19937 generator_;
+};
+
+Cilium random_cilium(Draw& draw) {
+  Cilium cilium;
+  cilium.diameter = draw.log_even(0.5e-3, 5e-3);
+  const double L = cilium.diameter * draw.log_even(4, 40);
+  const std::size_t n = 1 + draw.choice(4);
+  std::vector<double> parts;
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += parts.emplace_back(draw.even(0.1, 1));
+  double E = draw.log_even(0.05e6, 5e6);
+  for (std::size_t i = 0; i < n; ++i) {
+    Segment segment;
+    segment.name = "s" + std::to_string(i);
+    segment.length = L * parts[i] / sum;
+    segment.young_modulus = E;
+    segment.poisson_ratio =
+        draw.choice(2) == 0 ? draw.even(0.3, 0.49) : 0.5 - draw.log_even(1e-4, 0.02);
+    segment.magnetization = i + 1 == n || draw.choice(2) == 0 ? draw.even(2e4, 1e5) : 0;
+    cilium.segments.push_back(segment);
+    E *= draw.log_even(0.05, 100);
+  }
+  return cilium;
+}
+
+Load shaped_load(Draw& draw, std::uint32_t turn, const Cilium& cilium) {
+  const double L = cilium.length();
+  const double phi = draw.even(0, 2 * pi);
+  const double place = draw.even(0.35, 0.95) * L;
+  switch (turn) {
+    case 0:
+      return ContactLoad{1, place, phi};
+    case 1:
+      return FlowLoad{1, phi};
+    case 2:
+      return SectionLoad{1, place, phi};
+    case 3:
+      return DeadLoad{1, phi};
+    default:
+      return ProbeLoad{1, place, phi};
+  }
+}
+
+/// The elastica's tip angle; more than any if it slips off.
+double elastica_angle(const Cilium& cilium, const Load& load) {
+  const MechanicsResult result = analytic::elastica::Elastica().solve(cilium, {load});
+  const MechanicsStep& step = result.steps.front();
+  if (step.status != Status::converged) return 10;
+  return step.deformation->centreline.at(cilium.length()).theta();
+}
+
+}  // namespace
+
+RandomCase random_case(std::uint32_t seed) {
+  Draw draw(seed);
+  RandomCase result;
+  result.cilium = random_cilium(draw);
+  const double L = result.cilium.length();
+  const Load shape = shaped_load(draw, seed % 5, result.cilium);
+  result.tip_angle = draw.even(2, 60) * pi / 180;
+  double softest = 1e300;
+  for (const Segment& segment : result.cilium.segments)
+    softest = std::min(softest, segment.young_modulus);
+  const double force = softest * result.cilium.second_moment() / (L * L);
+  double low = shape.is<ProbeLoad>() ? 1e-4 * L : 1e-4 * force;
+  if (shape.is<FlowLoad>() || shape.is<DeadLoad>()) low /= L;
+  double high = low;
+  while (elastica_angle(result.cilium, with_magnitude(shape, high)) < result.tip_angle) high *= 2;
+  low = high / 2;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = (low + high) / 2;
+    (elastica_angle(result.cilium, with_magnitude(shape, middle)) < result.tip_angle ? low : high) =
+        middle;
+  }
+  result.load = with_magnitude(shape, low);
+  result.tip_angle = elastica_angle(result.cilium, result.load);
+  if (const auto h = contact_height(shape))
+    result.kernel_width = std::min(result.kernel_width, std::min(*h, L - *h) / 3);
+  for (int i = 0; i < 4; ++i) {
+    const double depth = draw.log_even(0.05 * result.cilium.radius(), 10 * L);
+    const double aside = draw.even(0, 1) * std::max(depth, result.cilium.radius());
+    const double phi = draw.even(0, 2 * pi);
+    result.sensors.emplace_back(aside * std::cos(phi), aside * std::sin(phi), -depth);
+  }
+  return result;
+}
+
+}  // namespace ciliaval::test

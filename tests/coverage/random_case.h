@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "problem/cilium.h"
+#include "problem/load.h"
+#include "problem/types.h"
+
+namespace ciliaval::test {
+
+/// A cilium, a load and sensors drawn at random from what case files admit.
+struct RandomCase {
+  Cilium cilium;
+  Load load;
+  double tip_angle = 0;          ///< that of the elastica under the load, rad
+  double kernel_width = 0.5e-3;  ///< m
+  std::vector<Vector3> sensors;  ///< m
+};
+
+/// The case of a seed: 1 to 4 segments, E between neighbours' in ratios of 0.05 to 100, ν of 0.3 to
+/// 0.4999, L/d of 4 to 40, one of the load types (by turns) that turns the elastica's tip by 2° to
+/// 60°, four sensors: 0.05 radii to 10 lengths below the base. The kernel is the default's, or a
+/// third of the room that the height leaves it.
+RandomCase random_case(std::uint32_t seed);
+
+}  // namespace ciliaval::test
