@@ -11,8 +11,8 @@ function(ciliaval_precompile name)
   target_precompile_headers(${target} PRIVATE ${ARG_HEADERS})
 endfunction()
 
-# GCC takes these only where the same of their macros are defined, so not with Boost::headers and its BOOST_ALL_NO_LIB: deal.II
-# brings Boost.
+# GCC uses a precompiled header only where the same macros are defined. Boost::headers defines BOOST_ALL_NO_LIB, so a target that
+# links it cannot use these headers; it needs no Boost::headers, because deal.II brings Boost.
 set(ciliaval_dealii_headers <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <deal.II/dofs/dof_handler.h> <deal.II/dofs/dof_tools.h>
   <deal.II/fe/fe_q.h> <deal.II/fe/fe_values.h> <deal.II/grid/grid_tools.h> <deal.II/grid/tria.h> <deal.II/lac/affine_constraints.h>
   <deal.II/lac/dynamic_sparsity_pattern.h> <deal.II/lac/sparse_matrix.h> <deal.II/lac/vector.h>)

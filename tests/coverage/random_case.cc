@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -31,13 +32,13 @@ class Draw {
 
 Cilium random_cilium(Draw& draw) {
   Cilium cilium;
-  cilium.diameter = draw.log_even(0.5e-3, 5e-3);
+  cilium.diameter = draw.log_even(0.5e-3, 5e-3);  // m
   const double L = cilium.diameter * draw.log_even(4, 40);
   const std::size_t n = 1 + draw.choice(4);
   std::vector<double> parts;
   double sum = 0;
   for (std::size_t i = 0; i < n; ++i) sum += parts.emplace_back(draw.even(0.1, 1));
-  double E = draw.log_even(0.05e6, 5e6);
+  double E = draw.log_even(0.05e6, 5e6);  // Pa
   for (std::size_t i = 0; i < n; ++i) {
     Segment segment;
     segment.name = "s" + std::to_string(i);
@@ -45,6 +46,7 @@ Cilium random_cilium(Draw& draw) {
     segment.young_modulus = E;
     segment.poisson_ratio =
         draw.choice(2) == 0 ? draw.even(0.3, 0.49) : 0.5 - draw.log_even(1e-4, 0.02);
+    // A/m; the tip is a magnet, each other segment every second time.
     segment.magnetization = i + 1 == n || draw.choice(2) == 0 ? draw.even(2e4, 1e5) : 0;
     cilium.segments.push_back(segment);
     E *= draw.log_even(0.05, 100);
@@ -70,11 +72,11 @@ Load shaped_load(Draw& draw, std::uint32_t turn, const Cilium& cilium) {
   }
 }
 
-/// The elastica's tip angle; more than any if it slips off.
+/// The elastica's tip angle, rad; infinite if it slips off.
 double elastica_angle(const Cilium& cilium, const Load& load) {
   const MechanicsResult result = analytic::elastica::Elastica().solve(cilium, {load});
   const MechanicsStep& step = result.steps.front();
-  if (step.status != Status::converged) return 10;
+  if (step.status != Status::converged) return std::numeric_limits<double>::infinity();
   return step.deformation->centreline.at(cilium.length()).theta();
 }
 
@@ -87,16 +89,17 @@ RandomCase random_case(std::uint32_t seed) {
   const double L = result.cilium.length();
   const Load shape = shaped_load(draw, seed % 5, result.cilium);
   result.tip_angle = draw.even(2, 60) * pi / 180;
-  double softest = 1e300;
+  double softest = std::numeric_limits<double>::infinity();
   for (const Segment& segment : result.cilium.segments)
     softest = std::min(softest, segment.young_modulus);
   const double force = softest * result.cilium.second_moment() / (L * L);
+  // So little that the tip turns by far less than 2 degrees: from here the load is doubled.
   double low = shape.is<ProbeLoad>() ? 1e-4 * L : 1e-4 * force;
   if (shape.is<FlowLoad>() || shape.is<DeadLoad>()) low /= L;
   double high = low;
   while (elastica_angle(result.cilium, with_magnitude(shape, high)) < result.tip_angle) high *= 2;
   low = high / 2;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 30; ++i) {  // to 1e-9 of the load
     const double middle = (low + high) / 2;
     (elastica_angle(result.cilium, with_magnitude(shape, middle)) < result.tip_angle ? low : high) =
         middle;
