@@ -31,6 +31,10 @@ class FieldModel {
   /// grid of many.
   virtual bool pointwise() const { return true; }
 
+  /// The model that takes this one's place where only the change of B between two nearly equal
+  /// deformations is asked for: a cheaper one, if this is dear.
+  virtual const FieldModel& for_differences() const { return *this; }
+
   /// B of the deformed magnet at the points (m). Inside the magnet it is B, not μ₀H. Throws
   /// InputError where B diverges (the end face's rim; a dipole) or if the deformation lacks the
   /// body, SolverError if the accuracy asked cannot be reached.

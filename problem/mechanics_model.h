@@ -34,16 +34,34 @@ struct MechanicsStep {
   std::optional<double> slip_off_displacement;  ///< probe: the largest displacement of the contact
                                                 ///< point, m, if the model found it
   std::optional<double> contact_arclength;  ///< contact, probe: S of the material point at z = h, m
-  std::optional<double> tip_uncertainty;  ///< estimate of the tip position's discretisation error,
-                                          ///< m, if the model has one
-  std::size_t unknowns = 0;               ///< of the largest system solved
-  int iterations = 0;                     ///< nonlinear iterations, all cutbacks included
-  double seconds = 0;                     ///< wall time
+  // Estimates of the numerical error, if the model has one.
+  std::optional<double> tip_uncertainty;            ///< of the tip's position, m
+  std::optional<double> tip_angle_uncertainty;      ///< rad
+  std::optional<double> applied_force_uncertainty;  ///< N
+  std::size_t unknowns = 0;                         ///< of the largest system solved
+  int iterations = 0;                               ///< nonlinear iterations, all cutbacks included
+  double seconds = 0;                               ///< wall time
+};
+
+/// A part of the estimate of the discretisation error: how far two solutions of the same load path
+/// are apart. They are the result itself, 0, or one of its companions, i for the companion i − 1.
+struct ErrorPart {
+  std::string direction;  ///< what is finer in the one of them
+  std::size_t finer = 0;
+  std::size_t coarser = 0;
+  double factor = 1;  ///< error of the result over their difference
 };
 
 struct MechanicsResult {
   Deformation undeformed;            ///< the straight cilium in this model's own discretisation
   std::vector<MechanicsStep> steps;  ///< one for each load of the path
+  /// The same path by other discretisations, from which the error of any quantity is estimated
+  /// (problem/error_estimate.h). Their own errors are not.
+  std::vector<MechanicsResult> companions{};
+  std::vector<ErrorPart> error_parts{};  ///< none: the model has no such estimate
+  /// Error of the solution of the discrete equations: of lengths over L, of angles in rad, of
+  /// forces over the applied one.
+  double algebraic_error = 0;
 };
 
 /// Called with a short line of text while a long solution goes on ("step 2/4, load 0.5, iteration

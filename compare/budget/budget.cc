@@ -42,11 +42,17 @@ struct Computed {
   std::vector<StageFields> fields;  ///< in the order of the stages, the model beside last
 };
 
+MechanicsResult steps_of(const MechanicsResult& all, const std::vector<std::size_t>& places) {
+  MechanicsResult result{all.undeformed, {}, {}, all.error_parts, all.algebraic_error};
+  for (const std::size_t place : places) result.steps.push_back(all.steps[place]);
+  for (const MechanicsResult& companion : all.companions)
+    result.companions.push_back(steps_of(companion, places));
+  return result;
+}
+
 models::MechanicsRun steps_of(const models::MechanicsRun& run,
                               const std::vector<std::size_t>& places) {
-  models::MechanicsRun result{run.model, {run.result.undeformed, {}}};
-  for (const std::size_t place : places) result.result.steps.push_back(run.result.steps[place]);
-  return result;
+  return {run.model, steps_of(run.result, places)};
 }
 
 StageFields compute_fields(const Stage& stage, const input::Case& problem,

@@ -77,20 +77,15 @@ Claim base_bends(const models::CaseResult& result) {
 struct FieldsOfAStep {
   models::FieldValue line;
   models::FieldValue volume;
-  double proportion = 0;  ///< the effect of the deformation's error on both ΔB, relative
-
   FieldsOfAStep(const models::CaseResult& result, const models::MechanicsRun& run, std::size_t step,
                 bool change)
       : line(value_of(result, run, "line", step, change)),
-        volume(value_of(result, run, "volume", step, change)),
-        line_change_(value_of(result, run, "line", step, true).value),
-        volume_change_(value_of(result, run, "volume", step, true).value) {
-    proportion = line.from_mechanics.value() / line_change_.norm();
-  }
+        volume(value_of(result, run, "volume", step, change)) {}
 
-  /// The uncertainty of a figure of both fields. The deformation's error moves each ΔB by
-  /// `proportion`, and nothing is taken to cancel between the two: where along the cilium it lies
-  /// is not known, and the fields weigh that differently.
+  /// The uncertainty of a figure of both fields. The deformation's error moves each in a direction
+  /// that is not known: by as much as the figure's gradient makes of it. Nothing is taken to
+  /// cancel between the two: where along the cilium the error lies is not known, and the fields
+  /// weigh that differently.
   template <class Figure>
   double uncertainty(const Figure& figure) const {
     const double value = figure(line.value, volume.value);
@@ -98,8 +93,14 @@ struct FieldsOfAStep {
       return std::abs(figure(line.value + by_line, volume.value + by_volume) - value);
     };
     const Vector3 none = Vector3::Zero();
-    return off(proportion * line_change_, none) + off(none, proportion * volume_change_) +
-           off(line.numerical.value(), none) + off(none, volume.numerical.value());
+    Vector3 by_line;
+    Vector3 by_volume;
+    for (int axis = 0; axis < 3; ++axis) {
+      by_line[axis] = off(line.from_mechanics.value() * Vector3::Unit(axis), none);
+      by_volume[axis] = off(none, volume.from_mechanics.value() * Vector3::Unit(axis));
+    }
+    return by_line.norm() + by_volume.norm() + off(line.numerical.value(), none) +
+           off(none, volume.numerical.value());
   }
 
  private:
@@ -111,9 +112,6 @@ struct FieldsOfAStep {
         if (const auto value = models::field_value(fields, run, step, 0, change)) return *value;
     throw SolverError("there is no field of " + run.model + "/" + field);
   }
-
-  Vector3 line_change_;
-  Vector3 volume_change_;
 };
 
 /// The difference of `volume` (Eq. 8-9, the multi-dipole model) and `line` on each deformation.

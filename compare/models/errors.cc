@@ -43,11 +43,12 @@ void finish(Comparison& c, double scale, double smallest_scale, const std::strin
 /// One step of one mechanics model, with what errors are scaled by.
 struct Shape {
   const Centreline& curve;
-  std::optional<double> tip_uncertainty;  ///< m
-  Vector3 tip;                            ///< m
-  double tip_angle;                       ///< rad
-  double tip_deflection;                  ///< along e, m
-  double tip_displacement;                ///< m
+  std::optional<double> tip_uncertainty;        ///< m
+  std::optional<double> tip_angle_uncertainty;  ///< rad, if the model has one of its own
+  Vector3 tip;                                  ///< m
+  double tip_angle;                             ///< rad
+  double tip_deflection;                        ///< along e, m
+  double tip_displacement;                      ///< m
 
   /// Whether the tip displacement is more than rounding error.
   bool moved() const { return tip_displacement > vanishing_deflection * curve.length(); }
@@ -55,7 +56,9 @@ struct Shape {
   double relative_uncertainty() const { return *tip_uncertainty / tip_displacement; }
 
   Shape(const MechanicsStep& step, const Deformation& undeformed)
-      : curve(step.deformation->centreline), tip_uncertainty(step.tip_uncertainty) {
+      : curve(step.deformation->centreline),
+        tip_uncertainty(step.tip_uncertainty),
+        tip_angle_uncertainty(step.tip_angle_uncertainty) {
     const CentrelinePoint end = curve.at(curve.length());
     const Vector3 displacement =
         end.position - undeformed.centreline.at(undeformed.centreline.length()).position;
@@ -73,8 +76,10 @@ std::optional<Shape> shape_of(const MechanicsRun& run, std::size_t step) {
   return Shape(steps[step], run.result.undeformed);
 }
 
-/// As if the section's rotation were wrong in proportion to the tip's displacement, rad.
+/// The model's own, or as if the section's rotation were wrong in proportion to the tip's
+/// displacement, rad.
 std::optional<double> angle_uncertainty(const Shape& shape) {
+  if (shape.tip_angle_uncertainty) return shape.tip_angle_uncertainty;
   if (!shape.tip_uncertainty) return std::nullopt;
   if (*shape.tip_uncertainty == 0) return 0;
   if (!shape.moved()) return std::nullopt;
@@ -276,7 +281,11 @@ std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& m
   }
   const Vector3& B = *fields.B[sensor];  // where ΔB is, B is, but for readings
   const std::optional<Vector3>& dB = fields.dB[sensor];
-  result.from_mechanics = carried_over(shape_of(mechanics, step), B, dB);
+  if (mechanics.result.error_parts.empty())
+    result.from_mechanics = carried_over(shape_of(mechanics, step), B, dB);
+  else
+    result.from_mechanics =
+        change ? fields.dB_from_mechanics[sensor] : fields.from_mechanics[sensor];
   result.rounding = rounding * B.norm();
   if (dB) result.rounding += rounding * (B - *dB).norm();
   return result;

@@ -67,17 +67,19 @@ std::optional<ShapeAgreement> compare_deflection(const Centreline& model,
                                                  const Centreline& reference,
                                                  const Vector3& direction);
 
-/// Uncertainty of a converged step's tip angle, rad: |angle|·u/|tip displacement| with u =
-/// `tip_uncertainty`, as if the section's rotation were wrong in proportion to the displacement.
+/// Uncertainty of a converged step's tip angle, rad: the model's own estimate; where it has none,
+/// |angle|·u/|tip displacement| with u = `tip_uncertainty`, as if the section's rotation were wrong
+/// in proportion to the displacement.
 std::optional<double> tip_angle_uncertainty(const MechanicsRun& run, std::size_t step);
 
 /// A field value with what is known of its numerical error.
 struct FieldValue {
   Vector3 value;                         ///< B or ΔB, T
   std::optional<Vector3> numerical;      ///< uncertainty of the field model, T
-  std::optional<double> from_mechanics;  ///< what the tip's discretisation error u does to it, to
-                                         ///< first order, in any direction: |ΔB|·u/|tip
-                                         ///< displacement|, T
+  std::optional<double> from_mechanics;  ///< what the deformation's error does to it, in any
+                                         ///< direction, T: FieldStep::from_mechanics; of a model
+                                         ///< that states the tip's error u alone,
+                                         ///< |ΔB|·u/|tip displacement|
   double rounding;                       ///< what the deformation's rounding may make of it, T
 };
 /// B, or its change ΔB, of a pair of models at a step and sensor; empty if there is none.

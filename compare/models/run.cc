@@ -16,6 +16,7 @@
 #include "compare/input/case_keys.h"
 #include "compare/input/units.h"
 #include "problem/error.h"
+#include "problem/error_estimate.h"
 
 namespace ciliaval::compare::models {
 namespace {
@@ -124,6 +125,8 @@ std::string describe(const std::vector<std::pair<std::size_t, std::string>>& fai
 FieldStep field_at_sensors(const FieldModel& model, const input::Case& problem,
                            const Deformation& deformation) {
   FieldStep step;
+  step.from_mechanics.resize(problem.sensors.size());
+  step.dB_from_mechanics.resize(problem.sensors.size());
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::pair<std::size_t, std::string>> failures;
   append_field(model, problem.cilium, deformation, problem.sensors, step, failures);
@@ -148,6 +151,63 @@ void subtract(FieldStep& step, const FieldStep& undeformed) {
   if (offset_missing)
     step.failure += fmt::format("{}undeformed cilium: {}", step.failure.empty() ? "" : "; ",
                                 undeformed.failure);
+}
+
+/// B and ΔB on the undeformed cilium and on each step of one solution.
+struct FieldsOfASolution {
+  FieldStep undeformed;
+  std::vector<std::optional<FieldStep>> steps;
+};
+
+FieldsOfASolution fields_of(const FieldModel& model, const MechanicsResult& solution,
+                            const input::Case& problem,
+                            const std::function<void(const std::string&)>& tell) {
+  FieldsOfASolution fields;
+  tell("undeformed cilium");
+  fields.undeformed = field_at_sensors(model, problem, solution.undeformed);
+  for (const std::optional<Vector3>& B : fields.undeformed.B)
+    fields.undeformed.dB.push_back(B ? std::optional<Vector3>(Vector3::Zero()) : std::nullopt);
+  for (std::size_t i = 0; i < solution.steps.size(); ++i) {
+    fields.steps.emplace_back();
+    if (solution.steps[i].status != Status::converged) continue;
+    tell(fmt::format("step {}/{}", i + 1, solution.steps.size()));
+    fields.steps.back() = field_at_sensors(model, problem, *solution.steps[i].deformation);
+    subtract(*fields.steps.back(), fields.undeformed);
+  }
+  return fields;
+}
+
+/// Sets what the discretisation error of the mechanics makes of the fields.
+void estimate_from_mechanics(const FieldModel& model, const MechanicsResult& mechanics,
+                             const input::Case& problem, FieldsOfASolution& fields,
+                             const std::function<void(const std::string&)>& tell) {
+  if (mechanics.error_parts.empty()) return;
+  std::vector<FieldsOfASolution> solutions;
+  const FieldModel& cheap = model.for_differences();
+  for (std::size_t i = 0; i <= mechanics.companions.size(); ++i)
+    solutions.push_back(i == 0 && &cheap == &model ? fields
+                                                   : fields_of(cheap, solution(mechanics, i),
+                                                               problem, [&](const std::string& of) {
+                                                                 tell("error estimate, " + of);
+                                                               }));
+  const auto set = [&](FieldStep& step, const auto& step_of_solution) {
+    for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
+      const auto estimate = [&](AtSensors FieldStep::*values) {
+        return error_estimate(mechanics.error_parts, [&](std::size_t i) -> std::optional<Vector3> {
+          const FieldStep* other = step_of_solution(solutions[i]);
+          return other != nullptr ? (other->*values)[s] : std::nullopt;
+        });
+      };
+      step.from_mechanics[s] = estimate(&FieldStep::B);
+      step.dB_from_mechanics[s] = estimate(&FieldStep::dB);
+    }
+  };
+  set(fields.undeformed, [](const FieldsOfASolution& of) { return &of.undeformed; });
+  for (std::size_t i = 0; i < fields.steps.size(); ++i)
+    if (fields.steps[i])
+      set(*fields.steps[i], [i](const FieldsOfASolution& of) -> const FieldStep* {
+        return of.steps[i] ? &*of.steps[i] : nullptr;
+      });
 }
 
 /// The horizontal force of a load whose shape is known from outside, N; NaN for a probe.
@@ -252,20 +312,13 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
   FieldRun run;
   run.mechanics = mechanics.model;
   run.field = id;
-  if (progress) progress(run.name() + ": undeformed cilium");
-  run.undeformed = field_at_sensors(model, problem, mechanics.result.undeformed);
-  for (const std::optional<Vector3>& B : run.undeformed.B)
-    run.undeformed.dB.push_back(B ? std::optional<Vector3>(Vector3::Zero()) : std::nullopt);
-  for (std::size_t i = 0; i < mechanics.result.steps.size(); ++i) {
-    const MechanicsStep& step = mechanics.result.steps[i];
-    run.steps.emplace_back();
-    if (step.status != Status::converged) continue;
-    if (progress)
-      progress(run.name() + ": step " + std::to_string(i + 1) + "/" +
-               std::to_string(mechanics.result.steps.size()));
-    run.steps.back() = field_at_sensors(model, problem, *step.deformation);
-    subtract(*run.steps.back(), run.undeformed);
-  }
+  const auto tell = [&](const std::string& of) {
+    if (progress) progress(run.name() + ": " + of);
+  };
+  FieldsOfASolution fields = fields_of(model, mechanics.result, problem, tell);
+  estimate_from_mechanics(model, mechanics.result, problem, fields, tell);
+  run.undeformed = std::move(fields.undeformed);
+  run.steps = std::move(fields.steps);
   return run;
 }
 

@@ -32,6 +32,10 @@ struct FieldStep {
   AtSensors uncertainty;     ///< the field model's estimate of the numerical error of B
   AtSensors dB;              ///< ΔB = B − B(undeformed): none where one of the two is missing
   AtSensors dB_uncertainty;  ///< sum of the two uncertainties
+  /// What the mechanics model's discretisation error makes of B and of ΔB, in any direction, T:
+  /// from the fields of its companions (problem/error_estimate.h). None where it is not known.
+  std::vector<std::optional<double>> from_mechanics;
+  std::vector<std::optional<double>> dB_from_mechanics;
   std::shared_ptr<const FieldMesh> mesh;  ///< what B was computed from, if it can be drawn
   double seconds = 0;                     ///< wall time
   std::string failure;  ///< why a value of B or ΔB is missing, at which sensors; else empty

@@ -12,7 +12,7 @@ struct BeamOptions {
   double tolerance = 1e-12;     ///< of the residual and the increment, relative
   unsigned int max_iterations = 30;
   unsigned int max_cutbacks = 8;
-  bool tip_uncertainty = true;  ///< estimated; half of the work
+  bool error_estimate = true;  ///< by a companion of a higher degree; over half of the work
 };
 
 /// Geometrically exact (Simo–Reissner) beam: bending, torsion, shear and extension, finite 3D
@@ -21,7 +21,7 @@ struct BeamOptions {
 class Beam : public MechanicsModel {
  public:
   explicit Beam(BeamOptions options = {}) : options_(options) {}
-  /// tip_uncertainty is the distance to the tip of one degree less, where asked for. A result does
+  /// Errors are estimated, where asked for, by the same path with a higher degree. A result does
   /// not depend on the steps before it. Throws InputError if an option is out of range.
   MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
                         const Progress& progress = {}) const override;

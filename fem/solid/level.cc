@@ -21,10 +21,6 @@ using namespace equilibrium;
 using namespace postprocessing;
 namespace {
 
-/// Observed order of the tip in the thickness of the finest layer (docs/theory/solid.md): the
-/// singularities at the rims of the base and of the interfaces govern.
-constexpr double tip_order = 1.5;
-
 /// Largest extrapolation of the corrections of two loads, in their distance.
 constexpr double farthest_extrapolation = 3;
 
@@ -89,7 +85,7 @@ std::vector<DirichletCondition> supports(Extent extent) {
 
 Level::Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser)
-    : cilium_(cilium), options_(options), finest_layer_(mesh.finest_layer), coarser_(coarser) {
+    : cilium_(cilium), options_(options), coarser_(coarser) {
   meshes::cylinder::make_cylinder(cilium, mesh, triangulation_);
   mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
   discretise(mesh.half ? Extent::half : Extent::whole, materials);
@@ -173,7 +169,7 @@ Guess Level::guess(const Load& load) const {
   if (!options_.beam_guess) return {};
   // Any beam is some percent off the solid; fig3b's tip is 5e-12 of its deflection off the
   // default's.
-  const beam::BeamOptions rough{.degree = 4, .tolerance = 1e-6, .tip_uncertainty = false};
+  const beam::BeamOptions rough{.degree = 4, .tolerance = 1e-6, .error_estimate = false};
   const MechanicsResult solved = beam::Beam(rough).solve(cilium_, {load});
   const MechanicsStep& step = solved.steps.front();
   if (!step.deformation) return {};
@@ -203,18 +199,6 @@ Deformation Level::deformation(double azimuth) const {
 
 Deformation Level::undeformed(double azimuth) const {
   return deformation(space_->undeformed(), SpreadLoad{}, azimuth);
-}
-
-Vector3 Level::tip() const {
-  return tip_position(*space_, *quadrature_, solver().current().state);
-}
-
-std::optional<double> Level::tip_uncertainty() const {
-  if (coarser_ == nullptr || !coarser_->solver_ || !solver_) return std::nullopt;
-  if (magnitude(coarser_->solver().current().load) != magnitude(solver().current().load))
-    return std::nullopt;
-  const double ratio = std::pow(coarser_->finest_layer_ / finest_layer_, tip_order);
-  return (tip() - coarser_->tip()).norm() / (ratio - 1);
 }
 
 }  // namespace ciliaval::fem::solid

@@ -39,9 +39,8 @@ struct EquilibriumPair {
 /// the first load.
 class Level {
  public:
-  /// `coarser` gives the initial guesses, and with its own tip the estimate of the error; without
-  /// it, the beam gives them if options.beam_guess. Cilium and coarser level must outlive the
-  /// level.
+  /// `coarser` gives the initial guesses; without it, the beam gives them if options.beam_guess.
+  /// Cilium and coarser level must outlive the level.
   Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
         std::span<const material::Hyperelastic> materials, const LevelOptions& options,
         Level* coarser);
@@ -69,11 +68,6 @@ class Level {
   Deformation deformation(const equilibrium::Equilibrium& equilibrium, double azimuth) const;
   Deformation undeformed(double azimuth) const;
 
-  /// Estimated error of the tip's position, m: its distance from the coarser level's tip, by
-  /// Richardson's rule for the order 1.5 of the finest layer's thickness (docs/theory/solid.md).
-  /// Empty unless there is a coarser level at the same load.
-  std::optional<double> tip_uncertainty() const;
-
   double applied_force() const { return solver().current().applied_force; }
   std::size_t unknowns() const { return space_->unknowns(); }
 
@@ -93,11 +87,9 @@ class Level {
   const equilibrium::LoadPathSolver& solver() const { return *solver_; }
   Deformation deformation(const discretisation::SolidState& state, const loads::SpreadLoad& load,
                           double azimuth) const;
-  Vector3 tip() const;
 
   const Cilium& cilium_;
   LevelOptions options_;
-  double finest_layer_ = 0;  ///< in diameters; of use only with a coarser level
   Level* coarser_ = nullptr;
   dealii::Triangulation<3> triangulation_;
   std::unique_ptr<dealii::MappingQCache<3>> mapping_;

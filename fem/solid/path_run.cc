@@ -12,6 +12,7 @@
 #include "fem/parallel.h"
 #include "fem/solid/archive.h"
 #include "problem/error.h"
+#include "problem/error_estimate.h"
 
 namespace ciliaval::fem::solid {
 using namespace discretisation;
@@ -22,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 using dealii::Utilities::MPI::broadcast;
 
 /// Of the entry of a checkpoint with the levels' states, from which the next step goes on.
-constexpr const char* state_name = "state";
+constexpr const char* state_name = "states";
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -55,6 +56,24 @@ std::optional<double> contact_arclength(const Centreline& centreline, double hei
   return std::nullopt;
 }
 
+/// Whether the level is in equilibrium with the load.
+bool is_at(const Level& level, const Load& load) {
+  return level.state() != nullptr && same_place(level.state()->current.load, load) &&
+         magnitude(level.state()->current.load) == magnitude(load);
+}
+
+/// The step of a companion.
+MechanicsStep converged_step(const Level& level, const Equilibrium& equilibrium, const Load& load,
+                             double mesh_azimuth) {
+  MechanicsStep step;
+  step.load = load;
+  step.status = Status::converged;
+  step.unknowns = level.unknowns();
+  step.deformation = level.deformation(equilibrium, mesh_azimuth);
+  step.applied_force = equilibrium.applied_force;
+  return step;
+}
+
 /// The result of a step that the finest mesh has ended with.
 MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double mesh_azimuth,
                        const Level& finest) {
@@ -69,7 +88,6 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
   if (outcome.status != Status::converged) return step;
   step.deformation = finest.deformation(mesh_azimuth);
   step.applied_force = finest.applied_force();
-  step.tip_uncertainty = finest.tip_uncertainty();
   if (const auto height = contact_height(load))
     step.contact_arclength = contact_arclength(step.deformation->centreline, *height);
   return step;
@@ -77,16 +95,22 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
 
 }  // namespace
 
-PathRun::PathRun(std::vector<std::unique_ptr<Level>> levels, const LoadPath& path,
-                 const SolidOptions& options, const Checkpoint& checkpoint,
-                 const Progress& progress, MPI_Comm communicator)
+PathRun::PathRun(Levels levels, const LoadPath& path, const SolidOptions& options,
+                 const Checkpoint& checkpoint, const Progress& progress, MPI_Comm communicator)
     : levels_(std::move(levels)),
       path_(path),
       options_(options),
       checkpoint_(checkpoint),
       progress_(progress),
       communicator_(communicator),
-      result_{finest().undeformed(path.empty() ? 0 : mesh_azimuth(options, path.front())), {}} {}
+      result_{} {
+  const double turn = path.empty() ? 0 : mesh_azimuth(options, path.front());
+  result_.undeformed = finest().undeformed(turn);
+  for (std::size_t i = 0; i < levels_.companions.size(); ++i)
+    result_.companions.push_back({companion(i).undeformed(turn), {}});
+  result_.error_parts = levels_.error_parts;
+  result_.algebraic_error = options.tolerance;
+}
 
 MechanicsResult PathRun::follow() {
   go_on_from_checkpoint();
@@ -95,40 +119,68 @@ MechanicsResult PathRun::follow() {
     MechanicsStep step = solve(result_.steps.size(), !failed);
     failed = failed || step.status == Status::failed;
     if (!failed) save(&step);
-    result_.steps.push_back(std::move(step));
+    add(std::move(step));
   }
+  estimate_errors(result_);
   return std::move(result_);
+}
+
+void PathRun::add(MechanicsStep step) {
+  const bool converged = step.status == Status::converged;
+  const double turn = mesh_azimuth(options_, step.load);
+  for (std::size_t i = 0; i < levels_.companions.size(); ++i)
+    result_.companions[i].steps.push_back(
+        converged && is_at(companion(i), in_mesh_frame(options_, step.load))
+            ? converged_step(companion(i), companion(i).state()->current, step.load, turn)
+            : MechanicsStep{.load = step.load});
+  result_.steps.push_back(std::move(step));
 }
 
 void PathRun::go_on_from_checkpoint() {
   const Checkpoint::Entries kept = broadcast(communicator_, checkpoint_.kept);
   if (kept.empty()) return;
-  std::vector<std::optional<LoadPathState>> states;
-  deserialize(kept.at(state_name), states);
-  for (std::size_t i = 0; i < states.size(); ++i) levels_.at(i)->restore(std::move(states[i]));
+  if (!kept.contains(state_name))
+    throw CheckpointError(
+        "the checkpoint cannot be used: it is of another version; start anew with --fresh, which "
+        "deletes it");
   for (std::size_t i = 1; kept.contains(std::to_string(i)); ++i) {
     MechanicsStep step;
+    std::vector<std::optional<Equilibrium>> companions;
     std::optional<SolidState> state;
-    deserialize(kept.at(std::to_string(i)), step, state);
+    deserialize(kept.at(std::to_string(i)), step, state, companions);
+    const double turn = mesh_azimuth(options_, step.load);
     if (state)
-      step.deformation =
-          finest().deformation({in_mesh_frame(options_, step.load), *state, step.applied_force},
-                               mesh_azimuth(options_, step.load));
+      step.deformation = finest().deformation(
+          {in_mesh_frame(options_, step.load), *state, step.applied_force}, turn);
+    for (std::size_t c = 0; c < companions.size(); ++c)
+      result_.companions.at(c).steps.push_back(
+          companions[c] ? converged_step(companion(c), *companions[c], step.load, turn)
+                        : MechanicsStep{.load = step.load});
     result_.steps.push_back(std::move(step));
   }
+  std::vector<std::optional<LoadPathState>> states;
+  deserialize(kept.at(state_name), states);
+  for (std::size_t i = 0; i < states.size(); ++i) levels_.all.at(i)->restore(std::move(states[i]));
 }
 
 void PathRun::save(const MechanicsStep* finished) const {
   std::string failure;
   if (rank(communicator_) == 0 && checkpoint_.save) {
     std::vector<std::optional<LoadPathState>> states;
-    for (const auto& level : levels_)
+    for (const auto& level : levels_.all)
       states.push_back(level->state() != nullptr ? std::optional(*level->state()) : std::nullopt);
     Checkpoint::Entries entries{{state_name, serialized(states)}};
     if (finished != nullptr) {
       std::optional<SolidState> state;
-      if (finished->status == Status::converged) state = finest().state()->current.state;
-      entries.emplace(std::to_string(result_.steps.size() + 1), serialized(*finished, state));
+      std::vector<std::optional<Equilibrium>> companions(levels_.companions.size());
+      if (finished->status == Status::converged) {
+        state = finest().state()->current.state;
+        for (std::size_t i = 0; i < companions.size(); ++i)
+          if (is_at(companion(i), in_mesh_frame(options_, finished->load)))
+            companions[i] = companion(i).state()->current;
+      }
+      entries.emplace(std::to_string(result_.steps.size() + 1),
+                      serialized(*finished, state, companions));
     }
     try {
       checkpoint_.save(entries);
@@ -146,8 +198,8 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   if (progress_) shown = [this, i](const std::string& text) { progress_(label(i) + text); };
   std::function<void()> on_equilibrium;
   if (keep) on_equilibrium = [this] { save(nullptr); };
-  const LoadPathOutcome outcome =
-      levels_.back()->advance(in_mesh_frame(options_, path_[i]), shown, on_equilibrium);
+  const Load load = in_mesh_frame(options_, path_[i]);
+  const LoadPathOutcome outcome = finest().advance(load, shown, on_equilibrium);
   MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
   if (step.status == Status::failed) step.message = label(i) + step.message;
   step.seconds = seconds_since(start);

@@ -14,20 +14,31 @@
 
 namespace ciliaval::fem::solid {
 
-/// The levels of the solid on their way along a load path.
+/// The levels of the solid: each after the one that gives its initial guess.
+struct Levels {
+  std::vector<std::unique_ptr<Level>> all;
+  std::size_t finest = 0;               ///< the one whose solution is the result
+  std::vector<std::size_t> companions;  ///< those of the result's companions
+  std::vector<ErrorPart> error_parts;   ///< of the result
+};
+
+/// The levels on their way along a load path.
 class PathRun {
  public:
-  /// The levels from the coarsest to the finest. All arguments must outlive it. Rank 0 reads and
-  /// renews the checkpoint; that of other ranks is not used.
-  PathRun(std::vector<std::unique_ptr<Level>> levels, const LoadPath& path,
-          const SolidOptions& options, const Checkpoint& checkpoint, const Progress& progress,
-          MPI_Comm communicator);
+  /// All arguments must outlive it. Rank 0 reads and renews the checkpoint; that of other ranks is
+  /// not used.
+  PathRun(Levels levels, const LoadPath& path, const SolidOptions& options,
+          const Checkpoint& checkpoint, const Progress& progress, MPI_Comm communicator);
 
   /// Goes on from the checkpoint to the end of the path. Collective.
   MechanicsResult follow();
 
  private:
-  const Level& finest() const { return *levels_.back(); }
+  Level& finest() const { return *levels_.all[levels_.finest]; }
+  /// The level of a companion of the result.
+  Level& companion(std::size_t i) const { return *levels_.all[levels_.companions[i]]; }
+  /// Adds a step to the result, and to the companions theirs.
+  void add(MechanicsStep step);
   void go_on_from_checkpoint();
   /// Keeps the levels' states, and the step that has ended with them if there is one. Collective.
   void save(const MechanicsStep* finished) const;
@@ -36,7 +47,7 @@ class PathRun {
   /// Step i. If `keep`, saves each equilibrium on the way.
   MechanicsStep solve(std::size_t i, bool keep);
 
-  std::vector<std::unique_ptr<Level>> levels_;  ///< the coarsest first
+  Levels levels_;
   const LoadPath& path_;
   const SolidOptions& options_;
   const Checkpoint& checkpoint_;

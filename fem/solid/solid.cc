@@ -41,6 +41,10 @@ constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 1.0, 0.32,
 /// The level of each refinement.
 constexpr std::array<unsigned int, 4> refinement_levels{1, 3, 4, 5};
 
+/// Observed order of the tip in the thickness of the finest layer (docs/theory/solid.md): the
+/// singularities at the rims of the base and of the interfaces govern.
+constexpr double error_order = 1.5;
+
 Hyperelastic law_of(const Segment& segment, const SolidOptions& options) {
   const double mu = segment.shear_modulus();
   const double K = segment.bulk_modulus();
@@ -95,10 +99,10 @@ meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidO
   return mesh;
 }
 
-/// The meshes from the coarsest to the refinement asked for; a user's mesh alone.
-std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const LoadPath& path,
-                                                const SolidOptions& options,
-                                                MPI_Comm communicator) {
+/// The meshes from the coarsest to the refinement asked for, each of which starts from the one
+/// before; the next coarser one is the companion of the result. A user's mesh alone.
+Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
+                   MPI_Comm communicator) {
   const LevelOptions level_options{
       {{options.tolerance, options.max_iterations, least_force(cilium)},
        options.max_cutbacks,
@@ -106,17 +110,22 @@ std::vector<std::unique_ptr<Level>> make_levels(const Cilium& cilium, const Load
       options.solver,
       communicator,
       options.initial_guess == InitialGuess::beam};
-  std::vector<std::unique_ptr<Level>> levels;
+  Levels levels;
   if (!options.mesh.empty()) {
-    levels.push_back(std::make_unique<Level>(cilium,
-                                             meshes::MeshFile{options.mesh, options.mesh_unit},
-                                             materials(cilium, options), level_options));
+    levels.all.push_back(std::make_unique<Level>(cilium,
+                                                 meshes::MeshFile{options.mesh, options.mesh_unit},
+                                                 materials(cilium, options), level_options));
     return levels;
   }
-  for (unsigned int i = 0; i <= mesh_level(options.refinement); ++i)
-    levels.push_back(std::make_unique<Level>(cilium, path_mesh(i, options, path),
-                                             materials(cilium, options), level_options,
-                                             levels.empty() ? nullptr : levels.back().get()));
+  levels.finest = mesh_level(options.refinement);
+  for (unsigned int i = 0; i <= levels.finest; ++i)
+    levels.all.push_back(std::make_unique<Level>(
+        cilium, path_mesh(i, options, path), materials(cilium, options), level_options,
+        levels.all.empty() ? nullptr : levels.all.back().get()));
+  levels.companions = {levels.finest - 1};
+  const double ratio =
+      mesh_levels.at(levels.finest - 1).finest_layer / mesh_levels.at(levels.finest).finest_layer;
+  levels.error_parts = {{"layers", 0, 1, 1 / (std::pow(ratio, error_order) - 1)}};
   return levels;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // How often does the error lie inside the stated interval? Each random case is computed with the
-// model's defaults and with finer options; the difference of the two counts as the error.
+// model's defaults and with finer options; the difference of the two counts as the error. Exit code
+// 1: less than 95 % of a quantity inside, or one more than three times outside.
 //   build/release/tests/coverage/coverage solid|beam [number of cases [first seed]]
 #include <fmt/core.h>
 
@@ -88,7 +89,9 @@ std::vector<Sample> samples(const input::Case& problem, const models::CaseResult
   std::vector<Sample> all{
       {"tip" + load, (tip.position - true_tip.position).norm(), step.tip_uncertainty},
       {"tip angle", std::abs(tip.theta() - true_tip.theta()),
-       models::tip_angle_uncertainty(run, 0)}};
+       models::tip_angle_uncertainty(run, 0)},
+      {"applied force" + load, std::abs(step.applied_force - truth.applied_force),
+       step.applied_force_uncertainty}};
   const auto& fields = result.fields.front();
   const auto& true_fields = finer.fields.front();
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
@@ -125,7 +128,29 @@ void print_table(const std::map<std::string, std::vector<double>>& effectivities
   }
 }
 
-void cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed) {
+/// Whether of each quantity, over all loads, 95 % lie inside and none more than three times
+/// outside.
+bool holds(const std::map<std::string, std::vector<double>>& effectivities) {
+  std::map<std::string, std::vector<double>> of_quantity;
+  for (const auto& [group, values] : effectivities) {
+    auto& all = of_quantity[group.substr(0, group.find(" under "))];
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  bool all_hold = !of_quantity.empty();
+  for (const auto& [quantity, values] : of_quantity) {
+    const auto outside = [&](double limit) {
+      return std::ranges::count_if(values, [&](double value) { return !(value <= limit); });
+    };
+    const double part = static_cast<double>(outside(1)) / static_cast<double>(values.size());
+    const bool good = part <= 0.05 && outside(3) == 0;
+    fmt::print("{}: {:.1f} % inside, {} more than 3 times outside{}\n", quantity, 100 * (1 - part),
+               outside(3), good ? "" : ": NOT what is promised");
+    all_hold = all_hold && good;
+  }
+  return all_hold;
+}
+
+bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed) {
   std::map<std::string, std::vector<double>> effectivities;
   for (std::uint32_t seed = first_seed; seed < first_seed + cases; ++seed) {
     const RandomCase drawn = random_case(seed);
@@ -154,6 +179,7 @@ void cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
     std::fflush(stdout);
   }
   print_table(effectivities);
+  return holds(effectivities);
 }
 
 }  // namespace
@@ -169,8 +195,7 @@ int main(int argc, char** argv) {
           return arguments.size() > i ? static_cast<std::uint32_t>(std::stoul(arguments[i]))
                                       : fallback;
         };
-        test::cover(subject, number(2, 20), number(3, 0));
-        return 0;
+        return test::cover(subject, number(2, 20), number(3, 0)) ? 0 : 1;
       }
     throw InputError("usage: coverage solid|beam [number of cases [first seed]]");
   } catch (const std::exception& error) {

@@ -21,7 +21,7 @@ class Draw {
   double even(double low, double high) { return low + (high - low) * unit(); }
   double log_even(double low, double high) { return low * std::pow(high / low, unit()); }
   std::size_t choice(std::size_t n) {
-    return std::min(n - 1, static_cast<std::size_t>(unit() * n));
+    return std::min(n - 1, static_cast<std::size_t>(unit() * static_cast<double>(n)));
   }
 
  private:

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "analytic/body/mesh_field.h"
+#include "analytic/rod/field_models.h"
 #include "compare/input/case_sections.h"
 #include "compare/input/case_toml.h"
 #include "compare/input/units.h"
@@ -11,6 +13,7 @@
 namespace ciliaval::compare::models::entries {
 namespace {
 
+using fem::potential::MagnetPushForward;
 using fem::potential::PermeableBox;
 using fem::potential::PotentialOptions;
 
@@ -80,14 +83,49 @@ std::string write_plates(const input::ModelOptions& options) {
   return text;
 }
 
+/// The potential, which takes seconds to minutes for each deformation. What the mechanics' error
+/// makes of its field is told by the field of the same magnets in vacuum.
+class PotentialAndItsChanges : public FieldModel {
+ public:
+  explicit PotentialAndItsChanges(const PotentialOptions& options)
+      : potential_(options), changes_(options.push_forward) {}
+  bool pointwise() const override { return potential_.pointwise(); }
+  const FieldModel& for_differences() const override { return changes_; }
+  Field field(const Cilium& cilium, const Deformation& deformation,
+              std::span<const Vector3> points) const override {
+    return potential_.field(cilium, deformation, points);
+  }
+
+ private:
+  /// Of a body `mesh`, of a rod `volume`.
+  class InVacuum : public FieldModel {
+   public:
+    explicit InVacuum(MagnetPushForward push_forward)
+        : mesh_({.push_forward = push_forward == MagnetPushForward::F
+                                     ? analytic::sources::PushForward::F
+                                     : analytic::sources::PushForward::R}) {}
+    Field field(const Cilium& cilium, const Deformation& deformation,
+                std::span<const Vector3> points) const override {
+      return deformation.body ? mesh_.field(cilium, deformation, points)
+                              : volume_.field(cilium, deformation, points);
+    }
+
+   private:
+    analytic::body::MeshField mesh_;
+    analytic::rod::VolumeField volume_;
+  };
+
+  fem::potential::Potential potential_;
+  InVacuum changes_;
+};
+
 }  // namespace
 
 input::FieldEntry potential() {
-  using fem::potential::MagnetPushForward;
   return {
       .id = "potential",
       .description = "scalar-potential FEM with recoil permeability and permeable plates",
-      .make = input::make<fem::potential::Potential, PotentialOptions>,
+      .make = input::make<PotentialAndItsChanges, PotentialOptions>,
       .options =
           {input::option(&PotentialOptions::relative_permeability, "relative_permeability",
                          permeability_range,

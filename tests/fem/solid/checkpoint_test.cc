@@ -48,6 +48,9 @@ Progress killed_after(int& lines) {
 }
 
 void expect_same(const MechanicsResult& a, const MechanicsResult& b, const std::string& what) {
+  ASSERT_EQ(a.companions.size(), b.companions.size()) << what;
+  for (std::size_t i = 0; i < a.companions.size(); ++i)
+    expect_same(a.companions[i], b.companions[i], what + ", companion");
   ASSERT_EQ(a.steps.size(), b.steps.size()) << what;
   for (std::size_t i = 0; i < a.steps.size(); ++i) {
     const MechanicsStep& p = a.steps[i];
@@ -58,6 +61,7 @@ void expect_same(const MechanicsResult& a, const MechanicsResult& b, const std::
     EXPECT_EQ(p.slip_off_force, q.slip_off_force) << what;
     EXPECT_EQ(p.contact_arclength, q.contact_arclength) << what;
     EXPECT_EQ(p.tip_uncertainty, q.tip_uncertainty) << what;
+    EXPECT_EQ(p.tip_angle_uncertainty, q.tip_angle_uncertainty) << what;
     EXPECT_EQ(p.iterations, q.iterations) << what;
     EXPECT_EQ(p.unknowns, q.unknowns) << what;
     ASSERT_EQ(p.deformation.has_value(), q.deformation.has_value()) << what;
