@@ -33,6 +33,8 @@ struct MechanicsStep {
                                          ///< bears, N, if the model found it
   std::optional<double> slip_off_displacement;  ///< probe: the largest displacement of the contact
                                                 ///< point, m, if the model found it
+  std::optional<double> slip_off_uncertainty;   ///< of the slip-off force, N, or of a probe's
+                                                ///< displacement, m, if the model knows it
   std::optional<double> contact_arclength;  ///< contact, probe: S of the material point at z = h, m
   // Estimates of the numerical error, if the model has one.
   std::optional<double> tip_uncertainty;            ///< of the tip's position, m
@@ -42,6 +44,11 @@ struct MechanicsStep {
   int iterations = 0;                               ///< nonlinear iterations, all cutbacks included
   double seconds = 0;                               ///< wall time
 };
+
+/// The largest magnitude that an equilibrium bears, of a contact N, of a probe m, if it is known.
+inline std::optional<double> slip_off_limit(const MechanicsStep& step) {
+  return step.load.is<ProbeLoad>() ? step.slip_off_displacement : step.slip_off_force;
+}
 
 /// A part of the estimate of the discretisation error: how far two solutions of the same load path
 /// are apart. They are the result itself, 0, or one of its companions, i for the companion i − 1.
@@ -76,7 +83,8 @@ inline Progress with_prefix(const Progress& progress, std::string prefix) {
 }
 
 /// What a model keeps of its way along a load path, to go on from there: bytes of its own making
-/// under names. The n-th finished step has the name n, from 1.
+/// under names. The n-th finished step has the name n, from 1. (That of a model that is refined has
+/// parts, by prefixes of the names.)
 struct Checkpoint {
   using Entries = std::map<std::string, std::string>;
   Entries kept;  ///< by an earlier run; empty: start from the straight cilium

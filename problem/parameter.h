@@ -24,6 +24,7 @@ inline constexpr Quantity density{"a", "density", "kg/m^3", "1000 kg/m^3"};
 inline constexpr Quantity angle{"an", "angle", "rad", "30 deg"};
 inline constexpr Quantity time{"a", "time", "s", "10 min"};
 inline constexpr Quantity flux_density{"a", "flux density", "T", "50 uT"};
+inline constexpr Quantity percentage{"a", "percentage", "%", "0.1 %"};  ///< held in per cent
 inline constexpr Quantity number{"a", "plain number", "", "0.49"};
 }  // namespace quantity
 

@@ -103,8 +103,7 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsS
   PlanarUnits units = planar_units(cilium, step.load);
   const bool height_form = has_height_form(options);
   std::optional<PlanarShape> shape;
-  const std::optional<double> limit =
-      step.load.is<ProbeLoad>() ? step.slip_off_displacement : step.slip_off_force;
+  const std::optional<double> limit = slip_off_limit(step);
   if (!limit || magnitude(step.load) <= *limit) {
     if (const auto probe = step.load.as<ProbeLoad>()) {
       ProbeForce found = probe_force(cilium, *probe, step.slip_off_force.value(), options);
@@ -127,8 +126,14 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsS
   step.status = Status::converged;
   step.applied_force = applied_force(step.load, units, *step.deformation);
   if (shape->contact) step.contact_arclength = *shape->contact * units.length;
-  step.tip_uncertainty =
-      units.length * std::max(shape->error, std::numeric_limits<double>::epsilon());
+  // The difference of two integrations may be small by chance; the tolerance is what they keep.
+  const double error = std::max(shape->error, options.tolerance);
+  step.tip_uncertainty = units.length * error;
+  step.tip_angle_uncertainty = error * step.deformation->centreline.at(units.length).theta();
+  if (step.load.is<FlowLoad>())
+    step.applied_force_uncertainty = magnitude(step.load) * *step.tip_uncertainty;
+  else if (!step.load.is<ProbeLoad>())
+    step.applied_force_uncertainty = std::numeric_limits<double>::epsilon() * step.applied_force;
   step.unknowns = 1;
   step.iterations = shape->iterations;
 }
@@ -153,6 +158,8 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
         const SlipOff limit = slip_off(cilium, load, options_);
         step.slip_off_force = limit.force;
         step.slip_off_displacement = limit.displacement;
+        if (const auto largest = slip_off_limit(step))
+          step.slip_off_uncertainty = options_.tolerance * *largest;
       }
       solve_step(cilium, options_, step);
     } catch (const SolverError& error) {

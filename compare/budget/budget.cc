@@ -80,9 +80,10 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
   surrounded.load_path = computed.path.loads;
   for (const std::string& id : chain.mechanics) {
     if (progress) progress(id + ": starting");
-    const auto model = models::entry_of(mechanics, id).make(problem.options);
     const models::MechanicsRun& run =
-        computed.around.emplace(id, models::run_mechanics(id, *model, surrounded, progress))
+        computed.around
+            .emplace(id, models::run_mechanics(models::entry_of(mechanics, id), surrounded, fields,
+                                               progress))
             .first->second;
     computed.alone.emplace(id, steps_of(run, computed.path.step));
   }

@@ -56,7 +56,7 @@ models::MechanicsRun mechanics_for(const models::FieldEntry& field, const input:
         problem.mechanics.end())
       continue;
     models::MechanicsRun run =
-        models::run_mechanics(entry.id, *entry.make(problem.options), problem, progress, {});
+        models::run_mechanics(entry, problem, models::field_models(), progress);
     const Deformation& undeformed = run.result.undeformed;
     if (!undeformed.centreline.pieces().empty() && (!field.has_body || undeformed.body)) return run;
   }

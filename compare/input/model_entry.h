@@ -36,6 +36,17 @@ struct Refinement {
   std::function<void(ModelOptions&)> also{};           ///< what else is set on all levels
 };
 
+/// The largest error that the user allows in a mechanics model's results: it is refined until its
+/// estimate is as small.
+struct ErrorLimit {
+  enum class Of {
+    tip,   ///< of the tip's position, over its displacement, at each step
+    field  ///< of ΔB, over the largest |ΔB| of the path, at each sensor and step
+  };
+  double percent = 0;  ///< 0: there is none, the options say how fine the model is
+  Of of = Of::tip;
+};
+
 /// Takes a fault of a case; `path` says where it is, dotted: "models.solid.mesh", "load.height[2]".
 using Report = std::function<void(const std::string& path, const std::string& fault)>;
 
@@ -64,6 +75,8 @@ struct Entry {
   std::function<std::unique_ptr<Model>(const ModelOptions&)> make;
   std::vector<Option> options{};
   std::vector<Refinement> refinements{};
+  /// Mechanics: the error limit, for which the first of the refinements is raised; empty: none.
+  std::function<ErrorLimit(const ModelOptions&)> error_limit{};
   std::vector<const LoadType*> loads{};  ///< that a mechanics model takes; empty: it says so itself
   bool has_body = false;                 ///< mechanics: gives Deformation::body; field: needs it
   bool is_collective = false;            ///< all MPI ranks call it, and no two threads at a time

@@ -25,15 +25,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The models that the case asks for, each with its entry, in the order of the registry.
+/// The entries of the models that the case asks for, in the order of the registry.
 template <class Entry>
-auto make_chosen(std::span<const Entry> entries, const std::vector<std::string>& ids,
-                 const input::ModelOptions& options) {
+std::vector<const Entry*> chosen(std::span<const Entry> entries,
+                                 const std::vector<std::string>& ids) {
   for (const std::string& id : ids) entry_of(entries, id);
-  std::vector<std::pair<const Entry*, decltype(entries.front().make(options))>> result;
+  std::vector<const Entry*> result;
   for (const Entry& entry : entries)
-    if (std::find(ids.begin(), ids.end(), entry.id) != ids.end())
-      result.emplace_back(&entry, entry.make(options));
+    if (std::find(ids.begin(), ids.end(), entry.id) != ids.end()) result.push_back(&entry);
   return result;
 }
 
@@ -325,14 +324,14 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
 CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress,
                const std::map<std::string, Checkpoint>& checkpoints) {
-  const auto mechanics_models = make_chosen(mechanics, problem.mechanics, problem.options);
-  const auto field_models = make_chosen(fields, problem.fields, problem.options);
+  const std::vector<const MechanicsEntry*> mechanics_entries = chosen(mechanics, problem.mechanics);
+  const std::vector<const FieldEntry*> field_entries = chosen(fields, problem.fields);
   CaseResult result{problem, {}, {}};
-  for (const auto& [entry, model] : mechanics_models) {
+  for (const MechanicsEntry* entry : mechanics_entries) {
     if (progress) progress(entry->id + ": starting");
     const auto kept = checkpoints.find(entry->id);
     result.mechanics.push_back(
-        run_mechanics(entry->id, *model, problem, progress,
+        run_mechanics(*entry, problem, fields, progress,
                       kept != checkpoints.end() ? kept->second : Checkpoint{}));
   }
   for (const input::external::ExternalModel& model : problem.external)
@@ -340,9 +339,10 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   for (const MechanicsRun& mechanics_run : result.mechanics) {
     const Deformation& undeformed = mechanics_run.result.undeformed;
     if (undeformed.centreline.pieces().empty()) continue;
-    for (const auto& [entry, model] : field_models)
+    for (const FieldEntry* entry : field_entries)
       if (!entry->has_body || undeformed.body)
-        result.fields.push_back(run_field(entry->id, *model, mechanics_run, problem, progress));
+        result.fields.push_back(
+            run_field(entry->id, *entry->make(problem.options), mechanics_run, problem, progress));
   }
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.readings.empty())

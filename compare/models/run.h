@@ -82,6 +82,14 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
                            const input::Case& problem, const Progress& progress = {},
                            const Checkpoint& checkpoint = {});
 
+/// The same of the entry's model. Where the case sets an error limit, the model is refined until
+/// its estimate is below it, or as far as it can be; a message on each step says which it was. The
+/// field whose error may be limited is that of the first of the models that take the body. Throws
+/// as above.
+MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& problem,
+                           std::span<const FieldEntry> fields, const Progress& progress = {},
+                           const Checkpoint& checkpoint = {});
+
 /// A part of run(): one field model at the sensors of a case, on the undeformed cilium and on every
 /// converged step of a mechanics run, whatever the load path of the case.
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,

@@ -49,7 +49,8 @@ Json load_json(const Load& load) {
 Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   const MechanicsStep& step = run.result.steps[index];
   Json json{{"status", to_string(step.status)}, {"message", step.message}};
-  for (const char* name : {"tip", "tip_angle", "tip_uncertainty", "applied_force"})
+  for (const char* name : {"tip", "tip_angle", "tip_uncertainty", "tip_angle_uncertainty",
+                           "applied_force", "applied_force_uncertainty"})
     json[name] = nullptr;
   if (step.deformation) {
     const Centreline& centreline = step.deformation->centreline;
@@ -57,11 +58,14 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
     json["tip"] = vector(tip.position);
     json["tip_angle"] = tip.theta();
     json["tip_uncertainty"] = or_null(step.tip_uncertainty);
+    json["tip_angle_uncertainty"] = or_null(step.tip_angle_uncertainty);
     json["applied_force"] = step.applied_force;
+    json["applied_force_uncertainty"] = or_null(step.applied_force_uncertainty);
   }
   json["slip_off_force"] = or_null(step.slip_off_force);
   if (step.load.is<ProbeLoad>())
     json["slip_off_displacement"] = or_null(step.slip_off_displacement);
+  json["slip_off_uncertainty"] = or_null(step.slip_off_uncertainty);
   json["contact_arclength"] = or_null(step.contact_arclength);
   json["unknowns"] = step.unknowns;
   json["iterations"] = step.iterations;

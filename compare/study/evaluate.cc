@@ -19,11 +19,6 @@
 namespace ciliaval::compare::study {
 namespace {
 
-/// The limit that the step knows, if it does.
-std::optional<double> known_limit(const MechanicsStep& step) {
-  return step.load.is<ProbeLoad>() ? step.slip_off_displacement : step.slip_off_force;
-}
-
 MechanicsStep solve_one(const MechanicsModel& model, const Cilium& cilium, const Load& load,
                         const Progress& progress) {
   return model.solve(cilium, {load}, progress).steps.at(0);
@@ -95,14 +90,14 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
                std::vector<PairResult>& results) {
   const auto output = std::find(study.outputs.begin(), study.outputs.end(), Output::range);
   if (output == study.outputs.end()) return;
-  std::optional<double> range;
+  std::optional<LargestLoad> range;
   std::string failure;
   try {
     range = study.rotation
                 ? magnitude_at_rotation(model, c.cilium, step.load, *study.rotation, progress)
                 : slip_off(model, c.cilium, step,
                            c.options.of<analytic::elastica::ElasticaOptions>(), progress);
-    if (!std::isfinite(*range)) throw SolverError("range: it is not finite");
+    if (!std::isfinite(range->magnitude)) throw SolverError("range: it is not finite");
   } catch (const CheckpointError&) {
     throw;
   } catch (const RankFailure&) {
@@ -112,26 +107,30 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
   }
   for (PairResult& result : results) {
     if (result.status == Status::failed) continue;
-    result.values[static_cast<std::size_t>(output - study.outputs.begin())] = range;
+    if (range) {
+      result.values[static_cast<std::size_t>(output - study.outputs.begin())] = range->magnitude;
+      result.range_uncertainty = range->uncertainty;
+    }
     append(result.message, failure);
   }
 }
 
 }  // namespace
 
-double slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
-                const analytic::elastica::ElasticaOptions& elastica, const Progress& progress) {
-  if (const auto limit = known_limit(step)) return *limit;
+LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
+                     const analytic::elastica::ElasticaOptions& elastica,
+                     const Progress& progress) {
+  if (const auto limit = slip_off_limit(step)) return {*limit, step.slip_off_uncertainty};
   // A model that meets its limit on the way says so: any load beyond will do, and that of the
   // elastica is near.
   const MechanicsStep guess =
       solve_one(analytic::elastica::Elastica(elastica), cilium, step.load, progress);
-  double magnitude = 1.5 * known_limit(guess).value_or(ciliaval::magnitude(step.load));
+  double magnitude = 1.5 * slip_off_limit(guess).value_or(ciliaval::magnitude(step.load));
   constexpr int most_trials = 8;
   for (int i = 0; i < most_trials; ++i, magnitude *= 2) {
     const MechanicsStep trial =
         solve_one(model, cilium, with_magnitude(step.load, magnitude), progress);
-    if (const auto limit = known_limit(trial)) return *limit;
+    if (const auto limit = slip_off_limit(trial)) return {*limit, trial.slip_off_uncertainty};
     if (trial.status == Status::failed)
       throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
                                     magnitude_unit(step.load), trial.message));
@@ -140,14 +139,16 @@ double slip_off(const MechanicsModel& model, const Cilium& cilium, const Mechani
                                 magnitude_unit(step.load)));
 }
 
-double magnitude_at_rotation(const MechanicsModel& model, const Cilium& cilium, const Load& load,
-                             double rotation, const Progress& progress) {
+LargestLoad magnitude_at_rotation(const MechanicsModel& model, const Cilium& cilium,
+                                  const Load& load, double rotation, const Progress& progress) {
+  std::optional<double> angle_uncertainty;  // of the last trial
   const auto excess = [&](double magnitude) {
     if (magnitude == 0) return -rotation;
     const MechanicsStep step = solve_one(model, cilium, with_magnitude(load, magnitude), progress);
     if (step.status != Status::converged)
       throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
                                     magnitude_unit(load), step.message));
+    angle_uncertainty = step.tip_angle_uncertainty;
     const Centreline& centreline = step.deformation->centreline;
     return centreline.at(centreline.length()).theta() - rotation;
   };
@@ -169,7 +170,12 @@ double magnitude_at_rotation(const MechanicsModel& model, const Cilium& cilium, 
   const auto close = [](double a, double b) { return b - a <= tolerance * b; };
   const auto [a, b] =
       boost::math::tools::toms748_solve(excess, lower, upper, at_lower, at_upper, close, trials);
-  return (a + b) / 2;
+  LargestLoad result{(a + b) / 2, {}};
+  constexpr double secant = 0.01;
+  const double turned = -excess((1 - secant) * result.magnitude);
+  if (angle_uncertainty && turned > 0)
+    result.uncertainty = b - a + *angle_uncertainty * secant * result.magnitude / turned;
+  return result;
 }
 
 std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::string& mechanics,
@@ -178,8 +184,8 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
                                  const Progress& progress) {
   const budget::SurroundedPath path = budget::surround(c.load_path, study.needs_slope());
   c.load_path = path.loads;
-  const auto model = models::entry_of(mechanics_models, mechanics).make(c.options);
-  const models::MechanicsRun run = models::run_mechanics(mechanics, *model, c, progress);
+  const models::MechanicsEntry& entry = models::entry_of(mechanics_models, mechanics);
+  const models::MechanicsRun run = models::run_mechanics(entry, c, field_models, progress);
   const MechanicsStep& step = run.result.steps[path.step.front()];
   std::vector<PairResult> results;
   for (const models::ModelPair& pair : study.pairs) {
@@ -193,7 +199,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
     results.push_back(result_of(study, step, fields, path));
     results.back().uncertainty = models::change_uncertainty(run, fields, path.step.front(), 0);
   }
-  add_range(study, c, *model, step, progress, results);
+  add_range(study, c, *entry.make(c.options), step, progress, results);
   return results;
 }
 

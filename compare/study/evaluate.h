@@ -20,6 +20,13 @@ struct PairResult {
                                               ///< missing; else empty
   std::vector<std::optional<double>> values;  ///< of the study's outputs, in their order
   std::optional<double> uncertainty = std::nullopt;  ///< numerical, of the components of ΔB, T
+  std::optional<double> range_uncertainty = std::nullopt;  ///< numerical, in the range's unit
+};
+
+/// A largest load: N, N/m, or m of a probe.
+struct LargestLoad {
+  double magnitude = 0;
+  std::optional<double> uncertainty;  ///< if the model knows it
 };
 
 /// Runs one mechanics model of the study on the case of one of its points, and the fields of its
@@ -34,13 +41,15 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
 /// The largest magnitude of a contact (N) or a probe's displacement (m) that the model bears: where
 /// it slips off. `step` is the model's step at some magnitude. Throws SolverError if the model
 /// finds none.
-double slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
-                const analytic::elastica::ElasticaOptions& elastica, const Progress& progress = {});
+LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
+                     const analytic::elastica::ElasticaOptions& elastica,
+                     const Progress& progress = {});
 
 /// The magnitude of the load at which the tip's rotation from +z is `rotation` (rad, below 90°), to
-/// 1e-6 of it, by bracketing and TOMS 748: each trial is a solution from the straight cilium.
-/// Throws SolverError.
-double magnitude_at_rotation(const MechanicsModel& model, const Cilium& cilium, const Load& load,
-                             double rotation, const Progress& progress = {});
+/// 1e-6 of it, by bracketing and TOMS 748: each trial is a solution from the straight cilium. Its
+/// uncertainty is the bracket and that of the tip's angle over dθ/dF, which a secant over 1 %
+/// gives. Throws SolverError.
+LargestLoad magnitude_at_rotation(const MechanicsModel& model, const Cilium& cilium,
+                                  const Load& load, double rotation, const Progress& progress = {});
 
 }  // namespace ciliaval::compare::study

@@ -20,7 +20,7 @@ struct PotentialProblem {
 };
 
 struct PotentialControl {
-  double tolerance = 1e-3;            ///< of B at each point, relative to |B|
+  double tolerance = 2e-3;            ///< uncertainty of B at each point, relative to |B|
   std::size_t max_unknowns = 600000;  ///< of the solution that B is taken from
   double box = 16;  ///< half-width of the octree over the radius of all bodies and points
 };
@@ -46,9 +46,9 @@ struct PotentialResult {
   std::shared_ptr<const FieldMesh> mesh;  ///< the solution that B is taken from
 };
 
-/// Refines until the estimates are below the tolerance. Collective. Throws InputError if a point is
-/// not finite, in a body or too close to one, a permeability is not positive or two bodies meet;
-/// SolverError if the tolerance is not reached with the unknowns allowed.
+/// Refines until the uncertainties are below the tolerance. Collective. Throws InputError if a
+/// point is not finite, in a body or too close to one, a permeability is not positive or two bodies
+/// meet; SolverError if the tolerance is not reached with the unknowns allowed.
 PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control);
 
 }  // namespace ciliaval::fem::potential

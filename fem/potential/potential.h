@@ -13,14 +13,14 @@ struct PotentialOptions {
   /// have 1.
   double relative_permeability = 1.05;
   MagnetPushForward push_forward = MagnetPushForward::F;
-  double tolerance = 1e-3;             ///< estimate of the error of B over |B|, at each sensor
+  double tolerance = 2e-3;             ///< uncertainty of B over |B|, at each sensor
   unsigned int max_unknowns = 600000;  ///< of the solution that B is taken from
   std::vector<PermeableBox> plates;    ///< at rest, below or beside the sensors
 };
 
 /// The field of the deformed magnet, with its recoil permeability, and of permeable plates, by a
 /// scalar potential in all of space (docs/theory/potential.md): finite elements on an octree,
-/// refined for B at the sensors. Field::uncertainty is an estimate, not a bound. field() is
+/// refined for B at the sensors. Field::uncertainty is twice the estimate of the error. field() is
 /// collective; it starts MPI. Throws as solve_potential().
 class Potential : public FieldModel {
  public:

@@ -83,15 +83,15 @@ void serialize(Archive& archive, ciliaval::fem::solid::equilibrium::LoadPathStat
 template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
-         contact_arclength, tip_uncertainty, tip_angle_uncertainty, applied_force_uncertainty,
-         unknowns, iterations, seconds] = step;
+         slip_off_uncertainty, contact_arclength, tip_uncertainty, tip_angle_uncertainty,
+         applied_force_uncertainty, unknowns, iterations, seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
   // Estimated anew.
   static_cast<void>(tip_uncertainty);
   static_cast<void>(tip_angle_uncertainty);
   static_cast<void>(applied_force_uncertainty);
   archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
-      contact_arclength& unknowns& iterations& seconds;
+      slip_off_uncertainty& contact_arclength& unknowns& iterations& seconds;
 }
 
 }  // namespace boost::serialization

@@ -62,15 +62,16 @@ bool is_at(const Level& level, const Load& load) {
          magnitude(level.state()->current.load) == magnitude(load);
 }
 
-/// The step of a companion.
-MechanicsStep converged_step(const Level& level, const Equilibrium& equilibrium, const Load& load,
+/// The step of a companion: failed if it has no equilibrium with the load.
+MechanicsStep companion_step(const Level& level, const Equilibrium* equilibrium, const Load& load,
                              double mesh_azimuth) {
   MechanicsStep step;
   step.load = load;
+  if (equilibrium == nullptr) return step;
   step.status = Status::converged;
   step.unknowns = level.unknowns();
-  step.deformation = level.deformation(equilibrium, mesh_azimuth);
-  step.applied_force = equilibrium.applied_force;
+  step.deformation = level.deformation(*equilibrium, mesh_azimuth);
+  step.applied_force = equilibrium->applied_force;
   return step;
 }
 
@@ -109,7 +110,7 @@ PathRun::PathRun(Levels levels, const LoadPath& path, const SolidOptions& option
   for (std::size_t i = 0; i < levels_.companions.size(); ++i)
     result_.companions.push_back({companion(i).undeformed(turn), {}});
   result_.error_parts = levels_.error_parts;
-  result_.algebraic_error = options.tolerance;
+  result_.algebraic_error = options.newton_tolerance;
 }
 
 MechanicsResult PathRun::follow() {
@@ -130,9 +131,11 @@ void PathRun::add(MechanicsStep step) {
   const double turn = mesh_azimuth(options_, step.load);
   for (std::size_t i = 0; i < levels_.companions.size(); ++i)
     result_.companions[i].steps.push_back(
-        converged && is_at(companion(i), in_mesh_frame(options_, step.load))
-            ? converged_step(companion(i), companion(i).state()->current, step.load, turn)
-            : MechanicsStep{.load = step.load});
+        companion_step(companion(i),
+                       converged && is_at(companion(i), in_mesh_frame(options_, step.load))
+                           ? &companion(i).state()->current
+                           : nullptr,
+                       step.load, turn));
   result_.steps.push_back(std::move(step));
 }
 
@@ -154,8 +157,7 @@ void PathRun::go_on_from_checkpoint() {
           {in_mesh_frame(options_, step.load), *state, step.applied_force}, turn);
     for (std::size_t c = 0; c < companions.size(); ++c)
       result_.companions.at(c).steps.push_back(
-          companions[c] ? converged_step(companion(c), *companions[c], step.load, turn)
-                        : MechanicsStep{.load = step.load});
+          companion_step(companion(c), companions[c] ? &*companions[c] : nullptr, step.load, turn));
     result_.steps.push_back(std::move(step));
   }
   std::vector<std::optional<LoadPathState>> states;
@@ -200,7 +202,24 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   if (keep) on_equilibrium = [this] { save(nullptr); };
   const Load load = in_mesh_frame(options_, path_[i]);
   const LoadPathOutcome outcome = finest().advance(load, shown, on_equilibrium);
+  if (outcome.status == Status::converged) {
+    // The coarser levels are there already, unless the finest has left them behind.
+    Progress of_companions;
+    if (shown) of_companions = with_prefix(shown, "error estimate, ");
+    if (levels_.all.size() > levels_.finest + 1 && is_at(*levels_.all.front(), load))
+      levels_.all.back()->advance(load, of_companions);
+  }
   MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
+  if (step.status == Status::slipped_off && levels_.finest > 0) {
+    // The bracket, and how far that of the next coarser level, which has slipped off too, is away.
+    const std::optional<double> own = slip_off_limit(step);
+    MechanicsStep coarser = step;
+    const LoadPathOutcome of_coarser = levels_.all[levels_.finest - 1]->advance(load, {});
+    coarser.slip_off_force = of_coarser.slip_off_force;
+    coarser.slip_off_displacement = of_coarser.slip_off_displacement;
+    if (const std::optional<double> its = slip_off_limit(coarser); own && its)
+      step.slip_off_uncertainty = outcome.slip_off_bracket + std::abs(*own - *its);
+  }
   if (step.status == Status::failed) step.message = label(i) + step.message;
   step.seconds = seconds_since(start);
   return step;

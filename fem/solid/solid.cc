@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solid.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,28 +24,32 @@ namespace ciliaval::fem::solid {
 using namespace material;
 namespace {
 
-/// Meshes from coarse to fine. From one to the next the layers at the clamped end and at the
-/// interfaces and the cells under the mantle halve.
+/// Meshes from coarse to fine. From one to the next all cells get thinner: the layers at the
+/// clamped end and at the interfaces, which are half as thick as the ring under the mantle is wide,
+/// the ring itself, the layers between; from the fourth on also along the circumference
+/// (docs/theory/meshes.md).
 struct MeshLevel {
   unsigned int square_cells;
   unsigned int rings;
-  double ring_ratio;
   double finest_layer;
   double coarsest_layer;
   double growth;
 };
-constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 1.0, 0.32, 1.2, 0.35},
-                                                               {2, 2, 0.5, 0.16, 0.8, 0.25},
-                                                               {2, 3, 0.5, 0.08, 0.5, 0.3},
-                                                               {2, 4, 0.5, 0.04, 0.5, 0.3},
-                                                               {4, 5, 0.5, 0.02, 0.4, 0.25},
-                                                               {4, 6, 0.5, 0.01, 0.25, 0.2}}};
-/// The level of each refinement.
-constexpr std::array<unsigned int, 4> refinement_levels{1, 3, 4, 5};
+constexpr std::array<MeshLevel, mesh_level_count> mesh_levels{{{2, 1, 0.2, 1.0, 0.6},
+                                                               {2, 2, 0.08, 0.7, 0.42},
+                                                               {2, 3, 0.036, 0.5, 0.3},
+                                                               {4, 4, 0.017, 0.35, 0.2},
+                                                               {4, 5, 0.008, 0.25, 0.15}}};
 
-/// Observed order of the tip in the thickness of the finest layer (docs/theory/solid.md): the
-/// singularities at the rims of the base and of the interfaces govern.
-constexpr double error_order = 1.5;
+/// Cells along the circumference of the companion that tells what those of the section do: twice
+/// those of the coarsest mesh.
+constexpr unsigned int section_square_cells = 4;
+
+constexpr unsigned int finest_refinement = mesh_level_count - 2;
+
+/// The section's part of the error with the 16 cells of the finer meshes over that with 8: cells
+/// half as wide, of an order of at least 2.
+constexpr double finer_section = 0.25;
 
 Hyperelastic law_of(const Segment& segment, const SolidOptions& options) {
   const double mu = segment.shear_modulus();
@@ -99,12 +105,12 @@ meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidO
   return mesh;
 }
 
-/// The meshes from the coarsest to the refinement asked for, each of which starts from the one
-/// before; the next coarser one is the companion of the result. A user's mesh alone.
+/// The meshes from the coarsest to the refinement asked for and that of the section's error; a
+/// user's mesh alone.
 Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
                    MPI_Comm communicator) {
   const LevelOptions level_options{
-      {{options.tolerance, options.max_iterations, least_force(cilium)},
+      {{options.newton_tolerance, options.max_iterations, least_force(cilium)},
        options.max_cutbacks,
        options.kernel_width},
       options.solver,
@@ -117,26 +123,30 @@ Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOption
                                                  materials(cilium, options), level_options));
     return levels;
   }
+  const auto add = [&](const meshes::cylinder::CylinderMeshOptions& mesh, Level* coarser) {
+    levels.all.push_back(
+        std::make_unique<Level>(cilium, mesh, materials(cilium, options), level_options, coarser));
+  };
   levels.finest = mesh_level(options.refinement);
   for (unsigned int i = 0; i <= levels.finest; ++i)
-    levels.all.push_back(std::make_unique<Level>(
-        cilium, path_mesh(i, options, path), materials(cilium, options), level_options,
-        levels.all.empty() ? nullptr : levels.all.back().get()));
-  levels.companions = {levels.finest - 1};
-  const double ratio =
-      mesh_levels.at(levels.finest - 1).finest_layer / mesh_levels.at(levels.finest).finest_layer;
-  levels.error_parts = {{"layers", 0, 1, 1 / (std::pow(ratio, error_order) - 1)}};
+    add(path_mesh(i, options, path), levels.all.empty() ? nullptr : levels.all.back().get());
+  auto section = path_mesh(0, options, path);
+  section.square_cells = section_square_cells;
+  add(section, levels.all.front().get());
+  levels.companions = {levels.finest - 1, 0, levels.finest + 1};
+  const bool is_finer = mesh_levels.at(levels.finest).square_cells >= section_square_cells;
+  levels.error_parts = {{"all directions", 0, 1, 1},
+                        {"section", 3, 2, is_finer ? finer_section : 1}};
   return levels;
 }
 
 }  // namespace
 
 unsigned int mesh_level(unsigned int refinement) {
-  if (refinement >= refinement_levels.size())
-    throw InputError("the solid has the refinements 0 to " +
-                     std::to_string(refinement_levels.size() - 1) + ", not " +
-                     std::to_string(refinement));
-  return refinement_levels[refinement];
+  if (refinement > finest_refinement)
+    throw InputError(fmt::format("the solid has the refinements 0 to {}, not {}", finest_refinement,
+                                 refinement));
+  return refinement + 1;
 }
 
 meshes::cylinder::CylinderMeshOptions level_mesh(unsigned int number) {
@@ -144,7 +154,7 @@ meshes::cylinder::CylinderMeshOptions level_mesh(unsigned int number) {
   meshes::cylinder::CylinderMeshOptions mesh;
   mesh.square_cells = level.square_cells;
   mesh.rings = level.rings;
-  mesh.ring_ratio = level.ring_ratio;
+  mesh.ring_ratio = 0.5;
   mesh.finest_layer = level.finest_layer;
   mesh.coarsest_layer = level.coarsest_layer;
   mesh.growth = level.growth;
@@ -165,8 +175,8 @@ Solid::Solid(SolidOptions options, MPI_Comm communicator)
   cylinder_mesh_options(options_.refinement);
   if (!(std::isfinite(options_.kernel_width) && options_.kernel_width > 0))
     throw InputError("the solid's kernel_width must be finite and positive");
-  if (!(options_.tolerance > 0 && options_.tolerance < 1))
-    throw InputError("the solid's tolerance must lie between 0 and 1");
+  if (!(options_.newton_tolerance > 0 && options_.newton_tolerance < 1))
+    throw InputError("the solid's newton_tolerance must lie between 0 and 1");
   if (!(std::isfinite(options_.mesh_unit) && options_.mesh_unit > 0))
     throw InputError("the solid's mesh_unit must be finite and positive");
   if (options_.max_iterations == 0) throw InputError("the solid needs max_iterations of 1 or more");

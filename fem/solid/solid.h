@@ -25,7 +25,7 @@ meshes::cylinder::CylinderMeshOptions cylinder_mesh_options(const SolidOptions& 
                                                             const LoadPath& path);
 
 /// The sequence of meshes from coarse to fine, of which cylinder_mesh_options() are some.
-inline constexpr unsigned int mesh_level_count = 6;
+inline constexpr unsigned int mesh_level_count = 5;
 meshes::cylinder::CylinderMeshOptions level_mesh(unsigned int level);
 
 /// 3D finite-strain near-incompressible hyperelastic solid of the two-material cilium: Q2

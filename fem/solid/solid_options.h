@@ -28,7 +28,7 @@ struct SolidOptions {
                                  ///< mesh: refinement and symmetry do nothing, and it does not turn
   double mesh_unit = 1;          ///< length of that file's unit, m
   double kernel_width = 0.5e-3;  ///< half-width of the contact kernel k(z−h), m
-  double tolerance =
+  double newton_tolerance =
       1e-9;  ///< of the residual, relative to the applied force, and of the increment
   unsigned int max_iterations = 25;
   unsigned int max_cutbacks = 5;

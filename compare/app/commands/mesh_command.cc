@@ -13,6 +13,7 @@
 #include "compare/output/vtk/datasets.h"
 #include "compare/output/vtk/files.h"
 #include "fem/solid/solid.h"
+#include "meshes/base_section.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "meshes/gmsh/gmsh_mesh.h"
 #include "meshes/gmsh/write_gmsh.h"
@@ -31,6 +32,7 @@ struct Options {
 
 struct CaseMesh {
   meshes::MeshNodes nodes;
+  meshes::SectionProperties section;
   std::vector<std::string> remarks;
 };
 
@@ -43,7 +45,9 @@ CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refin
     meshes::cylinder::make_cylinder(problem.cilium,
                                     fem::solid::cylinder_mesh_options(options, problem.load_path),
                                     triangulation);
-    return {meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation)),
+    const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
+    return {meshes::mesh_nodes(triangulation, *mapping),
+            meshes::base_section(triangulation, *mapping),
             {}};
   }
   if (refinement)
@@ -53,7 +57,18 @@ CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refin
                     options.mesh.string()));
   meshes::gmsh::GmshMesh mesh =
       meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium, triangulation);
-  return {meshes::mesh_nodes(triangulation, *mesh.mapping), std::move(mesh.remarks)};
+  return {meshes::mesh_nodes(triangulation, *mesh.mapping),
+          meshes::base_section(triangulation, *mesh.mapping), std::move(mesh.remarks)};
+}
+
+/// The meshed section against the circle.
+std::string describe(const meshes::SectionProperties& section, const Cilium& cilium) {
+  const auto off = [](double meshed, double exact) { return 100 * (meshed / exact - 1); };
+  return fmt::format(
+      "Section: area {:.6g} m^2 ({:+.1g} % off the circle's), second moments {:.6g} and {:.6g} m^4 "
+      "({:+.1g} %, {:+.1g} %)\n",
+      section.area, off(section.area, cilium.area()), section.about_x, section.about_y,
+      off(section.about_x, cilium.second_moment()), off(section.about_y, cilium.second_moment()));
 }
 
 /// Writes the mesh on which the solid solves a case, whole (not its half): the built-in one at the
@@ -83,6 +98,7 @@ ExitCode execute(const Options& options, const std::string& words) {
   std::string text = fmt::format("Mesh: {}: {} hexahedra, {} nodes, {} boundary faces, in metres\n",
                                  output.string(), mesh.nodes.cells.size(), mesh.nodes.nodes.size(),
                                  mesh.nodes.faces.size());
+  text += describe(mesh.section, problem.cilium);
   for (const std::string& remark : mesh.remarks) text += fmt::format("Remark: {}\n", remark);
   print(text);
   return ExitCode::pass;

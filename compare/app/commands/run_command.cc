@@ -51,8 +51,8 @@ Prepared prepare(const fs::path& file, const input::Case& problem, const Options
                   nullptr,
                   {}};
   for (const std::string& id : problem.mechanics) {
-    auto fingerprint =
-        models::fingerprint(problem, models::entry_of(models::mechanics_models(), id));
+    const models::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), id);
+    auto fingerprint = models::fingerprint(problem, entry);
     if (!fingerprint) continue;
     if (!result.store)
       result.store = std::make_unique<output::store::Store>(
@@ -71,8 +71,10 @@ Prepared prepare(const fs::path& file, const input::Case& problem, const Options
     const std::size_t steps = problem.load_path.size();
     const std::size_t finished = checkpoint.finished_steps();
     warn(fmt::format("case \"{}\": {} {}, as `{}` says; --fresh starts anew", problem.name, id,
-                     finished < steps ? fmt::format("goes on at step {}/{}", finished + 1, steps)
-                                      : fmt::format("has solved all {} steps", steps),
+                     entry.error_limit && entry.error_limit(problem.options).percent > 0
+                         ? "goes on with the refinement that was under way"
+                     : finished < steps ? fmt::format("goes on at step {}/{}", finished + 1, steps)
+                                        : fmt::format("has solved all {} steps", steps),
                      store.file().string()));
   }
   return result;

@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using fem::solid::SolidOptions;
+using input::ErrorLimit;
 using input::option;
 
 /// The contact kernel must fit between the base and the tip.
@@ -34,9 +35,21 @@ void check_kernel(const input::CaseCheck& check) {
   }
 }
 
+void check_error_limit(const input::CaseCheck& check) {
+  const auto& limit = check.problem.options.of<ErrorLimit>();
+  if (limit.percent > 0 && !check.problem.options.of<SolidOptions>().mesh.empty())
+    check.report("models.solid.tolerance",
+                 "'tolerance' chooses one of the built-in meshes, and 'mesh' names a file: leave "
+                 "out one of the two");
+  if (limit.of == ErrorLimit::Of::field && check.problem.sensors.empty())
+    check.report("models.solid.tolerance_of",
+                 "the field's error is that at the sensors, and the case has none");
+}
+
 void check(const input::CaseCheck& check) {
   const auto& options = check.problem.options.of<SolidOptions>();
   if (check.is_asked_for && check.cilium_is_right && check.load_is_right) check_kernel(check);
+  check_error_limit(check);
   const auto [ratio_2, ratio_3] = options.yeoh_ratios;
   if (!fem::solid::material::yeoh_is_stable(ratio_2, ratio_3))
     check.report("models.solid.yeoh_ratios",
@@ -98,8 +111,18 @@ std::vector<input::Option> options() {
   using fem::solid::solvers::SolverKind;
   std::vector<input::Option> all = material();
   const std::vector<input::Option> others{
-      option(&SolidOptions::refinement, "refinement", solid_mesh_range,
-             "Mesh: 0 coarse, 1 default, 2 fine, 3 to certify these."),
+      only_with(&ErrorLimit::percent, 0.0, "no tolerance",
+                option(&SolidOptions::refinement, "refinement", solid_mesh_range,
+                       "Mesh: 0 coarse, 1 default, 2 fine, 3 to certify these.")),
+      option(&ErrorLimit::percent, "tolerance", quantity::percentage,
+             {0, 100, false, "a larger error is no result"},
+             "Allowed error: the coarsest mesh is taken whose estimate is below it at each step. "
+             "`\"0 %\"`: none, `refinement` says which mesh."),
+      input::choice(
+          &ErrorLimit::of, "tolerance_of",
+          {{"tip", ErrorLimit::Of::tip}, {"field", ErrorLimit::Of::field}},
+          "What the tolerance is of: `tip`, of the tip's displacement; `field`, of the path's "
+          "largest change of B, at each sensor."),
       input::choice(&SolidOptions::initial_guess, "initial_guess",
                     {{"beam", InitialGuess::beam}, {"none", InitialGuess::none}},
                     "What the coarsest mesh starts from: the beam's solution at the same "
@@ -115,7 +138,7 @@ std::vector<input::Option> options() {
       option(&SolidOptions::kernel_width, "kernel_width", quantity::length, length_range,
              "Half-width w of the contact kernel; `contact` and `probe` need 0 < h-w "
              "and h+w below the tip."),
-      option(&SolidOptions::tolerance, "tolerance", tolerance_range,
+      option(&SolidOptions::newton_tolerance, "newton_tolerance", tolerance_range,
              "Of the residual, relative to the applied force, and of the increment."),
       option(&SolidOptions::max_iterations, "max_iterations", iterations_range,
              "Newton iterations of a load increment."),
@@ -141,7 +164,8 @@ input::Refinement solid_meshes() {
                 const auto refinement = static_cast<unsigned int>(value);
                 return fem::solid::cylinder_mesh_options(refinement).finest_layer;
               },
-          .size_name = "thickness of the finest layers, in diameters"};
+          .size_name = "thickness of the finest layers, in diameters",
+          .also = [](input::ModelOptions& o) { o.of<ErrorLimit>() = {}; }};
 }
 
 input::MechanicsEntry solid() {
@@ -151,6 +175,7 @@ input::MechanicsEntry solid() {
       .make = input::make<fem::solid::Solid, SolidOptions>,
       .options = options(),
       .refinements = {solid_meshes()},
+      .error_limit = [](const input::ModelOptions& o) { return o.of<ErrorLimit>(); },
       .has_body = true,
       .is_collective = true,
       .is_slow = true,

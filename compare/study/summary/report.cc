@@ -179,6 +179,7 @@ Json pair_json(const Study& study, const PairResult& result) {
   for (std::size_t o = 0; o < study.outputs.size(); ++o)
     json[std::string(id(study.outputs[o]))] = number_json(result.values[o]);
   json["dB_uncertainty"] = number_json(result.uncertainty);
+  if (result.range_uncertainty) json["range_uncertainty"] = number_json(result.range_uncertainty);
   return json;
 }
 

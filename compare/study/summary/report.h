@@ -40,7 +40,8 @@ nlohmann::ordered_json number_json(const std::optional<double>& value);
 /// {"path", "name", "unit", members of `values`, "shown_unit", "shown_unit_size", "logarithmic"}
 nlohmann::ordered_json parameter_json(const Parameter& parameter,
                                       const nlohmann::ordered_json& values);
-/// What a pair made of a point: {"status", "message", OUTPUT…, "dB_uncertainty"}, SI units.
+/// What a pair made of a point: {"status", "message", OUTPUT…, "dB_uncertainty",
+/// "range_uncertainty" if known}, SI units.
 nlohmann::ordered_json pair_json(const Study& study, const PairResult& result);
 
 /// study.json (docs/guide/studies.md), SI units. Nothing in it says when or how often the program

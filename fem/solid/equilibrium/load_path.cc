@@ -173,7 +173,7 @@ LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& prog
     return outcome;
   };
   if (magnitude(now_.current.load) == magnitude(target))
-    return finish({Status::converged, {}, {}, {}});
+    return finish({Status::converged, {}, {}, {}, 0});
   if (now_.slipped && magnitude(target) >= magnitude(*now_.slipped))
     return finish(slip_off(progress, on_equilibrium));
   return finish(follow_ramp(progress, on_equilibrium));
@@ -217,10 +217,11 @@ LoadPathOutcome LoadPathSolver::follow_ramp(const Progress& progress,
                   " % of the way: " + result.trouble + "; the last load that converged is " +
                   with_unit(now_.current.load),
               {},
-              {}};
+              {},
+              0};
     }
   }
-  return {Status::converged, {}, {}, {}};
+  return {Status::converged, {}, {}, {}, 0};
 }
 
 LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
@@ -257,6 +258,7 @@ LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,
   outcome.status = Status::slipped_off;
   outcome.slip_off_force = probe ? now_.current.applied_force : magnitude(borne);
   if (probe) outcome.slip_off_displacement = magnitude(borne);
+  outcome.slip_off_bracket = magnitude(*now_.slipped) - magnitude(borne);
   outcome.message =
       (probe ? "the cilium slips off: with a displacement of "
              : "the cilium slips off: a contact force of ") +

@@ -45,6 +45,7 @@ struct LoadPathOutcome {
   std::string message;
   std::optional<double> slip_off_force;         ///< N
   std::optional<double> slip_off_displacement;  ///< of a probe, m
+  double slip_off_bracket = 0;  ///< width of the bracket above it, N, or m of a probe
   int iterations = 0;
 };
 

@@ -121,7 +121,7 @@ TEST(ElasticaInput, ReportsWhatItDid) {
     EXPECT_EQ(step.unknowns, 1);
     EXPECT_GT(step.seconds, 0);
     ASSERT_TRUE(step.tip_uncertainty);
-    EXPECT_LT(*step.tip_uncertainty, 1e-12 * 20e-3);
+    EXPECT_LE(*step.tip_uncertainty, 1e-12 * 20e-3);
     for (const double end : paper_cilium().interfaces())  // breaks at the interfaces, to the bit
       EXPECT_EQ(std::count(step.deformation->centreline.breaks().begin(),
                            step.deformation->centreline.breaks().end(), end),

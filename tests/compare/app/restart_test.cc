@@ -209,8 +209,8 @@ TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   std::ofstream(file, std::ios::binary) << std::string(good).replace(good.size() / 2, 8, 8, '!');
   refused("damaged");
   std::ofstream(file, std::ios::binary) << good;
-  write_case(folder.path(), "tolerance = 1e-8\n");
-  refused("models.solid.tolerance was");
+  write_case(folder.path(), "newton_tolerance = 1e-8\n");
+  refused("models.solid.newton_tolerance was");
   write_case(folder.path(), "", R"(["0.5 mN", "1 mN", "1.25 mN", "2 mN"])");
   refused("load of step 3 was contact, force 0.0015 N");
   write_case(folder.path(), "max_iterations = 30\n[models.line]\ntolerance = 1e-9\n");

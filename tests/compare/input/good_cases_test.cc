@@ -284,7 +284,7 @@ initial_guess = "none"
 solver = "iterative"
 symmetry = false
 kernel_width = "0.25 mm"
-tolerance = 1e-7
+newton_tolerance = 1e-7
 max_iterations = 12
 max_cutbacks = 4
 [models.dipole]
@@ -329,6 +329,10 @@ std::string with_mooney_rivlin() {
          "[models.volume]\nmethod = \"uniform\"\nelements = 9\n";
 }
 
+std::string with_tolerance() {
+  return replaced(good_case, "refinement = 1", "tolerance = \"0.1 %\"\ntolerance_of = \"field\"");
+}
+
 TEST(Options, ReachTheOptionsOfTheirModel) {
   const input::ModelOptions o = read(with_all_options()).options;
   EXPECT_EQ(o.of<analytic::elastica::ElasticaOptions>().form,
@@ -364,7 +368,7 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.of<fem::solid::SolidOptions>().mesh, source("cases/verification/ogrid.msh"));
   EXPECT_EQ(o.of<fem::solid::SolidOptions>().mesh_unit, 1e-3);
   EXPECT_EQ(o.of<fem::solid::SolidOptions>().kernel_width, 0.00025);
-  EXPECT_EQ(o.of<fem::solid::SolidOptions>().tolerance, 1e-7);
+  EXPECT_EQ(o.of<fem::solid::SolidOptions>().newton_tolerance, 1e-7);
   EXPECT_EQ(o.of<fem::solid::SolidOptions>().max_iterations, 12U);
   EXPECT_EQ(o.of<fem::solid::SolidOptions>().max_cutbacks, 4U);
   EXPECT_EQ(o.of<analytic::rod::DipoleOptions>().push_forward, analytic::sources::PushForward::R);
@@ -414,11 +418,21 @@ TEST(Options, AreAllInTheListAbove) {
   // So that the test of the options and of the round trip covers an option added later.
   const input::ModelOptions set = read(with_all_options()).options;
   const input::ModelOptions mooney = read(with_mooney_rivlin()).options;
+  const input::ModelOptions refined = read(with_tolerance()).options;
   for (const auto& [model, option] : all_options()) {
-    EXPECT_NE(option.get(input::belongs(option, set) ? set : mooney),
-              option.get(input::ModelOptions{}))
-        << model << '.' << option.name;
+    const auto is_set = [&option = option](const input::ModelOptions& options) {
+      return input::belongs(option, options) &&
+             option.get(options) != option.get(input::ModelOptions{});
+    };
+    EXPECT_TRUE(is_set(set) || is_set(mooney) || is_set(refined)) << model << '.' << option.name;
   }
+}
+
+TEST(Options, HaveAToleranceInPlaceOfARefinement) {
+  const input::Case c = read(with_tolerance());
+  EXPECT_EQ(c.options.of<input::ErrorLimit>().percent, 0.1);
+  EXPECT_EQ(c.options.of<input::ErrorLimit>().of, input::ErrorLimit::Of::field);
+  expect_same(read(input::to_toml(c, models::known())), c);
 }
 
 TEST(Options, HaveDefaultsInTheirRange) {

@@ -63,11 +63,34 @@ TEST(ErrorEstimate, IsTheSumOfThePartsAndOfTheAlgebraicError) {
   estimate_errors(run.result);
   const MechanicsStep& step = run.result.steps.front();
   EXPECT_NEAR(*step.tip_angle_uncertainty, 0.5 * 0.02 + 2 * 0.03 + 1e-3, 1e-14);
-  EXPECT_NEAR(*step.applied_force_uncertainty, 0.5 * 0.1 + 2 * 0.3 + 1e-3, 1e-14);
+  EXPECT_NEAR(*step.applied_force_uncertainty, 0.5 * 0.1 + 2 * 0.3, 1e-13);  // it is prescribed
   EXPECT_NEAR(*step.tip_uncertainty,
               0.5 * distance_of_tips(0.1, 0.12) + 2 * distance_of_tips(0.12, 0.15) + 1e-3 * L,
               1e-16);
   EXPECT_EQ(models::tip_angle_uncertainty(run, 0), step.tip_angle_uncertainty);
+}
+
+TEST(ErrorEstimate, OfAProbesForceHasTheAlgebraicError) {
+  models::MechanicsRun run = run_with_companions();
+  run.result.algebraic_error = 1e-3;
+  run.result.steps.front().load = ProbeLoad{1e-3, 16e-3, 0};
+  estimate_errors(run.result);
+  EXPECT_NEAR(*run.result.steps.front().applied_force_uncertainty, 0.5 * 0.1 + 2 * 0.3 + 1e-3,
+              1e-13);
+}
+
+TEST(ErrorEstimate, OfTheSlipOffIsThatOfTheCompanionsLimits) {
+  models::MechanicsRun run = run_with_companions();
+  run.result.algebraic_error = 1e-3;
+  estimate_errors(run.result);
+  EXPECT_FALSE(run.result.steps.front().slip_off_uncertainty);  // there is no limit
+  run.result.steps.front().slip_off_force = 5;
+  run.result.companions[0].steps.front().slip_off_force = 5.2;
+  estimate_errors(run.result);
+  EXPECT_FALSE(run.result.steps.front().slip_off_uncertainty);  // one companion has none
+  run.result.companions[1].steps.front().slip_off_force = 5.3;
+  estimate_errors(run.result);
+  EXPECT_NEAR(*run.result.steps.front().slip_off_uncertainty, 0.5 * 0.2 + 2 * 0.1 + 5e-3, 1e-14);
 }
 
 TEST(ErrorEstimate, IsUnknownWithoutPartsAndWhereACompanionHasNotConverged) {

@@ -87,7 +87,7 @@ TEST(Fingerprint, HasEveryOptionButThoseThatMayBeRaisedAfterAFailure) {
     input::OptionValue value = option.get(other.options);
     if (auto* flag = std::get_if<bool>(&value)) *flag = !*flag;
     if (auto* whole = std::get_if<unsigned int>(&value)) ++*whole;
-    if (auto* real = std::get_if<double>(&value)) *real *= 1.01;
+    if (auto* real = std::get_if<double>(&value)) *real = *real == 0 ? 1 : 1.01 * *real;
     if (auto* pair = std::get_if<std::array<double, 2>>(&value)) (*pair)[1] *= 1.01;
     if (auto* text = std::get_if<std::string>(&value))
       *text = option.choices.empty() ? "a.msh" : std::string(option.choices.back());

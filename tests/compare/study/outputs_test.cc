@@ -223,7 +223,8 @@ TEST(StudyRange, OfRodsIsTheForceAtWhichTheContactSlipsOff) {
     const auto beam = fem::beam::Beam(rigid.options.of<fem::beam::BeamOptions>());
     const MechanicsStep step = beam.solve(rigid.cilium, rigid.load_path).steps[0];
     EXPECT_NEAR(
-        slip_off(beam, rigid.cilium, step, rigid.options.of<analytic::elastica::ElasticaOptions>()),
+        slip_off(beam, rigid.cilium, step, rigid.options.of<analytic::elastica::ElasticaOptions>())
+            .magnitude,
         range("elastica"), 1e-6 * 5.862e-3);
   }
 }
@@ -235,9 +236,21 @@ TEST(StudyRange, OfADeadForceIsThatAtARotation) {
   const double P = 1e6 * cilium.second_moment() / (0.02 * 0.02);
   for (const double start : {0.0, 0.1 * P, P, 7 * P})
     EXPECT_NEAR(magnitude_at_rotation(analytic::elastica::Elastica(), cilium,
-                                      SectionLoad{start, 0.02, 0}, 0.4613519497),
+                                      SectionLoad{start, 0.02, 0}, 0.4613519497)
+                    .magnitude,
                 P, 1e-6 * P)
         << start;
+}
+
+// The same oracle, which has ten digits: the interval holds the load.
+TEST(StudyRange, AtARotationHasAnInterval) {
+  const Cilium cilium{0.003, {{"rod", 0.02, 1e6, 0.49, 0}}};
+  const double P = 1e6 * cilium.second_moment() / (0.02 * 0.02);
+  const LargestLoad range = magnitude_at_rotation(analytic::elastica::Elastica(), cilium,
+                                                  SectionLoad{P, 0.02, 0}, 0.4613519497);
+  ASSERT_TRUE(range.uncertainty);
+  EXPECT_LE(std::abs(range.magnitude - P), *range.uncertainty + 2e-10 * P);
+  EXPECT_LE(*range.uncertainty, 1.1e-6 * P);
 }
 
 TEST(StudyRange, WhereThereIsNoneIsSaid) {

@@ -46,7 +46,7 @@ PotentialResult solve(const Magnet& magnet, double mu, const std::vector<Vector3
   problem.points = points;
   problem.uniform_field = uniform;
   PotentialControl control;
-  control.tolerance = tolerance;
+  control.tolerance = 2 * tolerance;  // the uncertainty is twice the estimate
   return solve_potential(problem, control);
 }
 
@@ -140,7 +140,7 @@ TEST(OuterBoundary, ErrorIsBelowItsBoundAndFarBelowTheEstimate) {
   problem.magnet = Magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
   problem.points = points;
   PotentialControl control;
-  control.tolerance = 2e-2;
+  control.tolerance = 4e-2;
   control.box = 2.5;
   const PotentialResult narrow = solve_potential(problem, control);
   control.box = 16;
@@ -188,7 +188,7 @@ TEST(Plate, ActsLikeTheImageOfTheMagnet) {
   problem.plates = {{{Vector3(-50e-3, -50e-3, -40e-3), Vector3(50e-3, 50e-3, 0)}, mu}};
   problem.points = {{0.3e-3, -0.4e-3, 1e-3}};
   PotentialControl control;
-  control.tolerance = 1e-2;
+  control.tolerance = 2e-2;
   const PotentialResult result = solve_potential(problem, control);
   const Vector3 m = ball_volume * ball_magnetization;
   const Vector3 image = (mu - 1) / (mu + 1) * Vector3(-m[0], -m[1], m[2]);

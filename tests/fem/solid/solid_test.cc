@@ -91,7 +91,7 @@ TEST(Solid, SectionForcesBalanceTheLoadInEveryLayer) {
 // a section load is borne below its plane and not above. Newton's tolerance is small, because with
 // the default the increment decides while residuals of 3e-6 may be left.
 TEST(Solid, BaseBearsTheWholeLoad) {
-  const Solid exact({.refinement = 0, .tolerance = 1e-11});
+  const Solid exact({.refinement = 0, .newton_tolerance = 1e-11});
   const Cilium rod{1e-3, {{"rod", 8e-3, 1e6, 0.3, 0}}};
   const LoadPath loads{ContactLoad{1e-4, 6e-3, 0.3}, FlowLoad{0.02, 0.3},
                        SectionLoad{1e-4, 6e-3, 0.3}, DeadLoad{0.02, 0.3},
@@ -436,7 +436,7 @@ TEST(Solid, LaterLoadsGoOnFromTheLastTwoAndEndAsTheyWouldAlone) {
     EXPECT_LT((tip(converged(together, i)) - tip(converged(alone))).norm(), 1e-10 * 20e-3) << i;
     EXPECT_LE(together.steps[i].iterations, alone.steps[0].iterations) << i;
   }
-  EXPECT_LE(together.steps[1].iterations, 2);
+  EXPECT_LE(together.steps[1].iterations, 3);
 }
 
 TEST(Solid, ReportsItsProgress) {
@@ -450,7 +450,7 @@ TEST(Solid, ReportsItsProgress) {
 TEST(Solid, RejectsBadInput) {
   EXPECT_THROW(Solid({.refinement = 4}), InputError);
   EXPECT_THROW(Solid({.kernel_width = 0}), InputError);
-  EXPECT_THROW(Solid({.tolerance = std::numeric_limits<double>::quiet_NaN()}), InputError);
+  EXPECT_THROW(Solid({.newton_tolerance = std::numeric_limits<double>::quiet_NaN()}), InputError);
   EXPECT_THROW(Solid({.max_iterations = 0}), InputError);
   EXPECT_THROW(Solid({.mooney_ratio = -0.1}), InputError);
   EXPECT_THROW(Solid({.yeoh_ratios = {-0.1, 0.005}}), InputError);
@@ -490,20 +490,21 @@ TEST(Solid, ConvergesNearlyIncompressibleOnTheDefaultMesh) {
   EXPECT_LE(result.steps[0].iterations, 8);
 }
 
-// Oracle: the default mesh, whose error is an eighth of the coarse one's. Measured ratios of
-// estimate and error: 0.78 (contact), 0.77 (flow), 0.78 (section).
+// Oracle: the default mesh, whose error is a tenth of the coarse one's. Measured ratios of estimate
+// and error: 5.2 for all three, as the paper's stub converges faster than random cilia
+// (tests/coverage: 2.3 in the median).
 TEST(Solid, EstimatesTheErrorOfItsTip) {
   for (const Load& load :
        LoadPath{ContactLoad{2e-3, 16e-3, 0}, FlowLoad{0.1, 0}, SectionLoad{1e-3, 20e-3, 0}}) {
     const auto [error, estimate] = error_and_estimate(coarse().solve(stub_and_magnet(), {load}),
                                                       Solid().solve(stub_and_magnet(), {load}));
-    EXPECT_GT(estimate / error, 1.0 / 3) << type(load);
-    EXPECT_LT(estimate / error, 3) << type(load);
+    EXPECT_GT(estimate / error, 1) << type(load);
+    EXPECT_LT(estimate / error, 6) << type(load);
   }
 }
 
-// Oracle: the finest mesh, 87,399 unknowns. The claims of docs/theory/solid.md: the default mesh is
-// within 0.1 %, and its estimate within a factor 3 of the error. Measured: 0.0375 %, factor 1.8.
+// Oracle: the finest mesh. The claims of docs/evidence/solid.md: the default mesh is within 0.1 %,
+// its error inside its interval, and that below 0.2 %. Measured: 0.011 % and 0.165 %.
 TEST(SolidSlow, DefaultMeshIsWithinATenthOfAPercentAndKnowsIt) {
   const LoadPath path{ContactLoad{2e-3, 16e-3, 0}};
   const MechanicsResult finest = Solid({.refinement = 3}).solve(stub_and_magnet(), path);
@@ -511,13 +512,13 @@ TEST(SolidSlow, DefaultMeshIsWithinATenthOfAPercentAndKnowsIt) {
   const auto [error, estimate] = error_and_estimate(standard, finest);
   EXPECT_LT(error / tip(converged(finest)).x(), 1e-3);
   EXPECT_LT(converged(standard).unknowns, 60000);
-  EXPECT_GT(estimate / error, 1.0 / 3);
-  EXPECT_LT(estimate / error, 3);
+  EXPECT_LT(error, estimate);
+  EXPECT_LT(estimate / tip(converged(finest)).x(), 2e-3);
 }
 
 // Oracle: the fine mesh, at ν = 0.3, 0.49 and nearly incompressible: no locking. Measured at
-// ν = 0.49 (tip deflection): the default mesh is below the fine one by 0.018 %, the coarse one by
-// 0.36 %.
+// ν = 0.49 (tip deflection at 1 mN): the default mesh is below the fine one by 0.006 %, the coarse
+// one by 0.13 %.
 TEST(SolidSlow, TipOfTheDefaultMeshAgreesWithTheFineMesh) {
   for (const double nu : {0.3, 0.49, 0.4999}) {
     Cilium cilium = stub_and_magnet();

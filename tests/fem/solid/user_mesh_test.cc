@@ -35,7 +35,7 @@ TEST(SolidOnAMeshFile, BendsAsOnTheMeshThatWasWritten) {
   SolidOptions options;
   options.refinement = 0;
   options.symmetry = false;
-  options.tolerance = 1e-11;
+  options.newton_tolerance = 1e-11;
   const Load load = SectionLoad{1e-3, 20e-3, 0};
   const Vector3 made = tip(options, load);
 

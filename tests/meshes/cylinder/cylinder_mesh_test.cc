@@ -14,6 +14,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "meshes/base_section.h"
 #include "problem/error.h"
 
 namespace ciliaval::meshes::cylinder {
@@ -71,6 +72,25 @@ TEST(CylinderMesh, HasTheVolumeAndSecondMomentOfTheCylinder) {
 
 // Oracle: area and moments of a boundary interpolated at p+1 Gauss–Lobatto points of each arc of
 // angle α converge as α^(2p). α is halved from 45° to 22.5°, the nodes on the cylinder itself.
+// Oracle: the sector of the parabola through three points of an arc of half-angle β, in closed form
+// sin β (1 + (1 − cos β)/3), against β.
+TEST(BaseSection, IsThatOfTheMeshedCircle) {
+  const Cilium cilium = stub_and_magnet();
+  CylinderMeshOptions options;
+  options.square_cells = 2;
+  for (const bool equal : {true, false}) {
+    options.equal_area = equal;
+    dealii::Triangulation<3> triangulation;
+    make_cylinder(cilium, options, triangulation);
+    const SectionProperties section = base_section(triangulation, *cylinder_mapping(triangulation));
+    const double beta = std::acos(-1.0) / 8;
+    const double sector = std::sin(beta) * (1 + (1 - std::cos(beta)) / 3) / beta;
+    EXPECT_NEAR(section.area / cilium.area(), equal ? 1 : sector, 1e-12);
+    EXPECT_NEAR(section.about_x / cilium.second_moment(), equal ? 1 : sector * sector, 2e-5);
+    EXPECT_NEAR(section.about_y / section.about_x, 1, 1e-12);
+  }
+}
+
 TEST(CylinderMesh, ConvergesToTheCylinderWithTwiceTheMappingDegree) {
   const Cilium cilium = stub_and_magnet();
   const double exact = cilium.area() * cilium.length();
