@@ -42,7 +42,7 @@ void estimate_errors(MechanicsResult& result) {
     // (docs/evidence/solid.md).
     const bool is_prescribed = !step.load.is<ProbeLoad>() && !step.load.is<FlowLoad>();
     const double rounding =
-        16 * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(step.unknowns));
+        5 * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(step.unknowns));
     step.applied_force_uncertainty = estimate(
         [](const MechanicsStep& of) { return of.applied_force; },
         (is_prescribed ? std::min(algebraic, rounding) : algebraic) * std::abs(step.applied_force));

@@ -106,7 +106,7 @@ MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& probl
     for (MechanicsStep& step : run.result.steps)
       if (step.status == Status::converged)
         step.message = fmt::format(
-            "{}, error {:.2g} % of {}{}", name, error,
+            "{}, error of at most {:.2g} % of {}{}", name, error,
             limit.of == ErrorLimit::Of::tip ? "the tip's displacement" : "|dB|",
             is_met ? ""
                    : fmt::format(": the tolerance of {:g} % is not met, this is the finest mesh",

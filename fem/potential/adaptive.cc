@@ -21,13 +21,13 @@
 namespace ciliaval::fem::potential {
 namespace {
 
-constexpr unsigned int degree = 2;          ///< of the solution that B is taken from
-constexpr double solver_tolerance = 1e-8;   ///< residual of ψ
-constexpr double dual_tolerance = 1e-4;     ///< of the duals, which only choose the leaves to cut
+constexpr unsigned int degree = 2;         ///< of the solution that B is taken from
+constexpr double solver_tolerance = 1e-8;  ///< residual of ψ
+constexpr double dual_tolerance = 1e-4;    ///< of the duals, which only choose the leaves to cut
 /// Uncertainty over estimate: on random cilia errors are up to 1.7 estimates
 /// (docs/evidence/potential.md).
 constexpr double safety = 2;
-constexpr double ball_over_distance = 0.7;  ///< radius of a sensor's ball over its distance
+constexpr double ball_over_distance = 0.7;         ///< radius of a sensor's ball over its distance
 constexpr double finest_over_extent = 1.0 / 4096;  ///< finest leaf over the radius of the bodies
 constexpr double refined_fraction = 0.7;           ///< of the indicators' sum, whose leaves are cut
 

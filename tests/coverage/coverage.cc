@@ -183,6 +183,7 @@ bool holds(const std::map<std::string, std::vector<double>>& effectivities) {
 
 bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed) {
   std::map<std::string, std::vector<double>> effectivities;
+  unsigned int left_out = 0;
   for (std::uint32_t seed = first_seed; seed < first_seed + cases; ++seed) {
     const RandomCase drawn = random_case(seed);
     input::Case problem = problem_of(drawn, subject);
@@ -201,6 +202,7 @@ bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
     };
     if (step_of(result).status != Status::converged || step_of(finer).status != Status::converged) {
       fmt::print("left out: {} {}\n", step_of(result).message, step_of(finer).message);
+      ++left_out;
       continue;
     }
     for (const Sample& sample : samples(problem, result, finer)) {
@@ -213,6 +215,7 @@ bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
     std::fflush(stdout);
   }
   print_table(effectivities);
+  fmt::print("{} of {} cases left out\n", left_out, cases);
   return holds(effectivities);
 }
 

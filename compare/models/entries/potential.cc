@@ -135,9 +135,10 @@ input::FieldEntry potential() {
                &PotentialOptions::push_forward, "push_forward",
                {{"F", MagnetPushForward::F}, {"R", MagnetPushForward::R}},
                "`F`: m = F·M/J (ideal hard magnet); `R`: m = R·M, of rods M d₃ (rigid sections)."),
-           input::option(&PotentialOptions::tolerance, "tolerance",
-                         {1e-7, 0.1, false, "finer meshes exceed the memory of a machine"},
-                         "Uncertainty of B at each sensor, relative to |B|: twice the estimated error."),
+           input::option(
+               &PotentialOptions::tolerance, "tolerance",
+               {1e-7, 0.1, false, "finer meshes exceed the memory of a machine"},
+               "Uncertainty of B at each sensor, relative to |B|: twice the estimated error."),
            input::option(&PotentialOptions::max_unknowns, "max_unknowns",
                          {1000, 20000000, false, "more exceed the memory of a machine"},
                          "Where the tolerance is not reached with these, it is an error.")},
