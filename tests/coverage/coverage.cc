@@ -140,13 +140,15 @@ std::vector<Sample> samples(const input::Case& problem, const models::CaseResult
 }
 
 double quantile(const std::vector<double>& sorted, double q) {
-  return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1) + 0.5)];
+  return sorted[static_cast<std::size_t>(std::lround(q * static_cast<double>(sorted.size() - 1)))];
 }
 
 void print_table(const std::map<std::string, std::vector<double>>& effectivities) {
   fmt::print("\n{:<32} {:>5} {:>7} {:>9} {:>9} {:>9} {:>9} {:>5}\n", "error/estimate", "n",
              "inside", "5 %", "median", "95 %", "largest", "> 3");
-  for (auto [group, values] : effectivities) {
+  for (const auto& entry : effectivities) {
+    const std::string& group = entry.first;
+    std::vector<double> values = entry.second;
     std::sort(values.begin(), values.end());
     const auto above = [&](double limit) {
       return values.end() - std::upper_bound(values.begin(), values.end(), limit);
@@ -168,7 +170,9 @@ bool holds(const std::map<std::string, std::vector<double>>& effectivities) {
     all.insert(all.end(), values.begin(), values.end());
   }
   bool all_hold = !of_quantity.empty();
-  for (const auto& [quantity, values] : of_quantity) {
+  for (const auto& entry : of_quantity) {
+    const std::string& quantity = entry.first;
+    const std::vector<double>& values = entry.second;
     const auto outside = [&](double limit) {
       return std::ranges::count_if(values, [&](double value) { return !(value <= limit); });
     };
