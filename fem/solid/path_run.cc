@@ -212,13 +212,12 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
   if (step.status == Status::slipped_off && levels_.finest > 0) {
     // The bracket, and how far that of the next coarser level, which has slipped off too, is away.
-    const std::optional<double> own = slip_off_limit(step);
-    MechanicsStep coarser = step;
-    const LoadPathOutcome of_coarser = levels_.all[levels_.finest - 1]->advance(load, {});
-    coarser.slip_off_force = of_coarser.slip_off_force;
-    coarser.slip_off_displacement = of_coarser.slip_off_displacement;
-    if (const std::optional<double> its = slip_off_limit(coarser); own && its)
-      step.slip_off_uncertainty = outcome.slip_off_bracket + std::abs(*own - *its);
+    const LoadPathOutcome coarser = levels_.all[levels_.finest - 1]->advance(load, {});
+    const auto own = slip_off_limit(step);
+    const auto other =
+        load.is<ProbeLoad>() ? coarser.slip_off_displacement : coarser.slip_off_force;
+    if (own && other)
+      step.slip_off_uncertainty = outcome.slip_off_bracket + std::abs(*own - *other);
   }
   if (step.status == Status::failed) step.message = label(i) + step.message;
   step.seconds = seconds_since(start);

@@ -31,8 +31,8 @@ meshes::cylinder::CylinderMeshOptions level_mesh(unsigned int level);
 /// 3D finite-strain near-incompressible hyperelastic solid of the two-material cilium: Q2
 /// displacement, discontinuous linear pressure, clamped base (docs/theory/solid.md). The mesh turns
 /// with the load's azimuth, so that the bending plane is always one of its planes of symmetry. A
-/// sequence of coarser meshes is solved first: each gives the next one its initial guess; the last
-/// of them is the companion of the result.
+/// sequence of coarser meshes is solved first: each gives the next one its initial guess. The next
+/// coarser one, the coarsest, and the coarsest with twice the arcs are the result's companions.
 class Solid : public MechanicsModel {
  public:
   /// The ranks of the communicator share each solution. Throws InputError if an option is out of

@@ -2,7 +2,7 @@
 // How often does the error lie inside the stated interval? Each random case is computed with a
 // model and with a reference: finer options, or a closed form. The difference of the two counts as
 // the error. Exit code 1: less than 95 % of a quantity inside, or one more than three times
-// outside.
+// outside, or a quarter of the cases left out.
 //   build/release/tests/coverage/coverage SUBJECT [number of cases [first seed]]
 #include <fmt/core.h>
 
@@ -53,8 +53,8 @@ const std::vector<Subject>& subjects() {
     ++solid.refinement;
     // GMRES is slow where a segment is nearly incompressible.
     solid.solver = fem::solid::solvers::SolverKind::direct;
-    // At the rim of a very soft joint the strain grows as the mesh gets finer, until it has no
-    // equilibrium: that is soon said.
+    // Where a very soft joint bends far, more cutbacks take minutes. So the hardest cases are left
+    // out, and their intervals are not tried (docs/evidence/solid.md).
     solid.max_cutbacks = 1;
   };
   static const std::vector<Subject> all{
@@ -210,8 +210,8 @@ bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
       continue;
     }
     for (const Sample& sample : samples(problem, result, finer)) {
-      // The elastica does not know its probe's force's error.
-      if (sample.group == "applied force under probe" && !sample.estimate) continue;
+      // The elastica, and it alone, does not know the error of a probe's force.
+      if (subject.name == "elastica" && sample.group == "applied force under probe") continue;
       effectivities[sample.group].push_back(sample.effectivity());
       fmt::print(" {:.2g}", sample.effectivity());
     }
@@ -220,7 +220,8 @@ bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
   }
   print_table(effectivities);
   fmt::print("{} of {} cases left out\n", left_out, cases);
-  return holds(effectivities);
+  // An interval that is tried on few of the cases is not tried.
+  return holds(effectivities) && 4 * left_out <= cases;
 }
 
 }  // namespace

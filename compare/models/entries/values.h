@@ -59,7 +59,7 @@ inline input::Refinement pieces(std::vector<double> values, std::string_view siz
 }
 
 /// The option `refinement` of the solid's meshes, by the thickness of the layers at the singular
-/// rims, which govern (docs/theory/solid.md): order 1.5 on the average, none formal.
+/// rims, which govern (docs/theory/solid.md): none formal.
 input::Refinement solid_meshes();
 
 }  // namespace ciliaval::compare::models::entries

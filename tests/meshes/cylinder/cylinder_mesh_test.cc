@@ -70,8 +70,6 @@ TEST(CylinderMesh, HasTheVolumeAndSecondMomentOfTheCylinder) {
   }
 }
 
-// Oracle: area and moments of a boundary interpolated at p+1 Gauss–Lobatto points of each arc of
-// angle α converge as α^(2p). α is halved from 45° to 22.5°, the nodes on the cylinder itself.
 // Oracle: the sector of the parabola through three points of an arc of half-angle β, in closed form
 // sin β (1 + (1 − cos β)/3), against β.
 TEST(BaseSection, IsThatOfTheMeshedCircle) {
@@ -91,6 +89,8 @@ TEST(BaseSection, IsThatOfTheMeshedCircle) {
   }
 }
 
+// Oracle: area and moments of a boundary interpolated at p+1 Gauss–Lobatto points of each arc of
+// angle α converge as α^(2p). α is halved from 45° to 22.5°, the nodes on the cylinder itself.
 TEST(CylinderMesh, ConvergesToTheCylinderWithTwiceTheMappingDegree) {
   const Cilium cilium = stub_and_magnet();
   const double exact = cilium.area() * cilium.length();
