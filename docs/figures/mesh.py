@@ -16,7 +16,7 @@ from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 
 DIAMETER = 3.0  # of the case, mm
-SQUARE_CELLS, RINGS = 2, 4  # of the default refinement
+SQUARE_CELLS, RINGS = 2, 3  # of the default refinement
 COLOURS = {1: "#f2d196", 2: "#b8cfe6"}  # by segment
 MARK = "#b01818"
 QUAD_9, HEXAHEDRON_27 = 10, 12  # Gmsh's element types
