@@ -87,8 +87,8 @@ def draw_section(axes, nodes, elements):
                    if abs(nodes[n[c]][1]) < 1e-9 and nodes[n[c]][0] > -1e-9})
     half, rim = axis[SQUARE_CELLS // 2], axis[-1]
     dimension(axes, (-half, 0), (half, 0), "", (0, 0))
-    note(axes, "square_cells n = 2:\ncells along a side", (-2.45, 1.5), to=(-half / 2, 0.02))
-    dimension(axes, (half, 0), (rim, 0), "rings m = 4", (1.6, -0.06))
+    note(axes, f"square_cells n = {SQUARE_CELLS}:\ncells along a side", (-2.45, 1.5), to=(-half / 2, 0.02))
+    dimension(axes, (half, 0), (rim, 0), f"rings m = {RINGS}", (1.6, -0.06))
     note(axes, "each ring_ratio times\nas wide as the one inside", (0.55, -2.05), to=(1.28, -0.02))
     note(axes, "n² + 4nm cells; equal_area\nputs the corners outside R", (0.85, 1.6),
          to=(rim * 0.7071, rim * 0.7071))
