@@ -201,4 +201,8 @@ Deformation Level::undeformed(double azimuth) const {
   return deformation(space_->undeformed(), SpreadLoad{}, azimuth);
 }
 
+MantleCompression Level::mantle_compression() const {
+  return postprocessing::mantle_compression(*space_, cilium_, solver().current().state);
+}
+
 }  // namespace ciliaval::fem::solid

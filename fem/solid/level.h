@@ -14,6 +14,7 @@
 #include "fem/solid/equilibrium/newton.h"
 #include "fem/solid/loads/height_loads.h"
 #include "fem/solid/material/hyperelastic.h"
+#include "fem/solid/postprocessing/mantle.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "meshes/mesh_file.h"
 #include "problem/cilium.h"
@@ -68,6 +69,8 @@ class Level {
   Deformation deformation(const equilibrium::Equilibrium& equilibrium, double azimuth) const;
   Deformation undeformed(double azimuth) const;
 
+  /// Of the level's state.
+  postprocessing::MantleCompression mantle_compression() const;
   double applied_force() const { return solver().current().applied_force; }
   std::size_t unknowns() const { return space_->unknowns(); }
 

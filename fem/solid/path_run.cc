@@ -3,6 +3,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <fmt/format.h>
+
 #include <boost/serialization/map.hpp>
 #include <chrono>
 #include <functional>
@@ -60,6 +62,20 @@ std::optional<double> contact_arclength(const Centreline& centreline, double hei
 bool is_at(const Level& level, const Load& load) {
   return level.state() != nullptr && same_place(level.state()->current.load, load) &&
          magnitude(level.state()->current.load) == magnitude(load);
+}
+
+/// λₙ/λ₁ on the mantle beyond which the error is not known: two thirds of that of creases. From
+/// here on finer meshes are no longer nearer to one another (docs/evidence/solid.md).
+constexpr double largest_compression = 1.6;
+
+/// What is to be said of a mantle that is compressed so far that rubber folds.
+std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression) {
+  if (compression.ratio <= largest_compression) return std::nullopt;
+  return fmt::format(
+      "the mantle at Z = {:.3g} mm is compressed to {:.2f} of its length (ratio of stretches "
+      "{:.2f}): near this rubber folds, and the numerical error is not known "
+      "(docs/theory/solid.md)",
+      compression.height * 1e3, compression.stretch, compression.ratio);
 }
 
 /// The step of a companion: failed if it has no equilibrium with the load.
@@ -202,15 +218,20 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   if (keep) on_equilibrium = [this] { save(nullptr); };
   const Load load = in_mesh_frame(options_, path_[i]);
   const LoadPathOutcome outcome = finest().advance(load, shown, on_equilibrium);
-  if (outcome.status == Status::converged) {
+  MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
+  const std::optional<std::string> fold = fold_remark(finest().mantle_compression());
+  if (step.status == Status::converged) {
     // The coarser levels are there already, unless the finest has left them behind.
     Progress of_companions;
     if (shown) of_companions = with_prefix(shown, "error estimate, ");
-    if (levels_.all.size() > levels_.finest + 1 && is_at(*levels_.all.front(), load))
+    if (fold)  // without this companion there is no estimate
+      step.message = *fold;
+    else if (levels_.all.size() > levels_.finest + 1 && is_at(*levels_.all.front(), load))
       levels_.all.back()->advance(load, of_companions);
+  } else if (fold) {
+    step.message += "; at the last load before, " + *fold;
   }
-  MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
-  if (step.status == Status::slipped_off && levels_.finest > 0) {
+  if (step.status == Status::slipped_off && levels_.finest > 0 && !fold) {
     // The bracket, and how far that of the next coarser level, which has slipped off too, is away.
     const LoadPathOutcome coarser = levels_.all[levels_.finest - 1]->advance(load, {});
     const auto own = slip_off_limit(step);

@@ -2,7 +2,7 @@
 // How often does the error lie inside the stated interval? Each random case is computed with a
 // model and with a reference: finer options, or a closed form. The difference of the two counts as
 // the error. Exit code 1: less than 95 % of a quantity inside, or one more than three times
-// outside, or a quarter of the cases left out.
+// outside, or a tenth of the cases without an interval or a reference.
 //   build/release/tests/coverage/coverage SUBJECT [number of cases [first seed]]
 #include <fmt/core.h>
 
@@ -53,9 +53,6 @@ const std::vector<Subject>& subjects() {
     ++solid.refinement;
     // GMRES is slow where a segment is nearly incompressible.
     solid.solver = fem::solid::solvers::SolverKind::direct;
-    // Where a very soft joint bends far, more cutbacks take minutes. So the hardest cases are left
-    // out, and their intervals are not tried (docs/evidence/solid.md).
-    solid.max_cutbacks = 1;
   };
   static const std::vector<Subject> all{
       {"solid", "solid", "mesh", as_they_are, "mesh", next_mesh},
@@ -112,17 +109,25 @@ std::vector<Sample> samples(const input::Case& problem, const models::CaseResult
   const models::MechanicsRun& run = result.mechanics.front();
   const MechanicsStep& step = run.result.steps.front();
   const MechanicsStep& truth = finer.mechanics.front().result.steps.front();
+  const bool same_mechanics = problem.fields != finer.problem.fields;
+  std::vector<Sample> all;
+  if (const auto limit = slip_off_limit(step); limit && !same_mechanics) {
+    // A reference that bears the load tells a lower bound of the error.
+    const double true_limit = slip_off_limit(truth).value_or(magnitude(truth.load));
+    all.push_back({"slip-off", std::abs(*limit - true_limit), step.slip_off_uncertainty});
+  }
+  if (step.status == Status::slipped_off) return all;
   const double L = problem.cilium.length();
   const CentrelinePoint tip = step.deformation->centreline.at(L);
   const CentrelinePoint true_tip = truth.deformation->centreline.at(L);
   const std::string load = " under " + std::string(type(step.load));
-  std::vector<Sample> all;
-  if (problem.fields == finer.problem.fields)  // else the mechanics are the same
-    all = {{"tip" + load, (tip.position - true_tip.position).norm(), step.tip_uncertainty},
-           {"tip angle", std::abs(tip.theta() - true_tip.theta()),
-            models::tip_angle_uncertainty(run, 0)},
-           {"applied force" + load, std::abs(step.applied_force - truth.applied_force),
-            step.applied_force_uncertainty}};
+  if (!same_mechanics) {
+    all.push_back({"tip" + load, (tip.position - true_tip.position).norm(), step.tip_uncertainty});
+    all.push_back({"tip angle", std::abs(tip.theta() - true_tip.theta()),
+                   models::tip_angle_uncertainty(run, 0)});
+    all.push_back({"applied force" + load, std::abs(step.applied_force - truth.applied_force),
+                   step.applied_force_uncertainty});
+  }
   const auto& fields = result.fields.front();
   const auto& true_fields = finer.fields.front();
   for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
@@ -188,6 +193,11 @@ bool holds(const std::map<std::string, std::vector<double>>& effectivities) {
 bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed) {
   std::map<std::string, std::vector<double>> effectivities;
   unsigned int left_out = 0;
+  const auto leave_out = [&](const std::string& why) {
+    fmt::print("left out: {}\n", why);
+    std::fflush(stdout);
+    ++left_out;
+  };
   for (std::uint32_t seed = first_seed; seed < first_seed + cases; ++seed) {
     const RandomCase drawn = random_case(seed);
     input::Case problem = problem_of(drawn, subject);
@@ -198,15 +208,23 @@ bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
       return models::run(problem, models::mechanics_models(), models::field_models());
     };
     const models::CaseResult result = solve();
-    problem.fields = {subject.reference_field};
-    subject.refine(problem.options);
-    const models::CaseResult finer = solve();
     const auto step_of = [](const models::CaseResult& of) -> const MechanicsStep& {
       return of.mechanics.front().result.steps.front();
     };
-    if (step_of(result).status != Status::converged || step_of(finer).status != Status::converged) {
-      fmt::print("left out: {} {}\n", step_of(result).message, step_of(finer).message);
-      ++left_out;
+    const MechanicsStep& step = step_of(result);
+    // No equilibrium, or one whose error the model says it does not know.
+    if (step.status == Status::failed ||
+        (step.status == Status::converged && !step.tip_uncertainty)) {
+      leave_out(step.message);
+      continue;
+    }
+    problem.fields = {subject.reference_field};
+    subject.refine(problem.options);
+    const models::CaseResult finer = solve();
+    const MechanicsStep& truth = step_of(finer);
+    if (truth.status == Status::failed ||
+        (step.status == Status::converged && truth.status == Status::slipped_off)) {
+      leave_out("reference: " + truth.message);
       continue;
     }
     for (const Sample& sample : samples(problem, result, finer)) {
@@ -215,13 +233,13 @@ bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
       effectivities[sample.group].push_back(sample.effectivity());
       fmt::print(" {:.2g}", sample.effectivity());
     }
-    fmt::print("  {:.1f} s, reference {:.1f} s\n", step_of(result).seconds, step_of(finer).seconds);
+    fmt::print("  {:.1f} s, reference {:.1f} s\n", step.seconds, truth.seconds);
     std::fflush(stdout);
   }
   print_table(effectivities);
   fmt::print("{} of {} cases left out\n", left_out, cases);
   // An interval that is tried on few of the cases is not tried.
-  return holds(effectivities) && 4 * left_out <= cases;
+  return holds(effectivities) && 10 * left_out <= cases;
 }
 
 }  // namespace
