@@ -41,6 +41,9 @@ void check_error_limit(const input::CaseCheck& check) {
     check.report("models.solid.tolerance",
                  "'tolerance' chooses one of the built-in meshes, and 'mesh' names a file: leave "
                  "out one of the two");
+  if (limit.of == ErrorLimit::Of::field && limit.percent == 0)
+    check.report("models.solid.tolerance_of",
+                 "'tolerance_of' says of what the 'tolerance' is a part: give that too");
   if (limit.of == ErrorLimit::Of::field && check.problem.sensors.empty())
     check.report("models.solid.tolerance_of",
                  "the field's error is that at the sensors, and the case has none");

@@ -202,6 +202,8 @@ const BadCase values[]{
     {"NegativeTolerance", "refinement = 1", "tolerance = \"-1 %\"", "35:13", "'tolerance' is -1 %"},
     {"ToleranceAndRefinement", "refinement = 1", "refinement = 1\ntolerance = \"0.1 %\"", "35:14",
      "'refinement' goes with no tolerance only"},
+    {"ToleranceOfNothing", "refinement = 1", "tolerance_of = \"field\"", "35:16",
+     "'tolerance_of' says of what the 'tolerance' is a part: give that too"},
     {"KernelWithoutUnit", "refinement = 1", "kernel_width = 0.5", "35:16",
      "'kernel_width': the number 0.5 has no unit"},
     {"FlagIsANumber", "[models.solid]\nrefinement = 1", "[models.beam]\nshear_rigid = 1", "35:15",
