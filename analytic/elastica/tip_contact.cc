@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "problem/error.h"
@@ -21,6 +22,14 @@ using Residuals = Eigen::Vector3d;  ///< of the moment, the gap, the law of fric
 
 /// The last equation: of the contact and the touching point's place on the surface.
 using FrictionLaw = std::function<double(const TipContact& contact, double on_surface)>;
+
+/// The unknowns' derivatives of the residuals and of N and T.
+struct Derivatives {
+  Eigen::Matrix3d residuals;
+  Eigen::RowVector3d normal_force;
+  Eigen::RowVector3d friction_force;
+  Eigen::RowVector3d contact_x;
+};
 
 /// The frame turned by χ, in which the force is horizontal: F_x = F cos χ, F_z = −F sin χ,
 /// M′ = −F cos(θ − χ).
@@ -97,18 +106,26 @@ std::optional<TipContact> solve(const TipProblem& problem, const Surface& surfac
   const auto at = [&](const Unknowns& unknowns) {
     return residuals(problem, surface, place, law, unknowns, contact);
   };
+  const auto differentiate = [&](const Unknowns& unknowns) {
+    Derivatives result;
+    for (int j = 0; j < 3; ++j) {
+      const double h = difference * (1 + std::abs(unknowns[j]));
+      Unknowns moved = unknowns;
+      moved[j] = unknowns[j] + h;
+      const Residuals after = at(moved);
+      const TipContact contact_after = contact;
+      moved[j] = unknowns[j] - h;
+      result.residuals.col(j) = (after - at(moved)) / (2 * h);
+      result.normal_force[j] = (contact_after.normal_force - contact.normal_force) / (2 * h);
+      result.contact_x[j] = (contact_after.contact_x - contact.contact_x) / (2 * h);
+      result.friction_force[j] = (contact_after.friction_force - contact.friction_force) / (2 * h);
+    }
+    return result;
+  };
   double last_change = std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
-    Eigen::Matrix3d jacobian;
-    for (int j = 0; j < 3; ++j) {
-      const double h = difference * (1 + std::abs(u[j]));
-      Unknowns before = u;
-      Unknowns after = u;
-      before[j] -= h;
-      after[j] += h;
-      jacobian.col(j) = (at(after) - at(before)) / (2 * h);
-    }
-    Unknowns change = -jacobian.partialPivLu().solve(at(u));
+    const Derivatives derivatives = differentiate(u);
+    Unknowns change = -derivatives.residuals.partialPivLu().solve(at(u));
     if (!change.allFinite()) return std::nullopt;
     const double relative = (change.array() / (1 + u.array().abs())).abs().maxCoeff();
     u += change * std::min(1.0, largest_change / relative);
@@ -116,6 +133,11 @@ std::optional<TipContact> solve(const TipProblem& problem, const Surface& surfac
     if (relative < problem.tolerance || (relative < 1e-9 && relative >= last_change / 2)) {
       at(u);
       contact.iterations = iteration;
+      Eigen::Matrix3d held_tip = derivatives.residuals;
+      held_tip.row(2) = derivatives.contact_x;
+      const Unknowns held = held_tip.partialPivLu().solve(Unknowns::UnitZ());
+      contact.normal_slope = derivatives.normal_force * held;
+      contact.friction_slope = derivatives.friction_force * held;
       return contact;
     }
     last_change = relative;
@@ -130,14 +152,6 @@ TipProblem tip_problem(const Cilium& cilium) {
   return {.ends = same.ends, .compliance = same.compliance, .length = cilium.length()};
 }
 
-std::vector<TaylorStep> shape_under(const TipProblem& problem, double base_moment, double force_x,
-                                    double force_z) {
-  std::vector<TaylorStep> steps;
-  integrate(problem, base_moment, ForceFrame(force_x, force_z),
-            [&](const TaylorStep& step, double) { steps.push_back(step); });
-  return steps;
-}
-
 std::optional<TipContact> sliding(const TipProblem& problem, const Surface& surface,
                                   const SurfacePlace& place, double direction,
                                   const TipContact& guess) {
@@ -148,6 +162,15 @@ std::optional<TipContact> sliding(const TipProblem& problem, const Surface& surf
         return contact.friction_force - ratio * contact.normal_force;
       },
       guess);
+}
+
+std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
+                                       const TipContact& guess) {
+  TipProblem centre = problem;
+  centre.rim = 0;
+  return solve(
+      centre, {FlatProfile{}, 0, 0}, {height, 0},
+      [](const TipContact& contact, double) { return contact.normal_force; }, guess);
 }
 
 std::optional<TipContact> sticking(const TipProblem& problem, const Surface& surface,

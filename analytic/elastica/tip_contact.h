@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct SurfacePlace {
   double height = 1;
   double travel = 0;
 };
+inline SurfacePlace between(const SurfacePlace& a, const SurfacePlace& b, double t) {
+  return {std::lerp(a.height, b.height, t), std::lerp(a.travel, b.travel, t)};
+}
 
 /// An equilibrium.
 struct TipContact {
@@ -40,6 +44,9 @@ struct TipContact {
   double contact_x = 0;  ///< of the touching point
   double contact_z = 0;
   double energy = 0;  ///< elastic, ∫ M²/(2EI) dS
+  // How the forces of a tip that is held change with the place ξ = x_c − s where it is held.
+  double normal_slope = 0;    ///< dN/dξ
+  double friction_slope = 0;  ///< dT/dξ
   int iterations = 0;
 };
 
@@ -56,6 +63,10 @@ TipProblem tip_problem(const Cilium& cilium);
 std::optional<TipContact> sliding(const TipProblem& problem, const Surface& surface,
                                   const SurfacePlace& place, double direction,
                                   const TipContact& guess);
+
+/// The free tip pulled aside by a horizontal force, so far that it sinks to the height.
+std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
+                                       const TipContact& guess);
 
 /// The equilibrium in which the touching point stays at a place of the surface, x_c − s = `held`.
 std::optional<TipContact> sticking(const TipProblem& problem, const Surface& surface,
