@@ -11,6 +11,7 @@
 #include "problem/error.h"
 
 namespace ciliaval::analytic::elastica {
+using namespace surroundings;
 namespace {
 
 constexpr double longest_step = 2e-3;      ///< of the surface, in L

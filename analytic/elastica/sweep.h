@@ -40,7 +40,7 @@ struct SweepSample {
 /// shorter than 1e-6 of the way.
 ///
 /// Throws SolverError where no equilibrium is found, and InputError as Surface::at().
-std::vector<SweepSample> sweep(const TipProblem& problem, const Surface& surface,
+std::vector<SweepSample> sweep(const TipProblem& problem, const surroundings::Surface& surface,
                                const std::vector<SurfacePlace>& places);
 
 }  // namespace ciliaval::analytic::elastica

@@ -11,6 +11,7 @@
 #include "problem/error.h"
 
 namespace ciliaval::analytic::elastica {
+using namespace surroundings;
 namespace {
 
 constexpr int most_iterations = 40;

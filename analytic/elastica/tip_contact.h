@@ -7,7 +7,7 @@
 
 #include "analytic/elastica/taylor.h"
 #include "problem/cilium.h"
-#include "problem/surface.h"
+#include "problem/surroundings/surface.h"
 
 /// The planar elastica whose tip a rigid surface presses (the sweep). Without units: lengths in L,
 /// forces in max(EI)/L², moments in max(EI)/L. θ is the angle from the vertical towards the travel,
@@ -60,7 +60,7 @@ TipProblem tip_problem(const Cilium& cilium);
 ///     EI θ′ = M,  M′ = −F_x cos θ + F_z sin θ,  F = N n + T t,
 ///     M(1) = F_x (z_c − z) − F_z (x_c − x),  z_c = H − p(x_c − s),
 ///     t = (1, −p′)/√(1 + p′²),  n = (−p′, −1)/√(1 + p′²).
-std::optional<TipContact> sliding(const TipProblem& problem, const Surface& surface,
+std::optional<TipContact> sliding(const TipProblem& problem, const surroundings::Surface& surface,
                                   const SurfacePlace& place, double direction,
                                   const TipContact& guess);
 
@@ -69,7 +69,7 @@ std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
                                        const TipContact& guess);
 
 /// The equilibrium in which the touching point stays at a place of the surface, x_c − s = `held`.
-std::optional<TipContact> sticking(const TipProblem& problem, const Surface& surface,
+std::optional<TipContact> sticking(const TipProblem& problem, const surroundings::Surface& surface,
                                    const SurfacePlace& place, double held, const TipContact& guess);
 
 }  // namespace ciliaval::analytic::elastica

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "problem/surface.h"
+#include "problem/surroundings/surface.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,7 @@
 #include "problem/error.h"
 
 namespace ciliaval {
+using namespace surroundings;
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

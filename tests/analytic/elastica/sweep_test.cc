@@ -9,6 +9,7 @@
 #include "problem/error.h"
 
 namespace ciliaval::analytic::elastica {
+using namespace surroundings;
 namespace {
 
 const Cilium paper{3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};

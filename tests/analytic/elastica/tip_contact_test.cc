@@ -11,6 +11,7 @@
 #include <vector>
 
 namespace ciliaval::analytic::elastica {
+using namespace surroundings;
 namespace {
 
 using std::numbers::pi;

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace ciliaval {
+namespace ciliaval::surroundings {
 
 /// Height p of a profile at a point, and its derivatives by the distance x along it.
 struct ProfilePoint {
@@ -101,4 +101,4 @@ struct Surface {
 /// trapezoid have no room.
 void require_valid(const Surface& surface);
 
-}  // namespace ciliaval
+}  // namespace ciliaval::surroundings

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "problem/surface.h"
+#include "problem/surroundings/surface.h"
 
 #include <algorithm>
 #include <boost/math/interpolators/makima.hpp>
@@ -12,7 +12,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval {
+namespace ciliaval::surroundings {
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
@@ -218,4 +218,4 @@ void require_valid(const Surface& surface) {
   std::visit([](const auto& kind) { check(kind); }, surface.profile);
 }
 
-}  // namespace ciliaval
+}  // namespace ciliaval::surroundings
