@@ -53,6 +53,19 @@ double largest_field_error(const MechanicsRun& run, const input::Case& problem,
   return largest;
 }
 
+/// What came of a limit, to be read beside the results.
+std::string outcome(const std::string& refinement, double percent, const ErrorLimit& limit) {
+  if (!std::isfinite(percent))
+    return fmt::format("{}: the error is not known, so the tolerance of {:g} % is not met",
+                       refinement, limit.percent);
+  const std::string error =
+      fmt::format("{}, error of at most {:.2g} % of {}", refinement, percent,
+                  limit.of == ErrorLimit::Of::tip ? "the tip's displacement" : "|dB|");
+  if (percent <= limit.percent) return error;
+  return fmt::format("{}: the tolerance of {:g} % is not met, this is the finest mesh", error,
+                     limit.percent);
+}
+
 /// The part of a checkpoint whose entries begin with the prefix.
 Checkpoint part_of(const Checkpoint& checkpoint, const std::string& prefix) {
   Checkpoint part;
@@ -101,16 +114,13 @@ MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& probl
       run.result.steps[step].seconds = seconds[step] += run.result.steps[step].seconds;
     if (!all_solved(run)) return run;
     const double error = 100 * error_of(run);
-    const bool is_met = error <= limit.percent;
-    if (!is_met && i + 1 < refinement.values.size()) continue;
+    // An error that is not known on a mesh is not known on finer ones: the model says why.
+    const bool is_last = i + 1 == refinement.values.size() || !std::isfinite(error);
+    if (error > limit.percent && !is_last) continue;
+    const std::string result = outcome(name, error, limit);
     for (MechanicsStep& step : run.result.steps)
       if (step.status == Status::converged)
-        step.message = fmt::format(
-            "{}, error of at most {:.2g} % of {}{}", name, error,
-            limit.of == ErrorLimit::Of::tip ? "the tip's displacement" : "|dB|",
-            is_met ? ""
-                   : fmt::format(": the tolerance of {:g} % is not met, this is the finest mesh",
-                                 limit.percent));
+        step.message += (step.message.empty() ? "" : "; ") + result;
     return run;
   }
 }

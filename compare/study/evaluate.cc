@@ -110,6 +110,7 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
     if (range) {
       result.values[static_cast<std::size_t>(output - study.outputs.begin())] = range->magnitude;
       result.range_uncertainty = range->uncertainty;
+      append(result.message, range->remark);
     }
     append(result.message, failure);
   }
@@ -130,7 +131,9 @@ LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const Me
   for (int i = 0; i < most_trials; ++i, magnitude *= 2) {
     const MechanicsStep trial =
         solve_one(model, cilium, with_magnitude(step.load, magnitude), progress);
-    if (const auto limit = slip_off_limit(trial)) return {*limit, trial.slip_off_uncertainty};
+    if (const auto limit = slip_off_limit(trial))
+      return {*limit, trial.slip_off_uncertainty,
+              trial.slip_off_uncertainty || trial.message.empty() ? "" : "range: " + trial.message};
     if (trial.status == Status::failed)
       throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
                                     magnitude_unit(step.load), trial.message));
@@ -141,14 +144,14 @@ LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const Me
 
 LargestLoad magnitude_at_rotation(const MechanicsModel& model, const Cilium& cilium,
                                   const Load& load, double rotation, const Progress& progress) {
-  std::optional<double> angle_uncertainty;  // of the last trial
+  std::map<double, LargestLoad> angles;  // uncertainty and remark, by magnitude
   const auto excess = [&](double magnitude) {
     if (magnitude == 0) return -rotation;
     const MechanicsStep step = solve_one(model, cilium, with_magnitude(load, magnitude), progress);
     if (step.status != Status::converged)
       throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
                                     magnitude_unit(load), step.message));
-    angle_uncertainty = step.tip_angle_uncertainty;
+    angles[magnitude] = {magnitude, step.tip_angle_uncertainty, step.message};
     const Centreline& centreline = step.deformation->centreline;
     return centreline.at(centreline.length()).theta() - rotation;
   };
@@ -170,11 +173,14 @@ LargestLoad magnitude_at_rotation(const MechanicsModel& model, const Cilium& cil
   const auto close = [](double a, double b) { return b - a <= tolerance * b; };
   const auto [a, b] =
       boost::math::tools::toms748_solve(excess, lower, upper, at_lower, at_upper, close, trials);
-  LargestLoad result{(a + b) / 2, {}};
+  LargestLoad result{(a + b) / 2};
+  const LargestLoad& angle = angles.at(b);
   constexpr double secant = 0.01;
   const double turned = -excess((1 - secant) * result.magnitude);
-  if (angle_uncertainty && turned > 0)
-    result.uncertainty = b - a + *angle_uncertainty * secant * result.magnitude / turned;
+  if (angle.uncertainty && turned > 0)
+    result.uncertainty = b - a + *angle.uncertainty * secant * result.magnitude / turned;
+  else if (!angle.remark.empty())
+    result.remark = "range: " + angle.remark;
   return result;
 }
 

@@ -26,7 +26,8 @@ struct PairResult {
 /// A largest load: N, N/m, or m of a probe.
 struct LargestLoad {
   double magnitude = 0;
-  std::optional<double> uncertainty;  ///< if the model knows it
+  std::optional<double> uncertainty{};  ///< if the model knows it
+  std::string remark{};                 ///< what the model says if it does not
 };
 
 /// Runs one mechanics model of the study on the case of one of its points, and the fields of its

@@ -64,8 +64,8 @@ bool is_at(const Level& level, const Load& load) {
          magnitude(level.state()->current.load) == magnitude(load);
 }
 
-/// λₙ/λ₁ on the mantle beyond which the error is not known: two thirds of that of creases. From
-/// here on finer meshes are no longer nearer to one another (docs/evidence/solid.md).
+/// λₙ/λ₁ on the mantle beyond which the error is not known: two thirds of that of creases. Not far
+/// beyond, finer meshes are no longer nearer to one another (docs/evidence/solid.md).
 constexpr double largest_compression = 1.6;
 
 /// What is to be said of a mantle that is compressed so far that rubber folds.
@@ -224,10 +224,14 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
     // The coarser levels are there already, unless the finest has left them behind.
     Progress of_companions;
     if (shown) of_companions = with_prefix(shown, "error estimate, ");
-    if (fold)  // without this companion there is no estimate
+    const bool has_companions = levels_.all.size() > levels_.finest + 1;
+    if (fold) {
       step.message = *fold;
-    else if (levels_.all.size() > levels_.finest + 1 && is_at(*levels_.all.front(), load))
+      // Without this companion there is no estimate.
+      if (has_companions) levels_.all.back()->restore(std::nullopt);
+    } else if (has_companions && is_at(*levels_.all.front(), load)) {
       levels_.all.back()->advance(load, of_companions);
+    }
   } else if (fold) {
     step.message += "; at the last load before, " + *fold;
   }

@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "meshes/boundary_ids.h"
@@ -17,8 +18,8 @@ namespace ciliaval::fem::solid::postprocessing {
 using namespace discretisation;
 namespace {
 
-constexpr double rim = 0.1;            ///< left out at each end of a segment, diameters
-constexpr double rim_of_short = 0.25;  ///< at most, of the segment's length
+constexpr double rim = 0.1;           ///< left out at each end of a segment, diameters
+constexpr double rim_of_short = 0.2;  ///< at most, of the segment's length
 
 MantleCompression compression(const Matrix3& F, const Vector3& normal, double height) {
   Eigen::Matrix<double, 3, 2> tangents;
@@ -26,9 +27,12 @@ MantleCompression compression(const Matrix3& F, const Vector3& normal, double he
   tangents.col(1) = normal.cross(tangents.col(0));
   const Eigen::Matrix<double, 3, 2> along = F * tangents;
   const Eigen::Matrix2d C = along.transpose() * along;
-  const double smallest =
-      std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(C).eigenvalues()[0]);
-  return {F.determinant() / std::sqrt(C.determinant()) / smallest, smallest, height};
+  const double J = F.determinant();
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(C).eigenvalues()[0];
+  if (!(J > 0 && least > 0))  // turned inside out
+    return {std::numeric_limits<double>::infinity(), 0, height};
+  const double smallest = std::sqrt(least);
+  return {J / std::sqrt(C.determinant()) / smallest, smallest, height};
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ struct MantleCompression {
 ///   λ₁² = smallest eigenvalue of C,   λₙ = det F/√det C  (a free surface has no shear across it).
 ///
 /// At the 2 × 2 Gauss points of the mantle's faces; those at the rims of the clamped end and of the
-/// interfaces, where the strain is singular, are left out: nearer than 0.1 diameters, or a quarter
-/// of the segment if that is less.
+/// interfaces, where the strain is singular, are left out: nearer than 0.1 diameters, or a fifth
+/// of the segment if that is less. Infinite where the mantle is turned inside out.
 MantleCompression mantle_compression(const discretisation::SolidSpace& space, const Cilium& cilium,
                                      const discretisation::SolidState& state);
 

@@ -22,6 +22,7 @@ constexpr double turn = 0.1;  // rad, of the exact solution
 
 struct HalvingOptions {
   unsigned int refinement = 0;
+  unsigned int last_known = 3;  ///< refinement; finer ones have a remark in place of an estimate
 };
 
 /// Leans by `turn` and an error that falls to a tenth with each refinement; the step's estimate is
@@ -43,7 +44,10 @@ class Halving : public MechanicsModel {
     result.companions = {leaning(turn)};
     result.error_parts = {{"angle", 0, 1, 1}};
     for (MechanicsStep& step : result.steps) {
-      step.tip_uncertainty = 2 * L * std::sin(error / 2);
+      if (options_.refinement <= options_.last_known)
+        step.tip_uncertainty = 2 * L * std::sin(error / 2);
+      else
+        step.message = "it folds";
       step.seconds = 1;
     }
     return result;
@@ -132,6 +136,15 @@ TEST(ErrorLimit, OfAFieldThatIsNotKnownIsNotMet) {
   };
   const std::vector<models::FieldEntry> fields{field_entry("any", any, std::nullopt, true)};
   EXPECT_THAT(last_step({50, ErrorLimit::Of::field}, fields).message, HasSubstr("not met"));
+}
+
+/// Finer meshes would not tell more, and the model's own remark stays.
+TEST(ErrorLimit, StopsWhereTheErrorIsNotKnown) {
+  input::Case problem = problem_with({.percent = 0.5 * tip_error(1)});
+  problem.options.of<HalvingOptions>().last_known = 0;
+  const MechanicsStep step = models::run_mechanics(halving(), problem, {}).result.steps.back();
+  EXPECT_FALSE(step.tip_uncertainty);
+  EXPECT_THAT(step.message, testing::StartsWith("it folds; refinement 1: the error is not known"));
 }
 
 TEST(ErrorLimit, EachRefinementHasACheckpointOfItsOwn) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -21,20 +22,21 @@ const Cilium cilium{2e-3, {{"stub", 3e-3, 1e5, 0.49, 0}, {"magnet", 5e-3, 1e6, 0
 
 /// A straight cilium that is displaced by a given map.
 struct MappedCilium {
+  Cilium shape;
   dealii::Triangulation<3> triangulation;
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
   std::unique_ptr<discretisation::SolidSpace> space;
 
-  MappedCilium() {
+  explicit MappedCilium(const Cilium& of = cilium) : shape(of) {
     meshes::cylinder::CylinderMeshOptions options;
     options.square_cells = 2;
     options.rings = 1;
     options.finest_layer = 0.1;
     options.coarsest_layer = 0.2;
-    meshes::cylinder::make_cylinder(cilium, options, triangulation);
+    meshes::cylinder::make_cylinder(shape, options, triangulation);
     mapping = meshes::cylinder::cylinder_mapping(triangulation);
-    const std::vector<material::Hyperelastic> materials{
-        material::Hyperelastic::neo_hooke(3e4, 2e6), material::Hyperelastic::neo_hooke(3e5, 2e7)};
+    const std::vector<material::Hyperelastic> materials(
+        shape.segments.size(), material::Hyperelastic::neo_hooke(3e4, 2e6));
     space = std::make_unique<discretisation::SolidSpace>(triangulation, *mapping, materials);
   }
 
@@ -50,7 +52,7 @@ struct MappedCilium {
           state.displacement[element.dofs[c * discretisation::element_nodes + a]] = x[i] - X[i];
         }
       }
-    return mantle_compression(*space, cilium, state);
+    return mantle_compression(*space, shape, state);
   }
 };
 
@@ -94,6 +96,42 @@ TEST(MantleCompression, LeavesOutTheRims) {
   EXPECT_LE(found.height, highest);
   EXPECT_GT(found.height, highest - 0.2 * 2e-3);
   EXPECT_NEAR(found.ratio, 1 / (1 - c * found.height), 1e-9);
+}
+
+/// λ₁ = 1 − a + b|Z − Z_i|, smallest at the interface, whose rim does not count.
+TEST(MantleCompression, LeavesOutTheRimsOfInterfaces) {
+  const double interface = 3e-3;
+  const double b = 100;
+  const auto found = MappedCilium().compression([&](const Vector3& X) {
+    const double Z = X.z() - interface;
+    return Vector3(X.x(), X.y(), interface + 0.5 * Z + b / 2 * Z * std::abs(Z));
+  });
+  const double distance = std::abs(found.height - interface);
+  EXPECT_GE(distance, 0.1 * 2e-3);
+  EXPECT_LE(distance, 0.3 * 2e-3);
+  EXPECT_NEAR(found.stretch, 0.5 + b * distance, 1e-9);
+}
+
+/// A thin soft joint, of one layer of cells, is looked at.
+TEST(MantleCompression, SeesAThinSegment) {
+  const double a = 3e-3;
+  const double b = 3.1e-3;
+  const Cilium glued{
+      2e-3,
+      {{"stub", a, 1e6, 0.49, 0}, {"glue", b - a, 1e5, 0.49, 0}, {"magnet", 5e-3, 1e6, 0.49, 7e4}}};
+  const auto found = MappedCilium(glued).compression([&](const Vector3& X) {
+    const double shortened = 0.5 * (std::clamp(X.z(), a, b) - a);
+    return Vector3(X.x(), X.y(), X.z() - shortened);
+  });
+  EXPECT_NEAR(found.ratio, 2, 1e-9);
+  EXPECT_GT(found.height, a);
+  EXPECT_LT(found.height, b);
+}
+
+TEST(MantleCompression, IsInfiniteWhereTheMantleIsInsideOut) {
+  const auto found =
+      MappedCilium().compression([](const Vector3& X) { return Vector3(X.x(), X.y(), -X.z()); });
+  EXPECT_TRUE(std::isinf(found.ratio));
 }
 
 /// A short soft stub that bends by 40° folds; at a third of this it does not.
