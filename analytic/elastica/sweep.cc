@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <sstream>
@@ -14,16 +15,20 @@ namespace ciliaval::analytic::elastica {
 using namespace surroundings;
 namespace {
 
-constexpr double longest_step = 2e-3;      ///< of the surface, in L
-constexpr double shortest_step = 1e-6;     ///< of the way between two places: shorter is a jump
-constexpr double work_tolerance = 2e-6;    ///< of a step's work, over the elastic energy
-constexpr double search_step = 1e-3;       ///< of ξ in a jump, in L
+constexpr double longest_step = 2e-3;    ///< of the surface, in L
+constexpr double shortest_step = 1e-8;   ///< shorter is a jump
+constexpr double feature_steps = 10;     ///< steps on the smallest feature of a surface, at least
+constexpr double work_tolerance = 2e-6;  ///< of a step's work, over the elastic energy
+constexpr double longest_search = 1e-3;  ///< step of ξ in a jump, in L
+constexpr double shortest_search = 1e-7;
 constexpr double farthest_jump = 4;        ///< in L
 constexpr double cone_slack = 1e-10;       ///< of |T| over μN
+constexpr double touch_depth = 1e-8;       ///< of the first contact, in L
 constexpr double vanishing_energy = 1e-9;  ///< less is no jump
 /// With less the cilium is so straight that its stiffness, which cannot be computed then, is that
 /// of a rod that is pushed aside.
 constexpr double straight_energy = 1e-6;
+constexpr double brush_height = 0.6;  ///< of the tip, bent aside, before it is pressed on, in L
 
 double sign_of(double value) {
   return value < 0 ? -1.0 : 1.0;
@@ -33,39 +38,43 @@ double on_surface(const TipContact& contact, const SurfacePlace& place) {
   return contact.contact_x - place.travel;
 }
 
-/// Height of the surface over the tip of the straight cilium.
-double gap_of_straight(const TipProblem& problem, const Surface& surface,
-                       const SurfacePlace& place) {
-  return place.height - surface.at(-place.travel * problem.length).height / problem.length - 1;
-}
-
 /// The tip on its way under the surface.
 class Follower {
  public:
   Follower(const TipProblem& problem, const Surface& surface)
-      : problem_(problem), surface_(surface) {}
+      : problem_(problem), surface_(surface) {
+    const double feature = surface.finest_length() / problem.length / feature_steps;
+    longest_step_ = step_ = std::min(longest_step, feature);
+    longest_search_ = std::min(longest_search, feature);
+    if (longest_search_ < shortest_search)
+      throw InputError("the surface is too fine to be followed: its smallest feature is " +
+                       std::to_string(1e6 * surface.finest_length()) + " um long");
+  }
 
-  /// Down from the straight cilium, while the surface slides and drags the tip along.
+  /// From far ahead, where the cilium is bent aside, the tip comes back until the surface, which
+  /// slides, holds it.
   SweepSample press(const SurfacePlace& place) {
     now_.place = place;
-    const double depth = -gap_of_straight(problem_, surface_, place);
-    if (depth <= 0) return now_;
-    double pressed = 0;
-    double step = std::min(depth, longest_step / 4);
-    while (pressed < depth) {
-      const double next = std::min(depth, pressed + step);
-      now_.place.height = place.height + depth - next;
-      if (slide_on(now_.place, next)) {
-        pressed = next;
-        step = longest_step;
-        continue;
-      }
-      step /= 4;
-      if (step < shortest_step * depth)
-        throw SolverError("elastica: the tip cannot be pressed down to the surface's height");
+    TipContact aside = rest();
+    for (double height = 1 - search_of(1e-4); height > brush_height; height -= 0.01) {
+      const auto tip =
+          pulled_aside(problem_, height,
+                       aside.normal_force > 0 || aside.x > 0 ? aside : pulled_guess(1 - height));
+      if (!tip) throw SolverError("elastica: the tip cannot be bent aside");
+      aside = *tip;
     }
-    now_.place = place;
-    now_.state = TipState::slip;
+    if (extended_gap(place, aside) < 0)
+      throw InputError(
+          "the surface is pressed on too far: a cilium bent to 0.6 of its length must "
+          "have room under it");
+    const Flight flight = fly_back(place, aside);
+    if (!flight.met) return now_;
+    double friction = 0;
+    const auto end =
+        flight.contact ? walk(place, *flight.contact, friction) : std::optional<TipContact>{};
+    if (!end || !(end->normal_force > 0))
+      throw SolverError("elastica: the tip finds no hold under the surface at the beginning");
+    set(*end, place, TipState::slip);
     return now_;
   }
 
@@ -75,12 +84,15 @@ class Follower {
     const SurfacePlace start = now_.place;
     const double way =
         std::abs(target.travel - start.travel) + std::abs(target.height - start.height);
+    if (way == 0) return now_;
+    drag_ = sign_of(target.travel - start.travel);
     double at = 0;
     while (at < 1) {
-      double step = way > 0 ? step_ / way : 1;
+      double step = step_ / way;
+      const double shortest = shortest_step / way;
       while (true) {
         const double next = at + 1.000001 * step >= 1 ? 1 : at + step;
-        const bool last_try = step <= shortest_step;
+        const bool last_try = step <= shortest;
         if (advance(between(start, target, next), next, last_try)) {
           at = next;
           break;
@@ -90,16 +102,16 @@ class Follower {
                              << "elastica: no equilibrium was found beyond the travel "
                              << now_.place.travel * problem_.length << " m of the surface")
                                 .str());
-        step = std::max(step / 4, shortest_step);
+        step = std::max(step / 4, shortest);
       }
-      step_ = std::min(2 * step * way, longest_step);
+      step_ = std::min(2 * step * way, longest_step_);
     }
     return now_;
   }
 
  private:
   bool advance(const SurfacePlace& place, double at, bool last_try) {
-    if (now_.state == TipState::open) return advance_open(place);
+    if (now_.state == TipState::open) return advance_open(place, last_try);
     const double held = on_surface(now_.contact, now_.place);
     const auto stuck = sticking(problem_, surface_, place, held, now_.contact);
     if (stuck && stuck->normal_force > 0 && is_in_cone(*stuck) &&
@@ -108,8 +120,7 @@ class Follower {
       return true;
     }
     if (advance_sliding(place, stuck, last_try)) return true;
-    if (last_try && !(stuck && stuck->normal_force > 0) && spring_back(place, at)) return true;
-    return last_try && stuck && jump(place, at, *stuck);
+    return last_try && jump(place, at, stuck);
   }
 
   bool is_in_cone(const TipContact& contact) const {
@@ -117,47 +128,55 @@ class Follower {
                                         surface_.friction * contact.normal_force + cone_slack;
   }
 
-  bool advance_open(const SurfacePlace& place) {
-    const double gap = gap_of_straight(problem_, surface_, place);
-    if (gap < 0 && !slide_on(place, -gap)) return false;
-    if (gap < 0) now_.state = TipState::slip;
+  bool advance_open(const SurfacePlace& place, bool last_try) {
+    const double depth =
+        1 - place.height + surface_.at(-place.travel * problem_.length).height / problem_.length;
+    if (depth > touch_depth && !last_try) return false;
+    if (depth > 0) {
+      const auto touched = first_contact(place, depth);
+      if (!touched) return false;
+      now_.surface_work += touched->energy;
+      now_.contact = *touched;
+      now_.state = TipState::slip;
+    }
     now_.place = place;
     return true;
   }
 
-  /// The tip under a surface that drags it along, from the present contact or from none.
-  bool slide_on(const SurfacePlace& place, double depth) {
-    const std::vector<TipContact> guesses =
-        now_.contact.normal_force > 0 ? std::vector{now_.contact} : first_guesses(depth);
-    for (const TipContact& guess : guesses) {
-      const auto contact = sliding(problem_, surface_, place, 1, guess);
-      if (!contact || !(contact->normal_force > 0) || is_backwards(*contact, place)) continue;
-      now_.contact = *contact;
-      return true;
-    }
-    return false;
+  static TipContact rest() {
+    TipContact straight;
+    straight.z = straight.contact_z = 1;
+    return straight;
   }
 
-  /// Bent against the travel by a surface that does not push that way.
-  bool is_backwards(const TipContact& contact, const SurfacePlace& place) const {
-    return contact.x < 0 && force(contact, place).first >= 0;
+  /// Of a tip that a horizontal force has pulled down by `depth`, by the slender cantilever.
+  static TipContact pulled_guess(double depth) {
+    TipContact guess = rest();
+    guess.x = guess.contact_x = std::sqrt(depth / 0.6);
+    guess.force_x = guess.base_moment = 3 * guess.x;
+    return guess;
   }
 
   /// Of a cilium that has just been touched and must give way by `depth`: pushed aside from rest;
   /// pushed down by a flat surface that drags it along (w = μN/3, depth = 0.6 w²), or that buckles
   /// it (depth = π² w²/16).
-  std::vector<TipContact> first_guesses(double depth) const {
-    TipContact rest;
-    rest.z = rest.contact_z = 1;
-    TipContact bent = rest;
-    const double buckling = std::numbers::pi * std::numbers::pi / 4;
-    bent.normal_force = buckling;
+  std::optional<TipContact> first_contact(const SurfacePlace& place, double depth) const {
+    TipContact bent = rest();
+    double normal_force = std::numbers::pi * std::numbers::pi / 4;  // that buckles
     if (surface_.friction > 0)
-      bent.normal_force = std::min(buckling, std::sqrt(15 * depth) / surface_.friction);
-    bent.friction_force = surface_.friction * bent.normal_force;
-    bent.contact_x = bent.x = std::sqrt(depth);
-    bent.base_moment = bent.friction_force + bent.normal_force * bent.x;
-    return {rest, bent};
+      normal_force = std::min(normal_force, std::sqrt(15 * depth) / surface_.friction);
+    bent.force_z = -normal_force;
+    bent.force_x = drag_ * surface_.friction * normal_force;
+    bent.contact_x = bent.x = drag_ * std::sqrt(depth);
+    bent.base_moment = bent.force_x - bent.force_z * bent.x;
+    for (const TipContact& guess : {rest(), bent}) {
+      const auto contact = sliding(problem_, surface_, place, drag_, guess);
+      // Not one that is bent against the travel by a surface that does not push that way.
+      if (contact && contact->normal_force > 0 &&
+          !(drag_ * contact->x < 0 && drag_ * contact->force_x >= 0))
+        return contact;
+    }
+    return std::nullopt;
   }
 
   /// How fast the pull on the held tip, beyond what friction bears, grows with ξ: where it grows,
@@ -168,11 +187,10 @@ class Follower {
 
   /// Whether the works of a step, by the trapezoidal rule, are exact enough.
   bool is_smooth(const TipContact& contact, const SurfacePlace& place) const {
-    const auto [x_before, z_before] = force(now_.contact, now_.place);
-    const auto [x_after, z_after] = force(contact, place);
     const double way =
         std::abs(place.travel - now_.place.travel) + std::abs(place.height - now_.place.height);
-    return way * (std::abs(x_after - x_before) + std::abs(z_after - z_before)) <=
+    return way * (std::abs(contact.force_x - now_.contact.force_x) +
+                  std::abs(contact.force_z - now_.contact.force_z)) <=
            work_tolerance * std::max({contact.energy, now_.contact.energy, 1e-3});
   }
 
@@ -195,96 +213,148 @@ class Follower {
     return true;
   }
 
+  /// Height of the surface over the tip, in L.
+  double extended_gap(const SurfacePlace& place, const TipContact& tip) const {
+    return place.height - tip.z -
+           surface_.extended((tip.x - place.travel) * problem_.length).height / problem_.length;
+  }
+
+  double search_of(double length) const { return std::min(length, longest_search_); }
+
+  /// What a tip that has lost the surface comes to.
+  struct Flight {
+    bool met = false;                   ///< the surface, on the way back to the straight cilium
+    std::optional<TipContact> contact;  ///< there; empty if it could not be computed
+  };
+
+  /// On the way the tip is taken to be held back by a horizontal force, the drag of the air, say.
+  Flight fly_back(const SurfacePlace& place, const TipContact& from) const {
+    const auto gap_of = [&](const TipContact& tip) { return extended_gap(place, tip); };
+    TipContact before = from;
+    bool has_left = false;
+    double last_gap = -std::numeric_limits<double>::infinity();
+    double step = search_of(1e-5);
+    for (double height = from.z; height < 1 - 1e-6; step = search_of(1.5 * step)) {
+      height = std::min(height + step, 1 - 1e-6);
+      const auto tip = pulled_aside(problem_, height, before);
+      if (!tip) return {true, {}};
+      // At first the surface is still near: its pull was along it, not horizontal.
+      const double next_gap = gap_of(*tip);
+      if (next_gap < 0 && has_left) return {true, landing(place, before, *tip)};
+      if (next_gap < 0 && next_gap <= last_gap) return {true, {}};
+      has_left = next_gap >= 0;
+      last_gap = next_gap;
+      before = *tip;
+    }
+    return {};
+  }
+
+  /// Where the tip meets the surface, between a place under it and one beyond.
+  std::optional<TipContact> landing(const SurfacePlace& place, const TipContact& under,
+                                    const TipContact& beyond) const {
+    double low = under.z;
+    double high = beyond.z;
+    TipContact tip = under;
+    while (high - low > 1e-14) {
+      const auto middle = pulled_aside(problem_, std::midpoint(low, high), tip);
+      if (!middle) return std::nullopt;
+      tip = *middle;
+      (extended_gap(place, tip) < 0 ? high : low) = tip.z;
+    }
+    return sticking(problem_, surface_, place, on_surface(tip, place), tip);
+  }
+
+  /// Moves a held tip the way that it is pulled, with friction, until friction alone holds it;
+  /// empty if it finds no such place; N = 0 if it has left the surface for the straight cilium.
+  std::optional<TipContact> walk(const SurfacePlace& place, TipContact contact,
+                                 double& friction) const {
+    bool has_landed = false;
+    double step = longest_search_;
+    for (double moved = 0; moved < farthest_jump;) {
+      const double direction = sign_of(contact.friction_force);
+      const auto next = sticking(problem_, surface_, place,
+                                 on_surface(contact, place) - direction * step, contact);
+      if (!next || next->normal_force <= 0) {
+        step /= 4;
+        if (step > shortest_search) continue;
+        const Flight flight = fly_back(place, contact);
+        if (!flight.met) return TipContact{};
+        if (!flight.contact || has_landed) return std::nullopt;
+        has_landed = true;
+        contact = *flight.contact;
+        step = longest_search_;
+        continue;
+      }
+      if (excess(*next, direction) <= 0) {
+        const auto end = hold(place, contact, *next, direction);
+        if (end) friction += friction_between(contact, *end);
+        return end;
+      }
+      friction += friction_between(contact, *next);
+      contact = *next;
+      moved += step;
+      step = std::min(2 * step, longest_search_);
+    }
+    return std::nullopt;
+  }
+
+  /// The pull beyond what friction bears.
+  double excess(const TipContact& contact, double direction) const {
+    return direction * contact.friction_force - surface_.friction * contact.normal_force;
+  }
+
+  double friction_between(const TipContact& a, const TipContact& b) const {
+    return surface_.friction * (a.normal_force + b.normal_force) / 2 *
+           std::hypot(b.contact_x - a.contact_x, b.contact_z - a.contact_z);
+  }
+
+  /// Where the excess vanishes between two places of the held tip.
+  std::optional<TipContact> hold(const SurfacePlace& place, const TipContact& pulled,
+                                 const TipContact& held, double direction) const {
+    double a = on_surface(pulled, place);
+    double b = on_surface(held, place);
+    TipContact contact = held;
+    while (std::abs(b - a) > 1e-13) {
+      const double middle = std::midpoint(a, b);
+      if (middle == a || middle == b) break;
+      const auto there = sticking(problem_, surface_, place, middle, contact);
+      if (!there) return std::nullopt;
+      contact = *there;
+      (excess(contact, direction) > 0 ? a : b) = middle;
+    }
+    return contact;
+  }
+
+  bool jump(const SurfacePlace& place, double at, const std::optional<TipContact>& stuck) {
+    double friction = 0;
+    std::optional<TipContact> end;
+    if (stuck && stuck->normal_force > 0) {
+      end = walk(place, *stuck, friction);
+    } else {
+      const Flight flight = fly_back(place, now_.contact);
+      if (!flight.met)
+        end = TipContact{};
+      else if (flight.contact)
+        end = walk(place, *flight.contact, friction);
+    }
+    if (!end) return false;
+    const double lost = now_.contact.energy - end->energy - friction;
+    if (now_.contact.energy > vanishing_energy) now_.jumps.push_back({at, lost});
+    now_.friction_work += friction;
+    set(*end, place, end->normal_force > 0 ? TipState::slip : TipState::open);
+    return true;
+  }
+
   void set(const TipContact& contact, const SurfacePlace& place, TipState state) {
     now_.contact = contact;
     now_.place = place;
     now_.state = state;
   }
 
-  /// The cilium has sprung back to its straight shape, if the surface leaves it room.
-  bool spring_back(const SurfacePlace& place, double at) {
-    if (gap_of_straight(problem_, surface_, place) < 0) return false;
-    if (now_.contact.energy > vanishing_energy) now_.jumps.push_back({at, now_.contact.energy});
-    set({}, place, TipState::open);
-    return true;
-  }
-
-  /// Where a tip that has lost the surface meets it again on its way back; empty where it does not.
-  /// On the way it is taken to be held back by a horizontal force, the drag of the air, say.
-  std::optional<TipContact> landing(const SurfacePlace& place, const TipContact& from) const {
-    const auto gap = [&](const TipContact& contact) {
-      return place.height - contact.z -
-             surface_.at((contact.x - place.travel) * problem_.length).height / problem_.length;
-    };
-    TipContact before = from;
-    for (double height = from.z; height < 1; height += search_step) {
-      const auto tip = pulled_aside(problem_, std::min(height, 1 - search_step / 10), before);
-      if (!tip) return std::nullopt;
-      if (height > from.z && gap(*tip) < 0) {
-        double low = before.z;
-        double high = tip->z;
-        TipContact middle = before;
-        while (high - low > 1e-14) {
-          const auto at = pulled_aside(problem_, std::midpoint(low, high), middle);
-          if (!at) return std::nullopt;
-          middle = *at;
-          (gap(middle) < 0 ? high : low) = middle.z;
-        }
-        return sticking(problem_, surface_, place, on_surface(middle, place), middle);
-      }
-      before = *tip;
-    }
-    return std::nullopt;
-  }
-
-  /// Moves the held tip the way that it is pulled, until it is in equilibrium.
-  bool jump(const SurfacePlace& place, double at, const TipContact& stuck) {
-    const double first_energy = now_.contact.energy;
-    TipContact contact = stuck;
-    double friction = 0;
-    bool has_landed = false;
-    for (double moved = 0; moved < farthest_jump; moved += search_step) {
-      const double direction = sign_of(contact.friction_force);
-      const double xi = on_surface(contact, place) - direction * search_step;
-      const auto next = sticking(problem_, surface_, place, xi, contact);
-      if (!next) return false;
-      if (next->normal_force <= 0) {
-        if (spring_back(place, at)) return true;
-        const auto landed = landing(place, contact);
-        if (!landed || std::exchange(has_landed, true)) return false;
-        contact = *landed;
-        continue;
-      }
-      friction += surface_.friction * (contact.normal_force + next->normal_force) / 2 *
-                  std::hypot(search_step, next->contact_z - contact.contact_z);
-      if (direction * next->friction_force <= surface_.friction * next->normal_force) {
-        const auto end = sliding(problem_, surface_, place, direction, *next);
-        if (!end || !(end->normal_force > 0) ||
-            std::abs(on_surface(*end, place) - xi) > 2 * search_step)
-          return false;
-        now_.jumps.push_back({at, first_energy - end->energy - friction});
-        now_.friction_work += friction;
-        set(*end, place, TipState::slip);
-        return true;
-      }
-      contact = *next;
-    }
-    return false;
-  }
-
-  /// The force that the surface exerts on the tip.
-  std::pair<double, double> force(const TipContact& contact, const SurfacePlace& place) const {
-    const double slope = surface_.at(on_surface(contact, place) * problem_.length).slope;
-    const double norm = std::hypot(1, slope);
-    return {(-slope * contact.normal_force + contact.friction_force) / norm,
-            (-contact.normal_force - slope * contact.friction_force) / norm};
-  }
-
   void accept(const TipContact& contact, const SurfacePlace& place, TipState state) {
-    const auto [x_before, z_before] = force(now_.contact, now_.place);
-    const auto [x_after, z_after] = force(contact, place);
-    now_.surface_work += (x_before + x_after) / 2 * (place.travel - now_.place.travel) +
-                         (z_before + z_after) / 2 * (place.height - now_.place.height);
+    now_.surface_work +=
+        (now_.contact.force_x + contact.force_x) / 2 * (place.travel - now_.place.travel) +
+        (now_.contact.force_z + contact.force_z) / 2 * (place.height - now_.place.height);
     const double along = on_surface(contact, place) - on_surface(now_.contact, now_.place);
     const double across =
         (contact.contact_z - place.height) - (now_.contact.contact_z - now_.place.height);
@@ -296,7 +366,10 @@ class Follower {
   const TipProblem& problem_;
   const Surface& surface_;
   SweepSample now_;
+  double longest_step_ = longest_step;
+  double longest_search_ = longest_search;
   double step_ = longest_step;
+  double drag_ = 1;  ///< way of the surface: +1 forward, −1 back
 };
 
 }  // namespace

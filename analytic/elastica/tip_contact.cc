@@ -79,6 +79,8 @@ Residuals residuals(const TipProblem& problem, const Surface& surface, const Sur
   const double cosine = std::cos(frame.turn);
   const double sine = std::sin(frame.turn);
   contact.base_moment = u[0];
+  contact.force_x = u[1];
+  contact.force_z = u[2];
   contact.theta = tip.theta + frame.turn;
   contact.x = cosine * tip.w + sine * tip.z;
   contact.z = cosine * tip.z - sine * tip.w;
@@ -87,7 +89,7 @@ Residuals residuals(const TipProblem& problem, const Surface& surface, const Sur
   contact.contact_z = contact.z - arm * std::sin(contact.theta);
   contact.energy = energy;
   const double on_surface = contact.contact_x - place.travel;
-  const ProfilePoint profile = surface.at(on_surface * problem.length);
+  const ProfilePoint profile = surface.extended(on_surface * problem.length);
   const double norm = std::hypot(1, profile.slope);
   contact.normal_force = (-profile.slope * u[1] - u[2]) / norm;
   contact.friction_force = (u[1] - profile.slope * u[2]) / norm;
@@ -99,10 +101,7 @@ Residuals residuals(const TipProblem& problem, const Surface& surface, const Sur
 std::optional<TipContact> solve(const TipProblem& problem, const Surface& surface,
                                 const SurfacePlace& place, const FrictionLaw& law,
                                 const TipContact& guess) {
-  const double slope = surface.at((guess.contact_x - place.travel) * problem.length).slope;
-  const double norm = std::hypot(1, slope);
-  Unknowns u{guess.base_moment, (-slope * guess.normal_force + guess.friction_force) / norm,
-             (-guess.normal_force - slope * guess.friction_force) / norm};
+  Unknowns u{guess.base_moment, guess.force_x, guess.force_z};
   TipContact contact;
   const auto at = [&](const Unknowns& unknowns) {
     return residuals(problem, surface, place, law, unknowns, contact);
@@ -134,6 +133,7 @@ std::optional<TipContact> solve(const TipProblem& problem, const Surface& surfac
     if (relative < problem.tolerance || (relative < 1e-9 && relative >= last_change / 2)) {
       at(u);
       contact.iterations = iteration;
+      surface.at((contact.contact_x - place.travel) * problem.length);  // must be on the profile
       Eigen::Matrix3d held_tip = derivatives.residuals;
       held_tip.row(2) = derivatives.contact_x;
       const Unknowns held = held_tip.partialPivLu().solve(Unknowns::UnitZ());

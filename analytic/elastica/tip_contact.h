@@ -36,6 +36,8 @@ inline SurfacePlace between(const SurfacePlace& a, const SurfacePlace& b, double
 /// An equilibrium.
 struct TipContact {
   double base_moment = 0;
+  double force_x = 0;  ///< of the contact
+  double force_z = 0;
   double normal_force = 0;    ///< N ≥ 0, along the surface's normal that points to the cilium
   double friction_force = 0;  ///< T, along the surface's tangent in the direction of the travel
   double theta = 0;           ///< of the tip
@@ -64,7 +66,8 @@ std::optional<TipContact> sliding(const TipProblem& problem, const surroundings:
                                   const SurfacePlace& place, double direction,
                                   const TipContact& guess);
 
-/// The free tip pulled aside by a horizontal force, so far that it sinks to the height.
+/// The free tip pulled aside by a horizontal force, friction_force, so far that it sinks to the
+/// height.
 std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
                                        const TipContact& guess);
 

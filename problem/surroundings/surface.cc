@@ -5,6 +5,7 @@
 #include <boost/math/interpolators/makima.hpp>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <string>
@@ -96,7 +97,9 @@ void check(const TrapezoidProfile& t) {
           "its top and its bottom must be finite and positive");
   require(is_positive(t.flank),
           "its flank must be finite and positive: an upright step cannot be followed");
-  require(is_not_negative(t.radius), "the radius of its edges must be finite and not negative");
+  require(is_positive(t.radius),
+          "the radius of its edges must be finite and positive: a sharp one has no normal that a "
+          "tip could follow");
   const double edge = edge_length(t);
   require(edge <= std::min(t.top, t.bottom) / 2 && 2 * edge <= std::hypot(t.flank, t.height),
           "the arcs of its edges take more room than its top, bottom and flanks have: choose a "
@@ -114,6 +117,26 @@ void check(const RandomProfile::Parameters& p) {
           "its wavelengths must be finite and positive, the longest one not below the shortest");
   require(p.longest / p.shortest <= most_waves,
           "its longest wavelength is more than 100,000 times the shortest");
+}
+
+double finest(const FlatProfile& /*flat*/) {
+  return std::numeric_limits<double>::infinity();
+}
+
+double finest(const SineProfile& sine) {
+  return sine.wavelength;
+}
+
+double finest(const TrapezoidProfile& t) {
+  return t.radius;
+}
+
+double finest(const SampledProfile& samples) {
+  return samples.closest();
+}
+
+double finest(const RandomProfile& random) {
+  return random.parameters().shortest;
 }
 
 }  // namespace
@@ -148,6 +171,13 @@ double SampledProfile::first() const {
 
 double SampledProfile::last() const {
   return cubic_->last;
+}
+
+double SampledProfile::closest() const {
+  double distance = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < cubic_->x.size(); ++i)
+    distance = std::min(distance, cubic_->x[i] - cubic_->x[i - 1]);
+  return distance;
 }
 
 ProfilePoint SampledProfile::at(double x) const {
@@ -209,6 +239,19 @@ ProfilePoint Surface::at(double x) const {
   result.height += slope * x;
   result.slope += slope;
   return result;
+}
+
+ProfilePoint Surface::extended(double x) const {
+  const auto* samples = std::get_if<SampledProfile>(&profile);
+  if (samples == nullptr) return at(x);
+  const double inside = std::clamp(x, samples->first(), samples->last());
+  ProfilePoint result = at(inside);
+  result.height += result.slope * (x - inside);
+  return result;
+}
+
+double Surface::finest_length() const {
+  return std::visit([](const auto& kind) { return finest(kind); }, profile);
 }
 
 void require_valid(const Surface& surface) {

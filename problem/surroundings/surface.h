@@ -34,7 +34,7 @@ struct TrapezoidProfile {
   double top = 0;     ///< of the plateau, edges included up to the corner, m
   double bottom = 0;  ///< of the valley, likewise, m
   double flank = 0;   ///< length of a flank along x, m
-  double radius = 0;  ///< of the edges, m; 0: sharp
+  double radius = 0;  ///< of the edges, m
 };
 
 /// Heights at points x₀ < x₁ < …, by Akima's modified cubic between them (C¹, hardly any
@@ -47,6 +47,7 @@ class SampledProfile {
 
   double first() const;
   double last() const;
+  double closest() const;  ///< distance of two points
   ProfilePoint at(double x) const;
 
  private:
@@ -95,6 +96,11 @@ struct Surface {
 
   /// With the tilt. Throws InputError beyond the ends of a sampled profile.
   ProfilePoint at(double x) const;
+  /// The same, beyond the ends of a sampled profile along its last slope, for a solver's trials.
+  ProfilePoint extended(double x) const;
+  /// Length of the smallest feature, m: a wavelength, an edge's radius, the distance of two points;
+  /// infinite of a flat one.
+  double finest_length() const;
 };
 
 /// Throws InputError if a parameter is not finite or out of its range, or if the edges of a

@@ -88,6 +88,9 @@ TEST(SampledProfile, GoesThroughItsPointsAndEndsWithThem) {
   const Surface surface{SampledProfile(x, height), 0, 0};
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(surface.at(x[i]).height, height[i], 1e-18);
   EXPECT_THROW(surface.at(3.1e-3), InputError);
+  const ProfilePoint end = surface.at(3e-3);
+  EXPECT_NEAR(surface.extended(3.1e-3).height, end.height + 1e-4 * end.slope, 1e-18);
+  EXPECT_EQ(surface.finest_length(), 0.5e-3);
   EXPECT_THROW(surface.at(-1.1e-3), InputError);
 }
 
@@ -140,6 +143,8 @@ TEST(Surface, RefusesWhatMakesNoSense) {
   TrapezoidProfile t = trapezoid();
   t.radius = 30e-3;
   EXPECT_NE(of({t, 0, 0}).find("smaller radius"), std::string::npos);
+  t.radius = 0;
+  EXPECT_NE(of({t, 0, 0}).find("sharp"), std::string::npos);
   t = trapezoid();
   t.flank = 0;
   EXPECT_NE(of({t, 0, 0}).find("upright"), std::string::npos);

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <variant>
 #include <vector>
 
 #include "problem/error.h"
@@ -33,6 +36,23 @@ std::vector<TipJump> jumps(const std::vector<SweepSample>& samples) {
   for (const SweepSample& sample : samples)
     all.insert(all.end(), sample.jumps.begin(), sample.jumps.end());
   return all;
+}
+
+Surface teeth(const TrapezoidProfile& trapezoid, double friction) {
+  TrapezoidProfile in_metres = trapezoid;  // of L = 20 mm
+  for (double* length :
+       {&in_metres.height, &in_metres.top, &in_metres.bottom, &in_metres.flank, &in_metres.radius})
+    *length *= 20e-3;
+  return {in_metres, friction, 0};
+}
+
+double imbalance(const std::vector<SweepSample>& samples) {
+  double sum = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    sum += samples[i].surface_work - samples[i].friction_work;
+    for (const TipJump& jump : samples[i].jumps) sum -= jump.energy_lost;
+  }
+  return sum - (samples.back().contact.energy - samples.front().contact.energy);
 }
 
 /// Oracle: the closed form of the flat surface (tip_contact_test.cc); the friction's work is μN s.
@@ -93,15 +113,9 @@ TEST(Sweep, JumpsDownAStep) {
 TEST(Sweep, KeepsTheBalanceOfEnergy) {
   for (const double friction : {0.0, 0.3}) {
     const auto samples = sweep(tip_problem(paper), step(friction), straight_on(0.95, 1.7, 170));
-    double sum = 0;
     double total = 0;
-    for (std::size_t i = 1; i < samples.size(); ++i) {
-      sum += samples[i].surface_work - samples[i].friction_work;
-      total += std::abs(samples[i].surface_work);
-      for (const TipJump& jump : samples[i].jumps) sum -= jump.energy_lost;
-    }
-    EXPECT_NEAR(sum, samples.back().contact.energy - samples.front().contact.energy, 1e-6 * total)
-        << friction;
+    for (std::size_t i = 1; i < samples.size(); ++i) total += std::abs(samples[i].surface_work);
+    EXPECT_NEAR(imbalance(samples), 0, 1e-6 * total) << friction;
   }
 }
 
@@ -139,6 +153,84 @@ TEST(Sweep, SpringsBackBehindAPlateau) {
   EXPECT_GT(largest, 0.25);
   EXPECT_EQ(samples.back().state, TipState::open);
   EXPECT_EQ(samples.back().contact.energy, 0);
+}
+
+/// The tip that falls off a tooth meets the next one before it is straight.
+TEST(Sweep, LandsOnTheNextTooth) {
+  const auto samples =
+      sweep(tip_problem(uniform),
+            teeth({.height = 0.1, .top = 0.03, .bottom = 0.12, .flank = 0.02, .radius = 0.005}, 0),
+            straight_on(1.04, 0.6, 60));
+  bool was_bent = false;
+  for (const SweepSample& sample : samples) {
+    if (was_bent && !sample.jumps.empty()) {
+      EXPECT_NE(sample.state, TipState::open);
+    }
+    was_bent = sample.contact.energy > 0.05;
+  }
+  EXPECT_NEAR(imbalance(samples), 0, 1e-5);
+}
+
+/// Edges of 20 and 40 µm, beyond which the held tip is soon pulled hard.
+TEST(Sweep, FollowsNarrowEdges) {
+  for (const double radius : {0.02e-3, 0.04e-3})
+    for (const double friction : {0.0, 0.3}) {
+      Surface surface = step(friction);
+      std::get<TrapezoidProfile>(surface.profile).radius = radius;
+      std::vector<SurfacePlace> places;  // from the plateau down
+      for (int i = 0; i <= 20; ++i) places.push_back({0.95, 1.5 + 0.01 * i});
+      const auto samples = sweep(tip_problem(paper), surface, places);
+      ASSERT_EQ(jumps(samples).size(), 1U) << radius << " " << friction;
+      EXPECT_GT(jumps(samples)[0].energy_lost, 0);
+      EXPECT_NEAR(imbalance(samples), 0, 1e-5);
+    }
+}
+
+/// The mirror image of a surface that moves the other way.
+TEST(Sweep, IsTheMirrorImageOfABackwardSweep) {
+  const Surface surface{SineProfile{1e-3, 30e-3}, 0.3, 0};
+  // sin(k(−x)) = sin(kx + π): the mirror image of the profile is half a wavelength, 0.75 L,
+  // further.
+  std::vector<SurfacePlace> forward;
+  std::vector<SurfacePlace> back;
+  for (int i = 0; i <= 75; ++i) {
+    forward.push_back({1.02, 0.01 * i});
+    back.push_back({1.02, 0.75 - 0.01 * i});
+  }
+  const auto there = sweep(tip_problem(paper), surface, forward);
+  const auto here = sweep(tip_problem(paper), surface, back);
+  for (std::size_t i = 0; i < there.size(); ++i) {
+    EXPECT_EQ(there[i].state, here[i].state) << i;
+    EXPECT_NEAR(there[i].contact.contact_x, -here[i].contact.contact_x, 1e-7) << i;
+  }
+}
+
+TEST(Sweep, StaysWhereTheSurfaceStays) {
+  const auto samples =
+      sweep(tip_problem(uniform), {FlatProfile{}, 0.3, 0}, {{0.9, 0}, {0.9, 0}, {0.9, 0.1}});
+  EXPECT_EQ(samples[1].contact.contact_x, samples[0].contact.contact_x);
+  EXPECT_NEAR(samples[2].contact.contact_x, samples[0].contact.contact_x, 1e-9);
+}
+
+/// Corrugations under which a tip that is pressed straight down would buckle.
+TEST(Sweep, IsPressedOntoCorrugations) {
+  for (const auto& [amplitude, wavelength, friction] :
+       {std::tuple{0.0025, 0.1, 0.0}, {0.005, 0.2, 0.0}, {0.0025, 0.05, 0.2}}) {
+    const Surface surface{SineProfile{amplitude * 20e-3, wavelength * 20e-3}, friction, 0};
+    const auto samples = sweep(tip_problem(paper), surface, {{0.95, 0}});
+    EXPECT_EQ(samples[0].state, TipState::slip);
+    EXPECT_NEAR(samples[0].contact.contact_x, 0.304, 0.06) << amplitude;
+    EXPECT_LT(samples[0].contact.energy, 0.02);
+  }
+}
+
+/// Newton's trials leave a profile that the tip itself does not.
+TEST(Sweep, StaysOnAMeasuredProfile) {
+  std::vector<double> x;
+  for (int i = 0; i <= 20; ++i) x.push_back(-8e-3 + i * 14.8e-3 / 20);  // up to 0.34 L
+  const SampledProfile flat(x, std::vector<double>(x.size(), 0.0));
+  const auto samples = sweep(tip_problem(paper), {flat, 0.3, 0}, {{0.95, 0.03}, {0.95, 0.1}});
+  EXPECT_NEAR(samples[1].contact.contact_x, samples[0].contact.contact_x, 1e-9);
 }
 
 TEST(Sweep, RefusesToLeaveAMeasuredProfile) {

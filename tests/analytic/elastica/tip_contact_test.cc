@@ -24,8 +24,8 @@ TipContact pressed_flat(double friction, double direction, double height) {
   const TipProblem problem = tip_problem(uniform);
   TipContact contact;
   contact.base_moment = 0.1;
-  contact.normal_force = friction > 0 ? 0.1 / friction : pi * pi / 4;
-  contact.friction_force = direction * friction * contact.normal_force;
+  contact.force_z = friction > 0 ? -0.1 / friction : -pi * pi / 4;
+  contact.force_x = -direction * friction * contact.force_z;
   const double first = friction > 0 ? 0.9995 : 0.999;
   for (double at = first; at > height; at -= 0.002)
     contact = sliding(problem, flat, {at, 0}, direction, contact).value();
@@ -88,7 +88,7 @@ TEST(SlidingTip, StoresTheWorkOfTheSurface) {
   const Surface surface{FlatProfile{}, 0, 0};
   TipContact contact;
   contact.base_moment = 0.1;
-  contact.normal_force = 0.5;
+  contact.force_z = -0.5;
   for (double at = 0.999; at > 0.85; at -= 0.001)
     contact = sliding(problem, surface, {at, 0}, 1, contact).value();
   const auto at = [&](double height) {
