@@ -55,11 +55,11 @@ class Follower {
   /// slides, holds it.
   SweepSample press(const SurfacePlace& place) {
     now_.place = place;
-    TipContact aside = rest();
-    for (double height = 1 - search_of(1e-4); height > brush_height; height -= 0.01) {
-      const auto tip =
-          pulled_aside(problem_, height,
-                       aside.normal_force > 0 || aside.x > 0 ? aside : pulled_guess(1 - height));
+    TipContact aside;
+    constexpr int pulls = 40;
+    for (int i = 0; i <= pulls; ++i) {
+      const double height = std::lerp(1 - 1e-4, brush_height, static_cast<double>(i) / pulls);
+      const auto tip = pulled_aside(problem_, height, i == 0 ? pulled_guess(1 - height) : aside);
       if (!tip) throw SolverError("elastica: the tip cannot be bent aside");
       aside = *tip;
     }

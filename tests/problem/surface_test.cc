@@ -44,7 +44,8 @@ std::vector<Surface> surfaces() {
 TEST(Surface, SlopeAndCurvatureAreDerivatives) {
   const double h = 2e-8;  // m
   for (const Surface& surface : surfaces())
-    for (double x = -15.01e-3; x < 15e-3; x += 0.37e-3) {
+    for (int i = 0; i < 81; ++i) {
+      const double x = -15.01e-3 + 0.37e-3 * i;
       const ProfilePoint here = surface.at(x);
       const ProfilePoint before = surface.at(x - h);
       const ProfilePoint after = surface.at(x + h);
@@ -73,10 +74,13 @@ TEST(TrapezoidProfile, HasItsLengthsAndRoundEdges) {
   EXPECT_NEAR(surface.at(24e-3 + 5.1e-3).height, surface.at(5.1e-3).height, 1e-15);
   // Around the lower corner, x = 4 mm, the points lie on the circle that touches p = 0.
   const double edge = t.radius * std::tan(std::atan(t.height / t.flank) / 2);
-  for (double x = 4e-3 - edge + 1e-6; x < 4e-3 + 0.8 * edge; x += 0.02e-3)
+  for (int i = 1; i < 90; ++i) {
+    const double x = 4e-3 - edge + 0.02 * i * edge;
     EXPECT_NEAR(std::hypot(x - (4e-3 - edge), surface.at(x).height - t.radius), t.radius, 1e-15);
+  }
   // And no step of p or p′ where the pieces meet.
-  for (double x = 0; x < 24e-3; x += 1e-5) {
+  for (int i = 0; i < 2400; ++i) {
+    const double x = 1e-5 * i;
     EXPECT_NEAR(surface.at(x + 1e-9).height, surface.at(x).height, 1e-9);
     EXPECT_NEAR(surface.at(x + 1e-9).slope, surface.at(x).slope, 2e-6);
   }

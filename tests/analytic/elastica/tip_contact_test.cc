@@ -27,8 +27,8 @@ TipContact pressed_flat(double friction, double direction, double height) {
   contact.force_z = friction > 0 ? -0.1 / friction : -pi * pi / 4;
   contact.force_x = -direction * friction * contact.force_z;
   const double first = friction > 0 ? 0.9995 : 0.999;
-  for (double at = first; at > height; at -= 0.002)
-    contact = sliding(problem, flat, {at, 0}, direction, contact).value();
+  for (int i = 0; first - 0.002 * i > height; ++i)
+    contact = sliding(problem, flat, {first - 0.002 * i, 0}, direction, contact).value();
   return sliding(problem, flat, {height, 0}, direction, contact).value();
 }
 
@@ -65,11 +65,11 @@ TEST(SlidingTip, EndsItsReversedBranchWhereTheBasesMomentVanishes) {
     const double k = std::sin(phi / 2);
     const double K = boost::math::ellint_1(k);
     const double end = std::cos(phi) * (2 * boost::math::ellint_2(k) / K - 1);
-    for (double friction = 0; friction < mu; friction += 0.01)
-      contact = sliding(problem, {FlatProfile{}, friction, 0}, {0.9, 0}, -1, contact).value();
+    for (int i = 0; 0.01 * i < mu; ++i)
+      contact = sliding(problem, {FlatProfile{}, 0.01 * i, 0}, {0.9, 0}, -1, contact).value();
     const Surface surface{FlatProfile{}, mu, 0};
-    for (double at = 0.9; at < end; at += 0.001)
-      contact = sliding(problem, surface, {at, 0}, -1, contact).value();
+    for (int i = 0; 0.9 + 0.001 * i < end; ++i)
+      contact = sliding(problem, surface, {0.9 + 0.001 * i, 0}, -1, contact).value();
     contact = sliding(problem, surface, {end, 0}, -1, contact).value();
     EXPECT_NEAR(end, mu == 0.1 ? 0.9925673333 : 0.9375749321, 1e-10);
     EXPECT_NEAR(contact.base_moment, 0, 1e-9);
@@ -89,8 +89,8 @@ TEST(SlidingTip, StoresTheWorkOfTheSurface) {
   TipContact contact;
   contact.base_moment = 0.1;
   contact.force_z = -0.5;
-  for (double at = 0.999; at > 0.85; at -= 0.001)
-    contact = sliding(problem, surface, {at, 0}, 1, contact).value();
+  for (int i = 1; i < 150; ++i)
+    contact = sliding(problem, surface, {1 - 0.001 * i, 0}, 1, contact).value();
   const auto at = [&](double height) {
     return sliding(problem, surface, {height, 0}, 1, contact).value();
   };
