@@ -58,7 +58,7 @@ std::string outcome(const std::string& refinement, double percent, const ErrorLi
   if (!std::isfinite(percent))
     return fmt::format("{}: the error is not known, so the tolerance of {:g} % is not met",
                        refinement, limit.percent);
-  const std::string error =
+  std::string error =
       fmt::format("{}, error of at most {:.2g} % of {}", refinement, percent,
                   limit.of == ErrorLimit::Of::tip ? "the tip's displacement" : "|dB|");
   if (percent <= limit.percent) return error;
