@@ -131,9 +131,7 @@ LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const Me
   for (int i = 0; i < most_trials; ++i, magnitude *= 2) {
     const MechanicsStep trial =
         solve_one(model, cilium, with_magnitude(step.load, magnitude), progress);
-    if (const auto limit = slip_off_limit(trial))
-      return {*limit, trial.slip_off_uncertainty,
-              trial.slip_off_uncertainty || trial.message.empty() ? "" : "range: " + trial.message};
+    if (const auto limit = slip_off_limit(trial)) return {*limit, trial.slip_off_uncertainty};
     if (trial.status == Status::failed)
       throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
                                     magnitude_unit(step.load), trial.message));

@@ -27,7 +27,7 @@ struct PairResult {
 struct LargestLoad {
   double magnitude = 0;
   std::optional<double> uncertainty{};  ///< if the model knows it
-  std::string remark{};                 ///< what the model says if it does not
+  std::string remark{};                 ///< on the load, by the model
 };
 
 /// Runs one mechanics model of the study on the case of one of its points, and the fields of its
