@@ -154,5 +154,18 @@ TEST(SolidFold, LeavesTheErrorUnknown) {
   EXPECT_FALSE(folded.applied_force_uncertainty);
 }
 
+/// The probe of the paper's cilium slips off where its base is about to fold.
+TEST(SolidFold, LeavesTheSlipOffsErrorUnknown) {
+  const Cilium paper{3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
+  SolidOptions options;
+  options.refinement = 0;
+  const MechanicsResult result = Solid(options).solve(paper, {ContactLoad{6e-3, 16e-3, 0}});
+  const MechanicsStep& step = result.steps.front();
+  ASSERT_EQ(step.status, Status::slipped_off) << step.message;
+  EXPECT_NE(step.message.find("folds"), std::string::npos) << step.message;
+  EXPECT_TRUE(step.slip_off_force);
+  EXPECT_FALSE(step.slip_off_uncertainty);
+}
+
 }  // namespace
 }  // namespace ciliaval::fem::solid
