@@ -110,7 +110,7 @@ std::vector<Sample> samples(const input::Case& problem, const models::CaseResult
   const models::MechanicsRun& run = result.mechanics.front();
   const MechanicsStep& step = run.result.steps.front();
   const MechanicsStep& truth = finer.mechanics.front().result.steps.front();
-  const bool same_mechanics = problem.fields != finer.problem.fields;
+  const bool same_mechanics = result.problem.fields != finer.problem.fields;
   std::vector<Sample> all;
   if (const auto limit = slip_off_limit(step); limit && !same_mechanics) {
     // A reference that bears the load tells a lower bound of the error.
