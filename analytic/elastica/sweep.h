@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "analytic/elastica/tip_contact.h"
@@ -30,14 +28,13 @@ struct SweepSample {
 };
 
 /// Follows the tip over the places, one after the other on straight lines in height and travel. At
-/// the first one the surface is pressed on while it slides: the tip is dragged along from the
-/// straight cilium down.
+/// the first one the tip comes back from far ahead, bent aside, until the surface holds it. At each
+/// later one:
 ///
 /// The place ξ = x_c − s of the touching point on the surface stays as long as |T| ≤ μN. Else it
 /// moves the way that the surface pulls the tip, against T, up to the next ξ at which |T| = μN, or
-/// to where N = 0 and the cilium springs back. Where that ξ does not move with the surface but lies
-/// a finite step ahead, however short the step of the surface, the tip has jumped; the step is then
-/// shorter than 1e-6 of the way.
+/// to where N = 0 and the cilium springs back. Where that ξ lies a finite step ahead however short
+/// the step of the surface, down to 1e-8 lengths, the tip has jumped (docs/theory/sweep.md).
 ///
 /// Throws SolverError where no equilibrium is found, and InputError as Surface::at().
 std::vector<SweepSample> sweep(const TipProblem& problem, const surroundings::Surface& surface,

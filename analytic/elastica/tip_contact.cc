@@ -8,8 +8,6 @@
 #include <limits>
 #include <numbers>
 
-#include "problem/error.h"
-
 namespace ciliaval::analytic::elastica {
 using namespace surroundings;
 namespace {

@@ -66,8 +66,7 @@ std::optional<TipContact> sliding(const TipProblem& problem, const surroundings:
                                   const SurfacePlace& place, double direction,
                                   const TipContact& guess);
 
-/// The free tip pulled aside by a horizontal force, friction_force, so far that it sinks to the
-/// height.
+/// The free tip pulled aside by a horizontal force, force_x, so far that it sinks to the height.
 std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
                                        const TipContact& guess);
 

@@ -114,7 +114,7 @@ MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& probl
       run.result.steps[step].seconds = seconds[step] += run.result.steps[step].seconds;
     if (!all_solved(run)) return run;
     const double error = 100 * error_of(run);
-    // An error that is not known on a mesh is not known on finer ones: the model says why.
+    // Where the model does not know its error, it says why, and finer meshes are not tried.
     const bool is_last = i + 1 == refinement.values.size() || !std::isfinite(error);
     if (error > limit.percent && !is_last) continue;
     const std::string result = outcome(name, error, limit);

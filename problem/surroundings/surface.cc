@@ -38,14 +38,13 @@ ProfilePoint point(const FlatProfile& /*flat*/, double /*x*/) {
 
 ProfilePoint point(const SineProfile& sine, double x) {
   const double k = two_pi / sine.wavelength;
-  const double s = sine.amplitude * std::sin(k * x);
-  return {s, sine.amplitude * k * std::cos(k * x), -k * k * s};
+  return {sine.amplitude * std::sin(k * x), sine.amplitude * k * std::cos(k * x)};
 }
 
 /// On an arc of radius r that touches the level p = 0 at x = 0 and rises.
 ProfilePoint on_arc(double radius, double x) {
   const double cosine = std::sqrt(1 - x * x / (radius * radius));
-  return {radius * (1 - cosine), x / (radius * cosine), 1 / (radius * cosine * cosine * cosine)};
+  return {radius * (1 - cosine), x / (radius * cosine)};
 }
 
 /// How far from a corner its arc touches the level side.
@@ -70,10 +69,9 @@ ProfilePoint point(const TrapezoidProfile& t, double x) {
   if (to_corner > -edge) {
     const double flank_end = edge / std::sqrt(1 + slope * slope);  // where the arc touches it
     low = to_corner < flank_end ? on_arc(t.radius, to_corner + edge)
-                                : ProfilePoint{slope * to_corner, slope, 0};
+                                : ProfilePoint{slope * to_corner, slope};
   }
-  if (upper) low = {t.height - low.height, low.slope, -low.curvature};
-  return {low.height, sign * low.slope, low.curvature};
+  return {upper ? t.height - low.height : low.height, sign * low.slope};
 }
 
 ProfilePoint point(const SampledProfile& samples, double x) {
@@ -146,8 +144,8 @@ double finest(const RandomProfile& random) {
 struct SampledProfile::Cubic {
   double first;
   double last;
+  double closest;
   boost::math::interpolators::makima<std::vector<double>> height;
-  std::vector<double> x;
 };
 
 SampledProfile::SampledProfile(std::vector<double> x, std::vector<double> height) {
@@ -158,11 +156,12 @@ SampledProfile::SampledProfile(std::vector<double> x, std::vector<double> height
           "a point of its profile is not finite");
   require(std::ranges::adjacent_find(x, std::greater_equal<>()) == x.end(),
           "the x of its profile must increase from point to point");
+  double closest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < x.size(); ++i) closest = std::min(closest, x[i] - x[i - 1]);
   const double first = x.front();
   const double last = x.back();
-  std::vector<double> breaks = x;
-  cubic_ = std::make_shared<const Cubic>(
-      Cubic{first, last, {std::move(x), std::move(height)}, std::move(breaks)});
+  cubic_ =
+      std::make_shared<const Cubic>(Cubic{first, last, closest, {std::move(x), std::move(height)}});
 }
 
 double SampledProfile::first() const {
@@ -174,10 +173,7 @@ double SampledProfile::last() const {
 }
 
 double SampledProfile::closest() const {
-  double distance = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < cubic_->x.size(); ++i)
-    distance = std::min(distance, cubic_->x[i] - cubic_->x[i - 1]);
-  return distance;
+  return cubic_->closest;
 }
 
 ProfilePoint SampledProfile::at(double x) const {
@@ -186,18 +182,7 @@ ProfilePoint SampledProfile::at(double x) const {
                      std::to_string(1e3 * first()) + " to " + std::to_string(1e3 * last()) +
                      " mm; the point at " + std::to_string(1e3 * x) +
                      " mm is needed: a shorter travel, or a longer profile");
-  // p″ of the cubic on its interval, from p and p′ at the ends.
-  const auto above = std::upper_bound(cubic_->x.begin() + 1, cubic_->x.end() - 1, x);
-  const double a = *(above - 1);
-  const double b = *above;
-  const double width = b - a;
-  const double t = (x - a) / width;
-  const double chord = (cubic_->height(b) - cubic_->height(a)) / width;
-  const double slope_a = cubic_->height.prime(a);
-  const double slope_b = cubic_->height.prime(b);
-  const double curvature =
-      (6 * chord * (1 - 2 * t) + slope_a * (6 * t - 4) + slope_b * (6 * t - 2)) / width;
-  return {cubic_->height(x), cubic_->height.prime(x), curvature};
+  return {cubic_->height(x), cubic_->height.prime(x)};
 }
 
 // ------------------------------------------------------------------------------------- random
@@ -222,11 +207,8 @@ RandomProfile::RandomProfile(const Parameters& parameters) : parameters_(paramet
 ProfilePoint RandomProfile::at(double x) const {
   ProfilePoint sum;
   for (const auto& [amplitude, number, phase] : waves_) {
-    const double angle = number * x + phase;
-    const double c = amplitude * std::cos(angle);
-    sum.height += c;
-    sum.slope -= number * amplitude * std::sin(angle);
-    sum.curvature -= number * number * c;
+    sum.height += amplitude * std::cos(number * x + phase);
+    sum.slope -= number * amplitude * std::sin(number * x + phase);
   }
   return sum;
 }
