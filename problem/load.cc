@@ -47,8 +47,16 @@ double drag_per_height(std::span<const double> values, const Cilium& cilium) {
 std::vector<const LoadType*>& all_types() {
   static std::vector<const LoadType*> types{&ContactLoad::type(), &FlowLoad::type(),
                                             &SectionLoad::type(), &DeadLoad::type(),
-                                            &ProbeLoad::type()};
+                                            &ProbeLoad::type(),   &SweepLoad::type()};
   return types;
+}
+
+void require_valid(const SweepLoad& sweep, const Load& load, const Cilium& cilium) {
+  if (!load.surface()) throw InputError("a sweep needs a surface");
+  surroundings::require_valid(*load.surface());
+  if (!std::isfinite(sweep.travel)) throw InputError("the travel must be finite");
+  if (!(std::isfinite(sweep.interference) && sweep.interference < cilium.length()))
+    throw InputError("the interference must be finite and less than the length of the cilium");
 }
 
 std::optional<double> value_at(const Load& load, Site site) {
@@ -126,6 +134,31 @@ const LoadType& ProbeLoad::type() {
       {{"force",
         "'force' is a result of the load type 'probe', whose 'displacement' is given: leave it out "
         "or use the type 'contact'"}}};
+  return type;
+}
+
+const LoadType& SweepLoad::type() {
+  static const LoadType type{
+      "sweep",
+      "a rigid surface that passes over the tip: [surface]",
+      {parameter("interference", quantity::length, {-100, 100, false, unit_slip},
+                 "from `clearance`",
+                 "`sweep`: how far the surface (profile height 0) lies below the straight "
+                 "cilium's tip; this or `clearance`.",
+                 ", interference {:g} mm", milli),
+       parameter("travel", quantity::length, {-100, 100, false, unit_slip}, "",
+                 "`sweep`: how far the surface moves along the azimuth.", ", travel {:g} mm",
+                 milli),
+       parameter("speed", quantity::velocity, {1e-9, 1e3, false, unit_slip}, "10 mm/s",
+                 "`sweep`: of the surface; it makes times of the travel, nothing else.", "", 1,
+                 0.01),
+       azimuth_parameter},
+      LoadStatement{
+          {parameter("clearance", quantity::length, {-100, 100, false, unit_slip}, "none",
+                     "`sweep`: how far the surface lies above the straight cilium's "
+                     "tip, minus the interference.",
+                     "")},
+          [](std::span<const double> values, const Cilium& /*cilium*/) { return -values[0]; }}};
   return type;
 }
 
@@ -207,7 +240,8 @@ Load interpolate(const Load& from, const Load& to, double t) {
 }
 
 bool operator==(const Load& a, const Load& b) {
-  return &a.type() == &b.type() && std::ranges::equal(a.values(), b.values());
+  return &a.type() == &b.type() && std::ranges::equal(a.values(), b.values()) &&
+         a.surface() == b.surface();
 }
 
 void refuse_type(const Load& load, std::string_view model) {
@@ -216,10 +250,11 @@ void refuse_type(const Load& load, std::string_view model) {
 }
 
 void require_valid(const Load& load, const Cilium& cilium) {
+  if (!std::isfinite(azimuth(load))) throw InputError("the azimuth must be finite");
+  if (const auto sweep = load.as<SweepLoad>()) return require_valid(*sweep, load, cilium);
   if (!std::isfinite(magnitude(load)) || magnitude(load) < 0)
     throw InputError(
         "the load must be finite and not negative; to turn it round, add 180 deg to the azimuth");
-  if (!std::isfinite(azimuth(load))) throw InputError("the azimuth must be finite");
   const std::optional<double> height = contact_height(load);
   if (height && !(*height > 0 && *height < cilium.length()))
     throw InputError("the contact height must lie between the base and the tip of the cilium");
@@ -227,6 +262,29 @@ void require_valid(const Load& load, const Cilium& cilium) {
   if (arclength && !(*arclength > 0 && *arclength <= cilium.length()))
     throw InputError(
         "the loaded section must lie above the base and not beyond the tip of the cilium");
+}
+
+LoadPath sweep_path(const Load& start, const SweepWay& way) {
+  if (way.samples < 2) throw InputError("a sweep needs two samples or more");
+  constexpr std::size_t travel = 1;
+  const double from = start.values()[travel];
+  LoadPath path;
+  for (std::size_t i = 0; i < way.samples; ++i) {
+    path.push_back(start);
+    path.back().set_value(
+        travel,
+        std::lerp(from, way.travel, static_cast<double>(i) / static_cast<double>(way.samples - 1)));
+  }
+  for (std::size_t i = way.samples - 1; way.there_and_back && i > 0; --i)
+    path.push_back(path[i - 1]);
+  return path;
+}
+
+SweepWay sweep_way(const LoadPath& path) {
+  const auto travel = [&](std::size_t i) { return path[i].as<SweepLoad>().value().travel; };
+  const std::size_t n = path.size();
+  if (n > 2 && travel(n - 1) == travel(0)) return {travel(n / 2), n / 2 + 1, true};
+  return {travel(n - 1), n, false};
 }
 
 }  // namespace ciliaval

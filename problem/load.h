@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <concepts>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "problem/cilium.h"
 #include "problem/parameter.h"
+#include "problem/surroundings/surface.h"
 #include "problem/types.h"
 
 namespace ciliaval {
@@ -101,7 +103,19 @@ struct ProbeLoad {
   double azimuth = 0;       ///< φ, rad
 };
 
-/// One step of a load path: a load type and the values of its parameters, SI.
+/// A rigid surface that passes over the cilium along e: z = L − δ − p(x − s), x along e, p the
+/// height of its profile. The steps of a path lead from place to place on straight lines.
+struct SweepLoad {
+  static const LoadType& type();
+  double interference =
+      0;               ///< δ, m, how far p = 0 lies below the straight cilium's tip; may be < 0
+  double travel = 0;   ///< s, m
+  double speed = 0;    ///< ds/dt, m/s; the equilibria do not depend on it
+  double azimuth = 0;  ///< φ of e, rad
+};
+
+/// One step of a load path: a load type and the values of its parameters, SI, and of a sweep the
+/// surface.
 class Load {
  public:
   static constexpr std::size_t most_parameters = 8;
@@ -113,6 +127,9 @@ class Load {
     const auto values = std::bit_cast<std::array<double, sizeof(T) / sizeof(double)>>(load);
     std::copy(values.begin(), values.end(), values_.begin());
   }
+  Load(const SweepLoad& load, std::shared_ptr<const surroundings::Surface> surface) : Load(load) {
+    surface_ = std::move(surface);
+  }
   /// Throws InputError unless there are as many values as the type has parameters.
   Load(const LoadType& type, std::span<const double> values);
 
@@ -121,6 +138,8 @@ class Load {
   /// The value of a parameter; none if the type has none of this name.
   std::optional<double> value(std::string_view parameter) const;
   void set_value(std::size_t parameter, double value) { values_.at(parameter) = value; }
+  /// The surface of a sweep; null of another load.
+  const std::shared_ptr<const surroundings::Surface>& surface() const { return surface_; }
 
   template <LoadParameters T>
   bool is() const {
@@ -140,6 +159,7 @@ class Load {
 
   const LoadType* type_;
   std::array<double, most_parameters> values_{};
+  std::shared_ptr<const surroundings::Surface> surface_;
 };
 
 /// Loads that the cilium bears one after the other, all of one type.
@@ -170,14 +190,27 @@ Load with_magnitude(const Load& load, double magnitude);
 Load with_azimuth(const Load& load, double azimuth);
 /// (1−t)·from + t·to in every parameter, for load stepping. Throws InputError if the types differ.
 Load interpolate(const Load& from, const Load& to, double t);
-/// Whether type and values are the same.
+/// Whether type, values and surface are the same.
 bool operator==(const Load& a, const Load& b);
 
 /// Throws the InputError of a model that does not know the load's type.
 [[noreturn]] void refuse_type(const Load& load, std::string_view model);
 
 /// Throws InputError if the load is not one the cilium can bear in the models' sense: magnitude
-/// finite and not negative (turn the azimuth by 180° instead), 0 < h < L, 0 < S ≤ L.
+/// finite and not negative (turn the azimuth by 180° instead), 0 < h < L, 0 < S ≤ L; of a sweep a
+/// valid surface, and δ < L.
 void require_valid(const Load& load, const Cilium& cilium);
+
+/// The way of a sweep.
+struct SweepWay {
+  double travel = 0;        ///< of the last place (if there_and_back, of the one in the middle), m
+  std::size_t samples = 2;  ///< places on the way there, both ends included
+  bool there_and_back = false;
+};
+/// Steps at places of equal distance, from `start` on: there, and back again over the same places.
+/// Throws InputError unless there are two samples or more.
+LoadPath sweep_path(const Load& start, const SweepWay& way);
+/// The way of a path that sweep_path() made.
+SweepWay sweep_way(const LoadPath& path);
 
 }  // namespace ciliaval

@@ -22,6 +22,22 @@ enum class Status {
   failed        ///< the solver did not converge
 };
 
+/// What the surface of a sweep does to the cilium.
+struct SurfaceContact {
+  enum class State { open, stick, slip };
+  enum class Where { rim, mantle, surface };  ///< of a rod's end disc; of its side; of a solid
+  State state = State::open;
+  Where where = Where::rim;
+  double normal_force = 0;    ///< N ≥ 0, N; of a solid the sum over the surface
+  double friction_force = 0;  ///< T, N, positive where it pulls along e
+  Vector3 point{0, 0, 0};     ///< where it touches, m; of a solid the centre of pressure
+  double elastic_energy = 0;  ///< of the cilium, J
+  // Since the step before, J:
+  double surface_work = 0;            ///< done by the surface on the cilium
+  double friction_work = 0;           ///< spent where the cilium slides on the surface
+  std::optional<double> energy_lost;  ///< at jumps from one equilibrium to the next; none: none
+};
+
 /// Result of one step of a load path.
 struct MechanicsStep {
   Load load;
@@ -36,6 +52,7 @@ struct MechanicsStep {
   std::optional<double> slip_off_uncertainty;   ///< of the slip-off force, N, or of a probe's
                                                 ///< displacement, m, if the model knows it
   std::optional<double> contact_arclength;  ///< contact, probe: S of the material point at z = h, m
+  std::optional<SurfaceContact> contact;    ///< sweep
   // Estimates of the numerical error, if the model has one.
   std::optional<double> tip_uncertainty;            ///< of the tip's position, m
   std::optional<double> tip_angle_uncertainty;      ///< rad
