@@ -146,7 +146,7 @@ const LoadType& SweepLoad::type() {
                  "`sweep`: how far the surface (profile height 0) lies below the straight "
                  "cilium's tip; this or `clearance`.",
                  ", interference {:g} mm", milli),
-       parameter("travel", quantity::length, {-100, 100, false, unit_slip}, "",
+       parameter(SweepLoad::travel_key, quantity::length, {0, 100, false, unit_slip}, "",
                  "`sweep`: how far the surface moves along the azimuth.", ", travel {:g} mm",
                  milli),
        parameter("speed", quantity::velocity, {1e-9, 1e3, false, unit_slip}, "10 mm/s",
@@ -176,7 +176,9 @@ const LoadType* find_load_type(std::string_view name) {
   return nullptr;
 }
 
-Load::Load(const LoadType& type, std::span<const double> values) : type_(&type) {
+Load::Load(const LoadType& type, std::span<const double> values,
+           std::shared_ptr<const surroundings::Surface> surface)
+    : type_(&type), surface_(std::move(surface)) {
   if (values.size() != count() || count() > most_parameters)
     throw InputError("the load type '" + std::string(type.name) + "' has " +
                      std::to_string(count()) + " parameters, not " + std::to_string(values.size()));

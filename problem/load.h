@@ -106,6 +106,7 @@ struct ProbeLoad {
 /// A rigid surface that passes over the cilium along e: z = L − δ − p(x − s), x along e, p the
 /// height of its profile. The steps of a path lead from place to place on straight lines.
 struct SweepLoad {
+  static constexpr std::string_view travel_key = "travel";
   static const LoadType& type();
   double interference =
       0;               ///< δ, m, how far p = 0 lies below the straight cilium's tip; may be < 0
@@ -131,7 +132,8 @@ class Load {
     surface_ = std::move(surface);
   }
   /// Throws InputError unless there are as many values as the type has parameters.
-  Load(const LoadType& type, std::span<const double> values);
+  Load(const LoadType& type, std::span<const double> values,
+       std::shared_ptr<const surroundings::Surface> surface = nullptr);
 
   const LoadType& type() const { return *type_; }
   std::span<const double> values() const { return std::span(values_).first(count()); }

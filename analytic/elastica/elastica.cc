@@ -13,6 +13,7 @@
 #include "analytic/elastica/height.h"
 #include "analytic/elastica/planar.h"
 #include "analytic/elastica/probe.h"
+#include "analytic/elastica/sweep_path.h"
 #include "problem/error.h"
 
 namespace ciliaval::analytic::elastica {
@@ -146,6 +147,10 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
     throw InputError("elastica: the tolerance must lie between 0 and 1e-3");
   require_valid(cilium);
   for (const Load& load : path) require_valid(load, cilium);
+  if (!path.empty() && path.front().is<SweepLoad>()) {
+    if (has_height_form(options_)) refuse_type(path.front(), "elastica's height form");
+    return solve_sweep(cilium, path, options_.tolerance, progress);
+  }
 
   MechanicsResult result;
   result.undeformed.centreline = straight_centreline(cilium.interfaces());

@@ -115,7 +115,8 @@ class CentrelineBuilder {
     out.position = units_.length * (state.w * direction_ + state.z * Vector3::UnitZ());
     out.rotation = Quaternion(Eigen::AngleAxisd(state.theta, axis_));
     out.curvature = state.curvature / units_.length * axis_;
-    out.forces.force = units_.force * state.force * direction_;
+    out.forces.force =
+        units_.force * (state.force * direction_ + state.vertical * Vector3::UnitZ());
     out.forces.moment = units_.force * units_.length * state.moment * axis_;
     return out;
   }

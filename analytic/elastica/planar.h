@@ -51,6 +51,7 @@ struct PlanarState {
   double z = 0;
   double moment = 0;     ///< M
   double force = 0;      ///< H, exerted by the part above on the part below
+  double vertical = 0;   ///< the same along z: that of a surface alone has it
   double curvature = 0;  ///< θ'(S)
 };
 

@@ -374,14 +374,20 @@ class Follower {
 
 }  // namespace
 
+void sweep(const TipProblem& problem, const Surface& surface,
+           const std::vector<SurfacePlace>& places,
+           const std::function<void(const SweepSample&)>& each) {
+  require_valid(surface);
+  if (places.empty()) return;
+  Follower tip(problem, surface);
+  each(tip.press(places.front()));
+  for (std::size_t i = 1; i < places.size(); ++i) each(tip.go(places[i]));
+}
+
 std::vector<SweepSample> sweep(const TipProblem& problem, const Surface& surface,
                                const std::vector<SurfacePlace>& places) {
-  require_valid(surface);
   std::vector<SweepSample> samples;
-  if (places.empty()) return samples;
-  Follower tip(problem, surface);
-  samples.push_back(tip.press(places.front()));
-  for (std::size_t i = 1; i < places.size(); ++i) samples.push_back(tip.go(places[i]));
+  sweep(problem, surface, places, [&](const SweepSample& sample) { samples.push_back(sample); });
   return samples;
 }
 

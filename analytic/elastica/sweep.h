@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "analytic/elastica/tip_contact.h"
@@ -36,7 +37,12 @@ struct SweepSample {
 /// to where N = 0 and the cilium springs back. Where that ξ lies a finite step ahead however short
 /// the step of the surface, down to 1e-8 lengths, the tip has jumped (docs/theory/sweep.md).
 ///
-/// Throws SolverError where no equilibrium is found, and InputError as Surface::at().
+/// Calls `each` with every sample as soon as it is there. Throws SolverError where no equilibrium
+/// is found, and InputError as Surface::at().
+void sweep(const TipProblem& problem, const surroundings::Surface& surface,
+           const std::vector<SurfacePlace>& places,
+           const std::function<void(const SweepSample&)>& each);
+/// The same, all samples at once.
 std::vector<SweepSample> sweep(const TipProblem& problem, const surroundings::Surface& surface,
                                const std::vector<SurfacePlace>& places);
 

@@ -60,6 +60,7 @@ std::vector<fs::path> input_files(const fs::path& file, const input::Case& probl
     files.insert(files.end(), model.centreline_files.begin(), model.centreline_files.end());
     files.insert(files.end(), {model.readings_file, model.background_file});
   }
+  files.push_back(problem.surface.file);
   std::erase_if(files, [](const fs::path& name) { return name.empty(); });
   return files;
 }

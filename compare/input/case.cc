@@ -56,7 +56,8 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   };
   read_header(root, c);
   const bool cilium = is_right([&] { read_cilium(root, c); });
-  const bool load = is_right([&] { read_load(root, c); });
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  const bool load = is_right([&] { read_load(root, folder, c); });
   read_sensor(root, c);
   const bool models = is_right([&] { read_models(root, known, c); });
   change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {

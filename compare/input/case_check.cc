@@ -51,7 +51,29 @@ void check_load(const Case& c, const Report& report) {
       report(fmt::format("load.arclength[{}]", i),
              fmt::format("the loaded section at arc length {:g} m lies beyond the tip at {:g} m",
                          *arclength, length));
+    const auto sweep = c.load_path[i].as<SweepLoad>();
+    if (sweep && sweep->interference >= length)
+      report(fmt::format("load.{}[{}]", c.stated_by.empty() ? "interference" : "clearance", i),
+             fmt::format("the interference {:g} m must be less than the length of the cilium, "
+                         "{:g} m",
+                         sweep->interference, length));
   }
+}
+
+/// The places of a profile in a file that the tip needs at least: from over the base at the start
+/// to over the base at the end, if it hangs straight.
+void check_profile(const Case& c, const Report& report) {
+  if (!c.surface.surface) return;
+  const auto* profile = std::get_if<surroundings::SampledProfile>(&c.surface.surface->profile);
+  if (profile == nullptr) return;
+  double travel = 0;
+  for (const Load& load : c.load_path)
+    travel = std::max(travel, load.as<SweepLoad>().value().travel);
+  if (travel > -profile->first() || profile->last() < 0)
+    report("surface.path",
+           fmt::format("the profile goes from x = {:g} m to {:g} m, but the sweep from 0 m to {:g} "
+                       "m; a bent cilium touches it up to its own length before",
+                       -profile->last(), -profile->first(), travel));
 }
 
 /// The loads that the models take, and what they find with their own options.
@@ -148,6 +170,7 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
                        "in the unit",
                        c.cilium.length() / c.cilium.diameter, most_slender));
   if (right.cilium && right.load) check_load(c, report);
+  if (right.load) check_profile(c, report);
   if (right.models) check_models(c, known, right, report);
   if (right.load && right.models) check_external(c, report);
   if (right.models && !c.fields.empty() && !root.contains("sensor"))

@@ -38,6 +38,14 @@ inline constexpr QuantityKey magnetization{
     {-1e8, 1e8, false, "the strongest magnets have about 1.2e6 A/m; divide a B_r in T by mu_0"},
     "0 A/m",
     "Axial magnetisation B_r/mu_0 from base to tip; negative points to the base."};
+inline constexpr QuantityKey samples{
+    "load",
+    "samples",
+    quantity::number,
+    {2, 10000, false, "each is a step, of which every model writes files"},
+    "101",
+    "`sweep`: places of equal distance along the travel, both ends included."};
+inline constexpr std::string_view sweep_return = "return";
 /// Each coordinate of a sensor point.
 inline constexpr QuantityKey position{
     "sensor",

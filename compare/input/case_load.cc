@@ -64,12 +64,35 @@ class PathReader {
     return values;
   }
   std::size_t steps() const { return steps_; }
+  std::string_view listed() const { return listed_; }
 
  private:
   Section* table_;
   std::size_t steps_ = 1;
   std::string_view listed_;  ///< the key whose list set steps_
 };
+
+/// Reads how a sweep goes its way; none if lists say it.
+std::optional<SweepWay> read_way(Section& table, const PathReader& reader) {
+  SweepWay way;
+  unsigned int samples = 101;
+  table.read(key::samples.name, key::samples.range, samples);
+  way.samples = samples;
+  if (const toml::node* node = table.find(key::sweep_return)) {
+    if (const auto* flag = node->as_boolean())
+      way.there_and_back = flag->get();
+    else
+      table.faults().add(place(*node), fmt::format("'{}' must be true or false, found {}",
+                                                   key::sweep_return, describe(*node)));
+  }
+  if (reader.listed().empty()) return way;
+  for (const std::string_view name : {key::samples.name, key::sweep_return})
+    if (const toml::node* node = table.find(name))
+      table.faults().add(place(*node), fmt::format("'{}' contradicts the list '{}', which tells "
+                                                   "each place of the sweep: leave it out",
+                                                   name, reader.listed()));
+  return std::nullopt;
+}
 
 /// Reads the table of a load whose type is missing or unknown: which keys it should have cannot be
 /// told, but those that some type has must be right by themselves.
@@ -86,6 +109,7 @@ void read_any_type(Section& table) {
     if (type->statement)
       std::for_each(type->statement->parameters.begin(), type->statement->parameters.end(), read);
   }
+  read_way(table, reader);
   table.finish();
 }
 
@@ -112,6 +136,29 @@ bool is_stated_by_others(Section& table, const LoadType& type) {
   return other != nullptr;
 }
 
+/// From travel 0 to that of the load.
+LoadPath along(SweepWay way, Load load) {
+  way.travel = load.as<SweepLoad>().value().travel;
+  load.set_value(1, 0);
+  return sweep_path(load, way);
+}
+
+/// Reads [surface], which a sweep needs and no other load has.
+void read_surface(Section& root, const std::filesystem::path& folder,
+                  const std::optional<std::string>& type, Case& c) {
+  constexpr std::string_view name = "surface";
+  if (type == SweepLoad::type().name) {
+    Section table = require_section(root, name);
+    if (table.exists()) c.surface = surface::read(table, folder);
+  } else if (root.table()->contains(name)) {
+    const toml::node* node = root.find(name);
+    if (type)
+      root.faults().add(place(*node), fmt::format("[surface] goes with the load type '{}', not "
+                                                  "'{}'",
+                                                  SweepLoad::type().name, *type));
+  }
+}
+
 /// Reads the keys of a type; the steps are made once all keys are right.
 std::function<void(Case&)> read_steps(Section& table, const LoadType& type, PathReader& reader) {
   // Only if it is there: find() would make it a valid key in the messages about others.
@@ -125,17 +172,20 @@ std::function<void(Case&)> read_steps(Section& table, const LoadType& type, Path
   if (type.statement)
     for (const LoadParameter& parameter : type.statement->parameters)
       statement.push_back(reader.read(parameter));
+  const std::optional<SweepWay> way =
+      &type == &SweepLoad::type() ? read_way(table, reader) : std::nullopt;
   return [=, &type, &reader](Case& c) {
     for (std::size_t i = 0; i < reader.steps(); ++i) {
       std::vector<double> of_step;
       of_step.reserve(values.size());
       for (const Values& v : values) of_step.push_back(v.at(i));
-      c.load_path.emplace_back(type, of_step);
+      c.load_path.emplace_back(type, of_step, c.surface.surface);
     }
+    if (way) c.load_path = along(*way, c.load_path.front());
     if (!stated) return;
     for (const Values& v : statement) {
       c.stated_by.emplace_back();
-      for (std::size_t i = 0; i < reader.steps(); ++i) c.stated_by.back().push_back(v.at(i));
+      for (std::size_t i = 0; i < c.load_path.size(); ++i) c.stated_by.back().push_back(v.at(i));
     }
     set_stated_magnitudes(c);
   };
@@ -161,7 +211,7 @@ void set_stated_magnitudes(Case& c) {
   }
 }
 
-void read_load(Section& root, Case& c) {
+void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
   Section table = require_section(root, "load");
@@ -171,6 +221,7 @@ void read_load(Section& root, Case& c) {
   std::vector<std::string_view> names;
   for (const LoadType* known : load_types()) names.push_back(known->name);
   if (node != nullptr) type = read_choice(*node, "type", names, faults);
+  read_surface(root, folder, type, c);
   if (!type) return read_any_type(table);
   Section typed(table.table(), fmt::format("[load] of type '{}'", *type), "load", table.where(),
                 faults);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,7 +18,9 @@ namespace ciliaval::compare::input {
 
 void read_header(Section& root, Case& c);  ///< [case]
 void read_cilium(Section& root, Case& c);  ///< [cilium], [[cilium.segment]]
-void read_load(Section& root, Case& c);    ///< [load]; needs the diameter for `velocity`
+/// [load], and [surface] of a sweep; needs the diameter for `velocity`. `folder` is that of the
+/// case file.
+void read_load(Section& root, const std::filesystem::path& folder, Case& c);
 void read_sensor(Section& root, Case& c);  ///< [sensor]
 /// [models], [models.<id>]
 void read_models(Section& root, const Models& known, Case& c);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "problem/error.h"
@@ -184,6 +185,14 @@ void Section::finish() const {
   }
   for (const std::string& key : missing)
     faults_->add(where_, fmt::format("{} needs '{}'", name_, key));
+}
+
+std::string toml_text(const std::string& text) {
+  std::ostringstream out;
+  const toml::table holder{{"t", text}};
+  // toml_formatter writes `t = '…'`; the value is what follows.
+  out << toml::toml_formatter(holder);
+  return out.str().substr(4);
 }
 
 std::string describe(const toml::node& node) {

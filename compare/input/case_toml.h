@@ -100,6 +100,9 @@ std::optional<double> read_value(const toml::node& node, std::string_view name,
 std::optional<unsigned int> read_whole_number(const toml::node& node, std::string_view name,
                                               const Range& range, Faults& faults);
 
+/// The text in quotes, escaped where TOML wants it.
+std::string toml_text(const std::string& text);
+
 /// What stands in the file, for messages: "a table", "the number 3".
 std::string describe(const toml::node& node);
 

@@ -3,26 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
+#include "compare/input/case_sections.h"
 
 namespace ciliaval::compare::input {
 namespace {
-
-/// The text in quotes, escaped where TOML wants it.
-std::string toml_text(const std::string& text) {
-  std::ostringstream out;
-  const toml::table holder{{"t", text}};
-  // toml_formatter writes `t = '…'`; the value is what follows.
-  out << toml::toml_formatter(holder);
-  return out.str().substr(4);
-}
 
 std::string list(const std::vector<std::string>& texts) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
@@ -53,19 +42,35 @@ std::string line(const QuantityKey& k, const std::vector<double>& values,
   return fmt::format("{} = {}\n", k.name, list(texts));
 }
 
+/// Of a sweep whose path sweep_path() makes: the way, in place of lists.
+std::optional<SweepWay> regular_way(const LoadPath& path) {
+  if (!path.front().is<SweepLoad>() || path.size() < 2) return std::nullopt;
+  const SweepWay way = sweep_way(path);
+  if (path != sweep_path(path.front(), way)) return std::nullopt;
+  return way;
+}
+
 /// The parameters of the load path; its first one is always a list, which tells the number of
-/// steps.
+/// steps, unless a sweep's number of samples does.
 std::string parameters(const Case& c) {
   const LoadType& type = c.load_path.front().type();
+  const std::optional<SweepWay> way = regular_way(c.load_path);
   std::string text;
+  const auto add = [&](const QuantityKey& k, const std::vector<double>& values, bool is_first) {
+    const bool is_travel = k.name == SweepLoad::travel_key;
+    if (way) return text += line(k, is_travel ? way->travel : values.front()), void();
+    text += line(k, values, is_first ? Listed::always : Listed::if_they_differ);
+  };
   for (std::size_t p = 0; p < c.stated_by.size(); ++p)
-    text += line(type.statement->parameters[p].key, c.stated_by[p],
-                 p == 0 ? Listed::always : Listed::if_they_differ);
+    add(type.statement->parameters[p].key, c.stated_by[p], p == 0);
   for (std::size_t p = c.stated_by.empty() ? 0 : 1; p < type.parameters.size(); ++p) {
     std::vector<double> values;
     for (const Load& load : c.load_path) values.push_back(load.values()[p]);
-    text += line(type.parameters[p].key, values, p == 0 ? Listed::always : Listed::if_they_differ);
+    add(type.parameters[p].key, values, p == 0);
   }
+  if (way)
+    text += fmt::format("{} = {}\n{} = {}\n", key::samples.name, way->samples, key::sweep_return,
+                        way->there_and_back);
   return text;
 }
 
@@ -135,6 +140,7 @@ std::string to_toml(const Case& c, const Models& known) {
     text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));
     text += parameters(c);
   }
+  if (c.surface.surface) text += surface::to_toml(c.surface);
   return text + sensor(c) + models(c, known);
 }
 

@@ -10,6 +10,7 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
+#include "compare/output/sweep.h"
 
 namespace ciliaval::compare::output {
 namespace {
@@ -46,6 +47,27 @@ Json load_json(const Load& load) {
   return json;
 }
 
+Json contact_json(const SurfaceContact& contact) {
+  const bool touches = contact.state != SurfaceContact::State::open;
+  return {{"state", to_string(contact.state)},
+          {"where", touches ? Json(to_string(contact.where)) : Json(nullptr)},
+          {"normal_force", contact.normal_force},
+          {"friction_force", contact.friction_force},
+          {"point", touches ? vector(contact.point) : Json(nullptr)},
+          {"elastic_energy", contact.elastic_energy},
+          {"surface_work", contact.surface_work},
+          {"friction_work", contact.friction_work}};
+}
+
+Json balance_json(const EnergyBalance& balance) {
+  return {{"surface_work", balance.surface_work},
+          {"friction_work", balance.friction_work},
+          {"energy_lost", balance.energy_lost},
+          {"stored", balance.stored},
+          {"rest", balance.rest()},
+          {"relative_rest", balance.relative_rest()}};
+}
+
 Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   const MechanicsStep& step = run.result.steps[index];
   Json json{{"status", to_string(step.status)}, {"message", step.message}};
@@ -67,6 +89,9 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
     json["slip_off_displacement"] = or_null(step.slip_off_displacement);
   json["slip_off_uncertainty"] = or_null(step.slip_off_uncertainty);
   json["contact_arclength"] = or_null(step.contact_arclength);
+  if (step.contact) json["contact"] = contact_json(*step.contact);
+  if (step.contact && step.contact->energy_lost)
+    json["jump"] = {{"energy_lost", *step.contact->energy_lost}};
   json["unknowns"] = step.unknowns;
   json["iterations"] = step.iterations;
   json["seconds"] = step.seconds;
@@ -133,6 +158,30 @@ std::string_view to_string(Status status) {
   return "failed";
 }
 
+std::string_view to_string(SurfaceContact::State state) {
+  switch (state) {
+    case SurfaceContact::State::open:
+      return "open";
+    case SurfaceContact::State::stick:
+      return "stick";
+    case SurfaceContact::State::slip:
+      break;
+  }
+  return "slip";
+}
+
+std::string_view to_string(SurfaceContact::Where where) {
+  switch (where) {
+    case SurfaceContact::Where::rim:
+      return "rim";
+    case SurfaceContact::Where::mantle:
+      return "mantle";
+    case SurfaceContact::Where::surface:
+      break;
+  }
+  return "surface";
+}
+
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension) {
   return fmt::format("{}_{:04}.{}", series, step, extension);
 }
@@ -162,6 +211,9 @@ std::string summary_json(const models::CaseResult& result,
   json["steps"] = Json::array();
   for (std::size_t i = 0; i < result.problem.load_path.size(); ++i)
     json["steps"].push_back(step_json(result, i));
+  if (is_sweep(result.problem))
+    for (const models::MechanicsRun& run : result.mechanics)
+      json["energy_balance"][run.model] = balance_json(energy_balance(run));
   json["comparisons"] = Json::array();
   for (const models::Comparison& c : comparisons) json["comparisons"].push_back(comparison_json(c));
   unsign_zeros(json);
@@ -199,6 +251,7 @@ void write_results(const models::CaseResult& result,
       if (run.result.steps[i].deformation)
         write_file(folder / step_file(run.model, i, "csv"),
                    centreline_csv(run.result.steps[i].deformation->centreline));
+  if (is_sweep(result.problem)) write_file(folder / "sweep.csv", sweep_csv(result));
   write_file(folder / "errors.csv", errors_csv(comparisons));
   write_file(folder / "summary.json", summary_json(result, comparisons, provenance));
 }

@@ -15,6 +15,9 @@ namespace ciliaval::compare::output {
 
 /// "converged", "slipped_off" or "failed".
 std::string_view to_string(Status status);
+/// "open", "stick" or "slip"; "rim", "mantle" or "surface".
+std::string_view to_string(SurfaceContact::State state);
+std::string_view to_string(SurfaceContact::Where where);
 
 /// `elastica_0002.csv`: file of a series at a step.
 std::string step_file(std::string_view series, std::size_t step, std::string_view extension);
@@ -35,7 +38,8 @@ std::string errors_csv(const std::vector<models::Comparison>& comparisons);
 /// of the upper piece.
 std::string centreline_csv(const Centreline& centreline);
 
-/// Writes summary.json, errors.csv and the centrelines of all converged steps into a folder.
+/// Writes summary.json, errors.csv, the centrelines of all converged steps and of a sweep sweep.csv
+/// into a folder.
 void write_results(const models::CaseResult& result,
                    const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
                    const std::filesystem::path& folder);

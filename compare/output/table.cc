@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "compare/output/results.h"
+#include "compare/output/sweep.h"
 #include "compare/output/text_table.h"
 
 namespace ciliaval::compare::output {
@@ -194,6 +195,7 @@ std::string table(const models::CaseResult& result,
                   const std::vector<models::Comparison>& comparisons) {
   const input::Case& problem = result.problem;
   std::string text = problem.name + (problem.title.empty() ? "" : ": " + problem.title) + '\n';
+  if (is_sweep(problem)) return text + sweep_table(result) + path_errors(result, comparisons);
   bool pairs = false;
   for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
     text += fmt::format("\nStep {} of {}: {}\n", step + 1, problem.load_path.size(),

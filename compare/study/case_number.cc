@@ -87,6 +87,7 @@ void append_load(const input::Case& c, std::vector<CaseNumber>& all) {
   }
   for (std::size_t p = c.stated_by.empty() ? 0 : 1; p < type.parameters.size(); ++p) {
     const QuantityKey& k = type.parameters[p].key;
+    if (k.name == SweepLoad::travel_key) continue;  // it tells the steps of a sweep apart
     all.push_back(plain(
         fmt::format("load.{}", k.name), k,
         [=](const input::Case& x) { return x.load_path.front().values()[p]; },
@@ -94,6 +95,19 @@ void append_load(const input::Case& c, std::vector<CaseNumber>& all) {
           for (Load& load : x.load_path) load.set_value(p, v);
         }));
   }
+}
+
+/// The numbers of a sweep's surface.
+void append_surface(const input::Case& c, std::vector<CaseNumber>& all) {
+  if (!c.surface.surface) return;
+  for (const QuantityKey& k : input::surface::keys(*c.surface.surface))
+    all.push_back(plain(
+        fmt::format("surface.{}", k.name), k,
+        [=](const input::Case& x) { return input::surface::value(*x.surface.surface, k.name); },
+        [=](input::Case& x, double v) {
+          x.surface.surface = input::surface::with_value(*x.surface.surface, k.name, v);
+          for (Load& load : x.load_path) load = Load(load.type(), load.values(), x.surface.surface);
+        }));
 }
 
 void append_options(const input::Case& c, std::vector<CaseNumber>& all) {
@@ -115,6 +129,7 @@ std::vector<CaseNumber> case_numbers(const input::Case& c) {
   std::vector<CaseNumber> all;
   append_cilium(c, all);
   append_load(c, all);
+  append_surface(c, all);
   if (!c.sensors.empty())
     for (const auto& [name, axis] : {std::pair("x", 0), std::pair("y", 1), std::pair("z", 2)})
       all.push_back(plain(

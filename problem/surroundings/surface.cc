@@ -17,7 +17,6 @@ namespace ciliaval::surroundings {
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
-constexpr std::size_t fewest_samples = 4;  ///< that Akima's cubic takes
 constexpr double most_waves = 100'000;
 
 void require(bool holds, const std::string& message) {
@@ -149,7 +148,7 @@ struct SampledProfile::Cubic {
 };
 
 SampledProfile::SampledProfile(std::vector<double> x, std::vector<double> height) {
-  require(x.size() == height.size() && x.size() >= fewest_samples,
+  require(x.size() == height.size() && x.size() >= fewest_points,
           "a profile needs four points or more");
   const auto finite = [](double value) { return std::isfinite(value); };
   require(std::ranges::all_of(x, finite) && std::ranges::all_of(height, finite),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -40,6 +41,8 @@ struct TrapezoidProfile {
 /// overshoot).
 class SampledProfile {
  public:
+  static constexpr std::size_t fewest_points = 4;
+
   /// Throws InputError if there are fewer than four points, one is not finite, or the x do not
   /// increase.
   SampledProfile(std::vector<double> x, std::vector<double> height);
@@ -86,10 +89,13 @@ class RandomProfile {
   std::vector<Wave> waves_;
 };
 
+using Profile =
+    std::variant<FlatProfile, SineProfile, TrapezoidProfile, SampledProfile, RandomProfile>;
+
 /// A rigid surface above the cilium, which passes over its tip: z = H − p(x − s) at the travel s,
 /// x along the travel.
 struct Surface {
-  std::variant<FlatProfile, SineProfile, TrapezoidProfile, SampledProfile, RandomProfile> profile;
+  Profile profile;
   double friction = 0;  ///< Coulomb's μ
   double tilt = 0;      ///< rad; adds x tan(tilt) to p
 

@@ -17,6 +17,7 @@
 
 #include "compare/output/output_file.h"
 #include "compare/output/results.h"
+#include "compare/output/sweep.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::output::vtk {
@@ -77,6 +78,7 @@ void write(vtkDataSet& data, const std::filesystem::path& file) {
 
 std::vector<double> series_times(const LoadPath& path) {
   std::vector<double> times;
+  if (path.front().is<SweepLoad>()) return ways(path);
   for (const Load& load : path) times.push_back(magnitude(load));
   if (std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) != times.end())
     for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i);
