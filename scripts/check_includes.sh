@@ -23,6 +23,7 @@ compare/regression: $shared
 compare/convergence: $shared compare/regression
 compare/budget: $shared analytic/rod/field_models.h analytic/body/mesh_field.h fem/potential/potential.h
 compare/sensing: $shared
+compare/signal: problem
 compare/study: $shared compare/budget analytic/elastica/elastica.h
 compare/claims: $shared compare/sensing compare/study analytic/rod/field_models.h
 compare/report: $shared compare/budget compare/convergence
