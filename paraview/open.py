@@ -3,7 +3,7 @@
 #   paraview --script=open.py        to look at it
 #   pvpython open.py picture.png     to draw the last step into a file
 # Lengths are metres; the time of ParaView is the load in N, N/m or m (or the number of the step,
-# if the load does not increase from step to step).
+# if the load does not increase from step to step), of a sweep how far the surface has moved.
 import glob
 import os
 import sys
@@ -83,6 +83,18 @@ for name in names("centreline_"):
         display = Show(tube, view)
         display.Opacity = 0.4
         ColorBy(display, ("POINTS", "kappa"))
+
+for name in names("surface"):
+    display = Show(read(name), view)
+    display.AmbientColor = display.DiffuseColor = [0.75, 0.7, 0.6]
+    display.ColorArrayName = ["POINTS", ""]
+    display.Opacity = 0.8
+
+for name in names("contact_"):
+    force = arrows(read(name), "force", 2 * diameter, name + " force")
+    display = Show(force, view)
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = [0.8, 0.1, 0.1]
 
 for name in bodies:
     body = read(name)

@@ -15,7 +15,7 @@ fem/beam: problem
 fem/potential: problem fem/parallel.h
 fem/solid: problem meshes fem
 fem/calculix: problem meshes fem
-compare/input: problem
+compare/input: problem compare/signal
 compare/models: problem analytic fem meshes compare/input
 compare/output: problem meshes analytic/rod/field_models.h analytic/sources/push_forward.h compare/input compare/models ciliaval_version.h
 compare/plot: problem compare/output

@@ -59,6 +59,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   const bool load = is_right([&] { read_load(root, folder, c); });
   read_sensor(root, c);
+  c.signal = sweep::read_signal(root);
   const bool models = is_right([&] { read_models(root, known, c); });
   change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {
     if (kind != Option::File::program || name.has_parent_path()) put_beside(file, name);

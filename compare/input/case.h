@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,7 +10,8 @@
 
 #include "compare/input/external/external.h"
 #include "compare/input/model_entry.h"
-#include "compare/input/surface/surface.h"
+#include "compare/input/sweep/signal.h"
+#include "compare/input/sweep/surface.h"
 #include "problem/cilium.h"
 #include "problem/load.h"
 #include "problem/types.h"
@@ -26,8 +28,9 @@ struct Case {
   /// Values along the path of each parameter of the load type's LoadStatement (a flow's velocity,
   /// density and drag coefficient), if the file states the magnitude by them; otherwise empty.
   std::vector<std::vector<double>> stated_by;
-  surface::Statement surface;          ///< of a sweep; each of its loads has it
-  std::vector<Vector3> sensors;        ///< m
+  sweep::Statement surface;                              ///< of a sweep; each of its loads has it
+  std::optional<compare::signal::SignalOptions> signal;  ///< what a logger makes of a sweep
+  std::vector<Vector3> sensors;                          ///< m
   std::vector<std::string> mechanics;  ///< ids of mechanics models, in the order asked for
   std::vector<std::string> fields;     ///< ids of field models
   std::vector<external::ExternalModel> external;  ///< what other programs and test benches gave

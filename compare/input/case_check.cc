@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "compare/input/case_sections.h"
@@ -74,6 +75,31 @@ void check_profile(const Case& c, const Report& report) {
            fmt::format("the profile goes from x = {:g} m to {:g} m, but the sweep from 0 m to {:g} "
                        "m; a bent cilium touches it up to its own length before",
                        -profile->last(), -profile->first(), travel));
+}
+
+/// A record is of a sweep, whose surface moves from sample to sample.
+void check_signal(const Case& c, const Report& report) {
+  constexpr double longest_record = 1e6;  ///< samples, rows of signal.csv
+  if (!c.signal) return;
+  if (!c.load_path.front().is<SweepLoad>())
+    return report("signal",
+                  fmt::format("[signal] goes with the load type '{}'", SweepLoad::type().name));
+  if (c.fields.empty()) report("signal", "[signal] needs 'fields' in [models] and a [sensor]");
+  double way = 0;
+  for (std::size_t i = 1; i < c.load_path.size(); ++i) {
+    const double step = std::abs(c.load_path[i].as<SweepLoad>().value().travel -
+                                 c.load_path[i - 1].as<SweepLoad>().value().travel);
+    if (step == 0)
+      return report(fmt::format("load.travel[{}]", i),
+                    "[signal] needs a time for each sample: the travel stays the same here");
+    way += step;
+  }
+  const double seconds = way / c.load_path.front().as<SweepLoad>().value().speed;
+  if (seconds * c.signal->sampling_rate > longest_record)
+    report("signal.sampling_rate",
+           fmt::format("the sweep takes {:g} s, of which this rate makes {:g} samples, more than "
+                       "{:g}",
+                       seconds, seconds * c.signal->sampling_rate, longest_record));
 }
 
 /// The loads that the models take, and what they find with their own options.
@@ -171,6 +197,7 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
                        c.cilium.length() / c.cilium.diameter, most_slender));
   if (right.cilium && right.load) check_load(c, report);
   if (right.load) check_profile(c, report);
+  if (right.load) check_signal(c, report);
   if (right.models) check_models(c, known, right, report);
   if (right.load && right.models) check_external(c, report);
   if (right.models && !c.fields.empty() && !root.contains("sensor"))

@@ -149,7 +149,7 @@ void read_surface(Section& root, const std::filesystem::path& folder,
   constexpr std::string_view name = "surface";
   if (type == SweepLoad::type().name) {
     Section table = require_section(root, name);
-    if (table.exists()) c.surface = surface::read(table, folder);
+    if (table.exists()) c.surface = sweep::read_surface(table, folder);
   } else if (root.table()->contains(name)) {
     const toml::node* node = root.find(name);
     if (type)

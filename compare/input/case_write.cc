@@ -140,7 +140,8 @@ std::string to_toml(const Case& c, const Models& known) {
     text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));
     text += parameters(c);
   }
-  if (c.surface.surface) text += surface::to_toml(c.surface);
+  if (c.surface.surface) text += sweep::to_toml(c.surface);
+  if (c.signal) text += sweep::to_toml(*c.signal);
   return text + sensor(c) + models(c, known);
 }
 

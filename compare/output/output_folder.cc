@@ -69,11 +69,11 @@ void remove_stale(const fs::path& directory, const fs::path& target, const std::
 /// extension.
 struct Series {
   std::set<std::string> csv;
-  std::set<std::string> vtk{"sensors"};
+  std::set<std::string> vtk{"sensors", "surface"};
 
   void add(const std::string& mechanics, const std::vector<std::string>& fields) {
     csv.insert(mechanics);
-    for (const char* kind : {"body", "centreline", "dipoles"})
+    for (const char* kind : {"body", "centreline", "contact", "dipoles"})
       vtk.insert(fmt::format("{}_{}", kind, mechanics));
     for (const std::string& field : fields)
       vtk.insert(fmt::format("field_{}_{}", mechanics, field));
@@ -90,7 +90,8 @@ std::string series_of(const fs::path& file) {
 
 /// Whether a run writes a file of this name, relative to the folder of its case.
 bool is_result(const fs::path& name, const Series& series) {
-  for (const char* file : {"summary.json", "report.html", "errors.csv", "case.toml", "vtk/open.py"})
+  for (const char* file : {"summary.json", "report.html", "errors.csv", "sweep.csv", "signal.csv",
+                           "case.toml", "vtk/open.py"})
     if (name == file) return true;
   const std::string extension = name.extension().string();
   if (!name.has_parent_path()) return extension == ".csv" && series.csv.contains(series_of(name));

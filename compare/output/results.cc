@@ -252,6 +252,7 @@ void write_results(const models::CaseResult& result,
         write_file(folder / step_file(run.model, i, "csv"),
                    centreline_csv(run.result.steps[i].deformation->centreline));
   if (is_sweep(result.problem)) write_file(folder / "sweep.csv", sweep_csv(result));
+  if (result.problem.signal) write_file(folder / "signal.csv", signal_csv(result));
   write_file(folder / "errors.csv", errors_csv(comparisons));
   write_file(folder / "summary.json", summary_json(result, comparisons, provenance));
 }

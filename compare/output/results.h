@@ -39,7 +39,7 @@ std::string errors_csv(const std::vector<models::Comparison>& comparisons);
 std::string centreline_csv(const Centreline& centreline);
 
 /// Writes summary.json, errors.csv, the centrelines of all converged steps and of a sweep sweep.csv
-/// into a folder.
+/// and signal.csv into a folder.
 void write_results(const models::CaseResult& result,
                    const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
                    const std::filesystem::path& folder);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -250,10 +251,13 @@ std::vector<double> ways(const LoadPath& path) {
   return result;
 }
 
-double EnergyBalance::relative_rest() const {
-  const double scale = std::max(
+double EnergyBalance::scale() const {
+  return std::max(
       {std::abs(surface_work), std::abs(friction_work), std::abs(energy_lost), std::abs(stored)});
-  return scale > 0 ? rest() / scale : 0;
+}
+
+double EnergyBalance::relative_rest() const {
+  return scale() > 0 ? rest() / scale() : 0;
 }
 
 EnergyBalance energy_balance(const models::MechanicsRun& run) {
@@ -286,6 +290,38 @@ std::string sweep_csv(const models::CaseResult& result) {
         add(csv, run.steps[i] ? run.steps[i]->B[s] : std::nullopt);
         add(csv, run.steps[i] ? run.steps[i]->dB[s] : std::nullopt);
       }
+    csv.end_row();
+  }
+  return csv.text();
+}
+
+std::string signal_csv(const models::CaseResult& result) {
+  const LoadPath& path = result.problem.load_path;
+  std::vector<double> times = ways(path);
+  for (double& time : times) time /= sweep_of(path.front()).speed;
+  Columns columns;
+  columns.add("time", "s");
+  std::vector<signal::Signal> records;
+  for (const models::FieldRun& run : result.fields)
+    for (std::size_t s = 0; s < result.problem.sensors.size(); ++s) {
+      std::vector<Vector3> dB;
+      for (const auto& step : run.steps)
+        if (step && step->dB[s]) dB.push_back(*step->dB[s]);
+      if (dB.size() != path.size()) continue;
+      for (const char* kind : {"dB", "filtered"})
+        columns.add_vector(fmt::format("{}.{}{}_", run.name(), kind, s), "T");
+      records.push_back(
+          signal::record(times, dB, *result.problem.signal, static_cast<std::uint32_t>(s)));
+    }
+  CsvWriter csv;
+  columns.write(csv);
+  const std::size_t rows = records.empty() ? 0 : records.front().time.size();
+  for (std::size_t i = 0; i < rows; ++i) {
+    csv.add(records.front().time[i]);
+    for (const signal::Signal& record : records) {
+      add(csv, record.raw[i]);
+      add(csv, record.filtered[i]);
+    }
     csv.end_row();
   }
   return csv.text();

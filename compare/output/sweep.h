@@ -24,7 +24,8 @@ struct EnergyBalance {
   double stored = 0;       ///< elastic energy at the end less that at the beginning
 
   double rest() const { return surface_work - friction_work - energy_lost - stored; }
-  /// The rest over the largest of the terms; 0 if all vanish.
+  double scale() const;  ///< the largest of the terms
+  /// The rest over the scale; 0 if all vanish.
   double relative_rest() const;
 };
 /// Of the steps up to the first without a contact.
@@ -34,6 +35,11 @@ EnergyBalance energy_balance(const models::MechanicsRun& run);
 /// mechanics model the contact, tip and energies, of each pair of models B and ΔB at each sensor.
 /// Units in the comment line.
 std::string sweep_csv(const models::CaseResult& result);
+
+/// signal.csv as text: of each pair of models and each sensor ΔB as the logger of [signal] records
+/// it, and filtered, by the time. Pairs without a field at some sample are left out. Throws
+/// InputError as signal::record().
+std::string signal_csv(const models::CaseResult& result);
 
 /// The sweep for a terminal: a line for each model, its jumps, the differences of the tips.
 std::string sweep_table(const models::CaseResult& result);

@@ -7,13 +7,18 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "compare/output/results.h"
+#include "compare/output/sweep.h"
+#include "compare/output/text_table.h"
 
 namespace ciliaval::compare::regression {
 namespace {
 
 constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+
+constexpr std::size_t most_of_a_sweep = 27;  ///< steps
 
 constexpr std::array<std::string_view, 4> places{"quarter", "middle", "three_quarters", "tip"};
 
@@ -77,14 +82,46 @@ void add_step(const std::string& prefix, const models::MechanicsRun& run, const 
   add("slip_off_displacement", "m", step.slip_off_displacement, slip_off, slip_off);
 }
 
-void add_mechanics(const models::MechanicsRun& run, Measurements& out) {
+/// Contact forces at the steps, jumps and energies over the path.
+void add_sweep(const models::MechanicsRun& run, const std::vector<std::size_t>& steps,
+               Measurements& out) {
+  const output::EnergyBalance balance = output::energy_balance(run);
+  double largest = 0;
+  int jumps = 0;
+  for (const MechanicsStep& step : run.result.steps)
+    if (step.contact) {
+      raise(largest, step.contact->normal_force);
+      jumps += step.contact->energy_lost ? 1 : 0;
+    }
+  const auto add = [&](std::string id, const char* unit, double value, double scale) {
+    out.quantities.push_back({std::move(id), run.model, {}, unit, value, scale, scale, {}});
+  };
+  for (const std::size_t i : steps)
+    if (const auto& contact = run.result.steps[i].contact) {
+      const std::string prefix = fmt::format("steps/{}/mechanics/{}/contact/", i, run.model);
+      out.outcomes.push_back({prefix + "state", std::string(output::to_string(contact->state))});
+      add(prefix + "normal_force", "N", contact->normal_force, largest);
+      add(prefix + "friction_force", "N", contact->friction_force, largest);
+    }
+  const std::string prefix = fmt::format("energy_balance/{}/", run.model);
+  out.outcomes.push_back({prefix + "jumps", std::to_string(jumps)});
+  for (const auto& [name, value] : {std::pair("surface_work", balance.surface_work),
+                                    std::pair("friction_work", balance.friction_work),
+                                    std::pair("energy_lost", balance.energy_lost)})
+    add(prefix + name, "J", value, balance.scale());
+}
+
+void add_mechanics(const models::MechanicsRun& run, const std::vector<std::size_t>& steps,
+                   Measurements& out) {
   const Largest largest(run);
-  for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
+  for (const std::size_t i : steps) {
     const MechanicsStep& step = run.result.steps[i];
     const std::string prefix = fmt::format("steps/{}/mechanics/{}", i, run.model);
     out.outcomes.push_back({prefix + "/status", std::string(output::to_string(step.status))});
     add_step(prefix, run, step, largest, out);
   }
+  if (!run.result.steps.empty() && run.result.steps.front().load.is<SweepLoad>())
+    add_sweep(run, steps, out);
 }
 
 /// The largest values of a pair at each sensor over the undeformed cilium and the path, T.
@@ -111,7 +148,8 @@ struct LargestFields {
   }
 };
 
-void add_fields(const models::FieldRun& run, Measurements& out) {
+void add_fields(const models::FieldRun& run, const std::vector<std::size_t>& steps,
+                Measurements& out) {
   const LargestFields largest(run);
   const auto add_step = [&](const std::string& prefix, const models::FieldStep& step,
                             bool deformed) {
@@ -133,7 +171,7 @@ void add_fields(const models::FieldRun& run, Measurements& out) {
     if (deformed) add("dB", step.dB, step.dB_uncertainty, largest.dB);
   };
   add_step("undeformed/fields/" + run.name(), run.undeformed, false);
-  for (std::size_t i = 0; i < run.steps.size(); ++i)
+  for (const std::size_t i : steps)
     if (run.steps[i])
       add_step(fmt::format("steps/{}/fields/{}", i, run.name()), *run.steps[i], true);
 }
@@ -141,9 +179,12 @@ void add_fields(const models::FieldRun& run, Measurements& out) {
 }  // namespace
 
 Measurements measurements(const models::CaseResult& result) {
+  const std::size_t count = result.problem.load_path.size();
+  const std::vector<std::size_t> steps =
+      output::evenly(count, output::is_sweep(result.problem) ? most_of_a_sweep : count);
   Measurements out;
-  for (const models::MechanicsRun& run : result.mechanics) add_mechanics(run, out);
-  for (const models::FieldRun& run : result.fields) add_fields(run, out);
+  for (const models::MechanicsRun& run : result.mechanics) add_mechanics(run, steps, out);
+  for (const models::FieldRun& run : result.fields) add_fields(run, steps, out);
   return out;
 }
 

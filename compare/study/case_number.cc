@@ -100,12 +100,12 @@ void append_load(const input::Case& c, std::vector<CaseNumber>& all) {
 /// The numbers of a sweep's surface.
 void append_surface(const input::Case& c, std::vector<CaseNumber>& all) {
   if (!c.surface.surface) return;
-  for (const QuantityKey& k : input::surface::keys(*c.surface.surface))
+  for (const QuantityKey& k : input::sweep::keys(*c.surface.surface))
     all.push_back(plain(
         fmt::format("surface.{}", k.name), k,
-        [=](const input::Case& x) { return input::surface::value(*x.surface.surface, k.name); },
+        [=](const input::Case& x) { return input::sweep::value(*x.surface.surface, k.name); },
         [=](input::Case& x, double v) {
-          x.surface.surface = input::surface::with_value(*x.surface.surface, k.name, v);
+          x.surface.surface = input::sweep::with_value(*x.surface.surface, k.name, v);
           for (Load& load : x.load_path) load = Load(load.type(), load.values(), x.surface.surface);
         }));
 }

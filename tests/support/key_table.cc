@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "compare/input/case_keys.h"
+#include "compare/input/sweep/signal.h"
+#include "compare/input/sweep/surface.h"
 #include "problem/load.h"
 
 namespace ciliaval::test {
@@ -60,6 +62,18 @@ std::vector<TextKey> text_keys(const Models& models) {
       {"cilium.segment", "name", "text", "", "Name of the segment, different from the others'."},
       {"load", "type", in_code(loads, " or "), "",
        "What the load is and does as the cilium bends."},
+      {"load", key::sweep_return, "`true` or `false`", "`false`",
+       "`sweep`: whether the surface goes back again over the same places."},
+      {"surface", "profile", in_code(sweep::profile_names(), " or "), "",
+       "The surface of a `sweep`: z = L - interference - p(x - travel), x along the azimuth; p "
+       "counts towards the cilium."},
+      {"surface", "path", "file name", "",
+       "`file`: CSV with `x` and `height`, at least four rows; x counts along the way that the "
+       "tip goes over the surface, from the place over the base at the start."},
+      {"signal", "seed", "whole number", "1", "Of the noise; each sensor has its own."},
+      {"signal", "order", "whole number", "4 (the paper's)", "Of the filter, 1 to 20."},
+      {"signal", "phase", in_code(sweep::phase_names(), " or "), "causal",
+       "A filter in the logger, or one of the whole record that shifts nothing."},
       {"models", "mechanics", "list of " + in_code(ids(models.mechanics)), "",
        "The mechanics models to run, at least one."},
       {"models", "fields", "list of " + in_code(ids(models.fields)), "none",
@@ -95,6 +109,11 @@ const std::vector<const QuantityKey*>& quantity_keys() {
         add(type->parameters, last);
         if (type->statement) add(type->statement->parameters, last);
       }
+    all.push_back(&key::samples);
+    for (const sweep::ProfileKind& kind : sweep::profile_kinds())
+      for (const QuantityKey& k : kind.keys) all.push_back(&k);
+    all.insert(all.end(), {&sweep::friction, &sweep::tilt});
+    for (const QuantityKey& k : sweep::signal_keys()) all.push_back(&k);
     all.insert(all.end(), {&key::position, &key::tip_uncertainty, &key::field_uncertainty});
     return all;
   }();
@@ -145,7 +164,7 @@ std::string key_table(const Models& models) {
       if (k->table == part) table += row(*k);
   };
   for (const std::string_view part :
-       {"case", "cilium", "cilium.segment", "load", "sensor", "models"})
+       {"case", "cilium", "cilium.segment", "load", "surface", "signal", "sensor", "models"})
     add(part);
   models.for_each([&](const auto& entry) {
     for (const Option& option : entry.options) table += row(entry.id, option);

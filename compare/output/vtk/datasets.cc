@@ -15,11 +15,13 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "compare/output/results.h"
@@ -349,6 +351,59 @@ vtkSmartPointer<vtkPolyData> sensors(const models::CaseResult& result, std::size
     attach_masked(*data, "B_" + pair, run.steps[step]->B);
     attach_masked(*data, "dB_" + pair, run.steps[step]->dB);
   }
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> surface_mesh(const Load& load, const Cilium& cilium) {
+  constexpr int count = 1001;
+  const auto sweep = load.as<SweepLoad>().value();
+  const surroundings::Surface& surface = *load.surface();
+  const Vector3 e = direction(load);
+  const Vector3 across = cilium.diameter * 1.5 * Vector3::UnitZ().cross(e);
+  const double length = cilium.length();
+  double first = -length;
+  double last = 1.5 * length;
+  if (const auto* profile = std::get_if<surroundings::SampledProfile>(&surface.profile)) {
+    first = std::clamp(first, profile->first() + sweep.travel, profile->last() + sweep.travel);
+    last = std::clamp(last, first, profile->last() + sweep.travel);
+  }
+  const vtkNew<vtkPoints> points = double_points();
+  const vtkNew<vtkCellArray> cells;
+  Column height("height", 1, "m");
+  for (int i = 0; i < count; ++i) {
+    const double x = std::lerp(first, last, static_cast<double>(i) / (count - 1));
+    const double p = surface.extended(x - sweep.travel).height;
+    const Vector3 middle = x * e + (length - sweep.interference - p) * Vector3::UnitZ();
+    for (const double side : {-1.0, 1.0}) {
+      points->InsertNextPoint(Vector3(middle + side * across).data());
+      height.add(p);
+    }
+    const vtkIdType last_point = points->GetNumberOfPoints() - 1;
+    const std::array<vtkIdType, 4> corners{last_point - 3, last_point - 2, last_point,
+                                           last_point - 1};
+    if (i > 0) cells->InsertNextCell(4, corners.data());
+  }
+  auto data = vtkSmartPointer<vtkPolyData>::New();
+  data->SetPoints(points);
+  data->SetPolys(cells);
+  height.attach(*data);
+  return data;
+}
+
+vtkSmartPointer<vtkPolyData> contact_point(const Load& load, const SurfaceContact& contact) {
+  const auto sweep = load.as<SweepLoad>().value();
+  const Vector3 e = direction(load);
+  const double slope = load.surface()->extended(contact.point.dot(e) - sweep.travel).slope;
+  const Vector3 tangent = Vector3(e - slope * Vector3::UnitZ()).normalized();
+  const Vector3 normal = Vector3(-slope * e - Vector3::UnitZ()).normalized();
+  auto data = vertices({contact.point});
+  Column force("force", 3, "N");
+  Column normal_force("normal_force", 1, "N");
+  Column friction_force("friction_force", 1, "N");
+  force.add(Vector3(contact.normal_force * normal + contact.friction_force * tangent));
+  normal_force.add(contact.normal_force);
+  friction_force.add(contact.friction_force);
+  for (const Column* column : {&force, &normal_force, &friction_force}) column->attach(*data);
   return data;
 }
 

@@ -37,6 +37,14 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
 /// `B_elastica_line`, and a mask `valid_B_elastica_line` that is 0 where there is no value.
 vtkSmartPointer<vtkPolyData> sensors(const models::CaseResult& result, std::size_t step);
 
+/// The surface of a sweep around the cilium as quadrilaterals, three diameters wide, where it
+/// stands at the load. Point data `height`, of the profile with its tilt.
+vtkSmartPointer<vtkPolyData> surface_mesh(const Load& load, const Cilium& cilium);
+
+/// The contact of a sweep as a vertex at its point, with `force` (on the cilium), `normal_force`
+/// and `friction_force`.
+vtkSmartPointer<vtkPolyData> contact_point(const Load& load, const SurfaceContact& contact);
+
 /// A scalar potential on its octree: triquadratic hexahedra on 27 points each of its own, so that
 /// the fields may jump between leaves. Point data `psi`, `H` = −∇ψ and `B` = μ₀(μ_r H + m) with the
 /// means of μ_r and m = B_r/μ₀ over the leaf; these two as cell data.

@@ -20,6 +20,8 @@
 #include "analytic/rod/field_models.h"
 #include "compare/output/output_file.h"
 #include "compare/output/results.h"
+#include "compare/output/sweep.h"
+#include "compare/output/text_table.h"
 #include "compare/output/vtk/datasets.h"
 #include "compare/output/vtk/files.h"
 #include "problem/error.h"
@@ -67,6 +69,14 @@ bool any_field(const models::CaseResult& result, std::size_t step) {
   });
 }
 
+/// The steps whose bodies and grids, some MB each, are written: of a sweep, which has hundreds,
+/// some.
+std::vector<std::size_t> steps_of_large_files(const input::Case& problem) {
+  constexpr std::size_t most = 21;
+  const std::size_t steps = problem.load_path.size();
+  return evenly(steps, is_sweep(problem) ? std::min(steps, most) : steps);
+}
+
 /// The first files first, which are the largest: the threads then end at about the same time.
 void write_in_order(const std::vector<std::function<void()>>& files) {
   std::atomic<std::size_t> next = 0;
@@ -89,13 +99,14 @@ void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>&
     });
   };
   const std::size_t steps = problem.load_path.size();
-  for (std::size_t step = 0; step < steps; ++step)
+  const std::vector<std::size_t> large = steps_of_large_files(problem);
+  for (const std::size_t step : large)
     for (const models::MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
       if (deformation && deformation->body)
         add("body_" + run.model, step, [&body = *deformation->body] { return solid_grid(body); });
     }
-  for (std::size_t step = 0; step < steps; ++step) {
+  for (const std::size_t step : large) {
     if (grid)
       add("field_" + grid->mechanics + "_" + grid->field, step,
           [&grid, step]() -> vtkSmartPointer<vtkDataSet> {
@@ -118,6 +129,14 @@ void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>&
         return dipoles(problem.cilium, centreline,
                        problem.options.of<analytic::rod::LineOptions>().push_forward);
       });
+    }
+    if (problem.load_path[step].surface()) {
+      const Load& load = problem.load_path[step];
+      add("surface", step, [&] { return surface_mesh(load, problem.cilium); });
+      for (const models::MechanicsRun& run : result.mechanics)
+        if (const auto& contact = run.result.steps[step].contact;
+            contact && contact->state != SurfaceContact::State::open)
+          add("contact_" + run.model, step, [&] { return contact_point(load, *contact); });
     }
     if (any_field(result, step)) add("sensors", step, [&, step] { return sensors(result, step); });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/input/surface/surface.h"
+#include "compare/input/sweep/surface.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "problem/error.h"
 #include "problem/support/words.h"
 
-namespace ciliaval::compare::input::surface {
+namespace ciliaval::compare::input::sweep {
 namespace {
 
 using namespace surroundings;
@@ -179,7 +179,7 @@ SampledProfile read_profile(const std::filesystem::path& file) {
   return {std::move(x), std::move(table.numbers[1])};
 }
 
-Statement read(Section& table, const std::filesystem::path& folder) {
+Statement read_surface(Section& table, const std::filesystem::path& folder) {
   Faults& faults = table.faults();
   const std::size_t before = faults.size();
   Statement statement;
@@ -257,4 +257,4 @@ std::string to_toml(const Statement& statement) {
   return text;
 }
 
-}  // namespace ciliaval::compare::input::surface
+}  // namespace ciliaval::compare::input::sweep

@@ -17,7 +17,7 @@ class Section;
 }
 
 /// The table [surface] of a case file.
-namespace ciliaval::compare::input::surface {
+namespace ciliaval::compare::input::sweep {
 
 /// A kind of profile: the one declaration from which it is read, written back and documented.
 struct ProfileKind {
@@ -60,7 +60,7 @@ struct Statement {
 
 /// Reads the table; a file's name is that of a file in `folder`, unless absolute. The file's own
 /// faults are thrown as an InputError that names it; all others are added.
-Statement read(Section& table, const std::filesystem::path& folder);
+Statement read_surface(Section& table, const std::filesystem::path& folder);
 
 /// The profile in a CSV file, `x [mm], height [mm]`: x counts along the way that the tip goes over
 /// the surface, x = s − (place over the base). Throws InputError with every fault and its place.
@@ -69,4 +69,4 @@ surroundings::SampledProfile read_profile(const std::filesystem::path& file);
 /// The table as TOML.
 std::string to_toml(const Statement& statement);
 
-}  // namespace ciliaval::compare::input::surface
+}  // namespace ciliaval::compare::input::sweep
