@@ -215,6 +215,7 @@ void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
   Section table = require_section(root, "load");
+  root.find("surface");
   if (!table.exists()) return;
   const toml::node* node = table.require("type");
   std::optional<std::string> type;
