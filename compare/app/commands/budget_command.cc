@@ -36,6 +36,7 @@ budget::Budget run_budget(const input::Case& problem, const std::vector<std::str
 ExitCode execute(const Options& options, const std::string& words) {
   require_one_rank("budget");
   const input::Case problem = read_cases({options.file}).front();
+  refuse_sweep(options.file, problem, "an error budget");
   output::check_outputs({options.json, options.csv, options.plot},
                         input_files(options.file, problem));
   const budget::Budget budget = run_budget(problem, options.without);

@@ -99,6 +99,7 @@ ExitCode simulate_bench(const Options& options, const std::string& words) {
 /// load.
 ExitCode sense_readings(const Options& options, const std::string& words) {
   const input::Case problem = read_cases({options.file}).front();
+  refuse_sweep(options.file, problem, "sensing");
   if (problem.sensors.empty()) throw InputError(options.file.string() + ": the case has no sensor");
   sensing::Sensing sensing;
   sensing.case_name = problem.name;

@@ -269,6 +269,12 @@ void reduce_to_one_step(Study& study, input::Place where, input::Faults& faults)
   // The tolerances are those of the case with its fixed numbers alone.
   const input::Case set = study.case_at(study.tolerances.empty() ? 0 : study.point_count());
   const auto differs = [&](const Load& step) { return !(step == set.load_path.front()); };
+  if (base.load_path.front().is<SweepLoad>() && base.load_path.size() > 1) {
+    faults.add(where, fmt::format("the case is a sweep of {} samples, a study's points are one: "
+                                  "list one place, travel = [\"0 mm\"]",
+                                  base.load_path.size()));
+    return;
+  }
   if (std::any_of(set.load_path.begin(), set.load_path.end(), differs)) {
     const QuantityKey& magnitude_key = base.load_path.front().type().parameters.front().key;
     faults.add(where, fmt::format("the case has {} load steps, a study's points one: say which "

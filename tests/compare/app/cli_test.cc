@@ -241,6 +241,30 @@ TEST(CommandLine, NoOutputReplacesAnInput) {
   }
 }
 
+TEST(CommandLine, FollowsASweepTwiceIntoTheSameFolder) {
+  const TemporaryFolder folder;
+  std::string text = read_text(fs::path(CILIAVAL_SOURCE_DIR) / "cases/paper/fig6-surface.toml");
+  const auto replace = [&](const std::string& part, const std::string& by) {
+    ASSERT_NE(text.find(part), std::string::npos) << part;
+    text.replace(text.find(part), part.size(), by);
+  };
+  replace("samples = 521", "samples = 14");
+  replace("sampling_rate = \"20 Hz\"", "sampling_rate = \"2 Hz\"");
+  std::ofstream(folder.path() / "sweep.toml") << text;
+  for (int i = 0; i < 2; ++i) {
+    const Outcome outcome = ciliaval(folder.path(), "run sweep.toml");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("Sweep, 14 samples"));
+  }
+  for (const char* file : {"sweep.csv", "signal.csv", "vtk/surface.pvd"})
+    EXPECT_TRUE(fs::exists(folder.path() / "results/fig6-surface" / file)) << file;
+  for (const char* command : {"budget sweep.toml", "sense sweep.toml sweep.toml"}) {
+    const Outcome refused = ciliaval(folder.path(), command);
+    EXPECT_EQ(refused.code, 2) << command;
+    EXPECT_THAT(refused.err, HasSubstr("the case is a sweep")) << command;
+  }
+}
+
 TEST(CommandLine, RefusesTwoCasesOfOneNameBeforeAnythingRuns) {
   const TemporaryFolder folder;
   write_case(folder.path(), "quick", rods);
