@@ -25,7 +25,7 @@ compare/budget: $shared analytic/rod/field_models.h analytic/body/mesh_field.h f
 compare/sensing: $shared
 compare/signal: problem
 compare/study: $shared compare/budget analytic/elastica/elastica.h
-compare/claims: $shared compare/sensing compare/study analytic/rod/field_models.h
+compare/claims: $shared compare/sensing compare/signal compare/study analytic/rod/field_models.h
 compare/report: $shared compare/budget compare/convergence
 compare/app: .
 tests: ."

@@ -59,9 +59,10 @@ std::string claims_json(const std::vector<Claim>& claims, const output::Provenan
 
 /// Every quantitative statement of the paper that its text allows to be checked, and those that it
 /// does not, in the paper's order, each with the findings of the models. `folder` is that of the
-/// shipped cases (cases/paper/): fig3b.toml, fig3d.toml, fig5.toml, fig4*.study.toml and
-/// fig5.sense.toml. `with_solid`: also with the 3D solid, half a minute more. Throws InputError and
-/// FileError if a file is missing or not as shipped, SolverError if a model fails.
+/// shipped cases (cases/paper/): fig3b.toml, fig3d.toml, fig5.toml, fig4*.study.toml,
+/// fig5.sense.toml and fig6-*.toml. `with_solid`: also with the 3D solid, half a minute more.
+/// Throws InputError and FileError if a file is missing or not as shipped, SolverError if a model
+/// fails.
 std::vector<Claim> claims(const std::filesystem::path& folder, bool with_solid,
                           const Progress& progress = {});
 
@@ -76,5 +77,8 @@ std::vector<Claim> design_claims(const std::filesystem::path& folder, bool with_
 /// Section 3.5: the flow.
 std::vector<Claim> flow_claims(const std::filesystem::path& folder, bool with_solid,
                                const Progress& progress);
+/// Section 3.6: surfaces and textures, by the rods.
+std::vector<Claim> sweep_claims(const std::filesystem::path& folder, bool with_solid,
+                                const Progress& progress);
 
 }  // namespace ciliaval::compare::claims

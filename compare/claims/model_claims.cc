@@ -308,7 +308,7 @@ std::vector<Claim> model_claims(const std::filesystem::path& folder, bool with_s
 std::vector<Claim> claims(const std::filesystem::path& folder, bool with_solid,
                           const Progress& progress) {
   std::vector<Claim> all = model_claims(folder, with_solid, progress);
-  for (auto* part : {design_claims, flow_claims})
+  for (auto* part : {design_claims, flow_claims, sweep_claims})
     for (Claim& claim : part(folder, with_solid, progress)) all.push_back(std::move(claim));
   return all;
 }

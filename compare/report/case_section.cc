@@ -12,7 +12,9 @@
 #include <utility>
 
 #include "compare/input/csv.h"
+#include "compare/output/sweep.h"
 #include "compare/output/table.h"
+#include "compare/output/text_table.h"
 #include "compare/report/curves.h"
 #include "compare/report/sections.h"
 #include "problem/error.h"
@@ -53,7 +55,33 @@ struct LoadAxis {
   std::vector<double> values;  ///< of each step
 };
 
+bool is_sweep(const Json& steps) {
+  return !steps.empty() && load_of(steps.front().at("load")).is<SweepLoad>();
+}
+
+/// The way of a sweep's surface, there and back.
+LoadAxis way_axis(const Json& steps) {
+  LoadPath path;
+  for (const Json& step : steps) path.push_back(load_of(step.at("load")));
+  LoadAxis axis{"way of the surface, mm", output::ways(path)};
+  for (double& value : axis.values) value *= 1e3;
+  return axis;
+}
+
+/// Between two samples of a sweep that a model jumps.
+std::vector<std::pair<double, double>> jumps(const Json& steps, const LoadAxis& axis) {
+  std::vector<std::pair<double, double>> ranges;
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    const auto& models = steps[i].at("mechanics").items();
+    if (std::any_of(models.begin(), models.end(),
+                    [](const auto& model) { return model.value().contains("jump"); }))
+      ranges.emplace_back(axis.values[i - 1], axis.values[i]);
+  }
+  return ranges;
+}
+
 LoadAxis load_axis(const Json& steps) {
+  if (is_sweep(steps)) return way_axis(steps);
   LoadAxis axis;
   ShownUnit unit;
   for (const Json& step : steps) {
@@ -162,6 +190,44 @@ Drawing shapes(const Json& summary, const fs::path& folder) {
           {480, 560}};
 }
 
+/// Where the cilium touches the surface of a sweep, and the contact forces.
+std::vector<Drawing> contact_drawings(const Json& summary) {
+  const Json& steps = summary.at("steps");
+  if (!is_sweep(steps)) return {};
+  const LoadAxis axis = load_axis(steps);
+  Curves heights{"Height of the touching point"};
+  Curves forces{"Contact forces"};
+  heights.y_label = "z, mm";
+  forces.y_label = "force, mN";
+  const std::vector<std::string> models = models_of(summary, "mechanics");
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    Curve height{models[m], colour(m), 1, 0, {}};
+    Curve normal{models[m] + ", normal", colour(m), 1, 0, {}};
+    Curve friction{models[m] + ", friction", colour(m), 2, 0, {}};
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const Json& contact =
+          at_or_null(at_or_null(steps[i].at("mechanics"), models[m].c_str()), "contact");
+      if (contact.is_null()) continue;
+      if (const Json& point = contact.at("point"); !point.is_null())
+        height.points.emplace_back(axis.values[i], coordinate(point.at(2), 1e-3));
+      normal.points.emplace_back(axis.values[i], coordinate(contact.at("normal_force"), 1e-3));
+      friction.points.emplace_back(axis.values[i], coordinate(contact.at("friction_force"), 1e-3));
+    }
+    heights.curves.push_back(std::move(height));
+    forces.curves.insert(forces.curves.end(), {std::move(normal), std::move(friction)});
+  }
+  std::vector<Drawing> drawings;
+  for (Curves* drawing : {&heights, &forces}) {
+    drawing->x_label = axis.label;
+    drawing->shaded = jumps(steps, axis);
+    drawings.push_back({drawing->title,
+                        "What the surface does to the cilium. Shaded: between two samples a model "
+                        "has jumped.",
+                        script(*drawing), panel_size(*drawing)});
+  }
+  return drawings;
+}
+
 /// B or ΔB at the first sensor over the load: a drawing for each component.
 std::vector<Drawing> field_drawings(const Json& summary, const char* quantity) {
   const bool change = std::string_view(quantity) == "dB";
@@ -178,6 +244,7 @@ std::vector<Drawing> field_drawings(const Json& summary, const char* quantity) {
     Curves drawing;
     drawing.title = name;
     drawing.x_label = axis.label;
+    drawing.shaded = jumps(steps, axis);
     drawing.y_label = fmt::format("{}_{}, {}", symbol, axes[c], change ? "µT" : "mT");
     for (const std::string& pair : pairs) {
       const std::string bends = pair.substr(0, pair.find('/'));
@@ -187,7 +254,9 @@ std::vector<Drawing> field_drawings(const Json& summary, const char* quantity) {
           static_cast<int>(std::find(kinds.begin(), kinds.end(), field) - kinds.begin());
       const auto model = static_cast<std::size_t>(
           std::find(mechanics.begin(), mechanics.end(), bends) - mechanics.begin());
-      Curve curve{pair, colour(model), field == "readings" ? 0 : kind + 1, 4 + kind, {}};
+      const bool dense = is_sweep(steps);
+      Curve curve{
+          pair, colour(model), field == "readings" ? 0 : kind + 1, dense ? 0 : 4 + kind, {}};
       for (std::size_t step = 0; step < steps.size(); ++step) {
         const Json& of_pair = at_or_null(steps[step].at("fields"), pair.c_str());
         const Json& rows = of_pair.is_null() ? of_pair : of_pair.at(quantity);
@@ -204,21 +273,26 @@ std::vector<Drawing> field_drawings(const Json& summary, const char* quantity) {
   return drawings;
 }
 
+/// The steps that a table lists: of a sweep, which has hundreds, some.
+std::vector<std::size_t> listed_steps(const Json& steps) {
+  constexpr std::size_t most_samples = 101;
+  return output::evenly(steps.size(), is_sweep(steps) ? most_samples : steps.size());
+}
+
 Table mechanics_table(const Json& summary) {
   Table table{"Shapes: what each mechanics model found",
               {"step, model", "status", "tip x, mm", "y", "z", "±, µm", "angle, deg", "force, mN",
                "unknowns", "iterations", "time, s"},
               {}};
-  std::size_t step = 0;
-  for (const Json& of_step : summary.at("steps")) {
-    ++step;
-    for (const auto& [name, m] : of_step.at("mechanics").items()) {
+  const Json& steps = summary.at("steps");
+  for (const std::size_t step : listed_steps(steps)) {
+    for (const auto& [name, m] : steps[step].at("mechanics").items()) {
       const Json& tip = m.at("tip");
       const auto tip_at = [&](std::size_t i) {
         return tip.is_null() ? unknown : number(tip.at(i), 1e-3);
       };
       const std::string status = m.at("status").get<std::string>();
-      table.rows.push_back({fmt::format("{}, {}", step, name),
+      table.rows.push_back({fmt::format("{}, {}", step + 1, name),
                             {status, status == "failed" ? "word bad" : "word"},
                             tip_at(0),
                             tip_at(1),
@@ -239,12 +313,11 @@ Table field_table(const Json& summary) {
               {"step, sensor, pair", "Bx, mT", "By", "Bz", "ΔBx, µT", "ΔBy", "ΔBz"},
               {}};
   const std::size_t sensors = summary.at("sensors").size();
-  std::size_t step = 0;
-  for (const Json& of_step : summary.at("steps")) {
-    ++step;
+  const Json& steps = summary.at("steps");
+  for (const std::size_t step : listed_steps(steps)) {
     for (std::size_t s = 0; s < sensors; ++s)
-      for (const auto& [name, f] : of_step.at("fields").items()) {
-        std::vector<Cell> row{fmt::format("{}, {}, {}", step, s, name)};
+      for (const auto& [name, f] : steps[step].at("fields").items()) {
+        std::vector<Cell> row{fmt::format("{}, {}, {}", step + 1, s, name)};
         for (const auto& [key, unit] : {std::pair("B", 1e-3), std::pair("dB", 1e-6)})
           for (std::size_t c = 0; c < 3; ++c) {
             const Json& rows = f.at(key);
@@ -303,10 +376,12 @@ std::string sensors_text(const Json& sensors) {
 
 std::string what_was_run(const Json& summary, const fs::path& folder) {
   std::vector<std::string> loads;
-  for (const Json& step : summary.at("steps")) loads.push_back(load_text(step.at("load")));
+  const Json& steps = summary.at("steps");
+  for (const std::size_t step : listed_steps(steps))
+    loads.push_back(load_text(steps[step].at("load")));
   std::string text = paragraph(fmt::format(
-      "{} load step{}; bending by {}; field by {}; sensor{} at {}.", loads.size(),
-      loads.size() == 1 ? "" : "s", in_words(models_of(summary, "mechanics")),
+      "{} load step{}; bending by {}; field by {}; sensor{} at {}.", steps.size(),
+      steps.size() == 1 ? "" : "s", in_words(models_of(summary, "mechanics")),
       in_words(models_of(summary, "fields")), summary.at("sensors").size() == 1 ? "" : "s",
       summary.at("sensors").empty() ? "none" : sensors_text(summary["sensors"])));
   text += details("The loads", list(loads));
@@ -324,6 +399,7 @@ std::string case_content(const Json& summary, const fs::path& folder, Figures& f
   const std::vector<std::string> said = remarks(summary);
   if (!said.empty()) text += heading(3, "Remarks") + list(said);
   text += heading(3, "Shapes") + figures.row({shapes(summary, folder)}) +
+          figures.row(contact_drawings(summary)) +
           details("The shapes' numbers", html(mechanics_table(summary)));
   if (!models_of(summary, "fields").empty())
     text += heading(3, "Field at the sensor") + figures.row(field_drawings(summary, "dB")) +

@@ -84,6 +84,11 @@ std::string script(const Curves& drawing) {
                         (*drawing.window)[1], (*drawing.window)[2], (*drawing.window)[3]);
   text += drawing.equal_axes ? "set size ratio -1\n" : "set autoscale xfix\n";
   if (drawing.logarithmic_x) text += logarithmic_axis(drawing);
+  for (const auto& [from, to] : drawing.shaded)
+    text += fmt::format(
+        "set object rectangle from {},graph 0 to {},graph 1 fc rgb '#f2cfcf' fs solid noborder "
+        "behind\n",
+        from, to);
   for (const Label& label : drawing.labels)
     text += fmt::format("set label {} at {},{} offset 0.4,0.4 font ',11' front\n",
                         plot::quoted(label.text), label.x, label.y);

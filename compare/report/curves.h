@@ -36,6 +36,7 @@ struct Curves {
   std::optional<std::array<double, 4>> window;  ///< x from, to, y from, to; else what fits
   std::vector<Curve> curves;
   std::vector<Label> labels;
+  std::vector<std::pair<double, double>> shaded;  ///< ranges of x
 };
 
 /// The size of a panel, with room for its legend: its letters can still be read on a phone.
