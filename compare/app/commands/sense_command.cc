@@ -10,7 +10,9 @@
 #include "compare/input/units.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
+#include "compare/output/sweep.h"
 #include "compare/sensing/bench.h"
+#include "compare/sensing/profile.h"
 #include "compare/sensing/sensing.h"
 #include "problem/error.h"
 
@@ -28,6 +30,7 @@ READINGS.csv has a header with units and a row for each reading:
 or dBx, dBy, dBz, what the load has changed. Without READINGS, CASE is a simulated test bench,
 NAME.sense.toml: errors of speed and direction, and which error of the sensor makes them.
 
+Of a case with the load `sweep`: the levels of the surface, in the order of the rows.
 The load found is the least-squares solution with the chosen pair of models, its interval that of
 the noise. `nothing`: the interval holds zero; `misfit`: no load explains the reading; `beyond
 range`: see --largest (docs/guide/sensing.md).)";
@@ -94,32 +97,69 @@ ExitCode simulate_bench(const Options& options, const std::string& words) {
   return ExitCode::pass;
 }
 
-/// The load and its direction, with confidence intervals, from each reading of the case's sensors.
-/// Returns `solver` if the least squares fails at a reading, `undecided` if no reading gives a
-/// load.
-ExitCode sense_readings(const Options& options, const std::string& words) {
-  const input::Case problem = read_cases({options.file}).front();
-  refuse_sweep(options.file, problem, "sensing");
-  if (problem.sensors.empty()) throw InputError(options.file.string() + ": the case has no sensor");
-  sensing::Sensing sensing;
-  sensing.case_name = problem.name;
-  sensing.models = sensing::parse_pair(options.models);
+double noise_of(const Options& options) {
   const double noise = input::parse_quantity(options.noise, quantity::flux_density);
   constexpr double least_noise = 1e-15;  // T, less than any magnetometer's
   if (!(noise >= least_noise && noise <= 1))
     throw InputError("--noise: the noise of a reading lies between 1 fT and 1 T, not `" +
                      options.noise + '`');
-  sensing.noise = Vector3::Constant(noise);
-  sensing.unit = magnitude_unit(problem.load_path.front());
-  sensing.largest = largest_load(problem, options);
-  sensing.flow = sensing::flow_law(problem);
+  return noise;
+}
+
+/// The readings of a file, after a check of the outputs.
+sensing::SensorReadings readings_of(const Options& options, const input::Case& problem) {
   std::vector<std::filesystem::path> inputs = input_files(options.file, problem);
   inputs.push_back(options.readings);
   if (options.background) inputs.push_back(*options.background);
   output::check_outputs({options.json, options.csv}, inputs);
+  return sensing::read_sensor_readings(options.readings, options.background,
+                                       problem.sensors.size());
+}
+
+/// The surface's levels from the readings of a sweep. Returns `undecided` if there is none.
+ExitCode sense_surface(const input::Case& problem, const Options& options,
+                       const std::string& words) {
+  const sensing::SensorReadings read = readings_of(options, problem);
+  if (!read.measured_offset)
+    throw InputError(options.readings.string() +
+                     ": the levels of a surface need dBx, dBy, dBz, or rows `unloaded`");
+  double largest = 0;
+  for (const Load& load : problem.load_path) largest = std::max(largest, 4 * magnitude(load));
+  if (options.largest) largest = input::parse_quantity(*options.largest, quantity::length);
+  if (!(largest > 0 && largest < problem.cilium.length()))
+    throw InputError(
+        "--largest: the largest interference lies between 0 and the length of the "
+        "cilium");
+  const models::ModelPair pair = sensing::parse_pair(options.models);
+  ProgressLine line;
+  const sensing::LevelCurve curve(problem, pair, largest, line.callback());
+  sensing::SensedProfile profile = sensing::sense_profile(curve, read, noise_of(options));
+  profile.case_name = problem.name;
+  profile.models = pair;
+  line.clear();
+  print(sensing::profile_text(profile));
+  if (options.json)
+    output::write_file(*options.json, sensing::profile_json(profile, output::provenance(words)));
+  if (options.csv) output::write_file(*options.csv, sensing::profile_csv(profile));
+  return profile.levels.empty() ? ExitCode::undecided : ExitCode::pass;
+}
+
+/// The load and its direction, with confidence intervals, from each reading of the case's sensors.
+/// Returns `solver` if the least squares fails at a reading, `undecided` if no reading gives a
+/// load.
+ExitCode sense_readings(const Options& options, const std::string& words) {
+  const input::Case problem = read_cases({options.file}).front();
+  if (problem.sensors.empty()) throw InputError(options.file.string() + ": the case has no sensor");
+  if (output::is_sweep(problem)) return sense_surface(problem, options, words);
+  sensing::Sensing sensing;
+  sensing.case_name = problem.name;
+  sensing.models = sensing::parse_pair(options.models);
+  sensing.noise = Vector3::Constant(noise_of(options));
+  sensing.unit = magnitude_unit(problem.load_path.front());
+  sensing.largest = largest_load(problem, options);
+  sensing.flow = sensing::flow_law(problem);
   // Before the models run, which may take a minute.
-  const sensing::SensorReadings read =
-      sensing::read_sensor_readings(options.readings, options.background, problem.sensors.size());
+  const sensing::SensorReadings read = readings_of(options, problem);
   ProgressLine line;
   const sensing::Shapes shapes =
       sensing::shapes_up_to(problem, sensing.models.mechanics, sensing.largest, line.callback());

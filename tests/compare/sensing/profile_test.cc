@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Levels of a surface read back from simulated readings of a sweep over it.
+#include "compare/sensing/profile.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "compare/models/registry.h"
+#include "compare/models/run.h"
+
+namespace ciliaval::compare::sensing {
+namespace {
+
+using Status = HeightReading::Status;
+
+constexpr double noise = 1e-6;  ///< T
+const models::ModelPair pair{"elastica", "volume"};
+
+input::Case sweep() {
+  return input::read_case(std::string(R"([case]
+name = "steps"
+[cilium]
+diameter = "3 mm"
+[[cilium.segment]]
+name = "base"
+length = "3 mm"
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.49
+[[cilium.segment]]
+name = "magnet"
+length = "17 mm"
+young_modulus = "3 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+[surface]
+profile = "trapezoid"
+height = "1 mm"
+top = "12 mm"
+bottom = "12 mm"
+flank = "1 mm"
+radius = "0.5 mm"
+friction = 0.3
+[load]
+type = "sweep"
+interference = "1 mm"
+travel = "52 mm"
+samples = 209
+azimuth = "20 deg"
+[sensor]
+position = [["-0.1 mm", "0.2 mm", "-1.55 mm"], ["2 mm", "0 mm", "-1.55 mm"]]
+[models]
+mechanics = ["elastica"]
+fields = ["volume"]
+)"),
+                          "steps.toml", models::known());
+}
+
+const models::CaseResult& followed() {
+  static const models::CaseResult result =
+      models::run(sweep(), models::mechanics_models(), models::field_models());
+  return result;
+}
+
+const LevelCurve& curve() {
+  static const LevelCurve value(sweep(), pair, 4e-3);
+  return value;
+}
+
+SensorReadings readings(std::uint32_t seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> normal(0, noise);
+  SensorReadings result;
+  result.measured_offset = true;
+  for (const auto& step : followed().fields.front().steps) {
+    Sample sample{"", Eigen::VectorXd(6)};
+    for (std::size_t s = 0; s < 2; ++s)
+      sample.change.segment<3>(static_cast<Eigen::Index>(3 * s)) =
+          *step->dB[s] + Vector3(normal(generator), normal(generator), normal(generator));
+    result.samples.push_back(std::move(sample));
+  }
+  return result;
+}
+
+TEST(SensedProfile, StepsOfASurfaceAreFoundWithinTheirIntervals) {
+  int levels = 0;
+  int inside = 0;
+  std::vector<double> errors;
+  for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+    const SensedProfile profile = sense_profile(curve(), readings(seed), noise);
+    // The valley, two plateaus and two valleys; the first plateau is left at once.
+    ASSERT_GE(profile.levels.size(), 4U) << seed;
+    for (const Level& level : profile.levels) {
+      const double truth = level.interference > 1.5e-3 ? 2e-3 : 1e-3;
+      errors.push_back(std::abs(level.interference - truth));
+      ++levels;
+      inside += errors.back() <= level.interval ? 1 : 0;
+    }
+  }
+  std::ranges::sort(errors);
+  std::cout << "levels inside their intervals: " << inside << " of " << levels
+            << "; errors, um, median " << 1e6 * errors[errors.size() / 2] << ", largest "
+            << 1e6 * errors.back() << '\n';
+  EXPECT_GE(inside, 0.85 * levels);
+  EXPECT_LT(errors.back(), 20e-6);  // of steps of 1 mm
+}
+
+TEST(SensedProfile, SaysWhereNoLevelSurfaceGivesTheReading) {
+  SensorReadings read = readings(1);
+  read.samples.resize(3);
+  read.samples[0].change[1] += 20e-6;
+  read.samples[1].change *= 3;
+  const SensedProfile profile = sense_profile(curve(), read, noise);
+  EXPECT_EQ(profile.readings[0].status, Status::off_curve);
+  EXPECT_TRUE(profile.readings[1].status == Status::beyond ||
+              profile.readings[1].status == Status::off_curve);
+  EXPECT_EQ(profile.readings[2].status, Status::level);
+  EXPECT_TRUE(profile.levels.empty());
+}
+
+TEST(SensedProfile, TextNamesTheSteps) {
+  SensedProfile profile = sense_profile(curve(), readings(3), noise);
+  profile.case_name = "steps";
+  profile.models = pair;
+  const std::string text = profile_text(profile);
+  EXPECT_THAT(text, testing::HasSubstr("steps: levels of the surface by elastica/volume"));
+  EXPECT_THAT(text, testing::HasSubstr("of 209 readings belong to levels"));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare::sensing
