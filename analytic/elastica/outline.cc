@@ -159,7 +159,7 @@ OutlinePoint Outline::nearest(const SurfacePlace& place, const TipContact& conta
   const int mantle_samples = static_cast<int>(std::ceil(1 / spacing_));
   for (const double side : {-1.0, 1.0}) {
     take(at(place, shape, TouchPoint::rim, side, 0));
-    scan(TouchPoint::mantle, side, 1 - 1e-9, 0, mantle_samples);
+    scan(TouchPoint::mantle, side, 0, 1 - 1e-9, mantle_samples);
   }
   scan(TouchPoint::face, 1, -problem_.rim * (1 - 1e-9), problem_.rim * (1 - 1e-9), face_samples_);
   return best;
