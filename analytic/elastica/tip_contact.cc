@@ -18,7 +18,6 @@ namespace {
 
 constexpr int most_iterations = 40;
 constexpr double largest_change = 0.5;  ///< of an unknown in an iteration, over its size + 1
-constexpr double slope_difference = 1e-6;  ///< of the surface's curvature, in L
 constexpr double lowest_touch = 0.02;      ///< S of a point of the mantle
 
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
@@ -233,7 +232,7 @@ class Assembly {
     const double on_surface = x.value - place_.travel;
     const ProfilePoint profile = surface_.extended(on_surface * problem_.length);
     const double beta = std::atan(profile.slope);
-    const double bend = curvature_at(on_surface) * std::pow(std::cos(beta), 2);  // dβ/dξ
+    const double bend = profile.curvature * problem_.length * std::pow(std::cos(beta), 2);  // dβ/dξ
     touch.x = x.value;
     touch.z = z.value;
     touch.inclination = beta;
@@ -246,13 +245,6 @@ class Assembly {
       put(row_++, {theta.value + turn - beta, theta.by - bend * x.by, {bend, 0}});
     }
     add_friction(i, x, bend);
-  }
-
-  double curvature_at(double on_surface) const {
-    const double h = slope_difference * problem_.length;
-    const double at = on_surface * problem_.length;
-    return (surface_.extended(at + h).slope - surface_.extended(at - h).slope) /
-           (2 * slope_difference);
   }
 
   void add_friction(std::size_t i, const Row& x, double bend) {
