@@ -20,6 +20,7 @@ constexpr double longest_step = 2e-3;    ///< of the surface, in L
 constexpr double shortest_step = 1e-8;   ///< shorter is a jump
 constexpr double feature_steps = 10;     ///< steps on the smallest feature of a surface, at least
 constexpr double work_tolerance = 2e-8;  ///< of the correction of a step's work, over the energy
+constexpr double shortest_jump = 1e-6;   ///< a shorter slip in the shortest step is none
 constexpr double longest_search = 1e-3;  ///< step of ξ in a jump, in L
 constexpr double shortest_search = 1e-7;
 constexpr double farthest_jump = 4;        ///< in L
@@ -250,9 +251,10 @@ class Follower {
     const double first = stiffness(start, direction);
     const double last = stiffness(*contact, direction);
     const bool is_straight = std::max(contact->energy, now_.contact.energy) < straight_energy;
-    const bool is_changed = last_try && !has_same_points(*contact);
-    if (!is_straight && !(last > 0 && (is_changed || (first > 0 && last > first / 4 && last < 4 * first))))
-      return false;
+    const bool is_similar = first > 0 && last > first / 4 && last < 4 * first;
+    // Where the surface's curvature jumps, or the touching points change, so does the stiffness.
+    const bool is_close = last_try && std::abs(contact->touches.front().slip) < shortest_jump;
+    if (!is_straight && !(last > 0 && (is_similar || is_close))) return false;
     if (surface_.friction > 0 && contact->touches.front().slip * direction > 1e-12) return false;
     if (!last_try && !is_smooth(*contact, place)) return false;
     accept(*contact, place, TipState::slip);

@@ -17,6 +17,7 @@ using namespace point_forces;
 namespace {
 
 constexpr int most_iterations = 40;
+constexpr int swinging_iterations = 8;
 constexpr double largest_change = 0.5;  ///< of an unknown in an iteration, over its size + 1
 constexpr double lowest_touch = 0.02;      ///< S of a point of the mantle
 
@@ -440,7 +441,9 @@ std::optional<TipContact> solve_contact(const TipProblem& problem, const Surface
       }
       return contact;
     }
-    u += change * std::min(1.0, largest_change / relative);
+    // To and fro about a point where the surface's curvature jumps.
+    const bool is_swinging = iteration > swinging_iterations && relative > last_change / 4;
+    u += change * std::min(is_swinging ? 0.5 : 1.0, largest_change / relative);
     for (std::size_t i = 0; i < contact.touches.size(); ++i)
       if (contact.touches[i].where == TouchPoint::mantle &&
           !(u[layout.columns[i] + 2] > lowest_touch))
