@@ -328,6 +328,11 @@ class Follower {
       if (!next || next->normal_force <= 0) {
         step /= 4;
         if (step > shortest_search / 4) continue;
+        if (const auto snapped = next ? std::nullopt : snap(place, contact, -direction)) {
+          contact = *snapped;
+          step = longest_search_;
+          continue;
+        }
         const Flight flight = fly_back(place, contact);
         if (!flight.met) return TipContact{};
         if (!flight.contact || has_landed) return std::nullopt;
@@ -347,6 +352,18 @@ class Follower {
       step = std::min(2 * step, longest_search_);
     }
     return std::nullopt;
+  }
+
+  /// What a rod comes to that snaps through while its tip is held; less its energy.
+  std::optional<TipContact> snap(const SurfacePlace& place, const TipContact& from,
+                                 double direction) const {
+    const auto contact =
+        beyond_fold(problem_, surface_, place, from, direction, direction * shortest_search);
+    if (!contact || contact->energy > from.energy) return std::nullopt;
+    const auto settled = settle(place, {FrictionLaw::Kind::moved, direction * shortest_search},
+                                *contact, true);
+    if (!settled) return std::nullopt;
+    return anchored(*settled, place);
   }
 
   std::optional<TipContact> held_after(const SurfacePlace& place, const TipContact& from,
@@ -394,6 +411,8 @@ class Follower {
     std::optional<TipContact> end;
     if (stuck && stuck->normal_force > 0) {
       end = walk(place, *stuck, friction);
+    } else if (const auto snapped = stuck ? std::nullopt : snap(now_.place, now_.contact, drag_)) {
+      end = walk(place, *snapped, friction);
     } else {
       const Flight flight = fly_back(place, now_.contact);
       if (!flight.met)

@@ -19,6 +19,14 @@ namespace {
 constexpr int most_iterations = 40;
 constexpr int swinging_iterations = 8;
 constexpr double largest_change = 0.5;  ///< of an unknown in an iteration, over its size + 1
+// Of the path of equilibria, in lengths over L with forces and moments over their scale.
+constexpr double force_scale = 30;
+constexpr double first_path_step = 1e-4;
+constexpr double longest_path_step = 0.03;
+constexpr double shortest_path_step = 1e-9;
+constexpr double path_tolerance = 1e-10;
+constexpr int most_path_steps = 3000;
+constexpr int most_path_iterations = 8;
 constexpr double lowest_touch = 0.02;      ///< S of a point of the mantle
 
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
@@ -406,6 +414,99 @@ void differentiate(const System& system, TipContact& contact) {
   }
 }
 
+/// A point on a path of equilibria: the unknowns (over their scales) and the slip.
+class Path {
+ public:
+  Path(const TipProblem& problem, const Surface& surface, const SurfacePlace& place,
+       const TipContact& start)
+      : contact_(start),
+        layout_(contact_.touches),
+        assembly_(problem, surface, place, law_, layout_, contact_),
+        u_(unknowns_of(contact_, layout_)),
+        scale_(Vector::Constant(layout_.size, force_scale)) {
+    for (std::size_t i = 0; i < contact_.touches.size(); ++i)
+      if (is_tangent(contact_.touches[i])) scale_[layout_.columns[i] + 2] = 1;
+    system_ = assembly_.at(u_);
+    tangent_ = Vector::Zero(layout_.size);
+  }
+
+  void set_direction(double direction) { slip_tangent_ = direction; }
+  double slip() const { return slip_; }
+  const TipContact& contact() const { return contact_; }
+  double determinant() const { return system_.jacobian.partialPivLu().determinant(); }
+
+  /// A step along the path; false if it does not converge.
+  bool advance(double length) {
+    if (!turn()) return false;
+    const Vector u = u_;
+    const double slip = slip_;
+    u_ += length * tangent_.cwiseProduct(scale_);
+    slip_ += length * slip_tangent_;
+    for (int iteration = 0; iteration < most_path_iterations; ++iteration) {
+      evaluate();
+      Vector change(layout_.size);
+      double slip_change = 0;
+      if (!solve(-system_.residuals, 0, change, slip_change)) break;
+      u_ += change.cwiseProduct(scale_);
+      slip_ += slip_change;
+      if (change.cwiseAbs().maxCoeff() + std::abs(slip_change) < path_tolerance) {
+        evaluate();
+        return true;
+      }
+    }
+    u_ = u;
+    slip_ = slip;
+    evaluate();
+    return false;
+  }
+
+ private:
+  void evaluate() {
+    law_ = {FrictionLaw::Kind::moved, slip_};
+    system_ = assembly_.at(u_);
+  }
+
+  /// The Jacobian's rows with the slip's column, and the last tangent as the last row.
+  bool solve(const Vector& residuals, double along, Vector& change, double& slip_change) const {
+    const Eigen::Index size = layout_.size;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns + 1, most_unknowns + 1>
+        bordered = decltype(bordered)::Zero(size + 1, size + 1);
+    bordered.topLeftCorner(size, size) = system_.jacobian * scale_.asDiagonal();
+    bordered(system_.law, size) = -1;
+    bordered.bottomLeftCorner(1, size) = tangent_.transpose();
+    bordered(size, size) = slip_tangent_;
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns + 1, 1> right(size + 1);
+    right << residuals, along;
+    const auto solution = bordered.partialPivLu().solve(right).eval();
+    if (!solution.allFinite()) return false;
+    change = solution.head(size);
+    slip_change = solution[size];
+    return true;
+  }
+
+  /// The tangent here, turned the way of the last one.
+  bool turn() {
+    Vector tangent(layout_.size);
+    double slip_tangent = 0;
+    if (!solve(Vector::Zero(layout_.size), 1, tangent, slip_tangent)) return false;
+    const double norm = std::hypot(tangent.norm(), slip_tangent);
+    tangent_ = tangent / norm;
+    slip_tangent_ = slip_tangent / norm;
+    return true;
+  }
+
+  TipContact contact_;
+  Layout layout_;
+  FrictionLaw law_{FrictionLaw::Kind::moved, 0};
+  Assembly assembly_;
+  Vector u_;
+  Vector scale_;
+  System system_;
+  double slip_ = 0;
+  Vector tangent_;
+  double slip_tangent_ = 1;
+};
+
 }  // namespace
 
 TipProblem tip_problem(const Cilium& cilium, CiliumEnd end) {
@@ -476,6 +577,31 @@ std::optional<TipContact> sticking(const TipProblem& problem, const Surface& sur
                                    const SurfacePlace& place, double held,
                                    const TipContact& guess) {
   return solve_contact(problem, surface, place, {FrictionLaw::Kind::place, held}, guess);
+}
+
+std::optional<TipContact> beyond_fold(const TipProblem& problem, const Surface& surface,
+                                      const SurfacePlace& place, const TipContact& contact,
+                                      double direction, double target) {
+  Path path(problem, surface, place, contact);
+  path.set_direction(direction);
+  const double first = path.determinant();
+  bool has_turned = false;
+  double step = first_path_step;
+  for (int i = 0; i < most_path_steps; ++i) {
+    const double before = path.slip();
+    if (!path.advance(step)) {
+      step /= 4;
+      if (step < shortest_path_step) return std::nullopt;
+      continue;
+    }
+    step = std::min(1.5 * step, longest_path_step);
+    const bool is_stable = path.determinant() * first > 0;
+    has_turned = has_turned || !is_stable;
+    if (has_turned && is_stable && (before - target) * (path.slip() - target) <= 0)
+      return solve_contact(problem, surface, place, {FrictionLaw::Kind::moved, target},
+                           path.contact());
+  }
+  return std::nullopt;
 }
 
 TipContact anchored(TipContact contact, const SurfacePlace& place) {

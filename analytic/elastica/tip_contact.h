@@ -145,7 +145,17 @@ std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
 std::optional<TipContact> sticking(const TipProblem& problem, const surroundings::Surface& surface,
                                    const SurfacePlace& place, double held, const TipContact& guess);
 
-/// The same, from which slips are counted: the state as `before` of each touching point.
+/// Where a held tip's rod snaps through: follows the equilibria with the touching points of an
+/// anchored contact by their arc length (Riks; Crisfield, Computers & Structures 13, 1981) from
+/// its slip of 0 in the direction (of the first point's slip) around the folds, until they come
+/// back to the slip `target` on a branch whose Jacobian has the first one's sign. Empty if there is
+/// none. N < 0 on the way, and whatever else would touch, are left out of account.
+std::optional<TipContact> beyond_fold(const TipProblem& problem,
+                                      const surroundings::Surface& surface,
+                                      const SurfacePlace& place, const TipContact& contact,
+                                      double direction, double target);
+
+/// The contact, from which slips are counted: its state as `before` of each touching point.
 TipContact anchored(TipContact contact, const SurfacePlace& place);
 
 /// A guess for the equilibrium when the surface has gone on, by the derivatives.
