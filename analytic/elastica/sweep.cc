@@ -52,30 +52,9 @@ class Follower {
                        std::to_string(1e6 * surface.finest_length()) + " um long");
   }
 
-  /// From far ahead, where the cilium is bent aside, the tip comes back until the surface, which
-  /// slides, holds it.
   SweepSample press(const SurfacePlace& place) {
     now_.place = place;
-    TipContact aside;
-    constexpr int pulls = 40;
-    for (int i = 0; i <= pulls; ++i) {
-      const double height = std::lerp(1 - 1e-4, brush_height, static_cast<double>(i) / pulls);
-      const auto tip = pulled_aside(problem_, height, i == 0 ? pulled_guess(1 - height) : aside);
-      if (!tip) throw SolverError("elastica: the tip cannot be bent aside");
-      aside = *tip;
-    }
-    if (outline_.nearest(place, aside).gap < 0)
-      throw InputError(
-          "the surface is pressed on too far: a cilium bent to 0.6 of its length must "
-          "have room under it");
-    const Flight flight = fly_back(place, aside);
-    if (!flight.met) return now_;
-    double friction = 0;
-    const auto end =
-        flight.contact ? walk(place, *flight.contact, friction) : std::optional<TipContact>{};
-    if (!end || !(end->normal_force > 0))
-      throw SolverError("elastica: the tip finds no hold under the surface at the beginning");
-    set(slipping(*end, place), place, TipState::slip);
+    if (!from_afar(place)) throw SolverError("elastica: the tip finds no hold under the surface at the beginning");
     return now_;
   }
 
@@ -111,6 +90,35 @@ class Follower {
   }
 
  private:
+  /// From far ahead, where the cilium is bent aside, the tip comes back until the surface, which
+  /// slides, holds it. False if that is not found.
+  bool from_afar(const SurfacePlace& place) {
+    TipContact aside;
+    constexpr int pulls = 40;
+    for (int i = 0; i <= pulls; ++i) {
+      const double height = std::lerp(1 - 1e-4, brush_height, static_cast<double>(i) / pulls);
+      const auto tip = pulled_aside(problem_, height, i == 0 ? pulled_guess(1 - height) : aside);
+      if (!tip) throw SolverError("elastica: the tip cannot be bent aside");
+      aside = *tip;
+    }
+    if (outline_.nearest(place, aside).gap < 0)
+      throw InputError(
+          "the surface is pressed on too far: a cilium bent to 0.6 of its length must "
+          "have room under it");
+    const Flight flight = fly_back(place, aside);
+    if (!flight.met) {
+      set({}, place, TipState::open);
+      return true;
+    }
+    double friction = 0;
+    const auto end =
+        flight.contact ? walk(place, *flight.contact, friction) : std::optional<TipContact>{};
+    if (!end) return false;
+    const bool holds = end->normal_force > 0;
+    set(slipping(*end, place), place, holds ? TipState::slip : TipState::open);
+    return true;
+  }
+
   bool advance(const SurfacePlace& place, double at, bool last_try) {
     if (now_.state == TipState::open) return advance_open(place, last_try);
     // A tip that slides goes on sliding, if it does.
@@ -176,9 +184,9 @@ class Follower {
   }
 
   /// Of a tip that a horizontal force has pulled down by `depth`, by the slender cantilever.
-  static TipContact pulled_guess(double depth) {
+  TipContact pulled_guess(double depth) const {
     TipContact guess = rest();
-    guess.x = guess.contact_x = std::sqrt(depth / 0.6);
+    guess.x = guess.contact_x = drag_ * std::sqrt(depth / 0.6);
     guess.force_x = guess.base_moment = 3 * guess.x;
     return guess;
   }
@@ -420,11 +428,24 @@ class Follower {
       else if (flight.contact)
         end = walk(place, *flight.contact, friction);
     }
-    if (!end) return false;
+    if (!end) return begin_again(place, at);
     const double lost = now_.contact.energy - end->energy - friction;
     if (std::abs(lost) > vanishing_energy) now_.jumps.push_back({at, lost});
     now_.friction_work += friction;
     set(slipping(*end, place), place, end->normal_force > 0 ? TipState::slip : TipState::open);
+    return true;
+  }
+
+  /// Where no way to the next equilibrium is found: that which a long sweep in the present direction
+  /// leaves.
+  bool begin_again(const SurfacePlace& place, double at) {
+    const double energy = now_.contact.energy;
+    const SweepSample before = now_;
+    if (!from_afar(place) || now_.contact.energy > energy) {
+      now_ = before;
+      return false;
+    }
+    now_.jumps.push_back({at, energy - now_.contact.energy, false});
     return true;
   }
 
