@@ -33,6 +33,9 @@ constexpr double vanishing_energy = 1e-9;  ///< less is no jump
 /// of a rod that is pushed aside.
 constexpr double straight_energy = 1e-6;
 constexpr double brush_height = 0.6;  ///< of the tip, bent aside, before it is pressed on, in L
+constexpr double first_pull = 0.02;   ///< by which it is bent aside, in L
+constexpr double pull_step = 0.02;
+constexpr double leaving_depth = 1e-10;  ///< of a point that has just lost the surface
 
 double sign_of(double value) {
   return value < 0 ? -1.0 : 1.0;
@@ -93,11 +96,9 @@ class Follower {
   /// From far ahead, where the cilium is bent aside, the tip comes back until the surface, which
   /// slides, holds it. False if that is not found.
   bool from_afar(const SurfacePlace& place) {
-    TipContact aside;
-    constexpr int pulls = 40;
-    for (int i = 0; i <= pulls; ++i) {
-      const double height = std::lerp(1 - 1e-4, brush_height, static_cast<double>(i) / pulls);
-      const auto tip = pulled_aside(problem_, height, i == 0 ? pulled_guess(1 - height) : aside);
+    TipContact aside = pulled_guess(first_pull);
+    for (double x = first_pull; aside.z > brush_height; x += pull_step) {
+      const auto tip = pulled_aside(problem_, drag_ * x + aside.touches.front().offset, 0, aside);
       if (!tip) throw SolverError("elastica: the tip cannot be bent aside");
       aside = *tip;
     }
@@ -124,7 +125,7 @@ class Follower {
     // A tip that slides goes on sliding, if it does.
     if (now_.state == TipState::slip && !last_try && advance_sliding(place, now_.contact, false))
       return true;
-    const auto stuck = settle(place, {FrictionLaw::Kind::moved, 0}, now_.contact, last_try);
+    const auto stuck = stick(place, last_try);
     if (stuck && stuck->normal_force > 0 && is_in_cone(*stuck) &&
         (last_try || is_smooth(*stuck, place))) {
       accept(*stuck, place, TipState::stick);
@@ -132,6 +133,29 @@ class Follower {
     }
     if (advance_sliding(place, stuck ? *stuck : now_.contact, last_try)) return true;
     return last_try && jump(place, at, stuck);
+  }
+
+  /// The equilibrium in which the touching points stick. Of two between which the rod bends, one
+  /// may slide: then so that it is beyond the cone of friction if it sticks.
+  std::optional<TipContact> stick(const SurfacePlace& place, bool last_try) const {
+    FrictionLaw law{FrictionLaw::Kind::moved, 0};
+    const std::vector<Touch>& touches = now_.contact.touches;
+    const bool bends_between =
+        touches.size() > 1 && std::ranges::any_of(touches, [](const Touch& touch) {
+          return touch.where == TouchPoint::mantle;
+        });
+    if (bends_between) law.kind = FrictionLaw::Kind::stick;
+    auto contact = settle(place, law, now_.contact, last_try);
+    if (!contact || !bends_between || contact->touches.size() != touches.size()) return contact;
+    const auto beyond = std::ranges::find_if_not(
+        contact->touches, [&](const Touch& touch) { return is_in_cone(touch); });
+    if (beyond == contact->touches.end()) return contact;
+    law.sliding = beyond - contact->touches.begin();
+    law.value = sign_of(beyond->friction_force) * surface_.friction;
+    auto partly = settle(place, law, *contact, last_try);
+    if (!partly || partly->touches.size() != touches.size()) return contact;
+    const Touch& sliding = partly->touches[static_cast<std::size_t>(law.sliding)];
+    return sliding.slip * law.value <= 1e-12 ? partly : contact;
   }
 
   /// The equilibrium with its touching points changed until it is admissible; if they may change.
@@ -159,9 +183,13 @@ class Follower {
     touch.before.offset = touch.offset;
   }
 
+  bool is_in_cone(const Touch& touch) const {
+    return surface_.friction > 0 && std::abs(touch.friction_force) <=
+                                        surface_.friction * touch.normal_force + cone_slack;
+  }
   bool is_in_cone(const TipContact& contact) const {
-    return surface_.friction > 0 && std::abs(contact.friction_force) <=
-                                        surface_.friction * contact.normal_force + cone_slack;
+    return std::ranges::all_of(contact.touches,
+                               [&](const Touch& touch) { return is_in_cone(touch); });
   }
 
   bool advance_open(const SurfacePlace& place, bool last_try) {
@@ -183,11 +211,16 @@ class Follower {
     return straight;
   }
 
-  /// Of a tip that a horizontal force has pulled down by `depth`, by the slender cantilever.
-  TipContact pulled_guess(double depth) const {
+  /// Of a tip, or the corner behind, that a horizontal force has pulled aside: a slender cantilever.
+  TipContact pulled_guess(double deflection) const {
     TipContact guess = rest();
-    guess.x = guess.contact_x = drag_ * std::sqrt(depth / 0.6);
-    guess.force_x = guess.base_moment = 3 * guess.x;
+    guess.force_x = guess.base_moment = 3 * drag_ * deflection;
+    Touch touch;
+    touch.where = problem_.rim > 0 ? TouchPoint::rim : TouchPoint::tip;
+    touch.side = -drag_;
+    touch.offset = touch.side * problem_.rim;
+    touch.force_x = guess.force_x;
+    guess.touches = {touch};
     return guess;
   }
 
@@ -277,37 +310,56 @@ class Follower {
     std::optional<TipContact> contact;  ///< there; empty if it could not be computed
   };
 
-  /// On the way the tip is taken to be held back by a horizontal force, the drag of the air, say.
+  /// On the way back to the straight cilium the point that touched last is taken to be held by a
+  /// force of the direction with which it lost the surface.
   Flight fly_back(const SurfacePlace& place, const TipContact& from) const {
     TipContact before = from;
+    Touch& held = before.touches.front();
+    if (held.where != TouchPoint::tip) {
+      held.where = TouchPoint::rim;
+      if (std::abs(held.offset) < problem_.rim) held.side = drag_ > 0 ? -1 : 1;
+      held.offset = held.side * problem_.rim;
+      held.S = 1;
+    }
+    held.force_x = from.force_x;
+    held.force_z = from.force_z;
+    before.touches.resize(1);
+    const double inclination = std::atan2(-from.force_z, from.force_x);
+    const double rest_x = held.offset;
+    const double start_x = from.x + held.offset * std::cos(from.theta);
+    const double way = rest_x - start_x;
     bool has_left = false;
     double last_gap = -std::numeric_limits<double>::infinity();
     double step = search_of(1e-5);
-    for (double height = from.z; height < 1 - 1e-6; step = search_of(1.5 * step)) {
-      height = std::min(height + step, 1 - 1e-6);
-      const auto tip = pulled_aside(problem_, height, before);
+    double flown = 0;
+    while (flown < std::abs(way) - 1e-4) {
+      const double next_flown = std::min(flown + step, std::abs(way) - 1e-4);
+      const auto tip = pulled_aside(problem_, start_x + std::copysign(next_flown, way), inclination,
+                                    before);
       if (!tip) return {true, {}};
-      // At first the surface is still near: its pull was along it, not horizontal.
+      // At first the surface is still near.
       const double next_gap = outline_.nearest(place, *tip).gap;
-      if (next_gap < 0 && has_left) return {true, landing(place, before, *tip)};
-      if (next_gap < 0 && next_gap <= last_gap) return {true, {}};
+      if (next_gap < 0 && has_left) return {true, landing(place, inclination, before, *tip)};
+      if (next_gap < -leaving_depth && next_gap <= last_gap) return {true, {}};
       has_left = next_gap >= 0;
       last_gap = next_gap;
       before = *tip;
+      flown = next_flown;
+      step = search_of(1.5 * step);
     }
     return {};
   }
 
   /// Where the outline meets the surface, between a place under it and one beyond.
-  std::optional<TipContact> landing(const SurfacePlace& place, const TipContact& under,
-                                    const TipContact& beyond) const {
-    double low = under.z;
-    double high = beyond.z;
+  std::optional<TipContact> landing(const SurfacePlace& place, double inclination,
+                                    const TipContact& under, const TipContact& beyond) const {
+    double low = under.touches.front().x;
+    double high = beyond.touches.front().x;
     TipContact tip = under;
     OutlinePoint touching = outline_.nearest(place, beyond);
-    while (high - low > 1e-12) {
+    while (std::abs(high - low) > 1e-12) {
       const double middle = std::midpoint(low, high);
-      const auto there = pulled_aside(problem_, middle, tip);
+      const auto there = pulled_aside(problem_, middle, inclination, tip);
       if (!there) return std::nullopt;
       tip = *there;
       const OutlinePoint point = outline_.nearest(place, tip);
@@ -315,6 +367,7 @@ class Follower {
       (point.gap < 0 ? high : low) = middle;
     }
     touching.touch.force_x = tip.force_x;
+    touching.touch.force_z = tip.force_z;
     tip.touches = {touching.touch};
     begin_touch(tip.touches.front(), place);
     const FrictionLaw law{FrictionLaw::Kind::place, touching.touch.x - place.travel};
@@ -328,12 +381,15 @@ class Follower {
   std::optional<TipContact> walk(const SurfacePlace& place, const TipContact& from,
                                  double& friction) const {
     TipContact contact = anchored(from, place);
-    bool has_landed = false;
+    bool has_landed = from.normal_force <= 0;
     double step = longest_search_;
     for (double moved = 0; moved < farthest_jump;) {
       const double direction = sign_of(contact.friction_force);
       const auto next = held_after(place, contact, -direction * step, step <= shortest_search);
-      if (!next || next->normal_force <= 0) {
+      // A point that has just landed comes nearer to the surface, not away from it.
+      const bool is_landing = next && has_landed && contact.normal_force <= 0 &&
+                              next->normal_force > contact.normal_force;
+      if (!next || (next->normal_force <= 0 && !is_landing)) {
         step /= 4;
         if (step > shortest_search / 4) continue;
         if (const auto snapped = next ? std::nullopt : snap(place, contact, -direction)) {

@@ -245,6 +245,12 @@ class Assembly {
     touch.x = x.value;
     touch.z = z.value;
     touch.inclination = beta;
+    if (law_.kind == FrictionLaw::Kind::pulled) {
+      put(row_++, {x.value - law_.x, x.by});
+      touch.inclination = law_.value;
+      add_friction(i, x, 0);
+      return;
+    }
     Row gap{place_.height - profile.height / problem_.length - z.value,
             -profile.slope * x.by - z.by, {profile.slope, 1}};
     put(row_++, gap);
@@ -278,11 +284,16 @@ class Assembly {
       add_law(row_++);
       return;
     }
-    const double ratio = u_[layout_.ratio];
+    const bool slides = law_.sliding == static_cast<std::ptrdiff_t>(i);
+    if (law_.kind == FrictionLaw::Kind::stick && !slides) {
+      put(row_++, own.slip);
+      return;
+    }
+    const double ratio = slides ? law_.value : u_[layout_.ratio];
     Row row{touch.friction_force - ratio * touch.normal_force,
             own.friction_force.by - ratio * own.normal_force.by,
             own.friction_force.by_place - ratio * own.normal_force.by_place};
-    row.by[layout_.ratio] -= touch.normal_force;
+    if (!slides) row.by[layout_.ratio] -= touch.normal_force;
     put(row_++, row);
   }
 
@@ -316,6 +327,8 @@ class Assembly {
       row.value = (touch.x - place_.travel - law_.value) / std::cos(touch.inclination);
     } else if (law_.kind == FrictionLaw::Kind::pulled) {
       row = first.normal_force;
+    } else if (law_.kind == FrictionLaw::Kind::stick) {
+      row = layout_.ratio >= 0 ? Row{u_[layout_.ratio], unit(layout_.ratio)} : first.slip;
     } else if (layout_.ratio >= 0) {
       row = {u_[layout_.ratio] - law_.value, unit(layout_.ratio)};
     } else {
@@ -561,16 +574,11 @@ std::optional<TipContact> sliding(const TipProblem& problem, const Surface& surf
                        {FrictionLaw::Kind::slip, direction * surface.friction}, guess);
 }
 
-std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
+std::optional<TipContact> pulled_aside(const TipProblem& problem, double x, double inclination,
                                        const TipContact& guess) {
-  TipProblem point = problem;
-  point.rim = 0;
-  TipContact centre = guess;
-  Touch touch;
-  touch.force_x = guess.force_x;
-  centre.touches = {touch};
-  return solve_contact(point, {FlatProfile{}, 0, 0}, {height, 0},
-                       {FrictionLaw::Kind::pulled, 0}, centre);
+  FrictionLaw law{FrictionLaw::Kind::pulled, inclination};
+  law.x = x;
+  return solve_contact(problem, {FlatProfile{}, 0, 0}, {}, law, guess);
 }
 
 std::optional<TipContact> sticking(const TipProblem& problem, const Surface& surface,

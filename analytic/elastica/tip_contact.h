@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -112,9 +113,12 @@ struct FrictionLaw {
     slip,   ///< T = value · N at each touching point
     place,  ///< the first touching point stays at ξ = value
     moved,  ///< the first one's slip since `before` is the value
-    pulled  ///< N = 0 at the first one
+    stick,  ///< each point's slip since `before` is 0, except for the point `sliding`
+    pulled  ///< no surface: a force of the inclination `value` holds the first point at x = `x`
   } kind = Kind::slip;
   double value = 0;
+  std::ptrdiff_t sliding = -1;  ///< stick: the point at which T = value · N
+  double x = 0;
 };
 
 /// The equilibrium with the guess's touching points. Newton's method from `guess`; empty if it does
@@ -124,8 +128,9 @@ struct FrictionLaw {
 ///     jumps of M by F_x (z_c − z) − F_z (x_c − x) at each point,  M(1+) = 0,  z_c = H − p(x_c − s),
 ///     t = (1, −p′)/√(1 + p′²),  n = (−p′, −1)/√(1 + p′²).
 ///
-/// Of several points that stick, statics alone do not give the friction of each: they are taken to
-/// bear the same T/N.
+/// Of several points of the end face that stick, statics alone do not give the friction of each:
+/// they are taken to bear the same T/N (not so with Kind::stick, for points between which the rod
+/// bends).
 std::optional<TipContact> solve_contact(const TipProblem& problem,
                                         const surroundings::Surface& surface,
                                         const SurfacePlace& place, const FrictionLaw& law,
@@ -137,8 +142,9 @@ std::optional<TipContact> sliding(const TipProblem& problem, const surroundings:
                                   const SurfacePlace& place, double direction,
                                   const TipContact& guess);
 
-/// The free tip pulled aside by a horizontal force, force_x, so far that it sinks to the height.
-std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
+/// The free cilium pulled aside to x by a force at its tip, or at a corner of its end face, whose
+/// direction is t of the inclination. Its one touching point is that point.
+std::optional<TipContact> pulled_aside(const TipProblem& problem, double x, double inclination,
                                        const TipContact& guess);
 
 /// The equilibrium in which the touching point stays at a place of the surface, x_c − s = `held`.
