@@ -14,13 +14,13 @@ using namespace point_forces;
 namespace {
 
 constexpr double samples_per_feature = 12;
-constexpr double longest_spacing = 0.02;   ///< of the samples, in L
+constexpr double longest_spacing = 0.02;  ///< of the samples, in L
 constexpr double shortest_spacing = 1e-3;
-constexpr double reach = 1.2;              ///< of the cilium to both sides, in L
+constexpr double reach = 1.2;  ///< of the cilium to both sides, in L
 constexpr double most_height_samples = 1e5;
 constexpr double angle_slack = 1e-11;
 constexpr double pull_slack = 1e-12;
-constexpr int minimum_bits = 30;           ///< of the place of a least gap
+constexpr int minimum_bits = 30;  ///< of the place of a least gap
 
 bool is_near(const Touch& a, const Touch& b, double spacing) {
   if (a.where != b.where) return false;
@@ -70,7 +70,8 @@ Outline::Outline(const TipProblem& problem, const Surface& surface,
     : problem_(problem), surface_(surface) {
   const double feature = surface.finest_length() / problem.length / samples_per_feature;
   spacing_ = std::clamp(feature, shortest_spacing, longest_spacing);
-  face_samples_ = static_cast<int>(std::ceil(2 * problem.rim / std::min(spacing_, problem.rim / 2)));
+  face_samples_ =
+      static_cast<int>(std::ceil(2 * problem.rim / std::min(spacing_, problem.rim / 2)));
   if (problem.rim == 0 || places.empty()) return;
   const auto [first, last] = std::ranges::minmax(places, {}, &SurfacePlace::travel);
   const double low = -reach - last.travel;
@@ -138,7 +139,9 @@ OutlinePoint Outline::nearest(const SurfacePlace& place, const TipContact& conta
   // Along a part of the outline, its ends included.
   const auto scan = [&](TouchPoint where, double side, double from, double to, int count) {
     std::array<OutlinePoint, 3> last;
-    const auto parameter = [&](int i) { return std::lerp(from, to, static_cast<double>(i) / count); };
+    const auto parameter = [&](int i) {
+      return std::lerp(from, to, static_cast<double>(i) / count);
+    };
     for (int i = 0; i <= count; ++i) {
       last[0] = last[1];
       last[1] = last[2];
@@ -198,9 +201,8 @@ std::vector<Touch> Outline::changed(const SurfacePlace& place, const TipContact&
   }
   const OutlinePoint deepest = nearest(place, contact);
   if (deepest.gap >= -deepest_gap) return {};
-  if (std::ranges::any_of(touches, [&](const Touch& touch) {
-        return is_near(touch, deepest.touch, 1e-6);
-      }))
+  if (std::ranges::any_of(touches,
+                          [&](const Touch& touch) { return is_near(touch, deepest.touch, 1e-6); }))
     return {};  // there is one
   touches.push_back(deepest.touch);
   return touches;

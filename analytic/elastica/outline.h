@@ -11,8 +11,8 @@ namespace ciliaval::analytic::elastica {
 /// The steps of the integration along the rod of an equilibrium, from the base to the tip.
 std::vector<point_forces::Step> steps_along(const TipProblem& problem, const TipContact& contact);
 
-/// A point of the outline (of the disc's corners, its face and the mantle's two sides; or of a point
-/// tip that alone), with the surface's height over it, in L.
+/// A point of the outline (of the disc's corners, its face and the mantle's two sides; or of a
+/// point tip that alone), with the surface's height over it, in L.
 struct OutlinePoint {
   Touch touch;  ///< without forces
   double gap = 0;

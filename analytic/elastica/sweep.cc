@@ -21,14 +21,15 @@ constexpr double shortest_step = 1e-8;   ///< shorter is a jump
 constexpr double feature_steps = 10;     ///< steps on the smallest feature of a surface, at least
 constexpr double work_tolerance = 2e-8;  ///< of the correction of a step's work, over the energy
 constexpr double shortest_jump = 1e-6;   ///< a shorter slip in the shortest step is none
+constexpr double step_imbalance = 1e-5;  ///< of the works of the shortest step, over the energy
 constexpr double longest_search = 1e-3;  ///< step of ξ in a jump, in L
 constexpr double shortest_search = 1e-7;
-constexpr double farthest_jump = 4;        ///< in L
-constexpr double cone_slack = 1e-10;       ///< of |T| over μN
-constexpr double touch_depth = 1e-8;       ///< of the first contact, in L
-constexpr int most_changes = 8;            ///< of the touching points at a place
-constexpr double most_touch_energy = 0.01; ///< of a cilium that has just been touched
-constexpr double vanishing_energy = 1e-9;  ///< less is no jump
+constexpr double farthest_jump = 4;         ///< in L
+constexpr double cone_slack = 1e-10;        ///< of |T| over μN
+constexpr double touch_depth = 1e-8;        ///< of the first contact, in L
+constexpr int most_changes = 8;             ///< of the touching points at a place
+constexpr double most_touch_energy = 0.01;  ///< of a cilium that has just been touched
+constexpr double vanishing_energy = 1e-9;   ///< less is no jump
 /// With less the cilium is so straight that its stiffness, which cannot be computed then, is that
 /// of a rod that is pushed aside.
 constexpr double straight_energy = 1e-6;
@@ -57,7 +58,8 @@ class Follower {
 
   SweepSample press(const SurfacePlace& place) {
     now_.place = place;
-    if (!from_afar(place)) throw SolverError("elastica: the tip finds no hold under the surface at the beginning");
+    if (!from_afar(place))
+      throw SolverError("elastica: the tip finds no hold under the surface at the beginning");
     return now_;
   }
 
@@ -127,7 +129,7 @@ class Follower {
       return true;
     const auto stuck = stick(place, last_try);
     if (stuck && stuck->normal_force > 0 && is_in_cone(*stuck) &&
-        (last_try || is_smooth(*stuck, place))) {
+        is_continuous(*stuck, place, last_try)) {
       accept(*stuck, place, TipState::stick);
       return true;
     }
@@ -184,8 +186,8 @@ class Follower {
   }
 
   bool is_in_cone(const Touch& touch) const {
-    return surface_.friction > 0 && std::abs(touch.friction_force) <=
-                                        surface_.friction * touch.normal_force + cone_slack;
+    return surface_.friction > 0 &&
+           std::abs(touch.friction_force) <= surface_.friction * touch.normal_force + cone_slack;
   }
   bool is_in_cone(const TipContact& contact) const {
     return std::ranges::all_of(contact.touches,
@@ -211,7 +213,8 @@ class Follower {
     return straight;
   }
 
-  /// Of a tip, or the corner behind, that a horizontal force has pulled aside: a slender cantilever.
+  /// Of a tip, or the corner behind, that a horizontal force has pulled aside: a slender
+  /// cantilever.
   TipContact pulled_guess(double deflection) const {
     TipContact guess = rest();
     guess.force_x = guess.base_moment = 3 * drag_ * deflection;
@@ -252,8 +255,8 @@ class Follower {
         point.force_x = guess.force_x;
         point.force_z = guess.force_z;
         guess.touches = {point};
-        const auto contact = settle(
-            place, {FrictionLaw::Kind::slip, drag_ * surface_.friction}, guess, true);
+        const auto contact =
+            settle(place, {FrictionLaw::Kind::slip, drag_ * surface_.friction}, guess, true);
         // Not one that is bent against the travel by a surface that does not push that way.
         if (contact && contact->normal_force > 0 && contact->energy < most_touch_energy &&
             !(drag_ * contact->x < 0 && drag_ * contact->force_x >= 0))
@@ -281,12 +284,22 @@ class Follower {
            work_tolerance * std::max({contact.energy, now_.contact.energy, 1e-3});
   }
 
+  /// Whether the state follows from the last one: the works of the step are those that the energy
+  /// tells, and exact enough, except for the shortest step.
+  bool is_continuous(const TipContact& contact, const SurfacePlace& place, bool last_try) const {
+    const Work work = work_of(contact, place);
+    const double imbalance = work.surface - work.friction - (contact.energy - now_.contact.energy);
+    const double size = std::max({contact.energy, now_.contact.energy, 1e-3});
+    if (last_try) return std::abs(imbalance) < step_imbalance * size;
+    return is_smooth(contact, place) && std::abs(imbalance) < 10 * work_tolerance * size;
+  }
+
   bool advance_sliding(const SurfacePlace& place, const TipContact& start, bool last_try) {
     const double direction = sign_of(start.friction_force);
     const FrictionLaw law{FrictionLaw::Kind::slip, direction * surface_.friction};
     const bool goes_on = &start == &now_.contact;
-    auto contact = settle(place, law,
-                          goes_on ? predicted(now_.contact, now_.place, place) : start, last_try);
+    auto contact =
+        settle(place, law, goes_on ? predicted(now_.contact, now_.place, place) : start, last_try);
     if (!contact || !(contact->normal_force > 0)) return false;
     // No other equilibrium lies between if the stiffness hardly changes on the way.
     const double first = stiffness(start, direction);
@@ -297,7 +310,7 @@ class Follower {
     const bool is_close = last_try && std::abs(contact->touches.front().slip) < shortest_jump;
     if (!is_straight && !(last > 0 && (is_similar || is_close))) return false;
     if (surface_.friction > 0 && contact->touches.front().slip * direction > 1e-12) return false;
-    if (!last_try && !is_smooth(*contact, place)) return false;
+    if (!is_continuous(*contact, place, last_try)) return false;
     accept(*contact, place, TipState::slip);
     return true;
   }
@@ -334,8 +347,8 @@ class Follower {
     double flown = 0;
     while (flown < std::abs(way) - 1e-4) {
       const double next_flown = std::min(flown + step, std::abs(way) - 1e-4);
-      const auto tip = pulled_aside(problem_, start_x + std::copysign(next_flown, way), inclination,
-                                    before);
+      const auto tip =
+          pulled_aside(problem_, start_x + std::copysign(next_flown, way), inclination, before);
       if (!tip) return {true, {}};
       // At first the surface is still near.
       const double next_gap = outline_.nearest(place, *tip).gap;
@@ -347,7 +360,7 @@ class Follower {
       flown = next_flown;
       step = search_of(1.5 * step);
     }
-    return {};
+    return {outline_.nearest(place, rest()).gap < 0, {}};
   }
 
   /// Where the outline meets the surface, between a place under it and one beyond.
@@ -424,8 +437,8 @@ class Follower {
     const auto contact =
         beyond_fold(problem_, surface_, place, from, direction, direction * shortest_search);
     if (!contact || contact->energy > from.energy) return std::nullopt;
-    const auto settled = settle(place, {FrictionLaw::Kind::moved, direction * shortest_search},
-                                *contact, true);
+    const auto settled =
+        settle(place, {FrictionLaw::Kind::moved, direction * shortest_search}, *contact, true);
     if (!settled) return std::nullopt;
     return anchored(*settled, place);
   }
@@ -492,8 +505,8 @@ class Follower {
     return true;
   }
 
-  /// Where no way to the next equilibrium is found: that which a long sweep in the present direction
-  /// leaves.
+  /// Where no way to the next equilibrium is found: that which a long sweep in the present
+  /// direction leaves.
   bool begin_again(const SurfacePlace& place, double at) {
     const double energy = now_.contact.energy;
     const SweepSample before = now_;
@@ -509,7 +522,8 @@ class Follower {
   TipContact slipping(const TipContact& end, const SurfacePlace& place) const {
     if (!(end.normal_force > 0)) return end;
     const double ratio = sign_of(end.friction_force) * surface_.friction;
-    const auto contact = settle(place, {FrictionLaw::Kind::slip, ratio}, anchored(end, place), false);
+    const auto contact =
+        settle(place, {FrictionLaw::Kind::slip, ratio}, anchored(end, place), false);
     const bool is_same = contact && std::abs(contact->contact_x - end.contact_x) < 1e-9;
     return is_same ? *contact : end;
   }
@@ -539,10 +553,12 @@ class Follower {
         ((before.force_z_by_place - contact.force_z_by_place) * way).value() * way[1] / 12;
     for (const Touch& touch : contact.touches) {
       const double way_back = touch.slip < 0 ? -1 : 1;
-      work.friction += std::abs(touch.before.friction_force + touch.friction_force) / 2 *
-                       std::abs(touch.slip);
+      work.friction +=
+          std::abs(touch.before.friction_force + touch.friction_force) / 2 * std::abs(touch.slip);
       // ∫ N dq of two functions of the way: h²/12 (N′(a) q′(b) − N′(b) q′(a)).
-      const auto along = [&](const Eigen::RowVector2d& by_place) { return (by_place * way).value(); };
+      const auto along = [&](const Eigen::RowVector2d& by_place) {
+        return (by_place * way).value();
+      };
       work.friction_correction +=
           surface_.friction * way_back / 12 *
           (along(touch.before.normal_by_place) * along(touch.slip_by_place) -

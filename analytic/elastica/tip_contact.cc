@@ -27,10 +27,11 @@ constexpr double shortest_path_step = 1e-9;
 constexpr double path_tolerance = 1e-10;
 constexpr int most_path_steps = 3000;
 constexpr int most_path_iterations = 8;
-constexpr double lowest_touch = 0.02;      ///< S of a point of the mantle
+constexpr double lowest_touch = 0.02;  ///< S of a point of the mantle
 
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns, most_unknowns>;
+using Matrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns, most_unknowns>;
 using ByPlace = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, most_unknowns, 2>;
 
 bool is_tangent(const Touch& touch) {
@@ -177,8 +178,7 @@ class Assembly {
     z.by[column + 2] += cosine * stretch;
     theta.by[column + 2] += section_.curvature;
     add_rows(i, x, z, theta);
-    Gradient couple_by =
-        a * (touch.force_z * sine - touch.force_x * cosine) * theta.by;
+    Gradient couple_by = a * (touch.force_z * sine - touch.force_x * cosine) * theta.by;
     couple_by[column] -= a * sine;
     couple_by[column + 1] -= a * cosine;
     // By S at fixed S of the sections above: what θ′ and M′ lose there.
@@ -252,7 +252,8 @@ class Assembly {
       return;
     }
     Row gap{place_.height - profile.height / problem_.length - z.value,
-            -profile.slope * x.by - z.by, {profile.slope, 1}};
+            -profile.slope * x.by - z.by,
+            {profile.slope, 1}};
     put(row_++, gap);
     if (is_tangent(touch)) {
       const double turn =
@@ -307,7 +308,8 @@ class Assembly {
     const double stretch = 1 - touch.offset * std::midpoint(touch.curvature, before.curvature);
     const double by_x = 1 / std::cos(touch.inclination);
     Row slip{arc - (touch.offset - before.offset) + touch.side * stretch * (touch.S - before.S),
-             by_x * x.by, {-by_x, 0}};
+             by_x * x.by,
+             {-by_x, 0}};
     if (touch.where == TouchPoint::face) slip.by[column + 2] -= 1;
     if (touch.where == TouchPoint::mantle) slip.by[column + 2] += touch.side * stretch;
     return slip;
@@ -632,8 +634,8 @@ TipContact anchored(TipContact contact, const SurfacePlace& place) {
 TipContact predicted(TipContact contact, const SurfacePlace& from, const SurfacePlace& to) {
   const Layout layout(contact.touches);
   if (contact.unknowns_by_place.rows() != layout.size) return contact;
-  const Vector change = contact.unknowns_by_place *
-                        Eigen::Vector2d(to.travel - from.travel, to.height - from.height);
+  const Vector change =
+      contact.unknowns_by_place * Eigen::Vector2d(to.travel - from.travel, to.height - from.height);
   contact.base_moment += change[0];
   for (std::size_t i = 0; i < contact.touches.size(); ++i) {
     Touch& touch = contact.touches[i];

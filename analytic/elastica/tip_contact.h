@@ -92,7 +92,7 @@ struct TipContact {
   int iterations = 0;
   std::vector<Touch> touches{};  ///< empty in a guess: the tip or the rim of the problem's side
   Eigen::Matrix<double, Eigen::Dynamic, 2, 0, point_forces::most_unknowns, 2>
-      unknowns_by_place{};                         ///< their derivatives by travel and height
+      unknowns_by_place{};                    ///< their derivatives by travel and height
   Eigen::RowVector2d force_x_by_place{0, 0};  ///< likewise
   Eigen::RowVector2d force_z_by_place{0, 0};
 };
@@ -125,8 +125,8 @@ struct FrictionLaw {
 /// not converge. N < 0, a surface that pulls, and whatever else touches are left to the caller.
 ///
 ///     EI θ′ = M,  M′ = −F_x cos θ + F_z sin θ,  F = N n + T t summed over the points above S,
-///     jumps of M by F_x (z_c − z) − F_z (x_c − x) at each point,  M(1+) = 0,  z_c = H − p(x_c − s),
-///     t = (1, −p′)/√(1 + p′²),  n = (−p′, −1)/√(1 + p′²).
+///     jumps of M by F_x (z_c − z) − F_z (x_c − x) at each point,  M(1+) = 0,  z_c = H − p(x_c −
+///     s), t = (1, −p′)/√(1 + p′²),  n = (−p′, −1)/√(1 + p′²).
 ///
 /// Of several points of the end face that stick, statics alone do not give the friction of each:
 /// they are taken to bear the same T/N (not so with Kind::stick, for points between which the rod

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 constexpr std::size_t fewest_samples = 4;  ///< that Akima's cubic takes
-constexpr double curvature_step = 1e-5;     ///< over the distance of two points
+constexpr double curvature_step = 1e-5;    ///< over the distance of two points
 constexpr double most_waves = 100'000;
 
 void require(bool holds, const std::string& message) {

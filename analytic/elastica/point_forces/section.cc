@@ -121,8 +121,7 @@ void Step::advance(Section& section, const Force& force) const {
     const Gradient theta_by = by(theta, 1);
     const Gradient x_by = by(x, z[0]);
     const Gradient z_by = by(z, -x[0]);
-    section.moment_by +=
-        force.z * x_by - force.x * z_by + x[0] * force.z_by - z[0] * force.x_by;
+    section.moment_by += force.z * x_by - force.x * z_by + x[0] * force.z_by - z[0] * force.x_by;
     section.theta_by = theta_by;
     section.x_by += x_by;
     section.z_by += z_by;

@@ -8,8 +8,8 @@
 #include <vector>
 
 /// The planar elastica under point forces, with its derivatives: EI θ′ = M,
-/// M′ = −F_x cos θ + F_z sin θ, x′ = sin θ, z′ = cos θ, with F constant from force to force. Without
-/// units, as tip_contact.h.
+/// M′ = −F_x cos θ + F_z sin θ, x′ = sin θ, z′ = cos θ, with F constant from force to force.
+/// Without units, as tip_contact.h.
 namespace ciliaval::analytic::elastica::point_forces {
 
 inline constexpr int most_unknowns = 16;
