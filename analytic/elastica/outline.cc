@@ -2,6 +2,7 @@
 #include "analytic/elastica/outline.h"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <cstddef>
@@ -52,6 +53,11 @@ std::vector<Step> steps_along(const TipProblem& problem, const TipContact& conta
   return steps;
 }
 
+struct Outline::Sample {
+  double parameter;
+  OutlinePoint point;
+};
+
 struct Outline::Shape {
   std::vector<Step> steps;
   double theta;
@@ -93,29 +99,33 @@ double Outline::gap(const SurfacePlace& place, double x, double z) const {
          surface_.extended((x - place.travel) * problem_.length).height / problem_.length;
 }
 
+OutlinePoint Outline::on_mantle(const SurfacePlace& place, const Section& section,
+                                double side) const {
+  OutlinePoint point;
+  Touch& touch = point.touch;
+  touch.where = TouchPoint::mantle;
+  touch.side = side;
+  touch.S = section.S;
+  touch.offset = side * problem_.rim;
+  touch.x = section.x + touch.offset * std::cos(section.theta);
+  touch.z = section.z - touch.offset * std::sin(section.theta);
+  const double under = place.height - highest_ - touch.z;
+  point.gap = under > 0 ? under : gap(place, touch.x, touch.z);
+  return point;
+}
+
 OutlinePoint Outline::at(const SurfacePlace& place, const Shape& shape, TouchPoint where,
                          double side, double parameter) const {
+  if (where == TouchPoint::mantle) return on_mantle(place, shape.at(parameter), side);
   OutlinePoint point;
   Touch& touch = point.touch;
   touch.where = where;
   touch.side = side;
-  double theta = shape.theta;
-  double x = shape.x;
-  double z = shape.z;
   touch.offset = where == TouchPoint::face ? parameter : side * problem_.rim;
   if (where == TouchPoint::tip) touch.offset = 0;
-  if (where == TouchPoint::mantle) {
-    touch.S = parameter;
-    const Section section = shape.at(parameter);
-    theta = section.theta;
-    x = section.x;
-    z = section.z;
-  }
-  touch.x = x + touch.offset * std::cos(theta);
-  touch.z = z - touch.offset * std::sin(theta);
-  // Too far under the surface to matter.
-  const double under = place.height - highest_ - touch.z;
-  point.gap = where == TouchPoint::mantle && under > 0 ? under : gap(place, touch.x, touch.z);
+  touch.x = shape.x + touch.offset * std::cos(shape.theta);
+  touch.z = shape.z - touch.offset * std::sin(shape.theta);
+  point.gap = gap(place, touch.x, touch.z);
   return point;
 }
 
@@ -130,41 +140,55 @@ OutlinePoint Outline::nearest(const SurfacePlace& place, const TipContact& conta
   const auto take = [&](const OutlinePoint& point) {
     if (point.gap < best.gap) best = point;
   };
-  const auto refine = [&](TouchPoint where, double side, double from, double to) {
-    const auto [parameter, least] = boost::math::tools::brent_find_minima(
-        [&](double value) { return at(place, shape, where, side, value).gap; }, from, to,
-        minimum_bits);
-    if (least < best.gap) take(at(place, shape, where, side, parameter));
-  };
-  // Along a part of the outline, its ends included.
-  const auto scan = [&](TouchPoint where, double side, double from, double to, int count) {
-    std::array<OutlinePoint, 3> last;
-    const auto parameter = [&](int i) {
-      return std::lerp(from, to, static_cast<double>(i) / count);
-    };
-    for (int i = 0; i <= count; ++i) {
-      last[0] = last[1];
-      last[1] = last[2];
-      last[2] = at(place, shape, where, side, parameter(i));
-      take(last[2]);
-      if (i < 2) continue;
-      const double before = last[0].gap - last[1].gap;
-      const double after = last[2].gap - last[1].gap;
-      if (before < 0 || after < 0 || last[1].gap > std::max(before, after)) continue;
-      const double width = std::abs(parameter(1) - parameter(0));
+  // The minima between samples along a part of the outline, in increasing order of the parameter.
+  const auto refine = [&](TouchPoint where, double side, const std::vector<Sample>& samples) {
+    for (const Sample& sample : samples) take(sample.point);
+    for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+      const double before = samples[i - 1].point.gap - samples[i].point.gap;
+      const double after = samples[i + 1].point.gap - samples[i].point.gap;
+      if (before < 0 || after < 0 || samples[i].point.gap > std::max(before, after)) continue;
+      const double from = samples[i - 1].parameter;
+      const double to = samples[i + 1].parameter;
       if (std::ranges::any_of(contact.touches, [&](const Touch& touch) {
-            return is_near(touch, last[1].touch, 1.5 * width);
+            return is_near(touch, samples[i].point.touch, 0.75 * (to - from));
           }))
         continue;
-      refine(where, side, parameter(i - 2), parameter(i));
+      const double parameter =
+          boost::math::tools::brent_find_minima(
+              [&](double value) { return at(place, shape, where, side, value).gap; }, from, to,
+              minimum_bits)
+              .first;
+      take(at(place, shape, where, side, parameter));
     }
   };
-  const int mantle_samples = static_cast<int>(std::ceil(1 / spacing_));
-  for (const double side : {-1.0, 1.0}) {
-    take(at(place, shape, TouchPoint::rim, side, 0));
-    scan(TouchPoint::mantle, side, 0, 1 - 1e-9, mantle_samples);
+  std::array<std::vector<Sample>, 2> mantle;
+  // From the tip down. The outline rises by ΔS at most: what is far below the surface is left out.
+  for (double S = 1 - 1e-9; S > 0;) {
+    const Section section = shape.at(S);
+    const double under = place.height - highest_ - section.z - problem_.rim;
+    for (const double side : {-1.0, 1.0}) {
+      Sample sample{S, {}};
+      if (under > 0)
+        sample.point.gap = under;
+      else
+        sample.point = on_mantle(place, section, side);
+      mantle[side < 0 ? 0 : 1].push_back(sample);
+    }
+    S -= std::max(spacing_, under);
   }
-  scan(TouchPoint::face, 1, -problem_.rim * (1 - 1e-9), problem_.rim * (1 - 1e-9), face_samples_);
+  std::vector<Sample> face;
+  for (int i = 0; i <= face_samples_; ++i) {
+    const double end = problem_.rim * (1 - 1e-9);
+    const double parameter = std::lerp(-end, end, static_cast<double>(i) / face_samples_);
+    face.push_back({parameter, at(place, shape, TouchPoint::face, 1, parameter)});
+  }
+  for (const double side : {-1.0, 1.0}) {
+    std::vector<Sample>& samples = mantle[side < 0 ? 0 : 1];
+    std::ranges::reverse(samples);
+    take(at(place, shape, TouchPoint::rim, side, 0));
+    refine(TouchPoint::mantle, side, samples);
+  }
+  refine(TouchPoint::face, 1, face);
   return best;
 }
 

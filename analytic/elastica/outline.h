@@ -38,6 +38,9 @@ class Outline {
 
  private:
   struct Shape;
+  struct Sample;
+  OutlinePoint on_mantle(const SurfacePlace& place, const point_forces::Section& section,
+                         double side) const;
   OutlinePoint at(const SurfacePlace& place, const Shape& shape, TouchPoint where, double side,
                   double parameter) const;
   double gap(const SurfacePlace& place, double x, double z) const;
