@@ -25,7 +25,8 @@ constexpr double first_path_step = 1e-4;
 constexpr double longest_path_step = 0.03;
 constexpr double shortest_path_step = 1e-9;
 constexpr double path_tolerance = 1e-10;
-constexpr int most_path_steps = 3000;
+constexpr int most_path_steps = 2000;
+constexpr double most_path_energy = 20;  ///< over that at the start
 constexpr int most_path_iterations = 8;
 constexpr double lowest_touch = 0.02;  ///< S of a point of the mantle
 
@@ -604,6 +605,8 @@ std::optional<TipContact> beyond_fold(const TipProblem& problem, const Surface& 
       if (step < shortest_path_step) return std::nullopt;
       continue;
     }
+    if (path.contact().energy > most_path_energy * std::max(contact.energy, 0.05))
+      return std::nullopt;
     step = std::min(1.5 * step, longest_path_step);
     const bool is_stable = path.determinant() * first > 0;
     has_turned = has_turned || !is_stable;
