@@ -17,6 +17,7 @@ using namespace point_forces;
 namespace {
 
 constexpr int most_iterations = 40;
+constexpr double largest_force = 2000;  ///< of a trial
 constexpr int swinging_iterations = 8;
 constexpr double largest_change = 0.5;  ///< of an unknown in an iteration, over its size + 1
 // Of the path of equilibria, in lengths over L with forces and moments over their scale.
@@ -465,6 +466,7 @@ class Path {
       if (!solve(-system_.residuals, 0, change, slip_change)) break;
       u_ += change.cwiseProduct(scale_);
       slip_ += slip_change;
+      if (u_.cwiseAbs().maxCoeff() > largest_force) break;
       if (change.cwiseAbs().maxCoeff() + std::abs(slip_change) < path_tolerance) {
         evaluate();
         return true;
@@ -565,6 +567,7 @@ std::optional<TipContact> solve_contact(const TipProblem& problem, const Surface
       if (contact.touches[i].where == TouchPoint::mantle &&
           !(u[layout.columns[i] + 2] > lowest_touch))
         return std::nullopt;
+    if (u.cwiseAbs().maxCoeff() > largest_force) return std::nullopt;
     last_change = relative;
   }
   return std::nullopt;
