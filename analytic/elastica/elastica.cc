@@ -149,7 +149,7 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
   for (const Load& load : path) require_valid(load, cilium);
   if (!path.empty() && path.front().is<SweepLoad>()) {
     if (has_height_form(options_)) refuse_type(path.front(), "elastica's height form");
-    return solve_sweep(cilium, path, options_.tolerance, progress);
+    return solve_sweep(cilium, path, options_.tip, options_.tolerance, progress);
   }
 
   MechanicsResult result;

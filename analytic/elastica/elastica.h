@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include "analytic/elastica/tip_contact.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::analytic::elastica {
@@ -11,6 +12,7 @@ struct ElasticaOptions {
     height      ///< the paper's quadrature in z (Eq. 1–4), contact, flow and probe only
   };
   Form form = Form::arclength;
+  CiliumEnd tip = CiliumEnd::disc;  ///< what touches the surface of a sweep
   double tolerance = 1e-12;  ///< relative, of position over length and of angle, in (0, 1e-3]
 };
 

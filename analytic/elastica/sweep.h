@@ -16,6 +16,10 @@ enum class TipState { open, stick, slip };
 struct TipJump {
   double at = 0;           ///< part of the way from the sample before, 0 to 1
   double energy_lost = 0;  ///< elastic energy that was neither stored nor spent on friction
+  /// False: the way to the next equilibrium was not found (the rod snaps through while its tip is
+  /// pressed hard, mostly after a reversal); the sweep goes on from the state that a long sweep in
+  /// the present direction leaves, and the friction on the way is part of the energy lost.
+  bool is_followed = true;
 };
 
 /// The state at one place of the surface.

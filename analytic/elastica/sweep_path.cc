@@ -6,13 +6,14 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "analytic/elastica/planar.h"
+#include "analytic/elastica/point_forces/section.h"
 #include "analytic/elastica/sweep.h"
-#include "analytic/elastica/taylor.h"
 #include "analytic/elastica/tip_contact.h"
 #include "problem/error.h"
 
@@ -32,35 +33,55 @@ PlanarUnits units_of(const Cilium& cilium) {
   return {length, stiffest * cilium.second_moment() / (length * length)};
 }
 
-/// The shape under the forces of a contact, integrated from the base in the frame in which they
-/// are horizontal.
+/// The shape under the forces of a contact: of the steps up from the base, each with the force that
+/// the part above it exerts.
 PlanarShape shape_of(const TipProblem& problem, const TipContact& contact) {
-  const double turn = std::atan2(-contact.force_z, contact.force_x);
-  PlanarState state;
-  state.theta = -turn;
-  state.phi = std::numbers::pi / 2 + turn;
-  state.moment = contact.base_moment;
-  state.force = std::hypot(contact.force_x, contact.force_z);
-  auto steps = std::make_shared<std::vector<TaylorStep>>();
+  std::vector<Touch> touches = contact.touches;
+  std::erase_if(touches, [](const Touch& touch) { return !(touch.S < 1); });
+  std::ranges::sort(touches, {}, &Touch::S);
+  struct Piece {
+    point_forces::Step step;
+    point_forces::Force force;
+    double compliance;
+  };
+  auto pieces = std::make_shared<std::vector<Piece>>();
   PlanarShape shape;
   shape.breaks.push_back(0);
-  for (std::size_t i = 0; i < problem.compliance.size(); ++i)
-    while (state.S < problem.ends[i + 1]) {
-      steps->emplace_back(state, problem.compliance[i], ForceLaw::constant, problem.ends[i + 1],
-                          1e-16, 1);
-      state = steps->back().end_state();
-      shape.breaks.push_back(state.S);
-    }
-  shape.state = [=, x = contact.force_x, z = contact.force_z](double S, std::size_t i) {
-    const PlanarState turned = (*steps)[i].at(S);
-    PlanarState result = turned;
-    result.theta = turned.theta + turn;
-    result.phi = std::numbers::pi / 2 - result.theta;
-    result.w = std::cos(turn) * turned.w + std::sin(turn) * turned.z;
-    result.z = std::cos(turn) * turned.z - std::sin(turn) * turned.w;
-    result.force = x;
-    result.vertical = z;
-    return result;
+  point_forces::Section section;
+  section.moment = contact.base_moment;
+  point_forces::Force force{contact.force_x, contact.force_z, {}, {}};
+  const auto up_to = [&](double target) {
+    point_forces::integrate({problem.ends, problem.compliance}, section, force, target,
+                            [&](const point_forces::Step& step) {
+                              const double S = std::midpoint(step.start(), step.end());
+                              std::size_t segment = 0;
+                              while (problem.ends[segment + 1] < S) ++segment;
+                              pieces->push_back({step, force, problem.compliance[segment]});
+                              shape.breaks.push_back(step.end());
+                            });
+  };
+  for (const Touch& touch : touches) {
+    up_to(touch.S);
+    section.moment += touch.offset * (touch.force_x * std::sin(section.theta) +
+                                      touch.force_z * std::cos(section.theta));
+    force.x -= touch.force_x;
+    force.z -= touch.force_z;
+  }
+  up_to(1);
+  shape.state = [pieces](double S, std::size_t i) {
+    const auto& [step, force, compliance] = (*pieces)[i];
+    const point_forces::Section at = step.at(S);
+    PlanarState state;
+    state.S = S;
+    state.theta = at.theta;
+    state.phi = std::numbers::pi / 2 - at.theta;
+    state.w = at.x;
+    state.z = at.z;
+    state.curvature = at.curvature;
+    state.moment = at.curvature / compliance;
+    state.force = force.x;
+    state.vertical = force.z;
+    return state;
   };
   return shape;
 }
@@ -77,10 +98,17 @@ SurfaceContact::State state_of(TipState state) {
   return SurfaceContact::State::slip;
 }
 
+SurfaceContact::Where where_of(const TipContact& contact) {
+  const bool mantle =
+      std::ranges::any_of(contact.touches, [](const Touch& touch) { return touch.S < 1; });
+  return mantle ? SurfaceContact::Where::mantle : SurfaceContact::Where::rim;
+}
+
 SurfaceContact contact_of(const SweepSample& sample, const PlanarUnits& units, const Vector3& e) {
   const double energy = units.force * units.length;
   SurfaceContact result;
   result.state = state_of(sample.state);
+  result.where = where_of(sample.contact);
   result.normal_force = units.force * sample.contact.normal_force;
   result.friction_force = units.force * sample.contact.friction_force;
   result.point =
@@ -100,6 +128,11 @@ MechanicsStep step_of(const TipProblem& problem, const SweepSample& sample, cons
   step.load = load;
   step.status = Status::converged;
   step.contact = contact_of(sample, units, direction(load));
+  if (std::ranges::any_of(sample.jumps, [](const TipJump& jump) { return !jump.is_followed; }))
+    step.message =
+        "the way to the next equilibrium after a jump was not found: the state is that which a "
+        "long "
+        "sweep in this direction leaves";
   const bool open = sample.state == TipState::open;
   step.deformation =
       Deformation{open ? straight_centreline(cilium.interfaces())
@@ -130,11 +163,11 @@ std::vector<SurfacePlace> places_of(const LoadPath& path, double length) {
 
 }  // namespace
 
-MechanicsResult solve_sweep(const Cilium& cilium, const LoadPath& path, double tolerance,
-                            const Progress& progress) {
+MechanicsResult solve_sweep(const Cilium& cilium, const LoadPath& path, CiliumEnd end,
+                            double tolerance, const Progress& progress) {
   MechanicsResult result;
   result.undeformed.centreline = straight_centreline(cilium.interfaces());
-  TipProblem problem = tip_problem(cilium);
+  TipProblem problem = tip_problem(cilium, end);
   problem.tolerance = tolerance;
   auto begin = std::chrono::steady_clock::now();
   std::string failure;

@@ -4,180 +4,654 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
+
+#include "analytic/elastica/planar.h"
+#include "problem/error.h"
 
 namespace ciliaval::analytic::elastica {
 using namespace surroundings;
+using namespace point_forces;
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr double difference = 1e-7;     ///< of the Jacobian, relative
+constexpr double largest_force = 2000;  ///< of a trial
+constexpr int swinging_iterations = 8;
 constexpr double largest_change = 0.5;  ///< of an unknown in an iteration, over its size + 1
+// Of the path of equilibria, in lengths over L with forces and moments over their scale.
+constexpr double force_scale = 30;
+constexpr double first_path_step = 1e-4;
+constexpr double longest_path_step = 0.03;
+constexpr double shortest_path_step = 1e-9;
+constexpr double path_tolerance = 1e-10;
+constexpr int most_path_steps = 2000;
+constexpr double most_path_energy = 20;  ///< over that at the start
+constexpr int most_path_iterations = 8;
+constexpr double lowest_touch = 0.02;  ///< S of a point of the mantle
 
-using Unknowns = Eigen::Vector3d;   ///< M₀, F_x, F_z
-using Residuals = Eigen::Vector3d;  ///< of the moment, the gap, the law of friction
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns, 1>;
+using Matrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns, most_unknowns>;
+using ByPlace = Eigen::Matrix<double, Eigen::Dynamic, 2, 0, most_unknowns, 2>;
 
-/// The last equation: of the contact and the touching point's place on the surface.
-using FrictionLaw = std::function<double(const TipContact& contact, double on_surface)>;
+bool is_tangent(const Touch& touch) {
+  return touch.where == TouchPoint::face || touch.where == TouchPoint::mantle;
+}
 
-/// The unknowns' derivatives of the residuals and of N and T.
-struct Derivatives {
-  Eigen::Matrix3d residuals;
-  Eigen::RowVector3d normal_force;
-  Eigen::RowVector3d friction_force;
-  Eigen::RowVector3d contact_x;
+/// Columns of the unknowns: M₀, then F_x, F_z and S or the offset a of each touching point, then
+/// τ = T/N if they are several.
+struct Layout {
+  explicit Layout(const std::vector<Touch>& touches) {
+    for (const Touch& touch : touches) {
+      columns.push_back(size);
+      size += is_tangent(touch) ? 3 : 2;
+    }
+    if (touches.size() > 1) ratio = size++;
+    if (size > most_unknowns) throw SolverError("elastica: the cilium touches at too many points");
+  }
+  Eigen::Index size = 1;
+  Eigen::Index ratio = -1;
+  std::vector<Eigen::Index> columns;
 };
 
-/// The frame turned by χ, in which the force is horizontal: F_x = F cos χ, F_z = −F sin χ,
-/// M′ = −F cos(θ − χ).
-struct ForceFrame {
-  double force;
-  double turn;
-
-  ForceFrame(double force_x, double force_z)
-      : force(std::hypot(force_x, force_z)), turn(std::atan2(-force_z, force_x)) {}
+/// A value and its derivatives by the unknowns; ξ's derivative by the travel is −1.
+struct Row {
+  double value = 0;
+  Gradient by;
+  Eigen::RowVector2d by_place{0, 0};  ///< at fixed unknowns
 };
 
-/// Calls `each` with every Taylor step, in the frame of the force, and returns the tip's state.
-template <class Each>
-PlanarState integrate(const TipProblem& problem, double base_moment, const ForceFrame& frame,
-                      const Each& each) {
-  PlanarState state;
-  state.theta = -frame.turn;
-  state.phi = std::numbers::pi / 2 + frame.turn;
-  state.moment = base_moment;
-  state.force = frame.force;
-  for (std::size_t i = 0; i < problem.compliance.size(); ++i)
-    while (state.S < problem.ends[i + 1]) {
-      const TaylorStep step(state, problem.compliance[i], ForceLaw::constant, problem.ends[i + 1],
-                            std::clamp(1e-4 * problem.tolerance, 1e-17, 1e-8), 1);
-      each(step, problem.compliance[i]);
-      state = step.end_state();
-    }
-  return state;
-}
+/// The forces of a touching point and its slip with their derivatives.
+struct Touching {
+  Row normal_force;
+  Row friction_force;
+  Row slip;
+};
 
-/// ∫ f M²/2 dS over a step: f M²/2 + F sin θ̃ is constant along it, and ∫ sin θ̃ dS = Δw̃.
-double energy_of(const PlanarState& a, const PlanarState& b, double flexibility) {
-  const double sum = flexibility * a.moment * a.moment / 2 + a.force * std::sin(a.theta);
-  return sum * (b.S - a.S) - a.force * (b.w - a.w);
-}
+struct System {
+  Vector residuals;
+  Matrix jacobian;
+  ByPlace by_place;
+  Eigen::Index law = 0;  ///< row of the law of friction
+  Row held;              ///< the row of the first point's slip
+  std::vector<Touching> touching;
+};
 
-/// The contact of these unknowns, in equilibrium or not, and its residuals.
-Residuals residuals(const TipProblem& problem, const Surface& surface, const SurfacePlace& place,
-                    const FrictionLaw& law, const Unknowns& u, TipContact& contact) {
-  const ForceFrame frame(u[1], u[2]);
-  double energy = 0;
-  const PlanarState tip =
-      integrate(problem, u[0], frame, [&](const TaylorStep& step, double flexibility) {
-        energy += energy_of(step.at(step.start()), step.end_state(), flexibility);
-      });
-  const double cosine = std::cos(frame.turn);
-  const double sine = std::sin(frame.turn);
-  contact.base_moment = u[0];
-  contact.force_x = u[1];
-  contact.force_z = u[2];
-  contact.theta = tip.theta + frame.turn;
-  contact.x = cosine * tip.w + sine * tip.z;
-  contact.z = cosine * tip.z - sine * tip.w;
-  const double arm = problem.side * problem.rim;
-  contact.contact_x = contact.x + arm * std::cos(contact.theta);
-  contact.contact_z = contact.z - arm * std::sin(contact.theta);
-  contact.energy = energy;
-  const double on_surface = contact.contact_x - place.travel;
-  const ProfilePoint profile = surface.extended(on_surface * problem.length);
-  const double norm = std::hypot(1, profile.slope);
-  contact.normal_force = (-profile.slope * u[1] - u[2]) / norm;
-  contact.friction_force = (u[1] - profile.slope * u[2]) / norm;
-  return {
-      tip.moment - u[1] * (contact.contact_z - contact.z) + u[2] * (contact.contact_x - contact.x),
-      place.height - profile.height / problem.length - contact.contact_z, law(contact, on_surface)};
-}
+/// Assembles the equations at given unknowns.
+class Assembly {
+ public:
+  Assembly(const TipProblem& problem, const Surface& surface, const SurfacePlace& place,
+           const FrictionLaw& law, const Layout& layout, TipContact& contact)
+      : problem_(problem),
+        surface_(surface),
+        place_(place),
+        law_(law),
+        layout_(layout),
+        contact_(contact) {}
 
-std::optional<TipContact> solve(const TipProblem& problem, const Surface& surface,
-                                const SurfacePlace& place, const FrictionLaw& law,
-                                const TipContact& guess) {
-  Unknowns u{guess.base_moment, guess.force_x, guess.force_z};
-  TipContact contact;
-  const auto at = [&](const Unknowns& unknowns) {
-    return residuals(problem, surface, place, law, unknowns, contact);
-  };
-  const auto differentiate = [&](const Unknowns& unknowns) {
-    Derivatives result;
-    for (int j = 0; j < 3; ++j) {
-      const double h = difference * (1 + std::abs(unknowns[j]));
-      Unknowns moved = unknowns;
-      moved[j] = unknowns[j] + h;
-      const Residuals after = at(moved);
-      const TipContact contact_after = contact;
-      moved[j] = unknowns[j] - h;
-      result.residuals.col(j) = (after - at(moved)) / (2 * h);
-      result.normal_force[j] = (contact_after.normal_force - contact.normal_force) / (2 * h);
-      result.contact_x[j] = (contact_after.contact_x - contact.contact_x) / (2 * h);
-      result.friction_force[j] = (contact_after.friction_force - contact.friction_force) / (2 * h);
-    }
+  System at(const Vector& u) {
+    const Eigen::Index size = layout_.size;
+    u_ = u;
+    system_ = {};
+    system_.residuals = Vector::Zero(size);
+    system_.jacobian = Matrix::Zero(size, size);
+    system_.by_place = ByPlace::Zero(size, 2);
+    row_ = 1;
+    start();
+    for (const std::size_t i : upwards()) pass(i);
+    reach_tip();
+    if (layout_.ratio >= 0) add_law(row_);
+    summarise();
+    return std::move(system_);
+  }
+
+ private:
+  Gradient unit(Eigen::Index column) const {
+    Gradient result = Gradient::Zero(layout_.size);
+    result[column] = 1;
     return result;
+  }
+
+  bool is_at_end(const Touch& touch) const {
+    return touch.where != TouchPoint::mantle || touch.S >= 1;
+  }
+
+  /// The points of the mantle below the end, from the base up.
+  std::vector<std::size_t> upwards() const {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < contact_.touches.size(); ++i)
+      if (!is_at_end(contact_.touches[i])) order.push_back(i);
+    std::ranges::sort(order, {}, [&](std::size_t i) { return contact_.touches[i].S; });
+    return order;
+  }
+
+  void start() {
+    const Gradient zero = Gradient::Zero(layout_.size);
+    section_ = {};
+    section_.moment = contact_.base_moment = u_[0];
+    section_.theta_by = section_.x_by = section_.z_by = zero;
+    section_.moment_by = unit(0);
+    force_ = {0, 0, zero, zero};
+    for (std::size_t i = 0; i < contact_.touches.size(); ++i) {
+      Touch& touch = contact_.touches[i];
+      const Eigen::Index column = layout_.columns[i];
+      touch.force_x = u_[column];
+      touch.force_z = u_[column + 1];
+      if (touch.where == TouchPoint::face) touch.offset = u_[column + 2];
+      if (touch.where == TouchPoint::mantle) touch.S = u_[column + 2];
+      force_.x += touch.force_x;
+      force_.z += touch.force_z;
+      force_.x_by[column] = force_.z_by[column + 1] = 1;
+    }
+    contact_.force_x = force_.x;
+    contact_.force_z = force_.z;
+    system_.touching.resize(contact_.touches.size());
+  }
+
+  void integrate_to(double S) {
+    integrate(Rod{problem_.ends, problem_.compliance}, section_, force_, S, [](const Step&) {});
+  }
+
+  double flexibility_at(double S) const {
+    const auto above = std::ranges::lower_bound(problem_.ends, S);
+    const auto i = std::max<std::ptrdiff_t>(above - problem_.ends.begin() - 1, 0);
+    return problem_.compliance[std::min<std::size_t>(static_cast<std::size_t>(i),
+                                                     problem_.compliance.size() - 1)];
+  }
+
+  /// A point of the mantle: its rows, then the state above it.
+  void pass(std::size_t i) {
+    Touch& touch = contact_.touches[i];
+    const Eigen::Index column = layout_.columns[i];
+    integrate_to(touch.S);
+    const double sine = std::sin(section_.theta);
+    const double cosine = std::cos(section_.theta);
+    const double a = touch.offset;
+    const double couple = -a * (touch.force_x * sine + touch.force_z * cosine);
+    const double bend = flexibility_at(touch.S) * couple;
+    touch.curvature = section_.curvature - bend / 2;
+    const double stretch = 1 - a * section_.curvature;
+    Row x{section_.x + a * cosine, section_.x_by - a * sine * section_.theta_by};
+    Row z{section_.z - a * sine, section_.z_by - a * cosine * section_.theta_by};
+    Row theta{section_.theta, section_.theta_by};
+    x.by[column + 2] += sine * stretch;
+    z.by[column + 2] += cosine * stretch;
+    theta.by[column + 2] += section_.curvature;
+    add_rows(i, x, z, theta);
+    Gradient couple_by = a * (touch.force_z * sine - touch.force_x * cosine) * theta.by;
+    couple_by[column] -= a * sine;
+    couple_by[column + 1] -= a * cosine;
+    // By S at fixed S of the sections above: what θ′ and M′ lose there.
+    section_.theta_by[column + 2] += bend;
+    section_.moment_by -= couple_by;
+    section_.moment_by[column + 2] += touch.force_z * sine - touch.force_x * cosine;
+    section_.moment -= couple;
+    force_.x -= touch.force_x;
+    force_.z -= touch.force_z;
+    force_.x_by[column] = force_.z_by[column + 1] = 0;
+  }
+
+  /// The rest of the rod, the points at its end, and the balance of moments there. A point of the
+  /// mantle that a trial puts beyond the end lies on its straight continuation.
+  void reach_tip() {
+    integrate_to(1);
+    contact_.theta = section_.theta;
+    contact_.x = section_.x;
+    contact_.z = section_.z;
+    contact_.energy = section_.energy;
+    const double sine = std::sin(section_.theta);
+    const double cosine = std::cos(section_.theta);
+    Row moment{section_.moment, section_.moment_by};
+    for (std::size_t i = 0; i < contact_.touches.size(); ++i) {
+      const Touch& touch = contact_.touches[i];
+      if (!is_at_end(touch)) continue;
+      const Eigen::Index column = layout_.columns[i];
+      const double a = touch.offset;
+      const double e = touch.S - 1;
+      const double arm_x = e * sine + a * cosine;
+      const double arm_z = e * cosine - a * sine;
+      Gradient arm_x_by = arm_z * section_.theta_by;
+      Gradient arm_z_by = -arm_x * section_.theta_by;
+      if (touch.where == TouchPoint::mantle) {
+        arm_x_by[column + 2] += sine;
+        arm_z_by[column + 2] += cosine;
+      } else if (touch.where == TouchPoint::face) {
+        arm_x_by[column + 2] += cosine;
+        arm_z_by[column + 2] -= sine;
+      }
+      add_rows(i, {section_.x + arm_x, section_.x_by + arm_x_by},
+               {section_.z + arm_z, section_.z_by + arm_z_by}, {section_.theta, section_.theta_by});
+      moment.value -= touch.force_x * arm_z - touch.force_z * arm_x;
+      moment.by -= touch.force_x * arm_z_by - touch.force_z * arm_x_by;
+      moment.by[column] -= arm_z;
+      moment.by[column + 1] += arm_x;
+    }
+    put(0, moment);
+  }
+
+  void put(Eigen::Index index, const Row& row) {
+    system_.residuals[index] = row.value;
+    system_.jacobian.row(index) = row.by;
+    system_.by_place.row(index) = row.by_place;
+  }
+
+  /// The gap, the tangency and the friction of a touching point.
+  void add_rows(std::size_t i, const Row& x, const Row& z, const Row& theta) {
+    Touch& touch = contact_.touches[i];
+    const double on_surface = x.value - place_.travel;
+    const ProfilePoint profile = surface_.extended(on_surface * problem_.length);
+    const double beta = std::atan(profile.slope);
+    const double bend = profile.curvature * problem_.length * std::pow(std::cos(beta), 2);  // dβ/dξ
+    touch.x = x.value;
+    touch.z = z.value;
+    touch.inclination = beta;
+    if (law_.kind == FrictionLaw::Kind::pulled) {
+      put(row_++, {x.value - law_.x, x.by});
+      touch.inclination = law_.value;
+      add_friction(i, x, 0);
+      return;
+    }
+    Row gap{place_.height - profile.height / problem_.length - z.value,
+            -profile.slope * x.by - z.by,
+            {profile.slope, 1}};
+    put(row_++, gap);
+    if (is_tangent(touch)) {
+      const double turn =
+          touch.where == TouchPoint::mantle ? touch.side * std::numbers::pi / 2 : 0.0;
+      put(row_++, {theta.value + turn - beta, theta.by - bend * x.by, {bend, 0}});
+    }
+    add_friction(i, x, bend);
+  }
+
+  void add_friction(std::size_t i, const Row& x, double bend) {
+    Touch& touch = contact_.touches[i];
+    const Eigen::Index column = layout_.columns[i];
+    const double sine = std::sin(touch.inclination);
+    const double cosine = std::cos(touch.inclination);
+    touch.normal_force = -sine * touch.force_x - cosine * touch.force_z;
+    touch.friction_force = cosine * touch.force_x - sine * touch.force_z;
+    Touching& own = system_.touching[i];
+    const double normal_turn = -touch.friction_force * bend;
+    const double friction_turn = touch.normal_force * bend;
+    own.normal_force = {touch.normal_force, normal_turn * x.by, {-normal_turn, 0}};
+    own.normal_force.by[column] -= sine;
+    own.normal_force.by[column + 1] -= cosine;
+    own.friction_force = {touch.friction_force, friction_turn * x.by, {-friction_turn, 0}};
+    own.friction_force.by[column] += cosine;
+    own.friction_force.by[column + 1] -= sine;
+    own.slip = slip_of(touch, column, x);
+    touch.slip = own.slip.value;
+    if (layout_.ratio < 0) {
+      add_law(row_++);
+      return;
+    }
+    const bool slides = law_.sliding == static_cast<std::ptrdiff_t>(i);
+    if (law_.kind == FrictionLaw::Kind::stick && !slides) {
+      put(row_++, own.slip);
+      return;
+    }
+    const double ratio = slides ? law_.value : u_[layout_.ratio];
+    Row row{touch.friction_force - ratio * touch.normal_force,
+            own.friction_force.by - ratio * own.normal_force.by,
+            own.friction_force.by_place - ratio * own.normal_force.by_place};
+    if (!slides) row.by[layout_.ratio] -= touch.normal_force;
+    put(row_++, row);
+  }
+
+  /// Of the arc of the surface: the chord, lengthened by δβ²/24, as of a circle.
+  Row slip_of(const Touch& touch, Eigen::Index column, const Row& x) const {
+    const Touch::Before& before = touch.before;
+    const double along = x.value - place_.travel - before.on_surface;
+    const double across = touch.z - place_.height - before.below;
+    const double turned = touch.inclination - before.inclination;
+    const double arc = std::copysign(std::hypot(along, across), along) * (1 + turned * turned / 24);
+    const double stretch = 1 - touch.offset * std::midpoint(touch.curvature, before.curvature);
+    const double by_x = 1 / std::cos(touch.inclination);
+    Row slip{arc - (touch.offset - before.offset) + touch.side * stretch * (touch.S - before.S),
+             by_x * x.by,
+             {-by_x, 0}};
+    if (touch.where == TouchPoint::face) slip.by[column + 2] -= 1;
+    if (touch.where == TouchPoint::mantle) slip.by[column + 2] += touch.side * stretch;
+    return slip;
+  }
+
+  void add_law(Eigen::Index index) {
+    const Touching& first = system_.touching.front();
+    const Touch& touch = contact_.touches.front();
+    system_.law = index;
+    system_.held = first.slip;
+    Row row;
+    if (law_.kind == FrictionLaw::Kind::moved) {
+      row = first.slip;
+      row.value -= law_.value;
+    } else if (law_.kind == FrictionLaw::Kind::place) {
+      row = first.slip;
+      row.value = (touch.x - place_.travel - law_.value) / std::cos(touch.inclination);
+    } else if (law_.kind == FrictionLaw::Kind::pulled) {
+      row = first.normal_force;
+    } else if (law_.kind == FrictionLaw::Kind::stick) {
+      row = layout_.ratio >= 0 ? Row{u_[layout_.ratio], unit(layout_.ratio)} : first.slip;
+    } else if (layout_.ratio >= 0) {
+      row = {u_[layout_.ratio] - law_.value, unit(layout_.ratio)};
+    } else {
+      row = {first.friction_force.value - law_.value * first.normal_force.value,
+             first.friction_force.by - law_.value * first.normal_force.by,
+             first.friction_force.by_place - law_.value * first.normal_force.by_place};
+    }
+    put(index, row);
+  }
+
+  void summarise() {
+    double normal = 0;
+    double friction = 0;
+    double weight = 0;
+    double x = 0;
+    double z = 0;
+    for (const Touch& touch : contact_.touches) {
+      normal += touch.normal_force;
+      friction += touch.friction_force;
+      const double share = std::max(touch.normal_force, 0.0);
+      weight += share;
+      x += share * touch.x;
+      z += share * touch.z;
+    }
+    contact_.normal_force = normal;
+    contact_.friction_force = friction;
+    const Touch& first = contact_.touches.front();
+    const bool is_mean = contact_.touches.size() > 1 && weight > 0;
+    contact_.contact_x = is_mean ? x / weight : first.x;
+    contact_.contact_z = is_mean ? z / weight : first.z;
+  }
+
+  const TipProblem& problem_;
+  const Surface& surface_;
+  const SurfacePlace& place_;
+  const FrictionLaw& law_;
+  const Layout& layout_;
+  TipContact& contact_;
+  Vector u_;
+  System system_;
+  Eigen::Index row_ = 1;
+  Section section_;
+  Force force_;
+};
+
+std::vector<Touch> first_touches(const TipProblem& problem, const TipContact& guess) {
+  const bool is_point = !guess.touches.empty() && guess.touches.front().where == TouchPoint::tip;
+  if (!guess.touches.empty() && !(is_point && problem.rim > 0)) return guess.touches;
+  Touch touch;
+  if (problem.rim > 0) touch.where = TouchPoint::rim;
+  touch.side = problem.side;
+  touch.offset = problem.side * problem.rim;
+  touch.force_x = guess.force_x;
+  touch.force_z = guess.force_z;
+  return {touch};
+}
+
+Vector unknowns_of(const TipContact& contact, const Layout& layout) {
+  Vector u = Vector::Zero(layout.size);
+  u[0] = contact.base_moment;
+  double normal_force = 0;
+  double friction_force = 0;
+  for (std::size_t i = 0; i < contact.touches.size(); ++i) {
+    const Touch& touch = contact.touches[i];
+    u[layout.columns[i]] = touch.force_x;
+    u[layout.columns[i] + 1] = touch.force_z;
+    if (is_tangent(touch))
+      u[layout.columns[i] + 2] = touch.where == TouchPoint::face ? touch.offset : touch.S;
+    normal_force += touch.normal_force;
+    friction_force += touch.friction_force;
+  }
+  if (layout.ratio >= 0 && normal_force > 0) u[layout.ratio] = friction_force / normal_force;
+  return u;
+}
+
+/// How the state changes with the slip and with the surface's place.
+void differentiate(const System& system, TipContact& contact) {
+  const auto factors = system.jacobian.partialPivLu();
+  contact.unknowns_by_place = -factors.solve(system.by_place);
+  const auto along = [&](const Row& row) -> Eigen::RowVector2d {
+    return row.by * contact.unknowns_by_place + row.by_place;
   };
+  Matrix held = system.jacobian;
+  held.row(system.law) = system.held.by;
+  const Vector unit = Vector::Unit(held.rows(), system.law);
+  const Vector by_slip = held.partialPivLu().solve(unit);
+  contact.normal_slope = contact.friction_slope = 0;
+  contact.force_x_by_place.setZero();
+  contact.force_z_by_place.setZero();
+  for (std::size_t i = 0; i < contact.touches.size(); ++i) {
+    const Touching& own = system.touching[i];
+    contact.normal_slope += own.normal_force.by.dot(by_slip);
+    contact.friction_slope += own.friction_force.by.dot(by_slip);
+    contact.touches[i].normal_by_place = along(own.normal_force);
+    contact.touches[i].slip_by_place = along(own.slip);
+  }
+}
+
+/// A point on a path of equilibria: the unknowns (over their scales) and the slip.
+class Path {
+ public:
+  Path(const TipProblem& problem, const Surface& surface, const SurfacePlace& place,
+       const TipContact& start)
+      : contact_(start),
+        layout_(contact_.touches),
+        assembly_(problem, surface, place, law_, layout_, contact_),
+        u_(unknowns_of(contact_, layout_)),
+        scale_(Vector::Constant(layout_.size, force_scale)) {
+    for (std::size_t i = 0; i < contact_.touches.size(); ++i)
+      if (is_tangent(contact_.touches[i])) scale_[layout_.columns[i] + 2] = 1;
+    system_ = assembly_.at(u_);
+    tangent_ = Vector::Zero(layout_.size);
+  }
+
+  void set_direction(double direction) { slip_tangent_ = direction; }
+  double slip() const { return slip_; }
+  const TipContact& contact() const { return contact_; }
+  double determinant() const { return system_.jacobian.partialPivLu().determinant(); }
+
+  /// A step along the path; false if it does not converge.
+  bool advance(double length) {
+    if (!turn()) return false;
+    const Vector u = u_;
+    const double slip = slip_;
+    u_ += length * tangent_.cwiseProduct(scale_);
+    slip_ += length * slip_tangent_;
+    for (int iteration = 0; iteration < most_path_iterations; ++iteration) {
+      evaluate();
+      Vector change(layout_.size);
+      double slip_change = 0;
+      if (!solve(-system_.residuals, 0, change, slip_change)) break;
+      u_ += change.cwiseProduct(scale_);
+      slip_ += slip_change;
+      if (u_.cwiseAbs().maxCoeff() > largest_force) break;
+      if (change.cwiseAbs().maxCoeff() + std::abs(slip_change) < path_tolerance) {
+        evaluate();
+        return true;
+      }
+    }
+    u_ = u;
+    slip_ = slip;
+    evaluate();
+    return false;
+  }
+
+ private:
+  void evaluate() {
+    law_ = {FrictionLaw::Kind::moved, slip_};
+    system_ = assembly_.at(u_);
+  }
+
+  /// The Jacobian's rows with the slip's column, and the last tangent as the last row.
+  bool solve(const Vector& residuals, double along, Vector& change, double& slip_change) const {
+    const Eigen::Index size = layout_.size;
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_unknowns + 1, most_unknowns + 1>
+        bordered = decltype(bordered)::Zero(size + 1, size + 1);
+    bordered.topLeftCorner(size, size) = system_.jacobian * scale_.asDiagonal();
+    bordered(system_.law, size) = -1;
+    bordered.bottomLeftCorner(1, size) = tangent_.transpose();
+    bordered(size, size) = slip_tangent_;
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_unknowns + 1, 1> right(size + 1);
+    right << residuals, along;
+    const auto solution = bordered.partialPivLu().solve(right).eval();
+    if (!solution.allFinite()) return false;
+    change = solution.head(size);
+    slip_change = solution[size];
+    return true;
+  }
+
+  /// The tangent here, turned the way of the last one.
+  bool turn() {
+    Vector tangent(layout_.size);
+    double slip_tangent = 0;
+    if (!solve(Vector::Zero(layout_.size), 1, tangent, slip_tangent)) return false;
+    const double norm = std::hypot(tangent.norm(), slip_tangent);
+    tangent_ = tangent / norm;
+    slip_tangent_ = slip_tangent / norm;
+    return true;
+  }
+
+  TipContact contact_;
+  Layout layout_;
+  FrictionLaw law_{FrictionLaw::Kind::moved, 0};
+  Assembly assembly_;
+  Vector u_;
+  Vector scale_;
+  System system_;
+  double slip_ = 0;
+  Vector tangent_;
+  double slip_tangent_ = 1;
+};
+
+}  // namespace
+
+TipProblem tip_problem(const Cilium& cilium, CiliumEnd end) {
+  const PlanarProblem same = planar_problem(cilium, SectionLoad{1, cilium.length(), 0});
+  TipProblem problem{.ends = same.ends, .compliance = same.compliance, .length = cilium.length()};
+  if (end == CiliumEnd::disc) problem.rim = cilium.diameter / 2 / cilium.length();
+  return problem;
+}
+
+std::optional<TipContact> solve_contact(const TipProblem& problem, const Surface& surface,
+                                        const SurfacePlace& place, const FrictionLaw& law,
+                                        const TipContact& guess) {
+  TipContact contact = guess;
+  contact.touches = first_touches(problem, guess);
+  const Layout layout(contact.touches);
+  Vector u = unknowns_of(contact, layout);
+  Assembly assembly(problem, surface, place, law, layout, contact);
   double last_change = std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
-    const Derivatives derivatives = differentiate(u);
-    Unknowns change = -derivatives.residuals.partialPivLu().solve(at(u));
+    const System system = assembly.at(u);
+    const Vector change = -system.jacobian.partialPivLu().solve(system.residuals);
     if (!change.allFinite()) return std::nullopt;
     const double relative = (change.array() / (1 + u.array().abs())).abs().maxCoeff();
-    u += change * std::min(1.0, largest_change / relative);
-    // The Jacobian is right to 1e-9 or so: the next change would be rounding error.
+    // Rounding errors stop the convergence where the rod is stiff in the direction of the surface.
     if (relative < problem.tolerance || (relative < 1e-9 && relative >= last_change / 2)) {
-      at(u);
       contact.iterations = iteration;
-      surface.at((contact.contact_x - place.travel) * problem.length);  // must be on the profile
-      Eigen::Matrix3d held_tip = derivatives.residuals;
-      held_tip.row(2) = derivatives.contact_x;
-      const Unknowns held = held_tip.partialPivLu().solve(Unknowns::UnitZ());
-      contact.normal_slope = derivatives.normal_force * held;
-      contact.friction_slope = derivatives.friction_force * held;
+      for (const Touch& touch : contact.touches)  // must be on the profile
+        surface.at((touch.x - place.travel) * problem.length);
+      differentiate(system, contact);
+      for (std::size_t i = 0; i < contact.touches.size(); ++i) {
+        contact.force_x_by_place += contact.unknowns_by_place.row(layout.columns[i]);
+        contact.force_z_by_place += contact.unknowns_by_place.row(layout.columns[i] + 1);
+      }
       return contact;
     }
+    // To and fro about a point where the surface's curvature jumps.
+    const bool is_swinging = iteration > swinging_iterations && relative > last_change / 4;
+    u += change * std::min(is_swinging ? 0.5 : 1.0, largest_change / relative);
+    for (std::size_t i = 0; i < contact.touches.size(); ++i)
+      if (contact.touches[i].where == TouchPoint::mantle &&
+          !(u[layout.columns[i] + 2] > lowest_touch))
+        return std::nullopt;
+    if (u.cwiseAbs().maxCoeff() > largest_force) return std::nullopt;
     last_change = relative;
   }
   return std::nullopt;
 }
 
-}  // namespace
-
-TipProblem tip_problem(const Cilium& cilium) {
-  const PlanarProblem same = planar_problem(cilium, SectionLoad{1, cilium.length(), 0});
-  return {.ends = same.ends, .compliance = same.compliance, .length = cilium.length()};
-}
-
 std::optional<TipContact> sliding(const TipProblem& problem, const Surface& surface,
                                   const SurfacePlace& place, double direction,
                                   const TipContact& guess) {
-  const double ratio = direction * surface.friction;
-  return solve(
-      problem, surface, place,
-      [ratio](const TipContact& contact, double) {
-        return contact.friction_force - ratio * contact.normal_force;
-      },
-      guess);
+  return solve_contact(problem, surface, place,
+                       {FrictionLaw::Kind::slip, direction * surface.friction}, guess);
 }
 
-std::optional<TipContact> pulled_aside(const TipProblem& problem, double height,
+std::optional<TipContact> pulled_aside(const TipProblem& problem, double x, double inclination,
                                        const TipContact& guess) {
-  TipProblem centre = problem;
-  centre.rim = 0;
-  return solve(
-      centre, {FlatProfile{}, 0, 0}, {height, 0},
-      [](const TipContact& contact, double) { return contact.normal_force; }, guess);
+  FrictionLaw law{FrictionLaw::Kind::pulled, inclination};
+  law.x = x;
+  return solve_contact(problem, {FlatProfile{}, 0, 0}, {}, law, guess);
 }
 
 std::optional<TipContact> sticking(const TipProblem& problem, const Surface& surface,
                                    const SurfacePlace& place, double held,
                                    const TipContact& guess) {
-  return solve(
-      problem, surface, place,
-      [held](const TipContact&, double on_surface) { return on_surface - held; }, guess);
+  return solve_contact(problem, surface, place, {FrictionLaw::Kind::place, held}, guess);
+}
+
+std::optional<TipContact> beyond_fold(const TipProblem& problem, const Surface& surface,
+                                      const SurfacePlace& place, const TipContact& contact,
+                                      double direction, double target) {
+  Path path(problem, surface, place, contact);
+  path.set_direction(direction);
+  const double first = path.determinant();
+  bool has_turned = false;
+  double step = first_path_step;
+  for (int i = 0; i < most_path_steps; ++i) {
+    const double before = path.slip();
+    if (!path.advance(step)) {
+      step /= 4;
+      if (step < shortest_path_step) return std::nullopt;
+      continue;
+    }
+    if (path.contact().energy > most_path_energy * std::max(contact.energy, 0.05))
+      return std::nullopt;
+    step = std::min(1.5 * step, longest_path_step);
+    const bool is_stable = path.determinant() * first > 0;
+    has_turned = has_turned || !is_stable;
+    if (has_turned && is_stable && (before - target) * (path.slip() - target) <= 0)
+      return solve_contact(problem, surface, place, {FrictionLaw::Kind::moved, target},
+                           path.contact());
+  }
+  return std::nullopt;
+}
+
+TipContact anchored(TipContact contact, const SurfacePlace& place) {
+  for (Touch& touch : contact.touches) {
+    touch.before = {.on_surface = touch.x - place.travel,
+                    .below = touch.z - place.height,
+                    .inclination = touch.inclination,
+                    .S = touch.S,
+                    .offset = touch.offset,
+                    .curvature = touch.curvature,
+                    .normal_force = touch.normal_force,
+                    .friction_force = touch.friction_force,
+                    .normal_by_place = touch.normal_by_place,
+                    .slip_by_place = touch.slip_by_place};
+    touch.slip = 0;
+  }
+  return contact;
+}
+
+TipContact predicted(TipContact contact, const SurfacePlace& from, const SurfacePlace& to) {
+  const Layout layout(contact.touches);
+  if (contact.unknowns_by_place.rows() != layout.size) return contact;
+  const Vector change =
+      contact.unknowns_by_place * Eigen::Vector2d(to.travel - from.travel, to.height - from.height);
+  contact.base_moment += change[0];
+  for (std::size_t i = 0; i < contact.touches.size(); ++i) {
+    Touch& touch = contact.touches[i];
+    const Eigen::Index column = layout.columns[i];
+    touch.force_x += change[column];
+    touch.force_z += change[column + 1];
+    if (touch.where == TouchPoint::face) touch.offset += change[column + 2];
+    if (touch.where == TouchPoint::mantle) touch.S += change[column + 2];
+  }
+  return contact;
 }
 
 }  // namespace ciliaval::analytic::elastica

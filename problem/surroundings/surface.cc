@@ -17,6 +17,7 @@ namespace ciliaval::surroundings {
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
+constexpr double curvature_step = 1e-5;    ///< over the distance of two points
 constexpr double most_waves = 100'000;
 
 void require(bool holds, const std::string& message) {
@@ -37,13 +38,14 @@ ProfilePoint point(const FlatProfile& /*flat*/, double /*x*/) {
 
 ProfilePoint point(const SineProfile& sine, double x) {
   const double k = two_pi / sine.wavelength;
-  return {sine.amplitude * std::sin(k * x), sine.amplitude * k * std::cos(k * x)};
+  const double height = sine.amplitude * std::sin(k * x);
+  return {height, sine.amplitude * k * std::cos(k * x), -k * k * height};
 }
 
 /// On an arc of radius r that touches the level p = 0 at x = 0 and rises.
 ProfilePoint on_arc(double radius, double x) {
   const double cosine = std::sqrt(1 - x * x / (radius * radius));
-  return {radius * (1 - cosine), x / (radius * cosine)};
+  return {radius * (1 - cosine), x / (radius * cosine), 1 / (radius * std::pow(cosine, 3))};
 }
 
 /// How far from a corner its arc touches the level side.
@@ -70,7 +72,8 @@ ProfilePoint point(const TrapezoidProfile& t, double x) {
     low = to_corner < flank_end ? on_arc(t.radius, to_corner + edge)
                                 : ProfilePoint{slope * to_corner, slope};
   }
-  return {upper ? t.height - low.height : low.height, sign * low.slope};
+  return {upper ? t.height - low.height : low.height, sign * low.slope,
+          upper ? -low.curvature : low.curvature};
 }
 
 ProfilePoint point(const SampledProfile& samples, double x) {
@@ -181,7 +184,12 @@ ProfilePoint SampledProfile::at(double x) const {
                      std::to_string(1e3 * first()) + " to " + std::to_string(1e3 * last()) +
                      " mm; the point at " + std::to_string(1e3 * x) +
                      " mm is needed: a shorter travel, or a longer profile");
-  return {cubic_->height(x), cubic_->height.prime(x)};
+  // The cubic's second derivative is linear between the points.
+  const double h = curvature_step * closest();
+  const double a = std::max(x - h, first());
+  const double b = std::min(x + h, last());
+  const double slope = cubic_->height.prime(x);
+  return {cubic_->height(x), slope, (cubic_->height.prime(b) - cubic_->height.prime(a)) / (b - a)};
 }
 
 // ------------------------------------------------------------------------------------- random
@@ -206,8 +214,10 @@ RandomProfile::RandomProfile(const Parameters& parameters) : parameters_(paramet
 ProfilePoint RandomProfile::at(double x) const {
   ProfilePoint sum;
   for (const auto& [amplitude, number, phase] : waves_) {
-    sum.height += amplitude * std::cos(number * x + phase);
+    const double height = amplitude * std::cos(number * x + phase);
+    sum.height += height;
     sum.slope -= number * amplitude * std::sin(number * x + phase);
+    sum.curvature -= number * number * height;
   }
   return sum;
 }
@@ -228,6 +238,7 @@ ProfilePoint Surface::extended(double x) const {
   const double inside = std::clamp(x, samples->first(), samples->last());
   ProfilePoint result = at(inside);
   result.height += result.slope * (x - inside);
+  if (x != inside) result.curvature = 0;
   return result;
 }
 

@@ -11,10 +11,11 @@
 
 namespace ciliaval::surroundings {
 
-/// Height p of a profile at a point, and its derivative by the distance x along it.
+/// Height p of a profile at a point, and its derivatives by the distance x along it.
 struct ProfilePoint {
-  double height = 0;  ///< p, m, positive towards the cilium
-  double slope = 0;   ///< p′
+  double height = 0;     ///< p, m, positive towards the cilium
+  double slope = 0;      ///< p′
+  double curvature = 0;  ///< p″, 1/m; one-sided where it jumps
 };
 
 /// p = 0.

@@ -9,6 +9,7 @@
 namespace ciliaval::compare::models::entries {
 namespace {
 
+using analytic::elastica::CiliumEnd;
 using analytic::elastica::Elastica;
 using analytic::elastica::ElasticaOptions;
 
@@ -36,6 +37,10 @@ input::MechanicsEntry elastica() {
                                  {"height", ElasticaOptions::Form::height}},
                                 "`arclength`: dθ/dS = M/(EI), any load; `height`: the paper's "
                                 "quadrature in z (Eq. 1-4), `contact`, `flow` and `probe` only."),
+                  input::choice(&ElasticaOptions::tip, "tip",
+                                {{"rim", CiliumEnd::disc}, {"point", CiliumEnd::point}},
+                                "`sweep`: `rim`, the end is a disc with a rim and a mantle that "
+                                "touch; `point`, the end of the centreline does."),
                   input::option(&ElasticaOptions::tolerance, "tolerance", tolerance_range,
                                 "Relative, of position over length and of angle.")},
       .refinements = {tolerances({1e-4, 1e-6, 1e-8, 1e-10, 1e-12})},
