@@ -13,34 +13,27 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double longest_step = 2e-3;     ///< of the surface, in L
-constexpr double shortest_step = 1e-8;    ///< shorter is a jump
-constexpr double feature_steps = 10;      ///< steps on the smallest feature of a surface, at least
-constexpr double bracket = 1e-6;          ///< of a change of status, in L
-constexpr double touch_depth = 1e-8;      ///< of the first contact, in L
-constexpr double largest_turn = 0.05;     ///< of a step, rad
-constexpr double work_tolerance = 1e-6;   ///< correction of a step's work, over the elastic energy
-constexpr double small_energy = 1e-3;     ///< floor of the elastic energy there
-constexpr double vanishing_loss = 1e-7;   ///< less is no jump
-constexpr double straight_energy = 1e-6;  ///< with less, stiffnesses change without bounds
-constexpr double brush_height = 0.6;      ///< of the tip, bent aside, before it is pressed on
-constexpr double steepest_brush = 1.4;    ///< angle up to which it is bent aside, rad
+constexpr double longest_step = 2e-3;    ///< of the surface, in L
+constexpr double shortest_step = 1e-8;   ///< shorter is a jump
+constexpr double feature_steps = 10;     ///< steps on the smallest feature of a surface, at least
+constexpr double bracket = 1e-6;         ///< of a change of status, in L
+constexpr double touch_depth = 1e-8;     ///< of the first contact, in L
+constexpr double largest_turn = 0.05;    ///< of a step, rad
+constexpr double work_tolerance = 3e-7;  ///< of the balance of a step, over its works
+constexpr double energy_tolerance = 1e-10;  ///< of the same, over the elastic energy
+constexpr double small_energy = 1e-3;       ///< floor of the elastic energy there
+constexpr double vanishing_loss = 1e-7;     ///< less is no jump
+constexpr double straight_energy = 1e-6;    ///< with less, stiffnesses change without bounds
+constexpr double brush_height = 0.6;        ///< of the tip, bent aside, before it is pressed on
+constexpr double steepest_brush = 1.4;      ///< angle up to which it is bent aside, rad
 
-/// ∫ f dx over a step by the trapezoidal rule, and the end correction Δx² (f₀′ − f₁′)/12 that makes
-/// it Hermite's, of order 4; no larger than a quarter of the change of f would make it, for at a
-/// fold and at a change of status slopes say nothing.
-struct Quadrature {
-  double trapezoid;
-  double correction;
-
-  Quadrature(double f0, double f1, double slope0, double slope1, double dx)
-      : trapezoid((f0 + f1) / 2 * dx), correction((slope0 - slope1) * dx * dx / 12) {
-    const double most = std::abs((f1 - f0) * dx) / 4;
-    if (!(std::abs(correction) <= most)) correction = std::copysign(most, correction);
-    if (!std::isfinite(correction)) correction = 0;
-  }
-  double value() const { return trapezoid + correction; }
-};
+/// ∫ f dx over a step by the trapezoidal rule with the end correction Δx² (f₀′ − f₁′)/12 that makes
+/// it Hermite's, of order 4; at most a quarter of |Δf Δx|, for at a fold slopes say nothing.
+double integral(double f0, double f1, double slope0, double slope1, double dx) {
+  const double most = std::abs((f1 - f0) * dx) / 4;
+  const double correction = (slope0 - slope1) * dx * dx / 12;
+  return (f0 + f1) / 2 * dx + (std::isfinite(correction) ? std::clamp(correction, -most, most) : 0);
+}
 
 /// Rates of a state along a way of the surface (unit vector in height and travel).
 struct Rates {
@@ -162,19 +155,18 @@ bool Follower::is_smooth(const TipState& next, double step) const {
   if (next.status.touch != Touch::face && !next.is_held_stable) return false;
   if ((next.angles - last.angles).lpNorm<Eigen::Infinity>() > largest_turn) return false;
   if (next.status != last.status) return step <= bracket;
-  // At a corner of the slope's curvature the stiffness and the forces' rates have a jump.
-  if (step <= bracket) return true;
-  const bool is_straight = std::max(next.energy, last.energy) < straight_energy;
-  if (slides && !is_straight &&
-      !(next.stiffness > last.stiffness / 4 && next.stiffness < 4 * last.stiffness))
+  // The forces have corners where the slope's curvature jumps; the works do not balance beyond one.
+  const Works works = works_until(next);
+  if (std::abs(next.energy - last.energy - works.surface + works.friction) >
+      work_tolerance * (std::abs(works.surface) + works.friction) +
+          energy_tolerance * std::max(next.energy, small_energy))
     return false;
-  const Vector2d way(next.place.height - last.place.height, next.place.travel - last.place.travel);
-  const Vector2d change = (last.rates - next.rates).middleRows(last.angles.size(), 2) * way;
-  return std::abs(change.dot(Vector2d(way[1], way[0]))) / 12 <=
-         work_tolerance * std::max({next.energy, last.energy, small_energy});
+  const bool is_straight = std::max(next.energy, last.energy) < straight_energy;
+  return step <= bracket || !slides || is_straight ||
+         (next.stiffness > last.stiffness / 4 && next.stiffness < 4 * last.stiffness);
 }
 
-void Follower::accept(const TipState& next) {
+Follower::Works Follower::works_until(const TipState& next) const {
   const TipState& last = now_.state;
   const Vector2d way(next.place.height - last.place.height, next.place.travel - last.place.travel);
   const double length = way.norm();
@@ -183,17 +175,22 @@ void Follower::accept(const TipState& next) {
   const bool same = next.status == last.status;
   const Rates r0(tip_, last, unit);
   const Rates r1(tip_, next, unit);
-  const Quadrature work(last.force.dot(pull), next.force.dot(pull), same ? r0.force.dot(pull) : 0,
-                        same ? r1.force.dot(pull) : 0, length);
-  now_.surface_work += work.value();
-  if (next.status.slip != 0 && tip_.friction() > 0) {
-    const double slide = tip_.slid(next, start_of(tip_, last, next.status.touch));
-    const bool along = same && r0.slide * slide > 0 && r1.slide * slide > 0;
-    const Quadrature friction(last.friction_force, next.friction_force,
-                              along ? r0.friction_by_slide : 0, along ? r1.friction_by_slide : 0,
-                              slide);
-    now_.friction_work -= friction.value();
-  }
+  Works works;
+  works.surface = integral(last.force.dot(pull), next.force.dot(pull),
+                           same ? r0.force.dot(pull) : 0, same ? r1.force.dot(pull) : 0, length);
+  if (next.status.slip == 0 || tip_.friction() == 0) return works;
+  const double slide = tip_.slid(next, start_of(tip_, last, next.status.touch));
+  const bool along = same && r0.slide * slide > 0 && r1.slide * slide > 0;
+  works.friction =
+      -integral(last.friction_force, next.friction_force, along ? r0.friction_by_slide : 0,
+                along ? r1.friction_by_slide : 0, slide);
+  return works;
+}
+
+void Follower::accept(const TipState& next) {
+  const Works works = works_until(next);
+  now_.surface_work += works.surface;
+  now_.friction_work += works.friction;
   now_.state = next;
 }
 

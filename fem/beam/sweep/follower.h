@@ -26,9 +26,10 @@ struct Sample {
 };
 
 /// Follows the branch of equilibria under the surface, place by place. At the first place the tip
-/// comes back from far ahead, bent aside, until the surface holds it. A step is halved until its
-/// status goes on smoothly; a change of status is bracketed to 1e-6 lengths. Where none goes on
-/// over 1e-8 lengths, damped dynamics leads to the next equilibrium (relaxation.h).
+/// comes back from far ahead, bent aside, until the surface holds it. A step is divided until its
+/// status goes on and its works balance with the elastic energy; a change of status is bracketed to
+/// 1e-6 lengths. Where none goes on over 1e-8 lengths, damped dynamics leads to the next
+/// equilibrium (relaxation.h).
 class Follower {
  public:
   explicit Follower(const Tip& tip, const RelaxationOptions& relaxation = {});
@@ -39,10 +40,17 @@ class Follower {
   Sample go(const Place& target);
 
  private:
+  /// Over a step, without units.
+  struct Works {
+    double surface = 0;
+    double friction = 0;
+  };
+
   bool advance(const Place& place, double at, double step);
   bool is_smooth(const TipState& next, double step) const;
   void fall(const Place& place, double at);
   void accept(const TipState& next);
+  Works works_until(const TipState& next) const;
   /// The state that the rates promise.
   TipState predicted(const Place& place) const;
   /// Throws InputError where the touching point is beyond the ends of a profile.

@@ -6,7 +6,7 @@
 namespace ciliaval::fem::beam::sweep {
 
 struct RelaxationOptions {
-  double largest_change = 5e-3;  ///< of an angle (rad) or of the touching point (in L) in a step
+  double largest_change = 1e-3;  ///< of an angle (rad) or of the touching point (in L) in a step
 };
 
 /// What a tip comes to that is not in equilibrium, and what that costs.

@@ -9,6 +9,7 @@
 
 #include "../beams.h"
 #include "fem/beam/cilium_beam.h"
+#include "fem/beam/sweep/follower.h"
 #include "fem/beam/sweep/tip.h"
 #include "sweeps.h"
 
@@ -88,30 +89,28 @@ TEST(PlaneBeam, IsTheFullBeamsEquilibrium) {
     const double R = 0.075;
     const surroundings::Surface surface{surroundings::SineProfile{1e-3, 30e-3}, 0.3, 0};
     const Tip tip(s.beam, surface, sweeps::L, R, 1e-13, 50);
-    TipState guess = tip.straight({0.9, 0});
-    guess.angles = s.beam.pulled_aside(0.1);
-    guess.pair = {0.45, -R};
-    const auto state = tip.solve({Touch::rear, 1}, {0.9, 0}, guess, guess.pair);
-    ASSERT_TRUE(state);
+    Follower follower(tip);
+    const TipState state = follower.begin({0.9, 0}).state;
+    ASSERT_EQ(state.status.touch, Touch::rear);
     const Vector3 e(std::cos(azimuth), std::sin(azimuth), 0);
     const auto in_space = [&](const Vector2d& v) -> Vector3 {
       return v[0] * e + v[1] * Vector3::UnitZ();
     };
-    const Vector3 force = system.force_scale() * in_space(state->force);
-    const Vector3 arm = system.length_scale() * in_space(-R * d1(state->angle()));
-    const State full = s.beam.state(state->angles, state->force, azimuth);
+    const Vector3 force = system.force_scale() * in_space(state.force);
+    const Vector3 arm = system.length_scale() * in_space(-R * d1(state.angle()));
+    const State full = s.beam.state(state.angles, state.force, azimuth);
     const Eigen::VectorXd residual =
         system.residual(full, beams::end_load(s.full.loaded, force, arm.cross(force)));
     double worst = 0;
     for (std::size_t i = 0; i < system.n_unknowns(); ++i)
       if (!system.supported()[i])
         worst = std::max(worst, std::abs(residual[static_cast<Index>(i)]));
-    EXPECT_LT(measured("residual", worst / state->force.norm()), 1e-12);
-    EXPECT_GT(state->angle(), 0.3);
-    EXPECT_LT((full.position.back() / system.length_scale() - in_space(state->tip)).norm(), 1e-13);
+    EXPECT_LT(measured("residual", worst / state.force.norm()), 1e-12);
+    EXPECT_GT(state.angle(), 0.3);
+    EXPECT_LT((full.position.back() / system.length_scale() - in_space(state.tip)).norm(), 1e-13);
     // The energy is that of the full beam, whose potential is E − F·r.
     EXPECT_NEAR(system.potential_energy(full, {}) / (system.force_scale() * system.length_scale()),
-                state->energy, 1e-12 * state->energy);
+                state.energy, 1e-12 * state.energy);
   }
 }
 

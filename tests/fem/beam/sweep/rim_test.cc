@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 #include "../beams.h"
 #include "analytic/elastica/tip_contact.h"
@@ -58,11 +60,19 @@ double least_gap(const MechanicsStep& step, const surroundings::Surface& surface
   return least;
 }
 
-/// Whatever touches, nothing of the end section is in the surface: at the plateau's end the face
-/// lies on the edge.
+/// A plateau with edges that are rounder than the end section is wide.
+surroundings::Surface gentle(double friction) {
+  return {surroundings::TrapezoidProfile{
+              .height = 2e-3, .top = 15e-3, .bottom = 15e-3, .flank = 4e-3, .radius = 8e-3},
+          friction, 0};
+}
+
+/// Whatever touches, nothing of the end section is in the surface; at the end of a gentle plateau
+/// the face lies on the edge.
 TEST(BeamRim, KeepsTheFaceOutOfTheSurface) {
-  for (const double mu : {0.0, 0.3}) {
-    const surroundings::Surface surface = step(mu);
+  for (const auto& [surface, mu] : {std::pair(step(0), 0.0), std::pair(step(0.3), 0.3),
+                                    std::pair(gentle(0), 0.0), std::pair(gentle(0.3), 0.3)}) {
+    const bool is_gentle = std::get<surroundings::TrapezoidProfile>(surface.profile).radius > 1e-3;
     const auto steps = solved(disc, paper(), path(surface, straight_on(1e-3, 1.7 * L, 850)));
     bool inside = false;
     for (const MechanicsStep& step : steps) {
@@ -78,16 +88,17 @@ TEST(BeamRim, KeepsTheFaceOutOfTheSurface) {
       EXPECT_LE(std::abs(eta), 1.5e-3 * (1 + 1e-8));
       inside = inside || std::abs(eta) < 1.4e-3;
     }
-    EXPECT_TRUE(inside) << mu;
+    EXPECT_EQ(inside, is_gentle && mu > 0) << mu;
     EXPECT_GE(jumps(steps).size(), 1U);
   }
 }
 
 /// Oracle: a column under pressure, N = δ/Σ(l/EA). A flat surface that comes down on the straight
-/// cilium lies flush on it, and both edges bear half.
+/// cilium lies flush on it, and both edges bear half. At first it must be higher than the edge of a
+/// bent cilium, R²/2L.
 TEST(BeamRim, IsPressedFlush) {
   Places places;
-  for (int i = -2; i <= 10; ++i) places.emplace_back(0.01e-3 * i, 0);
+  for (int i = -8; i <= 10; ++i) places.emplace_back(0.01e-3 * i, 0);
   const auto steps = solved(disc, paper(), path(flat(0.3), places));
   double compliance = 0;
   for (const Segment& s : paper().segments)
@@ -109,7 +120,7 @@ TEST(BeamRim, IsPressedFlush) {
 /// From flush the surface drags the cilium along: it holds, tips over its edge, slides; and then it
 /// is where a long sweep leads.
 TEST(BeamRim, TipsOverFromFlush) {
-  Places places{{-0.01e-3, 0}, {0.05e-3, 0}};
+  Places places{{-0.08e-3, 0}, {0.05e-3, 0}};
   for (int i = 1; i <= 200; ++i) places.emplace_back(0.05e-3, 5e-3 * i / 200);
   const auto steps = solved(disc, paper(), path(flat(0.3), places));
   ASSERT_TRUE(steps.back().contact) << steps.back().message;

@@ -37,6 +37,13 @@ struct Row {
 
 const fem::beam::BeamOptions inextensible = options(true, TipShape::point);
 
+/// With more elements: the base moment is extrapolated from the Gauss points.
+const fem::beam::BeamOptions finer = [] {
+  fem::beam::BeamOptions result = inextensible;
+  result.refinement = 2;
+  return result;
+}();
+
 double bending_stiffness(const Cilium& cilium) {
   return cilium.segments[0].young_modulus * cilium.second_moment();
 }
@@ -54,7 +61,7 @@ TEST(BeamSweep, HoldsTheFlatSurfacesTable) {
                          {0.3, 0.9, 36.10026054, 1.6804930144, 0.3924850548, 1.1133015067},
                          {0.3, 0.8, 51.70288240, 2.0447813201, 0.5360274743, 1.5868064834}}) {
     const auto steps =
-        solved(inextensible, uniform(),
+        solved(finer, uniform(),
                path(flat(row.mu), {{(1 - row.height) * L, 0}, {(1 - row.height) * L, 0.1 * L}}));
     for (const MechanicsStep& step : steps) {
       ASSERT_TRUE(step.contact) << step.message;
@@ -84,11 +91,11 @@ TEST(BeamSweep, ReachesTheEndOfTheReversedBranch) {
     const double end = std::cos(phi) * (2 * boost::math::ellint_2(k) / K - 1);
     EXPECT_NEAR(end, mu == 0.1 ? 0.9925673333 : 0.9375749321, 1e-10);
     Places places{{0.1 * L, 0}, {0.1 * L, 0.1 * L}};
-    for (int i = 1; i <= 20; ++i) places.emplace_back(0.1 * L, (0.1 - 0.02 * i) * L);
+    for (int i = 1; i <= 200; ++i) places.emplace_back(0.1 * L, (0.1 - 0.002 * i) * L);
     const std::size_t turned = places.size();
     for (int i = 1; i <= 20; ++i)
-      places.emplace_back(std::lerp(0.1, 1 - end, i / 20.0) * L, (-0.3 - 0.02 * i) * L);
-    const auto steps = solved(inextensible, uniform(), path(flat(mu), places));
+      places.emplace_back(std::lerp(0.1, 1 - end, i / 20.0) * L, (-0.3 - 0.1 * i) * L);
+    const auto steps = solved(finer, uniform(), path(flat(mu), places));
     ASSERT_TRUE(steps.back().contact) << steps.back().message;
     EXPECT_EQ(steps[1].contact->state, State::slip);
     EXPECT_EQ(steps[2].contact->state, State::stick);
@@ -238,7 +245,7 @@ TEST(BeamSweep, LosesTheViscousWork) {
   const sweep::Tip tip(plane, surface, L, 0, 1e-12, 30);
   double errors[2];
   int i = 0;
-  for (const double change : {5e-3, 1.25e-3}) {
+  for (const double change : {4e-3, 1e-3}) {
     sweep::Follower follower(tip, {change});
     follower.begin({0.95, 1.5});
     const sweep::Sample sample = follower.go({0.95, 1.65});
@@ -321,7 +328,7 @@ TEST(BeamSweep, RefusesWhatIsNoSweep) {
   two.push_back(path(flat(0.3), {{1e-3, 1e-3}})[0]);
   EXPECT_THROW(beam.solve(paper(), two), InputError);
   fem::beam::BeamOptions fine = options(false, TipShape::point);
-  fine.refinement = 12;
+  fine.refinement = 10;
   EXPECT_THROW(solved(fine, paper(), path(flat(0.3), {{1e-3, 0}})), InputError);
 }
 
