@@ -47,34 +47,40 @@ bool is_admissible(const Tip& tip, const TipState& state, const Pair& start) {
   }
   const double R = tip.radius();
   if (R == 0) return true;
-  if (state.status.touch == Touch::face)
-    return std::abs(state.pair.eta) <= R * (1 + slack) &&
-           std::min(tip.gap(state, state.place, -R), tip.gap(state, state.place, R)) > -slack;
-  const double side = state.status.touch == Touch::rear ? -1 : 1;
+  if (deepest(tip, state, state.place).depth > slack) return false;
+  if (state.status.touch == Touch::face) return std::abs(state.pair.eta) <= R * (1 + slack);
   // Inwards along the section the surface must not come nearer.
-  return side * std::sin(tip.slope_angle(state.pair.xi) - state.angle()) > -slack &&
-         tip.gap(state, state.place, -side * R) > -slack;
+  const double side = state.status.touch == Touch::rear ? -1 : 1;
+  return side * std::sin(tip.slope_angle(state.pair.xi) - state.angle()) > -slack;
 }
 
-Pair start_of(const Tip& tip, const TipState& before, Touch touch) {
-  if (before.status.touch != Touch::none &&
-      (before.status.touch == touch || before.status.touch == Touch::face || touch == Touch::face))
-    return before.pair;
-  const double eta = touch == Touch::front ? tip.radius() : -tip.radius();
-  return {tip.point_at(before, eta)[0] - before.place.travel, eta};
+Pair start_of(const Tip& tip, const TipState& before, const Pair& after, Touch touch) {
+  if (before.status.touch == touch || before.status.touch == Touch::face) return before.pair;
+  return {tip.point_at(before, after.eta)[0] - before.place.travel, after.eta};
 }
 
 std::optional<TipState> go_on(const Tip& tip, const Place& place, const TipState& before,
                               const TipState& guess, const Viscosity& viscosity, int& iterations) {
+  // Where the face comes to lie on the surface: where the end that touches would let it through.
+  TipState through = before;
   for (const Touch touch : neighbours(tip, before)) {
-    const Pair start = start_of(tip, before, touch);
     const bool same_touch = touch == before.status.touch;
+    TipState first = same_touch ? guess : before;
+    if (!same_touch && before.status.touch != Touch::face) {
+      first = through;
+      const double eta = touch == Touch::face    ? deepest(tip, through, place).eta
+                         : touch == Touch::front ? tip.radius()
+                                                 : -tip.radius();
+      first.pair = {tip.point_at(through, eta)[0] - place.travel, eta};
+    }
+    const Pair start = start_of(tip, before, first.pair, touch);
     for (const int slip : frictions(tip, before.status.slip)) {
-      TipState first = same_touch && slip == before.status.slip ? guess : before;
-      if (!same_touch) first.pair = start;
-      const auto state = tip.solve({touch, slip}, place, first, start, viscosity);
+      const bool same = same_touch && slip == before.status.slip;
+      const auto state =
+          tip.solve({touch, slip}, place, same_touch && !same ? before : first, start, viscosity);
       iterations += state ? state->iterations : 0;
       if (state && is_admissible(tip, *state, start)) return state;
+      if (state && same_touch && state->normal_force > 0) through = *state;
     }
   }
   return std::nullopt;
@@ -91,9 +97,10 @@ std::optional<TipState> land(const Tip& tip, const Place& place, const TipState&
     touches = deep.eta < 0 ? std::vector{Touch::rear, Touch::face, Touch::front}
                            : std::vector{Touch::front, Touch::face, Touch::rear};
   for (const Touch touch : touches) {
-    Pair start = start_of(tip, open, touch);
-    if (touch == Touch::face)
-      start = {tip.point_at(open, deep.eta)[0] - open.place.travel, deep.eta};
+    const double eta = touch == Touch::face    ? deep.eta
+                       : touch == Touch::front ? tip.radius()
+                                               : -tip.radius();
+    const Pair start = start_of(tip, open, {0, eta}, touch);
     for (const int slip : frictions(tip, drag)) {
       TipState guess = through;
       guess.pair = {tip.point_at(through, start.eta)[0] - place.travel, start.eta};
@@ -116,7 +123,18 @@ Depth deepest(const Tip& tip, const TipState& state, const Place& place) {
     const double depth = -tip.gap(state, place, eta);
     if (depth > result.depth) result = {depth, eta};
   }
-  return result;
+  // Between the neighbours of a sample in between: where the slopes agree.
+  if (std::abs(result.eta) == R) return result;
+  double low = result.eta - 2 * R / samples;
+  double high = result.eta + 2 * R / samples;
+  while (high - low > 1e-9 * R) {
+    const double middle = std::midpoint(low, high);
+    const double xi = tip.point_at(state, middle)[0] - place.travel;
+    (tip.slope_angle(xi) > state.angle() ? low : high) = middle;
+  }
+  const double eta = std::midpoint(low, high);
+  const double depth = -tip.gap(state, place, eta);
+  return depth > result.depth ? Depth{depth, eta} : result;
 }
 
 }  // namespace ciliaval::fem::beam::sweep

@@ -179,7 +179,7 @@ Follower::Works Follower::works_until(const TipState& next) const {
   works.surface = integral(last.force.dot(pull), next.force.dot(pull),
                            same ? r0.force.dot(pull) : 0, same ? r1.force.dot(pull) : 0, length);
   if (next.status.slip == 0 || tip_.friction() == 0) return works;
-  const double slide = tip_.slid(next, start_of(tip_, last, next.status.touch));
+  const double slide = tip_.slid(next, start_of(tip_, last, next.pair, next.status.touch));
   const bool along = same && r0.slide * slide > 0 && r1.slide * slide > 0;
   works.friction =
       -integral(last.friction_force, next.friction_force, along ? r0.friction_by_slide : 0,
