@@ -80,7 +80,7 @@ std::optional<TipState> go_on(const Tip& tip, const Place& place, const TipState
           tip.solve({touch, slip}, place, same_touch && !same ? before : first, start, viscosity);
       iterations += state ? state->iterations : 0;
       if (state && is_admissible(tip, *state, start)) return state;
-      if (state && same_touch && state->normal_force > 0) through = *state;
+      if (state && same) through = *state;
     }
   }
   return std::nullopt;
@@ -123,14 +123,16 @@ Depth deepest(const Tip& tip, const TipState& state, const Place& place) {
     const double depth = -tip.gap(state, place, eta);
     if (depth > result.depth) result = {depth, eta};
   }
-  // Between the neighbours of a sample in between: where the slopes agree.
-  if (std::abs(result.eta) == R) return result;
-  double low = result.eta - 2 * R / samples;
-  double high = result.eta + 2 * R / samples;
+  // Between the neighbours of this sample: where the slopes agree.
+  const auto is_rising = [&](double eta) {
+    return tip.slope_angle(tip.point_at(state, eta)[0] - place.travel) > state.angle();
+  };
+  double low = std::max(result.eta - 2 * R / samples, -R);
+  double high = std::min(result.eta + 2 * R / samples, R);
+  if (!is_rising(low) || is_rising(high)) return result;
   while (high - low > 1e-9 * R) {
     const double middle = std::midpoint(low, high);
-    const double xi = tip.point_at(state, middle)[0] - place.travel;
-    (tip.slope_angle(xi) > state.angle() ? low : high) = middle;
+    (is_rising(middle) ? low : high) = middle;
   }
   const double eta = std::midpoint(low, high);
   const double depth = -tip.gap(state, place, eta);

@@ -60,21 +60,11 @@ double least_gap(const MechanicsStep& step, const surroundings::Surface& surface
   return least;
 }
 
-/// A plateau with edges that are rounder than the end section is wide.
-surroundings::Surface gentle(double friction) {
-  return {surroundings::TrapezoidProfile{
-              .height = 2e-3, .top = 15e-3, .bottom = 15e-3, .flank = 4e-3, .radius = 8e-3},
-          friction, 0};
-}
-
-/// Whatever touches, nothing of the end section is in the surface; at the end of a gentle plateau
-/// the face lies on the edge.
+/// Whatever touches, nothing of the end section is in the surface.
 TEST(BeamRim, KeepsTheFaceOutOfTheSurface) {
-  for (const auto& [surface, mu] : {std::pair(step(0), 0.0), std::pair(step(0.3), 0.3),
-                                    std::pair(gentle(0), 0.0), std::pair(gentle(0.3), 0.3)}) {
-    const bool is_gentle = std::get<surroundings::TrapezoidProfile>(surface.profile).radius > 1e-3;
+  for (const double mu : {0.0, 0.3}) {
+    const surroundings::Surface surface = step(mu);
     const auto steps = solved(disc, paper(), path(surface, straight_on(1e-3, 1.7 * L, 850)));
-    bool inside = false;
     for (const MechanicsStep& step : steps) {
       ASSERT_TRUE(step.contact) << step.message;
       EXPECT_EQ(step.message, "");
@@ -86,9 +76,7 @@ TEST(BeamRim, KeepsTheFaceOutOfTheSurface) {
       const double eta = (step.contact->point - tip.position)
                              .dot(Vector3(std::cos(tip.theta()), 0, -std::sin(tip.theta())));
       EXPECT_LE(std::abs(eta), 1.5e-3 * (1 + 1e-8));
-      inside = inside || std::abs(eta) < 1.4e-3;
     }
-    EXPECT_EQ(inside, is_gentle && mu > 0) << mu;
     EXPECT_GE(jumps(steps).size(), 1U);
   }
 }
@@ -115,6 +103,23 @@ TEST(BeamRim, IsPressedFlush) {
     EXPECT_NEAR(steps[i].contact->point[0], 0, 1e-6 * L);
     EXPECT_NEAR(steps[i].deformation->centreline.at(L).theta(), 0, 1e-7);
   }
+}
+
+/// Oracle: the same column. The crest of a wave, whose curvature the straight cilium's end section
+/// can roll on, touches the middle of its face.
+TEST(BeamRim, IsPressedByACrest) {
+  const surroundings::Surface wave{surroundings::SineProfile{0.2e-3, 40e-3}, 0.3, 0};
+  Places places;
+  for (int i = -60; i <= 10; ++i) places.emplace_back(-0.2e-3 + 0.01e-3 * i, 30e-3);
+  const auto steps = solved(disc, paper(), path(wave, places));
+  const SurfaceContact& contact = steps.back().contact.value();
+  double compliance = 0;
+  for (const Segment& s : paper().segments)
+    compliance += s.length / (s.young_modulus * paper().area());
+  EXPECT_EQ(steps.front().contact->state, State::open);
+  EXPECT_EQ(contact.state, State::stick);
+  EXPECT_NEAR(contact.normal_force * compliance / 0.1e-3, 1, 1e-6);
+  EXPECT_NEAR(contact.point[0], 0, 1e-6 * L);
 }
 
 /// From flush the surface drags the cilium along: it holds, tips over its edge, slides; and then it
