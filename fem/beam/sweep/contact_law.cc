@@ -18,12 +18,14 @@ std::vector<Touch> neighbours(const Tip& tip, const TipState& before) {
   if (tip.radius() == 0) return {Touch::rear};
   switch (before.status.touch) {
     case Touch::front:
-      return {Touch::front, Touch::face, Touch::rear};
+      return {Touch::front, Touch::face, Touch::both, Touch::rear};
+    case Touch::both:
+      return {Touch::both, Touch::rear, Touch::front, Touch::face};
     case Touch::face:
-      return before.pair.eta < 0 ? std::vector{Touch::face, Touch::rear, Touch::front}
-                                 : std::vector{Touch::face, Touch::front, Touch::rear};
+      return before.pair.eta < 0 ? std::vector{Touch::face, Touch::rear, Touch::both, Touch::front}
+                                 : std::vector{Touch::face, Touch::front, Touch::both, Touch::rear};
     default:
-      return {Touch::rear, Touch::face, Touch::front};
+      return {Touch::rear, Touch::face, Touch::both, Touch::front};
   }
 }
 
@@ -47,16 +49,13 @@ bool is_admissible(const Tip& tip, const TipState& state, const Pair& start) {
   }
   const double R = tip.radius();
   if (R == 0) return true;
+  if (state.status.touch == Touch::both && !(state.both.head<2>().minCoeff() > 0)) return false;
   if (deepest(tip, state, state.place).depth > slack) return false;
+  if (state.status.touch == Touch::both) return true;
   if (state.status.touch == Touch::face) return std::abs(state.pair.eta) <= R * (1 + slack);
   // Inwards along the section the surface must not come nearer.
   const double side = state.status.touch == Touch::rear ? -1 : 1;
   return side * std::sin(tip.slope_angle(state.pair.xi) - state.angle()) > -slack;
-}
-
-Pair start_of(const Tip& tip, const TipState& before, const Pair& after, Touch touch) {
-  if (before.status.touch == touch || before.status.touch == Touch::face) return before.pair;
-  return {tip.point_at(before, after.eta)[0] - before.place.travel, after.eta};
 }
 
 std::optional<TipState> go_on(const Tip& tip, const Place& place, const TipState& before,
@@ -66,14 +65,14 @@ std::optional<TipState> go_on(const Tip& tip, const Place& place, const TipState
   for (const Touch touch : neighbours(tip, before)) {
     const bool same_touch = touch == before.status.touch;
     TipState first = same_touch ? guess : before;
-    if (!same_touch && before.status.touch != Touch::face) {
+    if (!same_touch && touch != Touch::both && before.status.touch != Touch::face) {
       first = through;
       const double eta = touch == Touch::face    ? deepest(tip, through, place).eta
                          : touch == Touch::front ? tip.radius()
                                                  : -tip.radius();
       first.pair = {tip.point_at(through, eta)[0] - place.travel, eta};
     }
-    const Pair start = start_of(tip, before, first.pair, touch);
+    const Pair start = tip.start_of(before, first.pair, touch);
     for (const int slip : frictions(tip, before.status.slip)) {
       const bool same = same_touch && slip == before.status.slip;
       const auto state =
@@ -100,7 +99,7 @@ std::optional<TipState> land(const Tip& tip, const Place& place, const TipState&
     const double eta = touch == Touch::face    ? deep.eta
                        : touch == Touch::front ? tip.radius()
                                                : -tip.radius();
-    const Pair start = start_of(tip, open, {0, eta}, touch);
+    const Pair start = tip.start_of(open, {0, eta}, touch);
     for (const int slip : frictions(tip, drag)) {
       TipState guess = through;
       guess.pair = {tip.point_at(through, start.eta)[0] - place.travel, start.eta};

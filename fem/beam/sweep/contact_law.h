@@ -12,11 +12,6 @@ namespace ciliaval::fem::beam::sweep {
 /// the section's ends in the surface.
 bool is_admissible(const Tip& tip, const TipState& state, const Pair& start);
 
-/// The pair from which the contact has come to `after`, with the surface as it was `before`: that
-/// of before where the touching point moves without a break, else where the same point of the
-/// section was then.
-Pair start_of(const Tip& tip, const TipState& before, const Pair& after, Touch touch);
-
 /// The first admissible state at a place: of the status that was, else of another friction, else of
 /// another touch. `guess` is of the status that was. Empty: the contact cannot go on here.
 std::optional<TipState> go_on(const Tip& tip, const Place& place, const TipState& before,

@@ -122,6 +122,10 @@ TipState Follower::predicted(const Place& place) const {
   const Eigen::VectorXd change = guess.rates * way;
   const Index n = guess.angles.size();
   guess.angles += change.head(n);
+  if (guess.status.touch == Touch::both) {
+    guess.both += change.tail<4>();
+    return guess;
+  }
   guess.force += change.segment<2>(n);
   guess.pair.xi += change[n + 2];
   guess.pair.eta += change[n + 3];
@@ -152,7 +156,8 @@ bool Follower::is_smooth(const TipState& next, double step) const {
   const TipState& last = now_.state;
   const bool slides = next.status.slip != 0;
   if (slides && !(next.stiffness > 0)) return false;
-  if (next.status.touch != Touch::face && !next.is_held_stable) return false;
+  const bool is_end = next.status.touch == Touch::rear || next.status.touch == Touch::front;
+  if (is_end && !next.is_held_stable) return false;
   if ((next.angles - last.angles).lpNorm<Eigen::Infinity>() > largest_turn) return false;
   if (next.status != last.status) return step <= bracket;
   // The forces have corners where the slope's curvature jumps; the works do not balance beyond one.
@@ -172,14 +177,19 @@ Follower::Works Follower::works_until(const TipState& next) const {
   const double length = way.norm();
   const Vector2d unit = way / length;
   const Vector2d pull(unit[1], unit[0]);  // along travel and height
-  const bool same = next.status == last.status;
+  const bool both = last.status.touch == Touch::both || next.status.touch == Touch::both;
+  const bool same = next.status == last.status && !both;
   const Rates r0(tip_, last, unit);
   const Rates r1(tip_, next, unit);
   Works works;
   works.surface = integral(last.force.dot(pull), next.force.dot(pull),
                            same ? r0.force.dot(pull) : 0, same ? r1.force.dot(pull) : 0, length);
   if (next.status.slip == 0 || tip_.friction() == 0) return works;
-  const double slide = tip_.slid(next, start_of(tip_, last, next.pair, next.status.touch));
+  if (both) {
+    works.friction = tip_.friction_between(last, next);
+    return works;
+  }
+  const double slide = tip_.slid(next, tip_.start_of(last, next.pair, next.status.touch));
   const bool along = same && r0.slide * slide > 0 && r1.slide * slide > 0;
   works.friction =
       -integral(last.friction_force, next.friction_force, along ? r0.friction_by_slide : 0,

@@ -97,9 +97,7 @@ class Motion {
   /// The friction's work of a step from one state of contact to the next.
   double friction_work(const TipState& next) const {
     if (next.status.slip == 0 || next.status.touch == Touch::none || is_open()) return 0;
-    const Pair start = start_of(tip_, result_.end, next.pair, next.status.touch);
-    const double force = (std::abs(next.friction_force) + std::abs(result_.end.friction_force)) / 2;
-    return force * std::abs(tip_.slid(next, start));
+    return tip_.friction_between(result_.end, next);
   }
 
   void accept(const TipState& next, const Viscosity& viscosity) {

@@ -19,8 +19,9 @@ inline Place between(const Place& a, const Place& b, double t) {
 }
 
 /// What of the end section touches: the end x − R d₁ of its diameter in the plane (upper one of a
-/// tip bent forward; also the tip that is a point), the other end, or the line between them.
-enum class Touch { none, rear, front, face };
+/// tip bent forward; also the tip that is a point), the other end, the line between them, or both
+/// ends across a hollow.
+enum class Touch { none, rear, front, face, both };
 
 /// A contact and its law of friction; each is a smooth system of equations.
 struct ContactStatus {
@@ -41,7 +42,8 @@ struct TipState {
   ContactStatus status;
   Eigen::VectorXd angles;             ///< of the nodes but the first
   Vector2d force = Vector2d::Zero();  ///< of the surface on the tip
-  Pair pair;
+  Pair pair;  ///< of both ends ξ of the rear one, and the η of the resultant
+  Eigen::Vector4d both{0, 0, 0, 0};  ///< N₁, N₂, ξ₁, T_i/N_i, if both ends touch
   // What follows from them:
   double normal_force = 0;
   double friction_force = 0;
@@ -52,7 +54,7 @@ struct TipState {
   /// g the way of sliding. Sliding is stable where this is positive.
   double stiffness = 0;
   bool is_held_stable = true;  ///< sign of the determinant of the held contact's equations
-  Eigen::MatrixX2d rates;      ///< of angles, force, ξ, η by height and by travel
+  Eigen::MatrixX2d rates;      ///< of the unknowns by height and by travel
   int iterations = 0;
 
   double angle() const { return angles[angles.size() - 1]; }
@@ -66,8 +68,9 @@ struct TipState {
 ///     η = ∓R (an end)  or  p′ cos θ = sin θ (the line is tangent to the surface),
 ///
 /// with N = F·n, T = F·t, σ the arc length along the surface. Newton's method with the exact
-/// tangent; p″ is a difference of p′. On a flat surface the line's η is where the resultant of the
-/// forces on both ends lies, N₁ and N₂ = N (1 ∓ η/R)/2.
+/// tangent; p″ is a difference of p′. Where both ends touch, r_L ∓ R d₁ are on the surface; unknown
+/// are N₁, N₂, ξ₁ and the ratio T_i/N_i, which is ± μ or else holds the rear end. On a flat surface
+/// the line's η is where the resultant of the forces on both ends lies, N₁ and N₂ = N (1 ∓ η/R)/2.
 class Tip {
  public:
   /// The surface's unit of length is L, in metres; R without units.
@@ -94,6 +97,14 @@ class Tip {
   /// Way that the touching point of `state` has slid from `start`: σ − (η − η₀), against T.
   double slid(const TipState& state, const Pair& start) const;
 
+  /// The pair from which the contact has come to `after`, with the surface as it was `before`: that
+  /// of before where the touching point moves without a break, else where the same point of the
+  /// section was then.
+  Pair start_of(const TipState& before, const Pair& after, Touch touch) const;
+  /// Work of friction between two states of contact that follow each other, by the trapezoidal
+  /// rule: |∫ T dg| where one point touches, the sum over the ends where both do.
+  double friction_between(const TipState& before, const TipState& after) const;
+
   const PlaneBeam& beam() const { return beam_; }
   double radius() const { return radius_; }
   double friction() const { return surface_.friction; }
@@ -108,6 +119,10 @@ class Tip {
 
  private:
   void complete(TipState& state) const;
+  Eigen::Vector4d contact_unknowns(Touch touch, const Place& place, const TipState& guess) const;
+  void both_ends(const ContactStatus& status, const Place& place, const Pair& start,
+                 const Viscosity& viscosity, const Eigen::VectorXd& unknowns,
+                 Eigen::VectorXd& residual, Eigen::MatrixXd& tangent) const;
   double arc(double from, double to) const;
 
   const PlaneBeam& beam_;

@@ -35,7 +35,8 @@ TEST(TipEquations, HaveAConsistentTangent) {
   for (const ContactStatus status :
        {ContactStatus{Touch::none, 0}, ContactStatus{Touch::rear, 0}, ContactStatus{Touch::rear, 1},
         ContactStatus{Touch::front, -1}, ContactStatus{Touch::face, 0},
-        ContactStatus{Touch::face, 1}, ContactStatus{Touch::both, 0}, ContactStatus{Touch::both, -1}}) {
+        ContactStatus{Touch::face, 1}, ContactStatus{Touch::both, 0},
+        ContactStatus{Touch::both, -1}}) {
     const auto residual_at = [&](Index i, double h) {
       Eigen::VectorXd moved = at;
       moved[i] += h;
