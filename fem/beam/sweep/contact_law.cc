@@ -11,13 +11,26 @@ namespace {
 
 constexpr double slack = 1e-9;         ///< of gaps in L, of angles, and of |T| over μN
 constexpr double slide_slack = 1e-12;  ///< of a way, in L
+constexpr double near_gap = 1e-2;      ///< more than a step may close, in L
+constexpr double near_angle = 0.1;     ///< likewise, rad
 constexpr double most_samples = 64;    ///< of the end section
+
+/// Whether more of the end section than the end that touches is near the surface, so that a step
+/// may bring it there.
+bool is_near(const Tip& tip, const TipState& state) {
+  const double R = tip.radius();
+  const double eta = state.status.touch == Touch::rear ? -R : R;
+  if (std::abs(tip.slope_angle(state.pair.xi) - state.angle()) < near_angle) return true;
+  const Depth rest = deepest(tip, state, state.place, -eta / 2, -eta);
+  return rest.depth > -near_gap;
+}
 
 /// Which touches come next to one.
 std::vector<Touch> neighbours(const Tip& tip, const TipState& before) {
-  if (tip.radius() == 0) return {Touch::rear};
+  const auto is_alone = [&] { return tip.radius() == 0 || !is_near(tip, before); };
   switch (before.status.touch) {
     case Touch::front:
+      if (is_alone()) return {Touch::front};
       return {Touch::front, Touch::face, Touch::both, Touch::rear};
     case Touch::both:
       return {Touch::both, Touch::rear, Touch::front, Touch::face};
@@ -25,6 +38,7 @@ std::vector<Touch> neighbours(const Tip& tip, const TipState& before) {
       return before.pair.eta < 0 ? std::vector{Touch::face, Touch::rear, Touch::both, Touch::front}
                                  : std::vector{Touch::face, Touch::front, Touch::both, Touch::rear};
     default:
+      if (is_alone()) return {Touch::rear};
       return {Touch::rear, Touch::face, Touch::both, Touch::front};
   }
 }
@@ -112,13 +126,17 @@ std::optional<TipState> land(const Tip& tip, const Place& place, const TipState&
 }
 
 Depth deepest(const Tip& tip, const TipState& state, const Place& place) {
-  const double R = tip.radius();
-  Depth result{-tip.gap(state, place, -R), -R};
-  if (R == 0) return result;
+  return deepest(tip, state, place, -tip.radius(), tip.radius());
+}
+
+Depth deepest(const Tip& tip, const TipState& state, const Place& place, double from, double to) {
+  Depth result{-tip.gap(state, place, from), from};
+  if (from == to) return result;
   const double finest = tip.surface().finest_length() / tip.length();
-  const double samples = std::ceil(std::min(most_samples, std::max(2.0, 8 * R / finest)));
+  const double samples =
+      std::ceil(std::min(most_samples, std::max(2.0, 4 * std::abs(to - from) / finest)));
   for (double i = 1; i <= samples; ++i) {
-    const double eta = std::lerp(-R, R, i / samples);
+    const double eta = std::lerp(from, to, i / samples);
     const double depth = -tip.gap(state, place, eta);
     if (depth > result.depth) result = {depth, eta};
   }
@@ -126,10 +144,11 @@ Depth deepest(const Tip& tip, const TipState& state, const Place& place) {
   const auto is_rising = [&](double eta) {
     return tip.slope_angle(tip.point_at(state, eta)[0] - place.travel) > state.angle();
   };
-  double low = std::max(result.eta - 2 * R / samples, -R);
-  double high = std::min(result.eta + 2 * R / samples, R);
+  const double spacing = std::abs(to - from) / samples;
+  double low = std::max(result.eta - spacing, std::min(from, to));
+  double high = std::min(result.eta + spacing, std::max(from, to));
   if (!is_rising(low) || is_rising(high)) return result;
-  while (high - low > 1e-9 * R) {
+  while (high - low > 1e-9 * spacing) {
     const double middle = std::midpoint(low, high);
     (is_rising(middle) ? low : high) = middle;
   }

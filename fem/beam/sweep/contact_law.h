@@ -29,5 +29,7 @@ struct Depth {
   double eta = 0;
 };
 Depth deepest(const Tip& tip, const TipState& state, const Place& place);
+/// The same of its points between two η.
+Depth deepest(const Tip& tip, const TipState& state, const Place& place, double from, double to);
 
 }  // namespace ciliaval::fem::beam::sweep

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double largest_turn = 0.5;  ///< of an angle in an iteration, rad
+constexpr unsigned int patience = 10;  ///< iterations before convergence must set in
+constexpr double largest_turn = 0.5;   ///< of an angle in an iteration, rad
 
 /// Tangent and normal of a surface of the slope angle β: dt/dβ = n, dn/dβ = −t.
 Vector2d tangent(double beta) {
@@ -296,6 +297,7 @@ std::optional<TipState> Tip::solve(ContactStatus status, const Place& place, con
     unknowns += change * std::min(1.0, largest_turn / std::max(turn, relative / 4));
     // p″ is right to 1e-9 or so, and a small force on a stiff beam to less than the tolerance.
     const bool is_rounding = relative < 1e-9 && relative >= last / 2;
+    if (iteration >= patience && relative > last / 2 && relative > 1e-3) return std::nullopt;
     last = relative;
     if (relative > tolerance_ && !is_rounding) continue;
     TipState state;
