@@ -21,26 +21,46 @@ bool is_near(const Tip& tip, const TipState& state) {
   const double R = tip.radius();
   const double eta = state.status.touch == Touch::rear ? -R : R;
   if (std::abs(tip.slope_angle(state.pair.xi) - state.angle()) < near_angle) return true;
-  const Depth rest = deepest(tip, state, state.place, -eta / 2, -eta);
+  const double end = -eta;
+  const Depth rest =
+      deepest(tip, state, state.place, std::min(end, -end / 2), std::max(end, -end / 2));
   return rest.depth > -near_gap;
 }
 
 /// Which touches come next to one.
 std::vector<Touch> neighbours(const Tip& tip, const TipState& before) {
-  const auto is_alone = [&] { return tip.radius() == 0 || !is_near(tip, before); };
-  switch (before.status.touch) {
-    case Touch::front:
-      if (is_alone()) return {Touch::front};
-      return {Touch::front, Touch::face, Touch::both, Touch::rear};
-    case Touch::both:
-      return {Touch::both, Touch::rear, Touch::front, Touch::face};
-    case Touch::face:
-      return before.pair.eta < 0 ? std::vector{Touch::face, Touch::rear, Touch::both, Touch::front}
-                                 : std::vector{Touch::face, Touch::front, Touch::both, Touch::rear};
-    default:
-      if (is_alone()) return {Touch::rear};
-      return {Touch::rear, Touch::face, Touch::both, Touch::front};
+  using enum Touch;
+  const Touch touch = before.status.touch;
+  if (touch == face)
+    return before.pair.eta < 0
+               ? std::vector{face, rear, rear_and_face, both_ends, face_and_front, front}
+               : std::vector{face, front, face_and_front, both_ends, rear_and_face, rear};
+  if (touch == both_ends) return {both_ends, rear, front, rear_and_face, face_and_front, face};
+  if (touch == rear_and_face) return {rear_and_face, rear, face, both_ends, front};
+  if (touch == face_and_front) return {face_and_front, front, face, both_ends, rear};
+  const bool is_alone = tip.radius() == 0 || !is_near(tip, before);
+  if (touch == front)
+    return is_alone ? std::vector{front}
+                    : std::vector{front, face, face_and_front, both_ends, rear};
+  return is_alone ? std::vector{rear} : std::vector{rear, face, rear_and_face, both_ends, front};
+}
+
+/// A guess of the state with another touch: the points that go on, and at the others the place that
+/// `through`, which has gone through the surface, shows.
+TipState guess_of(const Tip& tip, const TipState& before, const TipState& through, Touch touch) {
+  TipState guess = through;
+  guess.points.clear();
+  guess.ratio = before.ratio;
+  for (const Touch part : parts(touch)) {
+    double eta = part == Touch::rear ? -tip.radius() : tip.radius();
+    if (part == Touch::face) eta = deepest(tip, through, through.place).eta;
+    ContactPoint point{part, 0, {tip.point_at(through, eta)[0] - through.place.travel, eta}};
+    for (const ContactPoint& last : before.points)
+      if (last.part == part) point = last;
+    guess.points.push_back(point);
   }
+  guess.pair = guess.points.front().pair;
+  return guess;
 }
 
 /// The frictions to try after one: what holds must give way towards T, what slides must stop first.
@@ -63,10 +83,10 @@ bool is_admissible(const Tip& tip, const TipState& state, const Pair& start) {
   }
   const double R = tip.radius();
   if (R == 0) return true;
-  if (state.status.touch == Touch::both && !(state.both.head<2>().minCoeff() > 0)) return false;
+  for (const ContactPoint& point : state.points)
+    if (!(point.normal_force > 0 && std::abs(point.pair.eta) <= R * (1 + slack))) return false;
   if (deepest(tip, state, state.place).depth > slack) return false;
-  if (state.status.touch == Touch::both) return true;
-  if (state.status.touch == Touch::face) return std::abs(state.pair.eta) <= R * (1 + slack);
+  if (state.status.touch != Touch::rear && state.status.touch != Touch::front) return true;
   // Inwards along the section the surface must not come nearer.
   const double side = state.status.touch == Touch::rear ? -1 : 1;
   return side * std::sin(tip.slope_angle(state.pair.xi) - state.angle()) > -slack;
@@ -74,23 +94,18 @@ bool is_admissible(const Tip& tip, const TipState& state, const Pair& start) {
 
 std::optional<TipState> go_on(const Tip& tip, const Place& place, const TipState& before,
                               const TipState& guess, const Viscosity& viscosity, int& iterations) {
-  // Where the face comes to lie on the surface: where the end that touches would let it through.
-  TipState through = before;
+  TipState through = before;  // with the touch that was, through the surface elsewhere
+  through.place = place;
   for (const Touch touch : neighbours(tip, before)) {
     const bool same_touch = touch == before.status.touch;
-    TipState first = same_touch ? guess : before;
-    if (!same_touch && touch != Touch::both && before.status.touch != Touch::face) {
-      first = through;
-      const double eta = touch == Touch::face    ? deepest(tip, through, place).eta
-                         : touch == Touch::front ? tip.radius()
-                                                 : -tip.radius();
-      first.pair = {tip.point_at(through, eta)[0] - place.travel, eta};
-    }
-    const Pair start = tip.start_of(before, first.pair, touch);
+    // From a face alone the touching point moves on without a break.
+    const bool is_face = before.status.touch == Touch::face && parts(touch).size() == 1;
+    const TipState other = same_touch || is_face ? before : guess_of(tip, before, through, touch);
+    const Pair start = same_touch || is_face ? before.points.front().pair
+                                             : tip.start_of(before, other.points.front());
     for (const int slip : frictions(tip, before.status.slip)) {
       const bool same = same_touch && slip == before.status.slip;
-      const auto state =
-          tip.solve({touch, slip}, place, same_touch && !same ? before : first, start, viscosity);
+      const auto state = tip.solve({touch, slip}, place, same ? guess : other, start, viscosity);
       iterations += state ? state->iterations : 0;
       if (state && is_admissible(tip, *state, start)) return state;
       if (state && same) through = *state;
@@ -113,7 +128,7 @@ std::optional<TipState> land(const Tip& tip, const Place& place, const TipState&
     const double eta = touch == Touch::face    ? deep.eta
                        : touch == Touch::front ? tip.radius()
                                                : -tip.radius();
-    const Pair start = tip.start_of(open, {0, eta}, touch);
+    const Pair start{tip.point_at(open, eta)[0] - open.place.travel, eta};
     for (const int slip : frictions(tip, drag)) {
       TipState guess = through;
       guess.pair = {tip.point_at(through, start.eta)[0] - place.travel, start.eta};
@@ -131,30 +146,31 @@ Depth deepest(const Tip& tip, const TipState& state, const Place& place) {
 
 Depth deepest(const Tip& tip, const TipState& state, const Place& place, double from, double to) {
   Depth result{-tip.gap(state, place, from), from};
-  if (from == to) return result;
-  const double finest = tip.surface().finest_length() / tip.length();
-  const double samples =
-      std::ceil(std::min(most_samples, std::max(2.0, 4 * std::abs(to - from) / finest)));
-  for (double i = 1; i <= samples; ++i) {
-    const double eta = std::lerp(from, to, i / samples);
+  const auto compare = [&](double eta) {
     const double depth = -tip.gap(state, place, eta);
     if (depth > result.depth) result = {depth, eta};
-  }
-  // Between the neighbours of this sample: where the slopes agree.
+  };
   const auto is_rising = [&](double eta) {
     return tip.slope_angle(tip.point_at(state, eta)[0] - place.travel) > state.angle();
   };
-  const double spacing = std::abs(to - from) / samples;
-  double low = std::max(result.eta - spacing, std::min(from, to));
-  double high = std::min(result.eta + spacing, std::max(from, to));
-  if (!is_rising(low) || is_rising(high)) return result;
-  while (high - low > 1e-9 * spacing) {
-    const double middle = std::midpoint(low, high);
-    (is_rising(middle) ? low : high) = middle;
+  const double finest = tip.surface().finest_length() / tip.length();
+  const double samples = std::ceil(std::min(most_samples, std::max(2.0, 4 * (to - from) / finest)));
+  bool rises = is_rising(from);
+  for (double i = 1; i <= samples && from < to; ++i) {
+    double high = std::lerp(from, to, i / samples);
+    compare(high);
+    const bool rose = rises;
+    rises = is_rising(high);
+    if (!rose || rises) continue;
+    // The deepest point lies between two samples: where the slopes agree.
+    double low = std::lerp(from, to, (i - 1) / samples);
+    while (high - low > 1e-9 * tip.radius()) {
+      const double middle = std::midpoint(low, high);
+      (is_rising(middle) ? low : high) = middle;
+    }
+    compare(std::midpoint(low, high));
   }
-  const double eta = std::midpoint(low, high);
-  const double depth = -tip.gap(state, place, eta);
-  return depth > result.depth ? Depth{depth, eta} : result;
+  return result;
 }
 
 }  // namespace ciliaval::fem::beam::sweep

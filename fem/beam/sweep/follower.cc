@@ -122,13 +122,19 @@ TipState Follower::predicted(const Place& place) const {
   const Eigen::VectorXd change = guess.rates * way;
   const Index n = guess.angles.size();
   guess.angles += change.head(n);
-  if (guess.status.touch == Touch::both) {
-    guess.both += change.tail<4>();
-    return guess;
+  if (guess.points.size() == 2) {
+    for (Index k = 0; k < 2; ++k) {
+      ContactPoint& point = guess.points[static_cast<std::size_t>(k)];
+      point.normal_force += change[n + 3 * k];
+      point.pair.xi += change[n + 3 * k + 1];
+      point.pair.eta += change[n + 3 * k + 2];
+    }
+    guess.ratio += change[n + 6];
+  } else {
+    guess.force += change.segment<2>(n);
+    guess.pair.xi += change[n + 2];
+    guess.pair.eta += change[n + 3];
   }
-  guess.force += change.segment<2>(n);
-  guess.pair.xi += change[n + 2];
-  guess.pair.eta += change[n + 3];
   return guess;
 }
 
@@ -177,19 +183,20 @@ Follower::Works Follower::works_until(const TipState& next) const {
   const double length = way.norm();
   const Vector2d unit = way / length;
   const Vector2d pull(unit[1], unit[0]);  // along travel and height
-  const bool both = last.status.touch == Touch::both || next.status.touch == Touch::both;
-  const bool same = next.status == last.status && !both;
-  const Rates r0(tip_, last, unit);
-  const Rates r1(tip_, next, unit);
+  const bool both = last.points.size() + next.points.size() > 2;
+  const bool same = next.status == last.status;
   Works works;
-  works.surface = integral(last.force.dot(pull), next.force.dot(pull),
-                           same ? r0.force.dot(pull) : 0, same ? r1.force.dot(pull) : 0, length);
-  if (next.status.slip == 0 || tip_.friction() == 0) return works;
   if (both) {
+    works.surface = (last.force + next.force).dot(pull) / 2 * length;
     works.friction = tip_.friction_between(last, next);
     return works;
   }
-  const double slide = tip_.slid(next, tip_.start_of(last, next.pair, next.status.touch));
+  const Rates r0(tip_, last, unit);
+  const Rates r1(tip_, next, unit);
+  works.surface = integral(last.force.dot(pull), next.force.dot(pull),
+                           same ? r0.force.dot(pull) : 0, same ? r1.force.dot(pull) : 0, length);
+  if (next.status.slip == 0 || tip_.friction() == 0) return works;
+  const double slide = tip_.slid(next, tip_.start_of(last, next.points.front()));
   const bool along = same && r0.slide * slide > 0 && r1.slide * slide > 0;
   works.friction =
       -integral(last.friction_force, next.friction_force, along ? r0.friction_by_slide : 0,

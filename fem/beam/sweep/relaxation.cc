@@ -37,19 +37,19 @@ class Motion {
   }
 
   Relaxed run() {
-    double step = first_step;
     for (int i = 0; i < most_steps; ++i) {
-      const Viscosity viscosity{1 / step, tip_.beam().curvature(result_.end.angles)};
+      const Viscosity viscosity{1 / step_, tip_.beam().curvature(result_.end.angles)};
       const auto next = state_after(viscosity);
-      const double change = next ? change_of(*next, result_.end) : 0;
-      if (!next || change > 1.5 * options_.largest_change) {
-        step *= next ? std::max(0.1, options_.largest_change / change) : 0.25;
-        if (step < shortest_step) fail("no state of contact is admissible");
+      const bool found = next && is_minimum(*next);
+      const double change = found ? change_of(*next, result_.end) : 0;
+      if (!found || change > 1.5 * options_.largest_change) {
+        step_ *= found ? std::max(0.1, options_.largest_change / change) : 0.25;
+        if (step_ < shortest_step) fail("no state of contact is admissible");
         continue;
       }
       accept(*next, viscosity);
-      if (step >= resting_step && change < resting_change && rest()) return result_;
-      step *= std::clamp(options_.largest_change / (change + 1e-300), 0.5, 2.0);
+      if (step_ >= resting_step && change < resting_change && rest()) return result_;
+      step_ *= std::clamp(options_.largest_change / (change + 1e-300), 0.5, 2.0);
     }
     fail("no end after " + std::to_string(most_steps) + " steps of its motion");
   }
@@ -60,6 +60,14 @@ class Motion {
     text << "beam: the tip finds no equilibrium at the travel " << place_.travel * tip_.length()
          << " m of the surface: " << why;
     throw SolverError(text.str());
+  }
+
+  /// A step is a minimum of the energy and its viscous work. Beyond the rate of an instability it
+  /// would converge to the unstable equilibrium.
+  static bool is_minimum(const TipState& next) {
+    if (next.status.touch == Touch::none) return true;
+    const bool is_end = next.status.touch == Touch::rear || next.status.touch == Touch::front;
+    return (next.status.slip == 0 || next.stiffness > 0) && (!is_end || next.is_held_stable);
   }
 
   bool is_open() const { return result_.end.status.touch == Touch::none; }
@@ -106,6 +114,17 @@ class Motion {
     result_.end = next;
   }
 
+  /// From an unstable equilibrium, to which long steps in time converge as well, further than a
+  /// step may go back: against the friction, or without friction the way the surface moves.
+  void leave(const TipState& unstable) {
+    const double side =
+        tip_.friction() > 0
+            ? -unstable.status.slip * (unstable.sliding_way < 0 ? -1 : 1)
+            : drag_ * (unstable.sliding_mode[unstable.sliding_mode.size() - 1] < 0 ? -1 : 1);
+    result_.end.angles += 10 * options_.largest_change * side * unstable.sliding_mode;
+    step_ = first_step;
+  }
+
   /// Whether an equilibrium is there.
   bool rest() {
     if (is_open()) {
@@ -116,7 +135,10 @@ class Motion {
     }
     const auto end = go_on(tip_, place_, result_.end, result_.end, {}, result_.iterations);
     if (!end || change_of(*end, result_.end) > options_.largest_change) return false;
-    if (end->status.slip != 0 && !(end->stiffness > 0)) return false;
+    if (end->status.slip != 0 && !(end->stiffness > 0)) {
+      leave(*end);
+      return false;
+    }
     result_.friction += friction_work(*end);
     result_.end = *end;
     return true;
@@ -127,6 +149,7 @@ class Motion {
   int drag_;
   RelaxationOptions options_;
   Relaxed result_;
+  double step_ = first_step;  ///< of time, in τ
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
-#include <tuple>
 
 namespace ciliaval::fem::beam::sweep {
 using surroundings::ProfilePoint;
@@ -33,6 +32,21 @@ bool is_determinant_positive(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) {
 }
 
 }  // namespace
+
+std::vector<Touch> parts(Touch touch) {
+  switch (touch) {
+    case Touch::none:
+      return {};
+    case Touch::both_ends:
+      return {Touch::rear, Touch::front};
+    case Touch::rear_and_face:
+      return {Touch::rear, Touch::face};
+    case Touch::face_and_front:
+      return {Touch::face, Touch::front};
+    default:
+      return {touch};
+  }
+}
 
 Tip::Tip(const PlaneBeam& beam, const Surface& surface, double length, double radius,
          double tolerance, unsigned int max_iterations)
@@ -65,8 +79,8 @@ double Tip::arc(double from, double to) const {
 }
 
 double Tip::slid(const TipState& state, const Pair& start) const {
-  if (state.status.touch == Touch::both) return arc(start.xi, state.pair.xi);
-  return arc(start.xi, state.pair.xi) - (state.pair.eta - start.eta);
+  const Pair& end = state.points.front().pair;
+  return arc(start.xi, end.xi) - (end.eta - start.eta);
 }
 
 double Tip::gap(const TipState& state, const Place& place, double eta) const {
@@ -85,8 +99,8 @@ TipState Tip::straight(const Place& place) const {
 void Tip::equations(const ContactStatus& status, const Place& place, const Pair& start,
                     const Viscosity& viscosity, const Eigen::VectorXd& unknowns,
                     Eigen::VectorXd& residual, Eigen::MatrixXd& J) const {
-  if (status.touch == Touch::both)
-    return both_ends(status, place, start, viscosity, unknowns, residual, J);
+  if (parts(status.touch).size() == 2)
+    return two_points(status, place, start, viscosity, unknowns, residual, J);
   const Index n = beam_.n_angles();
   const Eigen::VectorXd angles = unknowns.head(n);
   const Vector2d force = unknowns.segment<2>(n);
@@ -141,149 +155,181 @@ void Tip::equations(const ContactStatus& status, const Place& place, const Pair&
   }
 }
 
-/// With ξ₂ = ξ₁ + 2R cos θ and the forces N_i l_i, l_i = n_i + τ t_i, at η = ∓R.
-void Tip::both_ends(const ContactStatus& status, const Place& place, const Pair& start,
-                    const Viscosity& viscosity, const Eigen::VectorXd& unknowns,
-                    Eigen::VectorXd& residual, Eigen::MatrixXd& J) const {
+/// The forces are F_i = N_i l_i, l_i = n_i + τ t_i.
+void Tip::two_points(const ContactStatus& status, const Place& place, const Pair& start,
+                     const Viscosity& viscosity, const Eigen::VectorXd& unknowns,
+                     Eigen::VectorXd& residual, Eigen::MatrixXd& J) const {
   const Index n = beam_.n_angles();
-  const double N1 = unknowns[n];
-  const double N2 = unknowns[n + 1];
-  const double xi = unknowns[n + 2];
-  const double ratio = unknowns[n + 3];
+  const Index friction = n + 6;  // row of its law, column of τ
   const double theta = unknowns[n - 1];
-  const double R = radius_;
-  const double front_xi = xi + 2 * R * std::cos(theta);
-  const double front_turning = -2 * R * std::sin(theta);  // ∂ξ₂/∂θ
-  const ProfilePoint p1 = profile(xi);
-  const ProfilePoint p2 = profile(front_xi);
-  const double beta1 = std::atan(p1.slope);
-  const double beta2 = std::atan(p2.slope);
-  const Vector2d l1 = normal(beta1) + ratio * tangent(beta1);
-  const Vector2d l2 = normal(beta2) + ratio * tangent(beta2);
-  // ∂(N_i l_i)/∂ξ_i.
-  const Vector2d turned1 = N1 * profile_curvature(xi) / (1 + p1.slope * p1.slope) *
-                           (ratio * normal(beta1) - tangent(beta1));
-  const Vector2d turned2 = N2 * profile_curvature(front_xi) / (1 + p2.slope * p2.slope) *
-                           (ratio * normal(beta2) - tangent(beta2));
-  // Derivatives of both forces by N₁, N₂, ξ₁, τ and θ.
-  Eigen::Matrix<double, 2, 5> by1 = Eigen::Matrix<double, 2, 5>::Zero();
-  Eigen::Matrix<double, 2, 5> by2 = by1;
-  by1.col(0) = l1;
-  by1.col(2) = turned1;
-  by1.col(3) = N1 * tangent(beta1);
-  by2.col(1) = l2;
-  by2.col(2) = turned2;
-  by2.col(3) = N2 * tangent(beta2);
-  by2.col(4) = front_turning * turned2;
-  const Vector2d force = N1 * l1 + N2 * l2;
-  const Vector2d couple = R * (N2 * l2 - N1 * l1);
-  const Eigen::Matrix<double, 2, 5> force_by = by1 + by2;
-  const Eigen::Matrix<double, 2, 5> couple_by = R * (by2 - by1);
-
-  const Response beam = beam_.respond(unknowns.head(n), force, viscosity);
-  residual.resize(n + 4);
-  J.setZero(n + 4, n + 4);
-  residual.head(n) = beam.gradient;
-  residual[n - 1] += couple.dot(d3(theta));
-  residual.segment<2>(n) =
-      beam.tip - R * d1(theta) - Vector2d(place.travel + xi, place.height - p1.height);
-  residual[n + 2] = status.slip == 0 ? arc(start.xi, xi) : ratio - status.slip * surface_.friction;
-  residual[n + 3] = p2.height - p1.height - 2 * R * std::sin(theta);
-
-  J.topLeftCorner(n, n) = beam.hessian;
-  J.block(n, 0, 2, n) = beam.tip_turning;
-  for (Index k = 0; k < 5; ++k) {
-    const Index column = k < 4 ? n + k : n - 1;
-    J.col(column).head(n) -= beam.tip_turning.transpose() * force_by.col(k);
-    J(n - 1, column) += couple_by.col(k).dot(d3(theta));
-    J.col(column).segment<2>(n) += beam.compliance * force_by.col(k);
+  const double ratio = unknowns[friction];
+  const Vector2d axis = d3(theta);
+  const Vector2d across = d1(theta);
+  const std::vector<Touch> kinds = parts(status.touch);
+  struct Point {
+    double N, xi, eta, beta, turning;
+    ProfilePoint profile;
+    Vector2d force;
+  };
+  std::vector<Point> points;
+  Vector2d force = Vector2d::Zero();
+  for (Index i = n; i < friction; i += 3) {
+    Point x{unknowns[i], unknowns[i + 1], unknowns[i + 2], 0, 0, profile(unknowns[i + 1]), {}};
+    x.beta = std::atan(x.profile.slope);
+    x.turning = profile_curvature(x.xi) / (1 + x.profile.slope * x.profile.slope);
+    x.force = x.N * (normal(x.beta) + ratio * tangent(x.beta));
+    force += x.force;
+    points.push_back(x);
   }
-  J(n - 1, n - 1) += couple.dot(d1(theta));
-  J.block<2, 1>(n, n - 1) += R * d3(theta);
-  J.block<2, 1>(n, n + 2) += Vector2d(-1, p1.slope);
-  if (status.slip == 0)
-    J(n + 2, n + 2) = std::hypot(1, p1.slope);
-  else
-    J(n + 2, n + 3) = 1;
-  J(n + 3, n + 2) = p2.slope - p1.slope;
-  J(n + 3, n - 1) = -2 * R * std::cos(theta) + p2.slope * front_turning;
+  const Response beam = beam_.respond(unknowns.head(n), force, viscosity);
+  residual.resize(n + 7);
+  J.setZero(n + 7, n + 7);
+  residual.head(n) = beam.gradient;
+  J.topLeftCorner(n, n) = beam.hessian;
+  // The column of an unknown on which a force at η depends.
+  const auto add = [&](Index column, double eta, const Vector2d& derivative) {
+    J.col(column).head(n) -= beam.tip_turning.transpose() * derivative;
+    J(n - 1, column) += eta * derivative.dot(axis);
+    for (const Index row : {n, n + 3})
+      J.col(column).segment<2>(row) += beam.compliance * derivative;
+  };
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Point& x = points[k];
+    const Index i = n + 3 * static_cast<Index>(k);  // N, ξ, η; rows of the place and the touch
+    residual[n - 1] += x.eta * x.force.dot(axis);
+    J(n - 1, n - 1) += x.eta * x.force.dot(across);
+    J(n - 1, i + 2) += x.force.dot(axis);
+    add(i, x.eta, normal(x.beta) + ratio * tangent(x.beta));
+    add(i + 1, x.eta, x.N * x.turning * (ratio * normal(x.beta) - tangent(x.beta)));
+    add(friction, x.eta, x.N * tangent(x.beta));
+    residual.segment<2>(i) =
+        beam.tip + x.eta * across - Vector2d(place.travel + x.xi, place.height - x.profile.height);
+    J.block(i, 0, 2, n) += beam.tip_turning;
+    J.block<2, 1>(i, n - 1) -= x.eta * axis;
+    J.block<2, 1>(i, i + 1) += Vector2d(-1, x.profile.slope);
+    J.block<2, 1>(i, i + 2) += across;
+    if (kinds[k] == Touch::face) {
+      residual[i + 2] = std::sin(x.beta - theta);
+      J(i + 2, i + 1) = std::cos(x.beta - theta) * x.turning;
+      J(i + 2, n - 1) = -std::cos(x.beta - theta);
+    } else {
+      residual[i + 2] = x.eta - (kinds[k] == Touch::rear ? -radius_ : radius_);
+      J(i + 2, i + 2) = 1;
+    }
+  }
+  if (status.slip != 0) {
+    residual[friction] = ratio - status.slip * surface_.friction;
+    J(friction, friction) = 1;
+  } else {
+    residual[friction] = arc(start.xi, points[0].xi) - (points[0].eta - start.eta);
+    J(friction, n + 1) = std::hypot(1, points[0].profile.slope);
+    J(friction, n + 2) = -1;
+  }
 }
 
 double Tip::friction_between(const TipState& before, const TipState& after) const {
-  if (before.status.touch != Touch::both && after.status.touch != Touch::both) {
-    const double way = slid(after, start_of(before, after.pair, after.status.touch));
-    return std::abs(before.friction_force + after.friction_force) / 2 * std::abs(way);
-  }
   double work = 0;
-  for (const double side : {-1.0, 1.0}) {
-    const auto friction = [&](const TipState& state) {
-      if (state.status.touch == Touch::both)
-        return state.both[3] * (side < 0 ? state.both[0] : state.both[1]);
-      return state.friction_force * (1 + side * state.pair.eta / radius_) / 2;
-    };
-    const auto at = [&](const TipState& state) {
-      return point_at(state, side * radius_)[0] - state.place.travel;
-    };
-    work += std::abs((friction(before) + friction(after)) / 2 * arc(at(before), at(after)));
+  for (const ContactPoint& point : after.points) {
+    TipState there = after;
+    there.points = {point};
+    double friction = after.ratio * point.normal_force;
+    for (const ContactPoint& last : before.points)
+      if (last.part == point.part || before.points.size() + after.points.size() == 2)
+        friction += before.ratio * last.normal_force;
+    work += std::abs(friction / 2 * slid(there, start_of(before, point)));
   }
   return work;
 }
 
-Pair Tip::start_of(const TipState& before, const Pair& after, Touch touch) const {
-  if (before.status.touch == touch || (before.status.touch == Touch::face && touch != Touch::both))
-    return before.pair;
-  const double eta = touch == Touch::both ? -radius_ : after.eta;
-  return {point_at(before, eta)[0] - before.place.travel, eta};
+Pair Tip::start_of(const TipState& before, const ContactPoint& after) const {
+  for (const ContactPoint& point : before.points)
+    if (point.part == after.part || (point.part == Touch::face && before.points.size() == 1))
+      return point.pair;
+  return {point_at(before, after.pair.eta)[0] - before.place.travel, after.pair.eta};
 }
 
-Eigen::Vector4d Tip::contact_unknowns(Touch touch, const Place& place,
-                                      const TipState& guess) const {
-  Eigen::Vector4d unknowns;
-  if (touch != Touch::both) {
-    unknowns << guess.force, guess.pair.xi, guess.pair.eta;
-    if (touch == Touch::rear) unknowns[3] = -radius_;
-    if (touch == Touch::front) unknowns[3] = radius_;
-    if (touch == Touch::none) unknowns.head<2>().setZero();
+Eigen::VectorXd Tip::contact_unknowns(Touch touch, const TipState& guess) const {
+  if (parts(touch).size() == 2) {
+    Eigen::VectorXd unknowns(7);
+    for (Index k = 0; k < 2; ++k) {
+      const ContactPoint& point = guess.points.at(static_cast<std::size_t>(k));
+      unknowns.segment<3>(3 * k) << point.normal_force, point.pair.xi, point.pair.eta;
+    }
+    unknowns[6] = guess.ratio;
     return unknowns;
   }
-  if (guess.status.touch == Touch::both) return guess.both;
-  const double lever = guess.pair.eta / radius_;
-  const double N = guess.normal_force;
-  unknowns << N * (1 - lever) / 2, N * (1 + lever) / 2, point_at(guess, -radius_)[0] - place.travel,
-      N > 0 ? guess.friction_force / N : 0;
+  Eigen::VectorXd unknowns(4);
+  unknowns << guess.force, guess.pair.xi, guess.pair.eta;
+  if (touch == Touch::rear) unknowns[3] = -radius_;
+  if (touch == Touch::front) unknowns[3] = radius_;
+  if (touch == Touch::none) unknowns.head<2>().setZero();
   return unknowns;
 }
 
-void Tip::complete(TipState& state) const {
-  const bool both = state.status.touch == Touch::both;
-  if (both) {
-    const auto [N1, N2, xi, ratio] =
-        std::tuple(state.both[0], state.both[1], state.both[2], state.both[3]);
-    const double beta1 = slope_angle(xi);
-    const double beta2 = slope_angle(xi + 2 * radius_ * std::cos(state.angle()));
-    const Vector2d F1 = N1 * (normal(beta1) + ratio * tangent(beta1));
-    const Vector2d F2 = N2 * (normal(beta2) + ratio * tangent(beta2));
-    state.force = F1 + F2;
+void Tip::complete(TipState& state, const Eigen::VectorXd& contact) const {
+  const std::vector<Touch> kinds = parts(state.status.touch);
+  if (kinds.size() == 2) {
+    state.ratio = contact[6];
     const Vector2d axis = d3(state.angle());
-    state.pair = {xi, radius_ * (F2 - F1).dot(axis) / state.force.dot(axis)};
-    state.normal_force = N1 + N2;
-    state.friction_force = ratio * (N1 + N2);
+    double moment = 0;
+    for (Index k = 0; k < 2; ++k) {
+      const double N = contact[3 * k];
+      const Pair pair{contact[3 * k + 1], contact[3 * k + 2]};
+      const double beta = slope_angle(pair.xi);
+      const Vector2d force = N * (normal(beta) + state.ratio * tangent(beta));
+      state.points.push_back({kinds[static_cast<std::size_t>(k)], N, pair});
+      state.force += force;
+      moment += pair.eta * force.dot(axis);
+      state.normal_force += N;
+    }
+    state.pair = {state.points[0].pair.xi, moment / state.force.dot(axis)};
+    state.friction_force = state.ratio * state.normal_force;
+  } else {
+    state.force = contact.head<2>();
+    state.pair = {contact[2], contact[3]};
+    const double beta = slope_angle(state.pair.xi);
+    state.normal_force = state.force.dot(normal(beta));
+    state.friction_force = state.force.dot(tangent(beta));
+    if (kinds.size() == 1) {
+      state.ratio = state.friction_force / state.normal_force;
+      state.points = {{kinds[0], state.normal_force, state.pair}};
+    }
   }
   const Response beam = beam_.respond(state.angles, state.force);
   state.energy = beam.energy;
   state.tip = beam.tip;
   state.point = point_at(state, state.pair.eta);
-  if (both) return;
-  const double beta = slope_angle(state.pair.xi);
-  state.normal_force = state.force.dot(normal(beta));
-  state.friction_force = state.force.dot(tangent(beta));
+}
+
+/// −∂(residual)/∂H and −∂(residual)/∂s, and the response to more friction.
+void Tip::add_responses(TipState& state, const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) const {
+  const Index n = beam_.n_angles();
+  const bool two = state.points.size() == 2;
+  const Index friction = two ? n + 6 : n + 2;
+  const Index xi = two ? n + 1 : n + 2;  // of the point that slides or is held
+  Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(lu.rows(), 3);
+  for (Index row = n; row <= (two ? n + 3 : n); row += 3) {
+    sides(row + 1, 0) = 1;
+    sides(row, 1) = 1;
+  }
+  sides(friction, 2) = 1;
+  const Eigen::MatrixXd responses = lu.solve(sides);
+  state.rates = responses.leftCols<2>();
+  const double slope = profile(state.pair.xi).slope;
+  const double slide = std::hypot(1, slope) * responses(xi, 2) - responses(xi + 1, 2);
+  if (state.status.slip != 0) state.stiffness = 1 / slide;
+  const double largest = responses.col(2).head(n).lpNorm<Eigen::Infinity>();
+  state.sliding_mode = responses.col(2).head(n) / largest;
+  state.sliding_way = slide / largest;
+  state.is_held_stable = is_determinant_positive(lu) == (state.status.slip == 0 || slide > 0);
 }
 
 std::optional<TipState> Tip::solve(ContactStatus status, const Place& place, const TipState& guess,
                                    const Pair& start, const Viscosity& viscosity) const {
   const Index n = beam_.n_angles();
-  Eigen::VectorXd unknowns(n + 4);
-  unknowns << guess.angles, contact_unknowns(status.touch, place, guess);
+  const Eigen::VectorXd contact = contact_unknowns(status.touch, guess);
+  Eigen::VectorXd unknowns(n + contact.size());
+  unknowns << guess.angles, contact;
   Eigen::VectorXd residual;
   Eigen::MatrixXd J;
   double last = std::numeric_limits<double>::infinity();
@@ -304,27 +350,13 @@ std::optional<TipState> Tip::solve(ContactStatus status, const Place& place, con
     state.place = place;
     state.status = status;
     state.angles = unknowns.head(n);
-    state.force = unknowns.segment<2>(n);
-    state.pair = {unknowns[n + 2], unknowns[n + 3]};
-    if (status.touch == Touch::both) state.both = unknowns.tail<4>();
     state.iterations = static_cast<int>(iteration);
-    complete(state);
+    complete(state, unknowns.tail(contact.size()));
     if (status.touch == Touch::none) {
       state.rates = Eigen::MatrixX2d::Zero(n + 4, 2);
       return state;
     }
-    // −∂(residual)/∂H and −∂(residual)/∂s, and the response to more friction.
-    Eigen::MatrixXd sides = Eigen::MatrixXd::Zero(n + 4, 3);
-    sides(n + 1, 0) = 1;
-    sides(n, 1) = 1;
-    sides(n + 2, 2) = 1;
-    const Eigen::MatrixXd responses = lu.solve(sides);
-    state.rates = responses.leftCols<2>();
-    const double slope = profile(state.pair.xi).slope;
-    const double slide = std::hypot(1, slope) * responses(n + 2, 2) -
-                         (status.touch == Touch::both ? 0 : responses(n + 3, 2));
-    state.stiffness = status.slip == 0 ? 0 : 1 / slide;
-    state.is_held_stable = is_determinant_positive(lu) == (status.slip == 0 || slide > 0);
+    add_responses(state, lu);
     return state;
   }
   return std::nullopt;

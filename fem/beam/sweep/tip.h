@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <Eigen/LU>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "fem/beam/sweep/plane_beam.h"
 #include "problem/surroundings/surface.h"
@@ -19,9 +21,11 @@ inline Place between(const Place& a, const Place& b, double t) {
 }
 
 /// What of the end section touches: the end x − R d₁ of its diameter in the plane (upper one of a
-/// tip bent forward; also the tip that is a point), the other end, the line between them, or both
-/// ends across a hollow.
-enum class Touch { none, rear, front, face, both };
+/// tip bent forward; also the tip that is a point), the other end, the line between them, or two of
+/// these, as across a hollow.
+enum class Touch { none, rear, front, face, both_ends, rear_and_face, face_and_front };
+/// The touches of single points that a touch is made of.
+std::vector<Touch> parts(Touch touch);
 
 /// A contact and its law of friction; each is a smooth system of equations.
 struct ContactStatus {
@@ -36,14 +40,22 @@ struct Pair {
   double eta = 0;  ///< η, −R to R
 };
 
+/// One of the touching points.
+struct ContactPoint {
+  Touch part = Touch::rear;
+  double normal_force = 0;
+  Pair pair;
+};
+
 /// An equilibrium.
 struct TipState {
   Place place;
   ContactStatus status;
   Eigen::VectorXd angles;             ///< of the nodes but the first
   Vector2d force = Vector2d::Zero();  ///< of the surface on the tip
-  Pair pair;  ///< of both ends ξ of the rear one, and the η of the resultant
-  Eigen::Vector4d both{0, 0, 0, 0};  ///< N₁, N₂, ξ₁, T_i/N_i, if both ends touch
+  Pair pair;  ///< of two points ξ of the first, and the η of the resultant
+  std::vector<ContactPoint> points;
+  double ratio = 0;  ///< T/N, of two points the same
   // What follows from them:
   double normal_force = 0;
   double friction_force = 0;
@@ -54,7 +66,10 @@ struct TipState {
   /// g the way of sliding. Sliding is stable where this is positive.
   double stiffness = 0;
   bool is_held_stable = true;  ///< sign of the determinant of the held contact's equations
-  Eigen::MatrixX2d rates;      ///< of the unknowns by height and by travel
+  /// Displacement of the angles in the mode of sliding, largest angle 1, and the way g of it.
+  Eigen::VectorXd sliding_mode;
+  double sliding_way = 0;
+  Eigen::MatrixX2d rates;  ///< of the unknowns by height and by travel
   int iterations = 0;
 
   double angle() const { return angles[angles.size() - 1]; }
@@ -68,9 +83,10 @@ struct TipState {
 ///     η = ∓R (an end)  or  p′ cos θ = sin θ (the line is tangent to the surface),
 ///
 /// with N = F·n, T = F·t, σ the arc length along the surface. Newton's method with the exact
-/// tangent; p″ is a difference of p′. Where both ends touch, r_L ∓ R d₁ are on the surface; unknown
-/// are N₁, N₂, ξ₁ and the ratio T_i/N_i, which is ± μ or else holds the rear end. On a flat surface
-/// the line's η is where the resultant of the forces on both ends lies, N₁ and N₂ = N (1 ∓ η/R)/2.
+/// tangent; p″ is a difference of p′. Where two points touch, unknown are N_i, ξ_i, η_i and one
+/// ratio T_i/N_i, which is ± μ or else holds the first point: with both held the problem would have
+/// one equation too many. On a flat surface the line's η is where the resultant of the forces on
+/// both ends lies, N₁ and N₂ = N (1 ∓ η/R)/2.
 class Tip {
  public:
   /// The surface's unit of length is L, in metres; R without units.
@@ -82,7 +98,8 @@ class Tip {
   std::optional<TipState> solve(ContactStatus status, const Place& place, const TipState& guess,
                                 const Pair& start, const Viscosity& viscosity = {}) const;
 
-  /// Residual and tangent of the equations, unknowns (θ, F, ξ, η).
+  /// Residual and tangent of the equations, unknowns (θ, F, ξ, η), or (θ, N₁, ξ₁, η₁, N₂, ξ₂, η₂,
+  /// T_i/N_i).
   void equations(const ContactStatus& status, const Place& place, const Pair& start,
                  const Viscosity& viscosity, const Eigen::VectorXd& unknowns,
                  Eigen::VectorXd& residual, Eigen::MatrixXd& tangent) const;
@@ -100,7 +117,7 @@ class Tip {
   /// The pair from which the contact has come to `after`, with the surface as it was `before`: that
   /// of before where the touching point moves without a break, else where the same point of the
   /// section was then.
-  Pair start_of(const TipState& before, const Pair& after, Touch touch) const;
+  Pair start_of(const TipState& before, const ContactPoint& after) const;
   /// Work of friction between two states of contact that follow each other, by the trapezoidal
   /// rule: |∫ T dg| where one point touches, the sum over the ends where both do.
   double friction_between(const TipState& before, const TipState& after) const;
@@ -118,11 +135,13 @@ class Tip {
   double length() const { return length_; }
 
  private:
-  void complete(TipState& state) const;
-  Eigen::Vector4d contact_unknowns(Touch touch, const Place& place, const TipState& guess) const;
-  void both_ends(const ContactStatus& status, const Place& place, const Pair& start,
-                 const Viscosity& viscosity, const Eigen::VectorXd& unknowns,
-                 Eigen::VectorXd& residual, Eigen::MatrixXd& tangent) const;
+  void complete(TipState& state, const Eigen::VectorXd& contact) const;
+  void add_responses(TipState& state, const Eigen::PartialPivLU<Eigen::MatrixXd>& lu) const;
+  /// The unknowns behind the angles that a guess has, of two points (N, ξ, η) each, and the ratio.
+  Eigen::VectorXd contact_unknowns(Touch touch, const TipState& guess) const;
+  void two_points(const ContactStatus& status, const Place& place, const Pair& start,
+                  const Viscosity& viscosity, const Eigen::VectorXd& unknowns,
+                  Eigen::VectorXd& residual, Eigen::MatrixXd& tangent) const;
   double arc(double from, double to) const;
 
   const PlaneBeam& beam_;

@@ -26,17 +26,18 @@ TEST(TipEquations, HaveAConsistentTangent) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> uniform(-0.2, 0.2);
   const Index n = beam.n_angles();
-  Eigen::VectorXd at(n + 4);
-  for (double& value : at) value = 0.5 + uniform(engine);
-  const Viscosity viscosity{1.5, 0.5 * beam.curvature(at.head(n))};
+  Eigen::VectorXd all(n + 7);
+  for (double& value : all) value = 0.5 + uniform(engine);
+  const Viscosity viscosity{1.5, 0.5 * beam.curvature(all.head(n))};
   Eigen::VectorXd residual;
   Eigen::MatrixXd J;
   Eigen::MatrixXd unused;
   for (const ContactStatus status :
        {ContactStatus{Touch::none, 0}, ContactStatus{Touch::rear, 0}, ContactStatus{Touch::rear, 1},
         ContactStatus{Touch::front, -1}, ContactStatus{Touch::face, 0},
-        ContactStatus{Touch::face, 1}, ContactStatus{Touch::both, 0},
-        ContactStatus{Touch::both, -1}}) {
+        ContactStatus{Touch::face, 1}, ContactStatus{Touch::rear_and_face, 0},
+        ContactStatus{Touch::both_ends, -1}}) {
+    const Eigen::VectorXd at = all.head(parts(status.touch).size() == 2 ? n + 7 : n + 4);
     const auto residual_at = [&](Index i, double h) {
       Eigen::VectorXd moved = at;
       moved[i] += h;
@@ -45,7 +46,7 @@ TEST(TipEquations, HaveAConsistentTangent) {
       return result;
     };
     tip.equations(status, {0.9, 0.2}, {0.4, 0.01}, viscosity, at, residual, J);
-    for (Index i = 0; i < n + 4; ++i) {
+    for (Index i = 0; i < at.size(); ++i) {
       // What Touch::none leaves alone is not moved: its rows are there for a regular matrix.
       if (status.touch == Touch::none && i >= n) continue;
       const double h = 1e-3;
