@@ -16,6 +16,7 @@ constexpr double first_step = 1e-2;  ///< of time, in τ
 constexpr double shortest_step = 1e-12;
 constexpr double resting_step = 1e2;  ///< such steps with hardly a change end the motion
 constexpr double resting_change = 1e-4;
+constexpr double no_change = 1e-11;      ///< of a step of any length
 constexpr double landing_depth = 1e-3;   ///< of a step that lands, in L
 constexpr double straight_angle = 1e-9;  ///< rad
 constexpr int most_steps = 20'000;
@@ -48,7 +49,9 @@ class Motion {
         continue;
       }
       accept(*next, viscosity);
-      if (step_ >= resting_step && change < resting_change && rest()) return result_;
+      const bool rests = (step_ >= resting_step && change < resting_change) ||
+                         (step_ >= first_step && change < no_change);
+      if (rests && rest()) return result_;
       step_ *= std::clamp(options_.largest_change / (change + 1e-300), 0.5, 2.0);
     }
     fail("no end after " + std::to_string(most_steps) + " steps of its motion");

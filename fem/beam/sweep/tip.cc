@@ -56,7 +56,7 @@ Tip::Tip(const PlaneBeam& beam, const Surface& surface, double length, double ra
       radius_(radius),
       tolerance_(tolerance),
       max_iterations_(max_iterations),
-      difference_(1e-5 * std::min(1.0, surface.finest_length() / length)) {}
+      difference_(1e-7 * std::min(1.0, surface.finest_length() / length)) {}
 
 ProfilePoint Tip::profile(double xi) const {
   const ProfilePoint point = surface_.extended(xi * length_);
