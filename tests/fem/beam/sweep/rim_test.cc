@@ -122,6 +122,39 @@ TEST(BeamRim, IsPressedByACrest) {
   EXPECT_NEAR(contact.point[0], 0, 1e-6 * L);
 }
 
+/// Oracle: the same column; a hollow holds both edges, where it is p(R) higher.
+TEST(BeamRim, IsPressedByAHollow) {
+  const surroundings::Surface wave{surroundings::SineProfile{0.2e-3, 10e-3}, 0.3, 0};
+  Places places;
+  for (int i = -100; i <= 20; ++i) places.emplace_back(0.01e-3 * i, 2.5e-3);
+  const auto steps = solved(disc, paper(), path(wave, places));
+  ASSERT_TRUE(steps.back().contact) << steps.back().message;
+  double compliance = 0;
+  for (const Segment& s : paper().segments)
+    compliance += s.length / (s.young_modulus * paper().area());
+  const double pressed = 0.2e-3 + wave.at(1.5e-3 - 2.5e-3).height;
+  // Vertical parts of two normal forces.
+  const surroundings::ProfilePoint edge = wave.at(1.5e-3 - 2.5e-3);
+  const Vector3 force = steps.back().deformation->centreline.at(L).forces.force;
+  EXPECT_EQ(steps.front().contact->state, State::open);
+  EXPECT_NEAR(-force[2] * compliance / pressed, 1, 1e-4);
+  EXPECT_NEAR(steps.back().contact->normal_force, -force[2] * std::hypot(1, edge.slope),
+              0.2 * -force[2]);
+  EXPECT_NEAR(steps.back().contact->point[0], 0, 1e-4 * L);
+}
+
+/// There and back again: every state on the way is one of contact, and the works balance.
+TEST(BeamRim, SweepsThereAndBackAgain) {
+  for (const TipShape tip : {TipShape::rim, TipShape::point})
+    for (const double mu : {0.3, 0.6}) {
+      Places places = straight_on(1e-3, 40e-3, 200);
+      for (int i = 199; i >= 0; --i) places.push_back(places[static_cast<std::size_t>(i)]);
+      const auto steps = solved(options(false, tip), paper(), path(step(mu), places));
+      for (const MechanicsStep& step : steps) ASSERT_TRUE(step.contact) << step.message;
+      EXPECT_LT(measured("balance", std::abs(imbalance(steps)) / total_work(steps)), 1e-6);
+    }
+}
+
 /// From flush the surface drags the cilium along: it holds, tips over its edge, slides; and then it
 /// is where a long sweep leads.
 TEST(BeamRim, TipsOverFromFlush) {
