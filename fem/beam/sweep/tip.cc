@@ -340,7 +340,10 @@ std::optional<TipState> Tip::solve(ContactStatus status, const Place& place, con
     if (!change.allFinite()) return std::nullopt;
     const double relative = (change.array() / (1 + unknowns.array().abs())).abs().maxCoeff();
     const double turn = change.head(n).lpNorm<Eigen::Infinity>();
-    unknowns += change * std::min(1.0, largest_turn / std::max(turn, relative / 4));
+    // About a corner of the slope's curvature full steps may go to and fro.
+    const bool goes_to_and_fro = iteration > 4 && relative > 0.7 * last;
+    unknowns +=
+        change * std::min(goes_to_and_fro ? 0.5 : 1.0, largest_turn / std::max(turn, relative / 4));
     // p″ is right to 1e-9 or so, and a small force on a stiff beam to less than the tolerance.
     const bool is_rounding = relative < 1e-9 && relative >= last / 2;
     if (iteration >= patience && relative > last / 2 && relative > 1e-3) return std::nullopt;
