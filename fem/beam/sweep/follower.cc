@@ -165,7 +165,7 @@ bool Follower::is_smooth(const TipState& next, double step) const {
   const bool is_end = next.status.touch == Touch::rear || next.status.touch == Touch::front;
   if (is_end && !next.is_held_stable) return false;
   if ((next.angles - last.angles).lpNorm<Eigen::Infinity>() > largest_turn) return false;
-  if (next.status != last.status) return step <= bracket;
+  if (next.status != last.status && step > bracket) return false;
   // The forces have corners where the slope's curvature jumps; the works do not balance beyond one.
   const Works works = works_until(next);
   if (std::abs(next.energy - last.energy - works.surface + works.friction) >
