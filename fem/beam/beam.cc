@@ -10,6 +10,7 @@
 #include "fem/beam/cilium_beam.h"
 #include "fem/beam/contact.h"
 #include "fem/beam/newton.h"
+#include "fem/beam/sweep/sweep.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 
@@ -116,12 +117,21 @@ constexpr double safety = 1.25;
 /// 1.3e-15 (docs/evidence/beam.md).
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
+/// Of the equilibria of a sweep, in the same units: a held tip keeps what was wrong with the place
+/// where it stopped (Sweep tests of the beam).
+constexpr double sweep_error = 1e-8;
+
+bool is_sweep(const LoadPath& path) {
+  return !path.empty() && path.front().is<SweepLoad>();
+}
+
 MechanicsResult solve_all(const Cilium& cilium, const LoadPath& path, const BeamOptions& options,
                           const Progress& progress) {
   MechanicsResult result;
   const CiliumBeam straight = cilium_beam(cilium, options);
   result.undeformed.centreline = centreline(straight.system, straight.system.reference_state());
-  result.steps = solve_path(cilium, path, options, progress);
+  result.steps = is_sweep(path) ? sweep::solve(cilium, path, options, progress)
+                                : solve_path(cilium, path, options, progress);
   return result;
 }
 
@@ -138,10 +148,11 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
     higher.degree += companion_degrees;
     result.companions.push_back(solve_all(cilium, path, higher, {}));
     result.error_parts = {{"degree", 1, 0, safety}};
-    result.algebraic_error = rounding;
+    result.algebraic_error = is_sweep(path) ? sweep_error : rounding;
     for (std::size_t i = 0; i < path.size(); ++i)
       result.steps[i].seconds += result.companions.front().steps[i].seconds;
     estimate_errors(result);
+    sweep::forget_uncertainties_near_jumps(result);
   }
   return result;
 }

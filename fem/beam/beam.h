@@ -5,6 +5,10 @@
 
 namespace ciliaval::fem::beam {
 
+/// What of the tip a surface touches: the ends of the end section's diameter in the plane of the
+/// sweep and the line between them, or the end of the centreline.
+enum class TipShape { rim, point };
+
 struct BeamOptions {
   unsigned int degree = 6;      ///< of the interpolation of position and rotation
   unsigned int refinement = 1;  ///< each step halves the elements; 0 is one element between breaks
@@ -12,7 +16,8 @@ struct BeamOptions {
   double tolerance = 1e-12;     ///< of the residual and the increment, relative
   unsigned int max_iterations = 30;
   unsigned int max_cutbacks = 8;
-  bool error_estimate = true;  ///< by a companion of a higher degree; over half of the work
+  TipShape tip = TipShape::rim;  ///< of a sweep
+  bool error_estimate = true;    ///< by a companion of a higher degree; over half of the work
 };
 
 /// Geometrically exact (Simo–Reissner) beam: bending, torsion, shear and extension, finite 3D

@@ -20,6 +20,11 @@ input::MechanicsEntry beam() {
                                 "Each step halves the elements."),
                   input::flag(&BeamOptions::shear_rigid, "shear_rigid",
                               "No shear and no extension: the elastica's assumptions."),
+                  input::choice(
+                      &BeamOptions::tip, "tip",
+                      {{"rim", fem::beam::TipShape::rim}, {"point", fem::beam::TipShape::point}},
+                      "What a sweeping surface touches: the end section, a disc, or the "
+                      "end of the centreline."),
                   input::option(&BeamOptions::tolerance, "tolerance", tolerance_range,
                                 "Of the residual and the increment, relative."),
                   input::option(&BeamOptions::max_iterations, "max_iterations", iterations_range,
