@@ -83,9 +83,10 @@ void serialize(Archive& archive, ciliaval::fem::solid::equilibrium::LoadPathStat
 template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
-         slip_off_uncertainty, contact_arclength, tip_uncertainty, tip_angle_uncertainty,
+         slip_off_uncertainty, contact_arclength, contact, tip_uncertainty, tip_angle_uncertainty,
          applied_force_uncertainty, unknowns, iterations, seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
+  static_cast<void>(contact);      // of a sweep, which is not kept
   // Estimated anew.
   static_cast<void>(tip_uncertainty);
   static_cast<void>(tip_angle_uncertainty);
