@@ -22,13 +22,12 @@ constexpr double bent_height = 0.6;   ///< of the tip that is bent aside, in L
 constexpr double force_ratio = 1.25;  ///< of the holding forces, from one to the next
 constexpr double first_force = 0.01;  ///< in the tip's stiffness times L
 constexpr int most_forces = 80;
-constexpr unsigned int most_iterations = 15;  ///< of Newton's method: more is a step to be cut
+constexpr unsigned int most_iterations = 10;  ///< of Newton's method: more is a step to be cut
 
 /// 3EI/L³ of a slender cilium of the softest segment.
 double tip_stiffness(const Cilium& cilium) {
   double softest = cilium.segments.front().young_modulus;
-  for (const Segment& segment : cilium.segments)
-    softest = std::min(softest, segment.young_modulus);
+  for (const Segment& segment : cilium.segments) softest = std::min(softest, segment.young_modulus);
   return 3 * softest * cilium.second_moment() / std::pow(cilium.length(), 3);
 }
 
@@ -82,8 +81,7 @@ FollowerOutcome press(const Level& level, Follower& follower, SweepPlace place, 
   if (first_free == 0) {
     follower.start_open(place);
     if (smallest_gap(follower.nodes(), follower.surface_at(place),
-                     follower.current().solid.displacement) >= 0)
-      {
+                     follower.current().solid.displacement) >= 0) {
       FollowerOutcome open;
       open.converged = true;
       return open;
@@ -117,8 +115,8 @@ SurfaceContact contact_of(const Follower& follower, const FollowerOutcome& outco
     const NodeForce& force = state.forces[i];
     contact.normal_force += follower.copies() * force.normal;
     contact.friction_force += follower.copies() * force.friction[0];
-    contact.point += follower.copies() * force.normal *
-                     follower.nodes()[i].position(state.solid.displacement);
+    contact.point +=
+        follower.copies() * force.normal * follower.nodes()[i].position(state.solid.displacement);
     if (force.normal > 1e-3 * largest && !force.slides)
       contact.state = SurfaceContact::State::stick;
   }

@@ -15,23 +15,30 @@ using namespace discretisation;
 using namespace equilibrium;
 namespace {
 
-constexpr double stiffness_factor = 1e3;     ///< of the augmented Lagrangian, in E d
-constexpr double penetration = 1e-6;         ///< allowed, in d
-constexpr int multiplier_updates = 5;        ///< at most, of one equilibrium
-constexpr double longest_travel = 0.02;      ///< step, in L
-constexpr double feature_part = 0.5;         ///< step, in the surface's finest length
-constexpr double longest_release = 0.2;      ///< step of the holding force
-constexpr double shortest_step = 1e-4;       ///< in L, or of the holding force
-constexpr double balance = 1e-3;             ///< of a step's works
+constexpr double stiffness_factor = 1e3;  ///< of the augmented Lagrangian, in E d
+constexpr double penetration = 1e-6;      ///< allowed, in d
+constexpr double touch_depth = 1e-7;      ///< of a node that begins to touch, in d
+constexpr int most_corrections = 12;      ///< of the nodes' states and multipliers
+constexpr double longest_travel = 0.02;   ///< step, in L
+constexpr double feature_part = 0.5;      ///< step, in the surface's finest length
+constexpr double longest_release = 0.2;   ///< step of the holding force
+constexpr double shortest_step = 1e-4;    ///< in L, or of the holding force
+constexpr double relaxed_step = 1e-3;     ///< after a jump, in L
+constexpr double least_factor = 0.25;     ///< from a step to the next
+constexpr double largest_factor = 2;
+constexpr double balance = 3e-3;             ///< of a step's works
 constexpr double energy_noise = 1e-6;        ///< of the elastic energy
 constexpr double vanishing_loss = 1e-4;      ///< of the elastic energy: less is no jump
 constexpr double longest_extrapolation = 2;  ///< in the last step
-// Of the relaxation:
+// Of a jump:
+constexpr double farthest_walk = 4;        ///< in L
+constexpr double shortest_walk = 1e-6;     ///< step, in L
 constexpr double longest_movement = 0.02;  ///< of a step, in L
-constexpr double first_rate = 10;          ///< damping, in the tip's stiffness over the volume
+constexpr double first_rate = 1e4;         ///< damping, in the tip's stiffness over the volume
 constexpr double last_rate = 1e-4;
 constexpr double largest_rate = 1e9;
 constexpr double rest_movement = 1e-3;  ///< in L
+constexpr int successes_before_faster = 2;
 constexpr int most_relaxations = 400;
 
 SweepPlace between(const SweepPlace& a, const SweepPlace& b, double t) {
@@ -64,7 +71,9 @@ Follower::Follower(const SolidSpace& space, const ExtrudedQuadrature& quadrature
       volumes_(loads::body_force(space, [](const Vector3&) -> Vector3 { return Vector3::Ones(); })),
       hold_(loads::section_force(space, quadrature, 1, quadrature.height(), direction)),
       copies_(quadrature.extent() == Extent::half ? 2 : 1),
-      volume_(quadrature.area() * quadrature.height()) {}
+      volume_(quadrature.area() * quadrature.height()),
+      longest_(std::min(longest_travel * options.length, feature_part * surface.finest_length())),
+      step_(longest_) {}
 
 RigidSurface Follower::surface_at(const SweepPlace& place) const {
   return {&surface_, direction_, options_.length - place.interference, place.travel};
@@ -83,7 +92,7 @@ bool Follower::start_held(const SweepPlace& place, SolidState guess) {
   far.interference = -10 * options_.length;
   start_open(far);
   int iterations = 0;
-  auto held = attempt(far, now_, std::move(guess), std::nullopt, iterations);
+  auto held = attempt(far, now_, guess, {}, iterations);
   if (!held || smallest_gap(nodes_, surface_at(place), held->solid.displacement) < 0) return false;
   now_ = std::move(*held);
   now_.place = place;
@@ -92,35 +101,44 @@ bool Follower::start_held(const SweepPlace& place, SolidState guess) {
 }
 
 std::optional<ContactState> Follower::attempt(const SweepPlace& place, const ContactState& from,
-                                              SolidState start,
-                                              const std::optional<Damping>& damping,
+                                              const SolidState& start, const Brake& brake,
                                               int& iterations) {
   const RigidSurface surface = surface_at(place);
-  ContactState state{place, std::move(start), from.memory, {}, 0, Vector3::Zero()};
+  ContactState state{place, start, from.memory, {}, 0, Vector3::Zero()};
   const loads::ExternalForces touch = contact_forces(nodes_, state.memory, surface, law_);
   const auto external = [&](const dealii::Vector<double>& u, dealii::Vector<double>& forces,
                             const dealii::AffineConstraints<double>& constraints,
                             dealii::SparseMatrix<double>* matrix) {
     touch(u, forces, constraints, matrix);
     forces.add(place.hold, hold_);
-    if (!damping) return;
+    if (brake.damping == 0) return;
     for (dealii::types::global_dof_index i = 0; i < u.size(); ++i) {
-      const double rate = damping->rate * volumes_[i];
-      forces[i] -= rate * (u[i] - damping->from[i]);
+      const double rate = brake.damping * volumes_[i];
+      forces[i] -= rate * (u[i] - from.solid.displacement[i]);
       if (matrix != nullptr) matrix->diag_element(i) += rate;
     }
   };
-  for (int update = 0; update <= multiplier_updates; ++update) {
+  for (int update = 0;; ++update) {
     const NewtonResult result = newton_.solve(external, state.solid, options_.newton);
     iterations += result.iterations();
     if (!result.converged) return std::nullopt;
     state.forces = node_forces(nodes_, state.memory, surface, law_, state.solid.displacement);
-    if (smallest_gap(nodes_, surface, state.solid.displacement) >=
-        -penetration * options_.diameter)
-      break;
-    if (update == multiplier_updates) return std::nullopt;
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      state.memory[i].multiplier = state.forces[i].normal;
+    const bool penetrates =
+        smallest_gap(nodes_, surface, state.solid.displacement) < -penetration * options_.diameter;
+    const NodeMemory led = brake.driver ? state.memory[*brake.driver] : NodeMemory{};
+    bool corrected =
+        correct_states(state.forces, law_, touch_depth * options_.diameter, state.memory);
+    if (brake.driver) {
+      if (!(state.forces[*brake.driver].normal > 0)) return std::nullopt;
+      // Where nothing else changes, Newton's method ends at once.
+      state.memory[*brake.driver] = led;
+      corrected = corrected && update == 0;
+    }
+    if (!corrected && !penetrates) break;
+    if (update == most_corrections) return std::nullopt;
+    if (penetrates)
+      for (std::size_t i = 0; i < nodes_.size(); ++i)
+        state.memory[i].multiplier = std::max(0.0, state.forces[i].normal);
   }
   state.memory = remembered(nodes_, state.forces, surface, state.solid.displacement);
   for (const NodeForce& force : state.forces) state.force += copies_ * force.force;
@@ -161,109 +179,164 @@ Follower::Work Follower::work(const ContactState& from, const ContactState& to) 
     const Vector3 slip = x1 - x0 - moved;
     const SurfacePoint at0 = surface_point(before, x0);
     const SurfacePoint at1 = surface_point(after, x1);
-    work.friction -= copies_ / 2 * slip.dot(at0.tangents * from.forces[i].friction +
-                                            at1.tangents * to.forces[i].friction);
+    work.friction -=
+        copies_ / 2 *
+        slip.dot(at0.tangents * from.forces[i].friction + at1.tangents * to.forces[i].friction);
   }
   return work;
 }
 
-bool Follower::is_balanced(const ContactState& to) const {
-  if (to.place.hold != 0 || now_.place.hold != 0) return true;
+double Follower::imbalance(const ContactState& to) const {
+  if (to.place.hold != 0 || now_.place.hold != 0) return 0;
   const auto [surface, friction] = work(now_, to);
-  return std::abs(to.energy - now_.energy - surface + friction) <=
-         balance * (std::abs(surface) + std::abs(friction)) +
-             energy_noise * std::max(to.energy, now_.energy);
+  return std::abs(to.energy - now_.energy - surface + friction) /
+         (balance * (std::abs(surface) + std::abs(friction)) +
+          energy_noise * std::max(to.energy, now_.energy) + std::numeric_limits<double>::min());
 }
 
 void Follower::accept(ContactState&& state, FollowerOutcome& outcome) {
-  const auto [surface, friction] = work(now_, state);
-  outcome.surface_work += surface;
-  outcome.friction_work += friction;
+  const Work done = work(now_, state);
+  outcome.surface_work += done.surface;
+  outcome.friction_work += done.friction;
   before_ = std::move(now_);
   now_ = std::move(state);
-}
-
-double Follower::longest_step(const SweepPlace& from, const SweepPlace& to) const {
-  const double distance = way(from, to);
-  if (distance == 0) return longest_release;
-  const double longest =
-      std::min(longest_travel * options_.length, feature_part * surface_.finest_length());
-  return std::min(1.0, longest / distance);
 }
 
 FollowerOutcome Follower::go(const SweepPlace& target, const Progress& progress) {
   FollowerOutcome outcome;
   const SweepPlace start = now_.place;
-  const double distance = way(start, target);
-  const double longest = longest_step(start, target);
-  const double unit = distance > 0 ? options_.length / distance : 1;
-  double at = 0;
-  step_ = longest;
-  while (at < 1) {
-    const double next = at + 1.000001 * step_ >= 1 ? 1 : at + step_;
-    const SweepPlace place = between(start, target, next);
-    auto reached = attempt(place, now_, predicted(place), std::nullopt, outcome.iterations);
-    if (reached && is_balanced(*reached)) {
+  const bool releases = start.hold != target.hold;
+  // Lengths of the release are parts of L.
+  const double distance = releases ? options_.length : way(start, target);
+  const double longest = releases ? longest_release * options_.length : longest_;
+  const double shortest = shortest_step * options_.length;
+  if (releases) step_ = longest;
+  double done = 0;
+  while (done < distance) {
+    const double step = done + 1.01 * step_ >= distance ? distance - done : step_;
+    const SweepPlace place =
+        done + step == distance ? target : between(start, target, (done + step) / distance);
+    auto reached = attempt(place, now_, predicted(place), {}, outcome.iterations);
+    const double excess = reached ? imbalance(*reached) : 0;
+    // The error of the trapezoidal rule is of the second order, relative to the work.
+    const double factor =
+        reached ? std::clamp(0.9 / std::sqrt(excess), least_factor, largest_factor) : least_factor;
+    if (reached && excess <= 1) {
       accept(std::move(*reached), outcome);
-      step_ = std::min(2 * (next - at), longest);
-      at = next;
+      if (step_ <= step || factor < 1) step_ = step * factor;
+      step_ = std::clamp(step_, shortest, longest);
+      done += step;
       continue;
     }
-    if (next - at > shortest_step * unit) {
-      step_ = std::max((next - at) / 4, 0.999 * shortest_step * unit);
+    if (step > shortest) {
+      step_ = std::max(step * factor, shortest);
       continue;
     }
-    if (!relax(place, outcome, progress)) {
+    if (!jump(place, outcome, progress)) {
       outcome.trouble = "no equilibrium was found beyond the travel " +
                         std::to_string(1e3 * now_.place.travel) + " mm of the surface";
       return outcome;
     }
-    at = next;
+    step_ = relaxed_step * options_.length;
+    done += step;
   }
+  if (releases) step_ = longest_;
   outcome.converged = true;
   return outcome;
 }
 
-bool Follower::relax(const SweepPlace& place, FollowerOutcome& outcome, const Progress& progress) {
-  const double unit = options_.tip_stiffness / volume_;
+bool Follower::jump(const SweepPlace& place, FollowerOutcome& outcome, const Progress& progress) {
+  if (progress) progress("a jump");
   const double energy_before = now_.energy;
-  double surface_work = 0;
-  double friction_work = 0;
+  ContactState state = now_;
+  Work spent;
+  if (!walk(place, state, spent, outcome.iterations) &&
+      !relax(place, state, spent, outcome.iterations, progress))
+    return false;
+  outcome.surface_work += spent.surface;
+  outcome.friction_work += spent.friction;
+  const double lost = energy_before + spent.surface - spent.friction - state.energy;
+  if (place.hold == 0 && lost > vanishing_loss * std::max(energy_before, state.energy))
+    outcome.energy_lost = outcome.energy_lost.value_or(0) + lost;
+  now_ = std::move(state);
+  before_.reset();
+  return true;
+}
+
+bool Follower::walk(const SweepPlace& place, ContactState& state, Work& spent, int& iterations) {
+  const auto bears_more = [](const NodeForce& a, const NodeForce& b) {
+    return a.normal < b.normal;
+  };
+  const auto driver_of = [&](const ContactState& at) {
+    return static_cast<std::size_t>(std::ranges::max_element(at.forces, bears_more) -
+                                    at.forces.begin());
+  };
+  const NodeMemory& first = state.memory[driver_of(state)];
+  if (first.state != NodeState::slip || first.along[0] == 0) return false;
+  const double pull = first.along[0] > 0 ? 1 : -1;  // of the surface on the node
+  const double longest =
+      std::min(longest_movement * options_.length, feature_part * surface_.finest_length());
+  double step = shortest_step * options_.length;
+  double done = 0;
+  while (done < farthest_walk * options_.length && step > shortest_walk * options_.length) {
+    const std::size_t driver = driver_of(state);
+    ContactState led = state;
+    led.memory[driver].state = NodeState::stick;
+    led.memory[driver].place[0] -= pull * step;
+    auto next = attempt(place, led, state.solid, {.driver = driver}, iterations);
+    if (!next) {
+      step /= 4;
+      continue;
+    }
+    NodeForce& force = next->forces[driver];
+    const double borne = law_.friction * force.normal;
+    const bool is_held = pull * force.trial[0] <= borne;
+    next->memory[driver].state = NodeState::slip;
+    next->memory[driver].along = {pull, 0};
+    next->memory[driver].friction = force.friction = {pull * borne, 0};
+    if (is_held) {
+      next->memory[driver].place = state.memory[driver].place;
+      next = attempt(place, *next, next->solid, {}, iterations);
+      if (!next) {
+        step /= 4;
+        continue;
+      }
+    }
+    spent.add(work(state, *next));
+    state = std::move(*next);
+    if (is_held) return true;
+    done += step;
+    step = std::min(2 * step, longest);
+  }
+  return false;
+}
+
+bool Follower::relax(const SweepPlace& place, ContactState& state, Work& spent, int& iterations,
+                     const Progress& progress) {
+  const double unit = options_.tip_stiffness / volume_;
   double rate = first_rate * unit;
   double last_movement = std::numeric_limits<double>::infinity();
-  ContactState state = now_;
+  int patience = 0;
   for (int i = 0; i < most_relaxations && rate < largest_rate * unit; ++i) {
     const bool at_rest = rate < last_rate * unit && last_movement < rest_movement * options_.length;
-    auto next = attempt(place, state, state.solid,
-                        at_rest ? std::nullopt
-                                : std::optional(Damping{rate, state.solid.displacement}),
-                        outcome.iterations);
+    auto next = attempt(place, state, state.solid, {.damping = at_rest ? 0 : rate}, iterations);
     const double movement =
         next ? largest_difference(next->solid.displacement, state.solid.displacement) : 0;
     if (progress)
-      progress("relaxation " + std::to_string(i) + ", movement " + std::to_string(movement * 1e3) +
-               " mm");
+      progress("jump, relaxation " + std::to_string(i) + ", movement " +
+               std::to_string(movement * 1e3) + " mm");
     if (!next || movement > longest_movement * options_.length) {
       rate *= 4;
-      last_movement = std::numeric_limits<double>::infinity();
+      patience = successes_before_faster;
       continue;
     }
-    const auto [surface, friction] = work(state, *next);
-    surface_work += surface;
-    friction_work += friction;
+    spent.add(work(state, *next));
     state = std::move(*next);
-    if (at_rest) {
-      outcome.surface_work += surface_work;
-      outcome.friction_work += friction_work;
-      const double lost = energy_before + surface_work - friction_work - state.energy;
-      if (place.hold == 0 && lost > vanishing_loss * std::max(energy_before, state.energy))
-        outcome.energy_lost = outcome.energy_lost.value_or(0) + lost;
-      now_ = std::move(state);
-      before_.reset();
-      return true;
-    }
-    // Not while an instability grows: too long a step would stop at an unstable equilibrium.
-    if (movement < longest_movement / 2 * options_.length && movement <= last_movement) rate /= 4;
+    if (at_rest) return true;
+    // Not while an instability grows fast: too long a step would stop at an unstable equilibrium.
+    if (--patience < 0 && movement < longest_movement / 2 * options_.length &&
+        movement <= 2 * last_movement)
+      rate /= 4;
     last_movement = movement;
   }
   return false;

@@ -26,8 +26,8 @@ struct ContactState {
   discretisation::SolidState solid;
   std::vector<NodeMemory> memory;
   std::vector<NodeForce> forces;
-  double energy = 0;                       ///< elastic, J
-  Vector3 force = Vector3::Zero();         ///< of the surface on the body, N
+  double energy = 0;                ///< elastic, J
+  Vector3 force = Vector3::Zero();  ///< of the surface on the body, N
 };
 
 struct FollowerOptions {
@@ -53,8 +53,10 @@ struct FollowerOutcome {
 ///
 /// A step is accepted if Newton's method converges and the energies balance: the change of the
 /// elastic energy is the surface's work less the friction's, both by the trapezoidal rule. Else it
-/// is cut to a quarter. Below the shortest step the body has jumped: its way to the next
-/// equilibrium is that of a body with a damping in proportion to its mass, without inertia.
+/// is cut. Below the shortest step the body has jumped: the node that bears most slides on over the
+/// surface, held back, to where friction alone holds it. If it lifts off, or if it did not slide,
+/// the way to the next equilibrium is that of a body with a damping in proportion to its mass,
+/// without inertia.
 class Follower {
  public:
   /// The space, the quadrature, the solver and the surface must outlive it.
@@ -80,24 +82,36 @@ class Follower {
 
  private:
   struct Work {
-    double surface = 0;
-    double friction = 0;
+    double surface = 0;   ///< done by the surface, J
+    double friction = 0;  ///< spent on it, J
+    void add(const Work& other) {
+      surface += other.surface;
+      friction += other.friction;
+    }
   };
-  /// Damping force −α m (u − u₀) beside the loads, m the node's volume.
-  struct Damping {
-    double rate;  ///< α, N/m⁴
-    const dealii::Vector<double>& from;
+  /// What holds the body back on its way to the next equilibrium.
+  struct Brake {
+    double damping = 0;  ///< α of a force −α m (u − u₀), m the node's volume, N/m⁴
+    std::optional<std::size_t> driver{};  ///< a node that sticks at its place, whatever it takes
   };
+  /// The equilibrium at a place, from a state near it. The nodes remember `from`. Empty if Newton's
+  /// method fails, or if the driver is drawn away from the surface.
   std::optional<ContactState> attempt(const SweepPlace& place, const ContactState& from,
-                                      discretisation::SolidState start,
-                                      const std::optional<Damping>& damping, int& iterations);
+                                      const discretisation::SolidState& start, const Brake& brake,
+                                      int& iterations);
   discretisation::SolidState predicted(const SweepPlace& place) const;
   Work work(const ContactState& from, const ContactState& to) const;
-  bool is_balanced(const ContactState& to) const;
+  /// Error of the balance of energy of a step to the state, over what is allowed.
+  double imbalance(const ContactState& to) const;
   void accept(ContactState&& state, FollowerOutcome& outcome);
   /// At the place, from the current state to the next stable equilibrium.
-  bool relax(const SweepPlace& place, FollowerOutcome& outcome, const Progress& progress);
-  double longest_step(const SweepPlace& from, const SweepPlace& to) const;
+  bool jump(const SweepPlace& place, FollowerOutcome& outcome, const Progress& progress);
+  /// The node that bears most is led over the surface, the way it slides, up to where friction
+  /// holds it. False if it lifts off before.
+  bool walk(const SweepPlace& place, ContactState& state, Work& spent, int& iterations);
+  /// Damped in proportion to the mass, without inertia.
+  bool relax(const SweepPlace& place, ContactState& state, Work& spent, int& iterations,
+             const Progress& progress);
 
   const discretisation::SolidSpace& space_;
   equilibrium::Newton& newton_;
@@ -109,10 +123,11 @@ class Follower {
   dealii::Vector<double> volumes_;  ///< of the nodes, m³
   dealii::Vector<double> hold_;     ///< nodal forces of a unit holding force
   double copies_;
-  double volume_ = 0;
+  double volume_;
+  double longest_;  ///< step of the surface, m
+  double step_;     ///< the next one, m
   ContactState now_;
   std::optional<ContactState> before_;
-  double step_ = 1;  ///< the next step, in parts of the way
 };
 
 }  // namespace ciliaval::fem::solid::contact

@@ -23,6 +23,34 @@ bool is_on_face(unsigned int node, unsigned int face) {
   return indices(node).at(face / 2) == 2 * (face % 2);
 }
 
+constexpr double cone_slack = 1e-9;  ///< of |q| over μN
+constexpr double deep = 0.3;         ///< part of the largest penetration that makes a node touch
+
+/// What Newton's method with N as an unknown expects of it, from iterate to iterate.
+class ExpectedNormal {
+ public:
+  double move_to(const Vector3& x, const SurfacePoint& point, const NodeMemory& memory,
+                 const ContactLaw& law) {
+    if (!last_) {
+      normal_ = memory.multiplier;
+    } else if (x != last_->x) {
+      const double gap = last_->gap + last_->gradient.dot(x - last_->x);
+      normal_ = std::max(0.0, memory.multiplier - law.stiffness * gap);
+    }
+    last_ = {x, point.gap, point.gap_gradient};
+    return normal_;
+  }
+
+ private:
+  struct Iterate {
+    Vector3 x;
+    double gap;
+    Vector3 gradient;
+  };
+  std::optional<Iterate> last_;
+  double normal_ = 0;
+};
+
 void subtract(const ContactNode& node, const Matrix3& derivative,
               const dealii::AffineConstraints<double>& constraints,
               dealii::SparseMatrix<double>& matrix) {
@@ -66,33 +94,68 @@ std::vector<ContactNode> contact_nodes(const SolidSpace& space) {
 }
 
 NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const NodeMemory& memory,
-                     const ContactLaw& law) {
+                     const ContactLaw& law, double normal) {
   NodeForce result;
+  result.gap = point.gap;
+  const Eigen::Vector2d q = memory.friction - law.stiffness * (point.place - memory.place);
+  result.trial = q;
+  if (memory.state == NodeState::free) return result;
   const double N = memory.multiplier - law.stiffness * point.gap;
-  if (!(N > 0)) return result;
   result.normal = N;
   const Eigen::RowVector3d dN = -law.stiffness * point.gap_gradient.transpose();
   Eigen::Matrix<double, 2, 3> dq;  // of the trial friction q
   dq << -law.stiffness * direction.transpose(), -law.stiffness * point.tangents.col(1).transpose();
-  const Eigen::Vector2d q = memory.friction - law.stiffness * (point.place - memory.place);
   const double size = q.norm();
-  result.slides = size >= law.friction * N;
+  result.slides = memory.state == NodeState::slip;
   Eigen::Matrix<double, 2, 3> dtau = dq;
   result.friction = q;
+  Eigen::Vector2d friction = memory.friction;  // what it is expected to be
   if (result.slides) {
-    const Eigen::Vector2d along = size > 0 ? Eigen::Vector2d(q / size) : Eigen::Vector2d::Zero();
+    const bool turns = q.dot(memory.along) > 0;
+    const Eigen::Vector2d along = turns ? Eigen::Vector2d(q / size) : memory.along;
     result.friction = law.friction * N * along;
+    friction = law.friction * normal * along;
     dtau = law.friction * along * dN;
-    if (size > 0)
-      dtau += law.friction * N / size *
+    if (turns)
+      dtau += law.friction * normal / size *
               (Eigen::Matrix2d::Identity() - along * along.transpose()) * dq;
   }
   const Vector3 t = point.tangents.col(0);
   result.force = N * point.normal + point.tangents * result.friction;
-  result.derivative = point.normal * dN + point.tangents * dtau +
-                      point.curvature * (result.friction[0] * point.normal - N * t) *
-                          direction.transpose();
+  result.derivative =
+      point.normal * dN + point.tangents * dtau +
+      point.curvature * (friction[0] * point.normal - normal * t) * direction.transpose();
   return result;
+}
+
+bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law, double penetration,
+                    std::vector<NodeMemory>& memory) {
+  double deepest = 0;
+  for (std::size_t i = 0; i < memory.size(); ++i)
+    if (memory[i].state == NodeState::free) deepest = std::min(deepest, forces[i].gap);
+  bool changed = false;
+  for (std::size_t i = 0; i < memory.size(); ++i) {
+    NodeMemory& node = memory[i];
+    const NodeForce& force = forces[i];
+    const NodeState before = node.state;
+    const double size = force.trial.norm();
+    if (before == NodeState::free) {
+      if (force.gap >= -penetration || force.gap > deep * deepest) continue;
+      node.state = NodeState::slip;
+      node.along = size > 0 ? Eigen::Vector2d(force.trial / size) : Eigen::Vector2d::Zero();
+    } else if (!(force.normal > 0)) {
+      node.state = NodeState::free;
+      node.multiplier = 0;
+    } else if (before == NodeState::stick &&
+               size > (1 + cone_slack) * law.friction * force.normal) {
+      node.state = NodeState::slip;
+      node.along = force.trial / size;
+    } else if (before == NodeState::slip && law.friction > 0 && force.trial.dot(node.along) < 0) {
+      node.state = NodeState::stick;
+    }
+    changed = changed || node.state != before;
+  }
+  return changed;
 }
 
 std::vector<NodeForce> node_forces(const std::vector<ContactNode>& nodes,
@@ -103,22 +166,25 @@ std::vector<NodeForce> node_forces(const std::vector<ContactNode>& nodes,
   forces.reserve(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i)
     forces.push_back(node_force(surface_point(surface, nodes[i].position(displacement)),
-                                surface.direction, memory[i], law));
+                                surface.direction, memory[i], law, memory[i].multiplier));
   return forces;
 }
 
 loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
                                      const std::vector<NodeMemory>& memory,
                                      const RigidSurface& surface, const ContactLaw& law) {
-  return [&nodes, &memory, surface, law](const dealii::Vector<double>& displacement,
-                                         dealii::Vector<double>& forces,
-                                         const dealii::AffineConstraints<double>& constraints,
-                                         dealii::SparseMatrix<double>* matrix) {
-    const std::vector<NodeForce> all = node_forces(nodes, memory, surface, law, displacement);
+  return [&nodes, &memory, surface, law, expected = std::vector<ExpectedNormal>(nodes.size())](
+             const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+             const dealii::AffineConstraints<double>& constraints,
+             dealii::SparseMatrix<double>* matrix) mutable {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (all[i].normal == 0) continue;
-      for (unsigned int c = 0; c < 3; ++c) forces[nodes[i].dofs[c]] += all[i].force[c];
-      if (matrix != nullptr) subtract(nodes[i], all[i].derivative, constraints, *matrix);
+      const Vector3 x = nodes[i].position(displacement);
+      const SurfacePoint point = surface_point(surface, x);
+      const double normal = expected[i].move_to(x, point, memory[i], law);
+      const NodeForce force = node_force(point, surface.direction, memory[i], law, normal);
+      if (memory[i].state == NodeState::free) continue;
+      for (unsigned int c = 0; c < 3; ++c) forces[nodes[i].dofs[c]] += force.force[c];
+      if (matrix != nullptr) subtract(nodes[i], force.derivative, constraints, *matrix);
     }
   };
 }
@@ -129,9 +195,15 @@ std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
                                    const dealii::Vector<double>& displacement) {
   std::vector<NodeMemory> memory;
   memory.reserve(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    memory.push_back({forces[i].normal, forces[i].friction,
-                      surface_point(surface, nodes[i].position(displacement)).place});
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const NodeForce& force = forces[i];
+    NodeMemory& node = memory.emplace_back();
+    node.multiplier = force.normal;
+    node.friction = force.friction;
+    node.place = surface_point(surface, nodes[i].position(displacement)).place;
+    if (force.normal > 0) node.state = force.slides ? NodeState::slip : NodeState::stick;
+    if (force.friction.norm() > 0) node.along = force.friction.normalized();
+  }
   return memory;
 }
 
@@ -139,8 +211,7 @@ double smallest_gap(const std::vector<ContactNode>& nodes, const RigidSurface& s
                     const dealii::Vector<double>& displacement) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const ContactNode& node : nodes)
-    smallest =
-        std::min(smallest, surface_point(surface, node.position(displacement)).gap);
+    smallest = std::min(smallest, surface_point(surface, node.position(displacement)).gap);
   return smallest;
 }
 

@@ -27,12 +27,12 @@ struct RigidSurface {
 ///
 /// g = 0 is the surface itself; near it g is the distance, to first order.
 struct SurfacePoint {
-  double gap = 0;                            ///< g, m; negative where the body penetrates
-  Vector3 gap_gradient = Vector3::Zero();    ///< ∂g/∂x
-  Vector3 normal = Vector3::Zero();          ///< n, towards the cilium
-  Eigen::Matrix<double, 3, 2> tangents =     ///< t along the travel, b across it
+  double gap = 0;                          ///< g, m; negative where the body penetrates
+  Vector3 gap_gradient = Vector3::Zero();  ///< ∂g/∂x
+  Vector3 normal = Vector3::Zero();        ///< n, towards the cilium
+  Eigen::Matrix<double, 3, 2> tangents =   ///< t along the travel, b across it
       Eigen::Matrix<double, 3, 2>::Zero();
-  double curvature = 0;                      ///< p″/w², 1/m
+  double curvature = 0;                             ///< p″/w², 1/m
   Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< (ξ, x·b): the place on the surface, m
 };
 
