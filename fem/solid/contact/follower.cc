@@ -35,9 +35,8 @@ constexpr double farthest_walk = 4;        ///< in L
 constexpr double shortest_walk = 1e-6;     ///< step, in L
 constexpr double longest_movement = 0.02;  ///< of a step, in L
 constexpr double first_rate = 1e4;         ///< damping, in the tip's stiffness over the volume
-constexpr double last_rate = 1e-4;
 constexpr double largest_rate = 1e9;
-constexpr double rest_movement = 1e-3;  ///< in L
+constexpr double rest_force = 1e-5;  ///< in the tip's stiffness times L
 constexpr int successes_before_faster = 2;
 constexpr int most_relaxations = 400;
 
@@ -125,15 +124,9 @@ std::optional<ContactState> Follower::attempt(const SweepPlace& place, const Con
     state.forces = node_forces(nodes_, state.memory, surface, law_, state.solid.displacement);
     const bool penetrates =
         smallest_gap(nodes_, surface, state.solid.displacement) < -penetration * options_.diameter;
-    const NodeMemory led = brake.driver ? state.memory[*brake.driver] : NodeMemory{};
-    bool corrected =
-        correct_states(state.forces, law_, touch_depth * options_.diameter, state.memory);
-    if (brake.driver) {
-      if (!(state.forces[*brake.driver].normal > 0)) return std::nullopt;
-      // Where nothing else changes, Newton's method ends at once.
-      state.memory[*brake.driver] = led;
-      corrected = corrected && update == 0;
-    }
+    if (brake.driver && !(state.forces[*brake.driver].normal > 0)) return std::nullopt;
+    const bool corrected = correct_states(state.forces, law_, touch_depth * options_.diameter,
+                                          brake.driver, state.memory);
     if (!corrected && !penetrates) break;
     if (update == most_corrections) return std::nullopt;
     if (penetrates)
@@ -278,6 +271,7 @@ bool Follower::walk(const SweepPlace& place, ContactState& state, Work& spent, i
       std::min(longest_movement * options_.length, feature_part * surface_.finest_length());
   double step = shortest_step * options_.length;
   double done = 0;
+  int patience = 0;
   while (done < farthest_walk * options_.length && step > shortest_walk * options_.length) {
     const std::size_t driver = driver_of(state);
     ContactState led = state;
@@ -286,6 +280,7 @@ bool Follower::walk(const SweepPlace& place, ContactState& state, Work& spent, i
     auto next = attempt(place, led, state.solid, {.driver = driver}, iterations);
     if (!next) {
       step /= 4;
+      patience = successes_before_faster;
       continue;
     }
     NodeForce& force = next->forces[driver];
@@ -306,7 +301,7 @@ bool Follower::walk(const SweepPlace& place, ContactState& state, Work& spent, i
     state = std::move(*next);
     if (is_held) return true;
     done += step;
-    step = std::min(2 * step, longest);
+    if (--patience < 0) step = std::min(2 * step, longest);
   }
   return false;
 }
@@ -314,30 +309,32 @@ bool Follower::walk(const SweepPlace& place, ContactState& state, Work& spent, i
 bool Follower::relax(const SweepPlace& place, ContactState& state, Work& spent, int& iterations,
                      const Progress& progress) {
   const double unit = options_.tip_stiffness / volume_;
+  const double longest = longest_movement * options_.length;
   double rate = first_rate * unit;
-  double last_movement = std::numeric_limits<double>::infinity();
+  double rest = rest_force * unit * options_.length;  // damping force for which it is at rest
+  bool at_rest = false;
   int patience = 0;
   for (int i = 0; i < most_relaxations && rate < largest_rate * unit; ++i) {
-    const bool at_rest = rate < last_rate * unit && last_movement < rest_movement * options_.length;
     auto next = attempt(place, state, state.solid, {.damping = at_rest ? 0 : rate}, iterations);
     const double movement =
         next ? largest_difference(next->solid.displacement, state.solid.displacement) : 0;
     if (progress)
       progress("jump, relaxation " + std::to_string(i) + ", movement " +
                std::to_string(movement * 1e3) + " mm");
-    if (!next || movement > longest_movement * options_.length) {
-      rate *= 4;
+    if (!next || movement > longest) {
+      if (at_rest)
+        rest /= 10;  // slow it was, and not at rest
+      else
+        rate *= 4;
+      at_rest = false;
       patience = successes_before_faster;
       continue;
     }
     spent.add(work(state, *next));
     state = std::move(*next);
     if (at_rest) return true;
-    // Not while an instability grows fast: too long a step would stop at an unstable equilibrium.
-    if (--patience < 0 && movement < longest_movement / 2 * options_.length &&
-        movement <= 2 * last_movement)
-      rate /= 4;
-    last_movement = movement;
+    at_rest = rate * movement < rest;
+    if (--patience < 0) rate *= std::clamp(2 * movement / longest, 0.25, 2.0);
   }
   return false;
 }

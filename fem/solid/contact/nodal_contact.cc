@@ -129,12 +129,13 @@ NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const 
 }
 
 bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law, double penetration,
-                    std::vector<NodeMemory>& memory) {
+                    const std::optional<std::size_t>& led, std::vector<NodeMemory>& memory) {
   double deepest = 0;
   for (std::size_t i = 0; i < memory.size(); ++i)
     if (memory[i].state == NodeState::free) deepest = std::min(deepest, forces[i].gap);
   bool changed = false;
   for (std::size_t i = 0; i < memory.size(); ++i) {
+    if (led == i) continue;
     NodeMemory& node = memory[i];
     const NodeForce& force = forces[i];
     const NodeState before = node.state;

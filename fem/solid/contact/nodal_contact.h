@@ -68,9 +68,9 @@ NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const 
 
 /// Frees nodes with N ≤ 0, holds nodes that penetrate by more than `penetration` (m) and by 0.3 of
 /// the deepest one or more, and lets nodes slip with |q| > μN and stick where they would slip back.
-/// Returns whether there was anything to correct.
+/// All but the node `led`. Returns whether there was anything to correct.
 bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law, double penetration,
-                    std::vector<NodeMemory>& memory);
+                    const std::optional<std::size_t>& led, std::vector<NodeMemory>& memory);
 
 /// The surface's forces on all nodes as external forces of one solution by Newton's method. Nodes
 /// and memory must outlive them. A node's forces depend on its own position alone.
