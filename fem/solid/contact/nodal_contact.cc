@@ -142,8 +142,9 @@ bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law,
     const double size = force.trial.norm();
     if (before == NodeState::free) {
       if (force.gap >= -penetration || force.gap > deep * deepest) continue;
-      node.state = NodeState::slip;
-      node.along = size > 0 ? Eigen::Vector2d(force.trial / size) : Eigen::Vector2d::Zero();
+      // What has not moved on the surface sticks.
+      node.state = size > 0 || law.friction == 0 ? NodeState::slip : NodeState::stick;
+      if (size > 0) node.along = force.trial / size;
     } else if (!(force.normal > 0)) {
       node.state = NodeState::free;
       node.multiplier = 0;
