@@ -227,6 +227,17 @@ TEST(Follower, CompressesABlockEvenly) {
   EXPECT_NEAR(outcome.surface_work, state.energy, 3e-3 * state.energy);
 }
 
+/// Ridges that stand between the nodes (0.5 mm apart) are seen, if not felt.
+TEST(Follower, TellsThePenetrationBetweenTheNodes) {
+  const std::vector<DirichletCondition> clamped{{.boundary = 14}};
+  Pressed flat({FlatProfile{}, 0.3, 0}, clamped);
+  ASSERT_TRUE(flat.follower->go({0.02e-3, 0, 0}).converged);
+  EXPECT_LT(flat.follower->penetration(), 1e-6 * Pressed::a);
+  Pressed ridges({SineProfile{0.05e-3, 0.5e-3}, 0.3, 0}, clamped);
+  ASSERT_TRUE(ridges.follower->go({0.02e-3, 0, 0}).converged);
+  EXPECT_NEAR(ridges.follower->penetration(), 0.05e-3, 0.005e-3);
+}
+
 /// NAFEMS CGS-4: a block on a slope slides at F/G = (tan α + μ)/(1 − μ tan α). The surface moves
 /// along its slope until all nodes have slid far enough to pull that way.
 TEST(Follower, SlidesOnASlopeWithCoulombsFriction) {
