@@ -248,7 +248,7 @@ std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
     node.friction = force.friction;
     node.place = surface_point(surface, nodes[i].position(displacement)).place;
     if (force.normal > 0) node.state = force.slides ? NodeState::slip : NodeState::stick;
-    if (force.friction.norm() > 0) node.along = force.friction.normalized();
+    if (force.slides && force.trial.norm() > 0) node.along = force.trial.normalized();
   }
   return memory;
 }
