@@ -115,7 +115,6 @@ TEST(SolidSweepSlow, JumpsDownAStep) {
   ASSERT_EQ(result.steps[2].status, Status::converged);
   double lost = 0;
   for (const MechanicsStep& at : result.steps) lost += at.contact->energy_lost.value_or(0);
-  printf("lost %g\n", lost);
   EXPECT_NEAR(result.steps[2].contact->normal_force, flat.steps[1].contact->normal_force,
               1e-6 * flat.steps[1].contact->normal_force);
   EXPECT_NEAR(result.steps[2].contact->elastic_energy, flat.steps[1].contact->elastic_energy,
