@@ -30,6 +30,7 @@ constexpr double cone_slack = 1e-10;        ///< of |T| over μN
 constexpr double touch_depth = 1e-8;        ///< of the first contact, in L
 constexpr int most_changes = 8;             ///< of the touching points at a place
 constexpr double most_touch_energy = 0.01;  ///< of a cilium that has just been touched
+constexpr double slight_force = 0.01;       ///< far less than buckles
 constexpr double vanishing_energy = 1e-9;   ///< less is no jump
 /// With less the cilium is so straight that its stiffness, which cannot be computed then, is that
 /// of a rod that is pushed aside.
@@ -258,9 +259,11 @@ class Follower {
         guess.touches = {point};
         const auto contact =
             settle(place, {FrictionLaw::Kind::slip, drag_ * surface_.friction}, guess, true);
-        // Not one that is bent against the travel by a surface that does not push that way.
+        // Not one that is bent against the travel by a surface that does not push that way, unless
+        // its first touch, off the axis, tilts it so.
         if (contact && contact->normal_force > 0 && contact->energy < most_touch_energy &&
-            !(drag_ * contact->x < 0 && drag_ * contact->force_x >= 0))
+            (contact->normal_force < slight_force ||
+             !(drag_ * contact->x < 0 && drag_ * contact->force_x >= 0)))
           return contact;
       }
     return std::nullopt;
