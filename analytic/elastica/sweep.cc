@@ -24,11 +24,13 @@ constexpr double shortest_jump = 1e-6;   ///< a shorter slip in the shortest ste
 constexpr double step_imbalance = 1e-5;  ///< of the works of the shortest step, over the energy
 constexpr double longest_search = 1e-3;  ///< step of ξ in a jump, in L
 constexpr double shortest_search = 1e-7;
+constexpr int most_landings = 50;           ///< in a jump
 constexpr double farthest_jump = 4;         ///< in L
 constexpr double cone_slack = 1e-10;        ///< of |T| over μN
 constexpr double touch_depth = 1e-8;        ///< of the first contact, in L
 constexpr int most_changes = 8;             ///< of the touching points at a place
 constexpr double most_touch_energy = 0.01;  ///< of a cilium that has just been touched
+constexpr double slight_force = 0.01;       ///< far less than buckles
 constexpr double vanishing_energy = 1e-9;   ///< less is no jump
 /// With less the cilium is so straight that its stiffness, which cannot be computed then, is that
 /// of a rod that is pushed aside.
@@ -257,9 +259,11 @@ class Follower {
         guess.touches = {point};
         const auto contact =
             settle(place, {FrictionLaw::Kind::slip, drag_ * surface_.friction}, guess, true);
-        // Not one that is bent against the travel by a surface that does not push that way.
+        // Not one that is bent against the travel by a surface that does not push that way, unless
+        // its first touch, off the axis, tilts it so.
         if (contact && contact->normal_force > 0 && contact->energy < most_touch_energy &&
-            !(drag_ * contact->x < 0 && drag_ * contact->force_x >= 0))
+            (contact->normal_force < slight_force ||
+             !(drag_ * contact->x < 0 && drag_ * contact->force_x >= 0)))
           return contact;
       }
     return std::nullopt;
@@ -394,13 +398,13 @@ class Follower {
   std::optional<TipContact> walk(const SurfacePlace& place, const TipContact& from,
                                  double& friction) const {
     TipContact contact = anchored(from, place);
-    bool has_landed = from.normal_force <= 0;
+    int landings = from.normal_force > 0 ? 0 : 1;
     double step = longest_search_;
     for (double moved = 0; moved < farthest_jump;) {
       const double direction = sign_of(contact.friction_force);
       const auto next = held_after(place, contact, -direction * step, step <= shortest_search);
       // A point that has just landed comes nearer to the surface, not away from it.
-      const bool is_landing = next && has_landed && contact.normal_force <= 0 &&
+      const bool is_landing = next && landings > 0 && contact.normal_force <= 0 &&
                               next->normal_force > contact.normal_force;
       if (!next || (next->normal_force <= 0 && !is_landing)) {
         step /= 4;
@@ -412,8 +416,7 @@ class Follower {
         }
         const Flight flight = fly_back(place, contact);
         if (!flight.met) return TipContact{};
-        if (!flight.contact || has_landed) return std::nullopt;
-        has_landed = true;
+        if (!flight.contact || ++landings > most_landings) return std::nullopt;
         contact = *flight.contact;
         step = longest_search_;
         continue;
