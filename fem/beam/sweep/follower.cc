@@ -25,7 +25,7 @@ constexpr double small_energy = 1e-3;       ///< floor of the elastic energy the
 constexpr double vanishing_loss = 1e-7;     ///< less is no jump
 constexpr double straight_energy = 1e-6;    ///< with less, stiffnesses change without bounds
 constexpr double brush_height = 0.6;        ///< of the tip, bent aside, before it is pressed on
-constexpr double steepest_brush = 1.4;      ///< angle up to which it is bent aside, rad
+constexpr double steepest_brush = 2.2;      ///< angle up to which it is bent aside, rad
 
 /// ∫ f dx over a step by the trapezoidal rule with the end correction Δx² (f₀′ − f₁′)/12 that makes
 /// it Hermite's, of order 4; at most a quarter of |Δf Δx|, for at a fold slopes say nothing.

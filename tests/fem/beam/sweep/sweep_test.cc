@@ -268,6 +268,21 @@ TEST(BeamSweep, LeavesACiliumAloneThatTheSurfaceDoesNotReach) {
   }
 }
 
+/// A cilium that is softer at its tip is bent aside by more than a right angle before it is
+/// pressed.
+TEST(BeamSweep, BeginsWithACiliumThatIsSoftAtItsTip) {
+  const Cilium soft{2e-3, {{"a", 8e-3, 1e6, 0.45, 0}, {"b", 12e-3, 0.5e6, 0.45, 0}}};
+  for (const TipShape tip : {TipShape::point, TipShape::rim}) {
+    const auto steps =
+        solved(options(false, tip), soft, path(flat(0.2), {{1e-3, 0}, {1e-3, 1e-3}}));
+    for (const MechanicsStep& step : steps) {
+      ASSERT_TRUE(step.contact) << step.message;
+      EXPECT_EQ(step.contact->state, State::slip);
+      EXPECT_NEAR(step.contact->point[2], L - 1e-3, 1e-12);
+    }
+  }
+}
+
 /// A plateau that reaches the cilium, which the valleys do not: it is bent and springs back.
 TEST(BeamSweep, SpringsBackBehindAPlateau) {
   for (const TipShape tip : {TipShape::point, TipShape::rim}) {
