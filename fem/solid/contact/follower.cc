@@ -29,6 +29,7 @@ constexpr double largest_factor = 2;
 constexpr double balance = 1e-3;             ///< of a step's works
 constexpr double energy_noise = 1e-6;        ///< of the elastic energy
 constexpr double vanishing_loss = 1e-4;      ///< of the elastic energy: less is no jump
+constexpr double vanishing_energy = 1e-5;    ///< likewise, in the tip's stiffness times L²
 constexpr double longest_extrapolation = 2;  ///< in the last step
 // Of a jump:
 constexpr double farthest_walk = 4;        ///< in L
@@ -250,7 +251,10 @@ bool Follower::jump(const SweepPlace& place, FollowerOutcome& outcome, const Pro
   outcome.surface_work += spent.surface;
   outcome.friction_work += spent.friction;
   const double lost = energy_before + spent.surface - spent.friction - state.energy;
-  if (place.hold == 0 && lost > vanishing_loss * std::max(energy_before, state.energy))
+  const double vanishing =
+      std::max(vanishing_loss * std::max(energy_before, state.energy),
+               vanishing_energy * options_.tip_stiffness * options_.length * options_.length);
+  if (place.hold == 0 && lost > vanishing)
     outcome.energy_lost = outcome.energy_lost.value_or(0) + lost;
   now_ = std::move(state);
   before_.reset();
