@@ -5,26 +5,12 @@
 #include <cmath>
 
 namespace ciliaval::fem::solid::contact {
-namespace {
-
-/// Distance of the points of a central difference, in the length of the finest feature.
-constexpr double difference = 1e-4;
-
-double second_derivative(const surroundings::Surface& surface, double xi) {
-  const double finest = surface.finest_length();
-  if (!std::isfinite(finest)) return 0;
-  const double step = difference * finest;
-  return (surface.extended(xi + step).slope - surface.extended(xi - step).slope) / (2 * step);
-}
-
-}  // namespace
 
 SurfacePoint surface_point(const RigidSurface& surface, const Vector3& x) {
   const Vector3& e = surface.direction;
   const double xi = x.dot(e) - surface.travel;
-  const auto [p, slope] = surface.profile->extended(xi);
+  const auto [p, slope, second] = surface.profile->extended(xi);
   const double w = std::hypot(1, slope);
-  const double second = second_derivative(*surface.profile, xi);
   const double h = surface.height - p - x.z();
   SurfacePoint point;
   point.gap = h / w;
