@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analytic/elastica/outline.h"
+#include "analytic/elastica/point_forces/work.h"
 #include "problem/error.h"
 
 namespace ciliaval::analytic::elastica {
@@ -283,7 +284,8 @@ class Follower {
   /// Whether the works of a step are exact enough: the trapezoidal rule's error is far below what
   /// the derivatives at both ends correct.
   bool is_smooth(const TipContact& contact, const SurfacePlace& place) const {
-    const Work work = work_of(contact, place);
+    const point_forces::Work work =
+        point_forces::work_between(now_.contact, now_.place, contact, place, surface_.friction);
     return std::abs(work.surface_correction) + std::abs(work.friction_correction) <=
            work_tolerance * std::max({contact.energy, now_.contact.energy, 1e-3});
   }
@@ -291,7 +293,8 @@ class Follower {
   /// Whether the state follows from the last one: the works of the step are those that the energy
   /// tells, and exact enough, except for the shortest step.
   bool is_continuous(const TipContact& contact, const SurfacePlace& place, bool last_try) const {
-    const Work work = work_of(contact, place);
+    const point_forces::Work work =
+        point_forces::work_between(now_.contact, now_.place, contact, place, surface_.friction);
     const double imbalance = work.surface - work.friction - (contact.energy - now_.contact.energy);
     const double size = std::max({contact.energy, now_.contact.energy, 1e-3});
     if (last_try) return std::abs(imbalance) < step_imbalance * size;
@@ -537,41 +540,9 @@ class Follower {
     now_.state = state;
   }
 
-  /// The works of a step, by Hermite's corrected trapezoidal rule, h²/12 (f′(a) − f′(b)).
-  struct Work {
-    double surface = 0;
-    double surface_correction = 0;
-    double friction = 0;
-    double friction_correction = 0;
-  };
-
-  Work work_of(const TipContact& contact, const SurfacePlace& place) const {
-    const Eigen::Vector2d way{place.travel - now_.place.travel, place.height - now_.place.height};
-    const TipContact& before = now_.contact;
-    Work work;
-    work.surface = (before.force_x + contact.force_x) / 2 * way[0] +
-                   (before.force_z + contact.force_z) / 2 * way[1];
-    work.surface_correction =
-        ((before.force_x_by_place - contact.force_x_by_place) * way).value() * way[0] / 12 +
-        ((before.force_z_by_place - contact.force_z_by_place) * way).value() * way[1] / 12;
-    for (const Touch& touch : contact.touches) {
-      const double way_back = touch.slip < 0 ? -1 : 1;
-      work.friction +=
-          std::abs(touch.before.friction_force + touch.friction_force) / 2 * std::abs(touch.slip);
-      // ∫ N dq of two functions of the way: h²/12 (N′(a) q′(b) − N′(b) q′(a)).
-      const auto along = [&](const Eigen::RowVector2d& by_place) {
-        return (by_place * way).value();
-      };
-      work.friction_correction +=
-          surface_.friction * way_back / 12 *
-          (along(touch.before.normal_by_place) * along(touch.slip_by_place) -
-           along(touch.normal_by_place) * along(touch.before.slip_by_place));
-    }
-    return work;
-  }
-
   void accept(const TipContact& contact, const SurfacePlace& place, TipState state) {
-    const Work work = work_of(contact, place);
+    const point_forces::Work work =
+        point_forces::work_between(now_.contact, now_.place, contact, place, surface_.friction);
     now_.surface_work += work.surface;
     now_.friction_work += work.friction;
     if (state == now_.state && has_same_points(contact) && is_smooth(contact, place)) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytic/elastica/outline.h"
 #include "analytic/elastica/planar.h"
 #include "analytic/elastica/point_forces/section.h"
 #include "analytic/elastica/sweep.h"
@@ -33,44 +34,19 @@ PlanarUnits units_of(const Cilium& cilium) {
   return {length, stiffest * cilium.second_moment() / (length * length)};
 }
 
-/// The shape under the forces of a contact: of the steps up from the base, each with the force that
-/// the part above it exerts.
+/// The shape under the forces of a contact, step by step up from the base.
 PlanarShape shape_of(const TipProblem& problem, const TipContact& contact) {
-  std::vector<Touch> touches = contact.touches;
-  std::erase_if(touches, [](const Touch& touch) { return !(touch.S < 1); });
-  std::ranges::sort(touches, {}, &Touch::S);
-  struct Piece {
-    point_forces::Step step;
-    point_forces::Force force;
-    double compliance;
-  };
-  auto pieces = std::make_shared<std::vector<Piece>>();
+  auto steps =
+      std::make_shared<const std::vector<point_forces::Step>>(steps_along(problem, contact));
   PlanarShape shape;
   shape.breaks.push_back(0);
-  point_forces::Section section;
-  section.moment = contact.base_moment;
-  point_forces::Force force{contact.force_x, contact.force_z, {}, {}};
-  const auto up_to = [&](double target) {
-    point_forces::integrate({problem.ends, problem.compliance}, section, force, target,
-                            [&](const point_forces::Step& step) {
-                              const double S = std::midpoint(step.start(), step.end());
-                              std::size_t segment = 0;
-                              while (problem.ends[segment + 1] < S) ++segment;
-                              pieces->push_back({step, force, problem.compliance[segment]});
-                              shape.breaks.push_back(step.end());
-                            });
-  };
-  for (const Touch& touch : touches) {
-    up_to(touch.S);
-    section.moment += touch.offset * (touch.force_x * std::sin(section.theta) +
-                                      touch.force_z * std::cos(section.theta));
-    force.x -= touch.force_x;
-    force.z -= touch.force_z;
-  }
-  up_to(1);
-  shape.state = [pieces](double S, std::size_t i) {
-    const auto& [step, force, compliance] = (*pieces)[i];
+  for (const point_forces::Step& step : *steps) shape.breaks.push_back(step.end());
+  shape.state = [steps, problem, contact](double S, std::size_t i) {
+    const point_forces::Step& step = (*steps)[i];
     const point_forces::Section at = step.at(S);
+    const double middle = std::midpoint(step.start(), step.end());
+    std::size_t segment = 0;
+    while (problem.ends[segment + 1] < middle) ++segment;
     PlanarState state;
     state.S = S;
     state.theta = at.theta;
@@ -78,9 +54,14 @@ PlanarShape shape_of(const TipProblem& problem, const TipContact& contact) {
     state.w = at.x;
     state.z = at.z;
     state.curvature = at.curvature;
-    state.moment = at.curvature / compliance;
-    state.force = force.x;
-    state.vertical = force.z;
+    state.moment = at.curvature / problem.compliance[segment];
+    state.force = contact.force_x;
+    state.vertical = contact.force_z;
+    for (const Touch& touch : contact.touches)
+      if (touch.S < middle) {
+        state.force -= touch.force_x;
+        state.vertical -= touch.force_z;
+      }
     return state;
   };
   return shape;

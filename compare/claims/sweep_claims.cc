@@ -17,6 +17,7 @@
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/sweep.h"
+#include "compare/sensing/profile.h"
 #include "compare/signal/signal.h"
 #include "problem/error.h"
 
@@ -199,6 +200,38 @@ Claim drifts(const input::Case& surface, const std::vector<ModelPair>& pairs,
   return claim;
 }
 
+/// The steps of the surface, read back from the field of the more detailed pair.
+Claim heights(const input::Case& surface, const std::vector<ModelPair>& pairs,
+              const Progress& progress) {
+  constexpr double noise = 1e-6;    // T: what is level within it
+  constexpr double largest = 4e-3;  // m
+  const ModelPair& truth = pairs.back();
+  Claim claim{"3.6",
+              "the signal corresponds with the surface's features: coarse quantitative analysis",
+              fmt::format("Steps between levels found from dB of {} by `ciliaval sense`, over the "
+                          "plateaus' height; held to 10 %. On the flanks the height is not known.",
+                          truth.name()),
+              {}};
+  const models::CaseResult result = run(with_models(surface, truth), progress);
+  const double height =
+      std::get<surroundings::TrapezoidProfile>(surface.surface.surface->profile).height;
+  sensing::SensorReadings readings;
+  readings.measured_offset = true;
+  for (const auto& step : result.fields.front().steps)
+    readings.samples.push_back({"", step.value().dB.front().value()});
+  for (const ModelPair& pair : pairs) {
+    const sensing::LevelCurve curve(with_models(surface, pair), pair, largest, progress);
+    const std::vector<sensing::Level> levels =
+        sensing::sense_profile(curve, readings, noise).levels;
+    Span steps;
+    for (std::size_t k = 1; k < levels.size(); ++k)
+      steps.add(100 * std::abs(levels[k].interference - levels[k - 1].interference) / height,
+                100 * (levels[k].interval + levels[k - 1].interval) / height);
+    claim.evidence.push_back(in_range("read by " + pair.name(), steps, "%", 90, 110));
+  }
+  return claim;
+}
+
 // ----------------------------------------------------------------------------------- textures
 
 constexpr std::array<std::string_view, 4> textures{"foil-knit", "leather", "felt", "seersucker"};
@@ -307,11 +340,12 @@ Claim told_apart(const std::filesystem::path& folder, const ModelPair& pair,
 std::vector<Claim> sweep_claims(const std::filesystem::path& folder, bool /*with_solid*/,
                                 const Progress& progress) {
   const input::Case surface = input::read_case(folder / "fig6-surface.toml", models::known());
-  std::vector<ModelPair> pairs{{"elastica", "volume"}};
+  const std::vector<ModelPair> pairs{{"elastica", "volume"}, {"beam", "volume"}};
   std::vector<Claim> claims;
   add_steps(surface, pairs, progress, claims);
   claims.push_back(drifts(surface, pairs, progress));
-  claims.push_back(told_apart(folder, pairs.back(), progress));
+  claims.push_back(heights(surface, pairs, progress));
+  claims.push_back(told_apart(folder, pairs.front(), progress));
   return claims;
 }
 

@@ -81,15 +81,6 @@ void serialize(Archive& archive, ciliaval::fem::solid::equilibrium::LoadPathStat
 }
 
 template <class Archive>
-void serialize(Archive& archive, ciliaval::SurfaceContact& contact, unsigned int /*version*/) {
-  auto& [state, where, normal_force, friction_force, point, elastic_energy, surface_work,
-         friction_work, energy_lost] = contact;
-  archive& state& where& normal_force& friction_force& elastic_energy& surface_work& friction_work&
-      energy_lost;
-  archive& make_array(point.data(), 3);
-}
-
-template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
          slip_off_uncertainty, contact_arclength, contact, tip_uncertainty, tip_angle_uncertainty,
@@ -101,7 +92,7 @@ void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*v
   static_cast<void>(tip_angle_uncertainty);
   static_cast<void>(applied_force_uncertainty);
   archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
-      slip_off_uncertainty& contact_arclength& contact& unknowns& iterations& seconds;
+      slip_off_uncertainty& contact_arclength& unknowns& iterations& seconds;
 }
 
 }  // namespace boost::serialization
