@@ -95,6 +95,7 @@ void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*v
          slip_off_uncertainty, contact_arclength, contact, tip_uncertainty, tip_angle_uncertainty,
          applied_force_uncertainty, unknowns, iterations, seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
+  static_cast<void>(contact);      // of a sweep, which is not kept
   // Estimated anew.
   static_cast<void>(tip_uncertainty);
   static_cast<void>(tip_angle_uncertainty);

@@ -103,14 +103,18 @@ void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
   quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, extent);
 }
 
-void Level::start_from_rest(const Load& first) {
-  if (solver_) return;
+Newton& Level::newton() {
   if (!newton_)
     newton_ = std::make_unique<Newton>(
         *space_, increment_constraints(*space_, supports(quadrature_->extent())), options_.solver,
         options_.communicator);
+  return *newton_;
+}
+
+void Level::start_from_rest(const Load& first) {
+  if (solver_) return;
   solver_ = std::make_unique<LoadPathSolver>(
-      *space_, *quadrature_, *newton_, first, options_.path,
+      *space_, *quadrature_, newton(), first, options_.path,
       [this](const Load& target, const Progress& report) { return initial_guess(target, report); });
 }
 
@@ -173,9 +177,13 @@ Guess Level::guess(const Load& load) const {
   const MechanicsResult solved = beam::Beam(rough).solve(cilium_, {load});
   const MechanicsStep& step = solved.steps.front();
   if (!step.deformation) return {};
-  Guess result{rod_guess(step.deformation->centreline, cilium_, *space_), step.applied_force};
-  prescribe(*space_, supports(quadrature_->extent()), *result.state);
-  return result;
+  return {from_rod(step.deformation->centreline), step.applied_force};
+}
+
+SolidState Level::from_rod(const Centreline& rod) const {
+  SolidState state = rod_guess(rod, cilium_, *space_);
+  prescribe(*space_, supports(quadrature_->extent()), state);
+  return state;
 }
 
 Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
@@ -197,12 +205,20 @@ Deformation Level::deformation(double azimuth) const {
   return deformation(solver().current(), azimuth);
 }
 
+Deformation Level::deformation(const SolidState& state, double azimuth) const {
+  return deformation(state, SpreadLoad{}, azimuth);
+}
+
 Deformation Level::undeformed(double azimuth) const {
-  return deformation(space_->undeformed(), SpreadLoad{}, azimuth);
+  return deformation(space_->undeformed(), azimuth);
 }
 
 MantleCompression Level::mantle_compression() const {
-  return postprocessing::mantle_compression(*space_, cilium_, solver().current().state);
+  return mantle_compression(solver().current().state);
+}
+
+MantleCompression Level::mantle_compression(const SolidState& state) const {
+  return postprocessing::mantle_compression(*space_, cilium_, state);
 }
 
 }  // namespace ciliaval::fem::solid

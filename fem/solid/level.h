@@ -67,12 +67,25 @@ class Level {
   /// `azimuth`.
   Deformation deformation(double azimuth) const;
   Deformation deformation(const equilibrium::Equilibrium& equilibrium, double azimuth) const;
+  /// Of a state whose loads act on the surface alone.
+  Deformation deformation(const discretisation::SolidState& state, double azimuth) const;
   Deformation undeformed(double azimuth) const;
 
   /// Of the level's state.
   postprocessing::MantleCompression mantle_compression() const;
+  postprocessing::MantleCompression mantle_compression(
+      const discretisation::SolidState& state) const;
   double applied_force() const { return solver().current().applied_force; }
   std::size_t unknowns() const { return space_->unknowns(); }
+
+  // For solvers that make their own way, apart from the level's load path.
+  const Cilium& cilium() const { return cilium_; }
+  const LevelOptions& options() const { return options_; }
+  const discretisation::SolidSpace& space() const { return *space_; }
+  const discretisation::ExtrudedQuadrature& quadrature() const { return *quadrature_; }
+  equilibrium::Newton& newton();
+  /// A rod's state as a state of the level.
+  discretisation::SolidState from_rod(const Centreline& rod) const;
 
  private:
   /// The space on the triangulation and its mapping.

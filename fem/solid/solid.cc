@@ -17,6 +17,7 @@
 #include "fem/parallel.h"
 #include "fem/solid/level.h"
 #include "fem/solid/path_run.h"
+#include "fem/solid/sweep_run.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 
@@ -105,22 +106,39 @@ meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidO
   return mesh;
 }
 
+LevelOptions make_level_options(const Cilium& cilium, const SolidOptions& options,
+                                MPI_Comm communicator) {
+  return {{{options.newton_tolerance, options.max_iterations, least_force(cilium)},
+           options.max_cutbacks,
+           options.kernel_width},
+          options.solver,
+          communicator,
+          options.initial_guess == InitialGuess::beam};
+}
+
+std::unique_ptr<Level> user_level(const Cilium& cilium, const SolidOptions& options,
+                                  const LevelOptions& level_options) {
+  return std::make_unique<Level>(cilium, meshes::MeshFile{options.mesh, options.mesh_unit},
+                                 materials(cilium, options), level_options);
+}
+
+/// The mesh of the refinement alone, or the user's: a sweep needs no other for its guesses.
+std::unique_ptr<Level> make_sweep_level(const Cilium& cilium, const LoadPath& path,
+                                        const SolidOptions& options, MPI_Comm communicator) {
+  const LevelOptions level_options = make_level_options(cilium, options, communicator);
+  if (!options.mesh.empty()) return user_level(cilium, options, level_options);
+  return std::make_unique<Level>(cilium, path_mesh(mesh_level(options.refinement), options, path),
+                                 materials(cilium, options), level_options, nullptr);
+}
+
 /// The meshes from the coarsest to the refinement asked for and that of the section's error; a
 /// user's mesh alone.
 Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
                    MPI_Comm communicator) {
-  const LevelOptions level_options{
-      {{options.newton_tolerance, options.max_iterations, least_force(cilium)},
-       options.max_cutbacks,
-       options.kernel_width},
-      options.solver,
-      communicator,
-      options.initial_guess == InitialGuess::beam};
+  const LevelOptions level_options = make_level_options(cilium, options, communicator);
   Levels levels;
   if (!options.mesh.empty()) {
-    levels.all.push_back(std::make_unique<Level>(cilium,
-                                                 meshes::MeshFile{options.mesh, options.mesh_unit},
-                                                 materials(cilium, options), level_options));
+    levels.all.push_back(user_level(cilium, options, level_options));
     return levels;
   }
   const auto add = [&](const meshes::cylinder::CylinderMeshOptions& mesh, Level* coarser) {
@@ -199,6 +217,9 @@ MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
   require_valid(cilium, path, options_);
   try {
     start_mpi();
+    if (!path.empty() && path.front().is<SweepLoad>())
+      return follow_sweep(make_sweep_level(cilium, path, options_, communicator_), path, options_,
+                          progress);
     return PathRun(make_levels(cilium, path, options_, communicator_), path, options_, checkpoint,
                    progress, communicator_)
         .follow();

@@ -213,6 +213,19 @@ void advance(const SolidSpace& space, const InternalForces& internal,
   state.displacement += increment;
 }
 
+double elastic_energy(const SolidSpace& space, const SolidState& state) {
+  const auto& elements = space.elements();
+  double energy = 0;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const auto F = deformation_gradients(elements[e], state.displacement);
+    for (Eigen::Index q = 0; q < element_points; ++q)
+      energy += elements[e].weights[q] *
+                strain_energy(elements[e].material, F.middleCols<3>(3 * q),
+                              elements[e].pressure_values.col(q).dot(state.pressure[e]));
+  }
+  return energy;
+}
+
 void project_pressure(const SolidSpace& space, SolidState& state) {
   const auto& elements = space.elements();
   for (std::size_t e = 0; e < elements.size(); ++e) {

@@ -55,6 +55,9 @@ void add_stiffness(const SolidSpace& space, const SolidState& state, const Inter
 void advance(const SolidSpace& space, const InternalForces& internal,
              const dealii::Vector<double>& increment, SolidState& state);
 
+/// ∫ Ψ(F, p) dV of the mesh, J: where the pressure equation holds, the elastic energy.
+double elastic_energy(const SolidSpace& space, const SolidState& state);
+
 /// Sets the pressure p = K π(J − 1) of a displacement, π the projection onto the element's linear
 /// functions.
 void project_pressure(const SolidSpace& space, SolidState& state);

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/contact/nodal_contact.h"
+
+#include <deal.II/lac/full_matrix.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "meshes/boundary_ids.h"
+
+namespace ciliaval::fem::solid::contact {
+using namespace discretisation;
+namespace {
+
+/// Local coordinates 0, 1, 2 of a lexicographic node.
+std::array<unsigned int, 3> indices(unsigned int node) {
+  return {node % 3, node / 3 % 3, node / 9};
+}
+
+/// Whether the node lies on a face of the cell, in deal.II's order: ξ = 0, ξ = 1, η = 0, …
+bool is_on_face(unsigned int node, unsigned int face) {
+  return indices(node).at(face / 2) == 2 * (face % 2);
+}
+
+constexpr double cone_slack = 1e-9;  ///< of |q| over μN
+constexpr double deep = 0.3;         ///< part of the largest penetration that makes a node touch
+
+/// What Newton's method with N as an unknown expects of it, from iterate to iterate.
+class ExpectedNormal {
+ public:
+  double move_to(const Vector3& x, const SurfacePoint& point, const NodeMemory& memory,
+                 const ContactLaw& law) {
+    if (!last_) {
+      normal_ = memory.multiplier;
+    } else if (x != last_->x) {
+      const double gap = last_->gap + last_->gradient.dot(x - last_->x);
+      normal_ = std::max(0.0, memory.multiplier - law.stiffness * gap);
+    }
+    last_ = {x, point.gap, point.gap_gradient};
+    return normal_;
+  }
+
+ private:
+  struct Iterate {
+    Vector3 x;
+    double gap;
+    Vector3 gradient;
+  };
+  std::optional<Iterate> last_;
+  double normal_ = 0;
+};
+
+void subtract(const ContactNode& node, const Matrix3& derivative,
+              const dealii::AffineConstraints<double>& constraints,
+              dealii::SparseMatrix<double>& matrix) {
+  dealii::FullMatrix<double> block(3, 3);
+  for (unsigned int i = 0; i < 3; ++i)
+    for (unsigned int j = 0; j < 3; ++j) block(i, j) = -derivative(i, j);
+  constraints.distribute_local_to_global(
+      block, std::vector<dealii::types::global_dof_index>(node.dofs.begin(), node.dofs.end()),
+      matrix);
+}
+
+}  // namespace
+
+Vector3 ContactNode::position(const dealii::Vector<double>& displacement) const {
+  return X + Vector3(displacement[dofs[0]], displacement[dofs[1]], displacement[dofs[2]]);
+}
+
+std::vector<ContactNode> contact_nodes(const SolidSpace& space) {
+  dealii::types::material_id last = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const SolidElement& element : space.elements()) {
+    last = std::max(last, element.cell->material_id());
+    smallest = std::min(smallest, element.size);
+  }
+  std::map<dealii::types::global_dof_index, ContactNode> found;
+  for (const SolidElement& element : space.elements())
+    for (const unsigned int face : element.cell->face_indices()) {
+      if (!element.cell->at_boundary(face) || element.cell->material_id() != last) continue;
+      const auto id = element.cell->face(face)->boundary_id();
+      if (id != meshes::tip_id && id != meshes::mantle_id) continue;
+      for (unsigned int a = 0; a < element_nodes; ++a) {
+        const Vector3 X = element.nodes.row(a).transpose();
+        if (!is_on_face(a, face) || X.z() < 1e-6 * smallest) continue;
+        const auto& dofs = element.dofs;
+        found[dofs[a]] = {{dofs[a], dofs[element_nodes + a], dofs[2 * element_nodes + a]}, X};
+      }
+    }
+  std::vector<ContactNode> nodes;
+  for (const auto& [dof, node] : found) nodes.push_back(node);
+  return nodes;
+}
+
+NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const NodeMemory& memory,
+                     const ContactLaw& law, double normal) {
+  NodeForce result;
+  result.gap = point.gap;
+  const Eigen::Vector2d q = memory.friction - law.stiffness * (point.place - memory.place);
+  result.trial = q;
+  if (memory.state == NodeState::free) return result;
+  const double N = memory.multiplier - law.stiffness * point.gap;
+  result.normal = N;
+  const Eigen::RowVector3d dN = -law.stiffness * point.gap_gradient.transpose();
+  Eigen::Matrix<double, 2, 3> dq;  // of the trial friction q
+  dq << -law.stiffness * direction.transpose(), -law.stiffness * point.tangents.col(1).transpose();
+  const double size = q.norm();
+  result.slides = memory.state == NodeState::slip;
+  Eigen::Matrix<double, 2, 3> dtau = dq;
+  result.friction = q;
+  Eigen::Vector2d friction = memory.friction;  // what it is expected to be
+  if (result.slides) {
+    const bool turns = q.dot(memory.along) > 0;
+    const Eigen::Vector2d along = turns ? Eigen::Vector2d(q / size) : memory.along;
+    result.friction = law.friction * N * along;
+    friction = law.friction * normal * along;
+    dtau = law.friction * along * dN;
+    if (turns)
+      dtau += law.friction * normal / size *
+              (Eigen::Matrix2d::Identity() - along * along.transpose()) * dq;
+  }
+  const Vector3 t = point.tangents.col(0);
+  result.force = N * point.normal + point.tangents * result.friction;
+  result.derivative =
+      point.normal * dN + point.tangents * dtau +
+      point.curvature * (friction[0] * point.normal - normal * t) * direction.transpose();
+  return result;
+}
+
+bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law, double penetration,
+                    const std::optional<std::size_t>& led, std::vector<NodeMemory>& memory) {
+  double deepest = 0;
+  for (std::size_t i = 0; i < memory.size(); ++i)
+    if (memory[i].state == NodeState::free) deepest = std::min(deepest, forces[i].gap);
+  bool changed = false;
+  for (std::size_t i = 0; i < memory.size(); ++i) {
+    if (led == i) continue;
+    NodeMemory& node = memory[i];
+    const NodeForce& force = forces[i];
+    const NodeState before = node.state;
+    const double size = force.trial.norm();
+    if (before == NodeState::free) {
+      if (force.gap >= -penetration || force.gap > deep * deepest) continue;
+      node.state = NodeState::slip;
+      node.along = size > 0 ? Eigen::Vector2d(force.trial / size) : Eigen::Vector2d::Zero();
+    } else if (!(force.normal > 0)) {
+      node.state = NodeState::free;
+      node.multiplier = 0;
+    } else if (before == NodeState::stick &&
+               size > (1 + cone_slack) * law.friction * force.normal) {
+      node.state = NodeState::slip;
+      node.along = force.trial / size;
+    } else if (before == NodeState::slip && law.friction > 0 && force.trial.dot(node.along) < 0) {
+      node.state = NodeState::stick;
+    }
+    changed = changed || node.state != before;
+  }
+  return changed;
+}
+
+std::vector<NodeForce> node_forces(const std::vector<ContactNode>& nodes,
+                                   const std::vector<NodeMemory>& memory,
+                                   const RigidSurface& surface, const ContactLaw& law,
+                                   const dealii::Vector<double>& displacement) {
+  std::vector<NodeForce> forces;
+  forces.reserve(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    forces.push_back(node_force(surface_point(surface, nodes[i].position(displacement)),
+                                surface.direction, memory[i], law, memory[i].multiplier));
+  return forces;
+}
+
+loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
+                                     const std::vector<NodeMemory>& memory,
+                                     const RigidSurface& surface, const ContactLaw& law) {
+  return [&nodes, &memory, surface, law, expected = std::vector<ExpectedNormal>(nodes.size())](
+             const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+             const dealii::AffineConstraints<double>& constraints,
+             dealii::SparseMatrix<double>* matrix) mutable {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Vector3 x = nodes[i].position(displacement);
+      const SurfacePoint point = surface_point(surface, x);
+      const double normal = expected[i].move_to(x, point, memory[i], law);
+      const NodeForce force = node_force(point, surface.direction, memory[i], law, normal);
+      if (memory[i].state == NodeState::free) continue;
+      for (unsigned int c = 0; c < 3; ++c) forces[nodes[i].dofs[c]] += force.force[c];
+      if (matrix != nullptr) subtract(nodes[i], force.derivative, constraints, *matrix);
+    }
+  };
+}
+
+std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
+                                   const std::vector<NodeForce>& forces,
+                                   const RigidSurface& surface,
+                                   const dealii::Vector<double>& displacement) {
+  std::vector<NodeMemory> memory;
+  memory.reserve(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const NodeForce& force = forces[i];
+    NodeMemory& node = memory.emplace_back();
+    node.multiplier = force.normal;
+    node.friction = force.friction;
+    node.place = surface_point(surface, nodes[i].position(displacement)).place;
+    if (force.normal > 0) node.state = force.slides ? NodeState::slip : NodeState::stick;
+    if (force.friction.norm() > 0) node.along = force.friction.normalized();
+  }
+  return memory;
+}
+
+double smallest_gap(const std::vector<ContactNode>& nodes, const RigidSurface& surface,
+                    const dealii::Vector<double>& displacement) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ContactNode& node : nodes)
+    smallest = std::min(smallest, surface_point(surface, node.position(displacement)).gap);
+  return smallest;
+}
+
+}  // namespace ciliaval::fem::solid::contact
