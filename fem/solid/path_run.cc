@@ -68,16 +68,6 @@ bool is_at(const Level& level, const Load& load) {
 /// beyond, finer meshes are no longer nearer to one another (docs/evidence/solid.md).
 constexpr double largest_compression = 1.6;
 
-/// What is to be said of a mantle that is compressed so far that rubber folds.
-std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression) {
-  if (compression.ratio <= largest_compression) return std::nullopt;
-  return fmt::format(
-      "the mantle at Z = {:.3g} mm is compressed to {:.2f} of its length (ratio of stretches "
-      "{:.2f}): near this rubber folds, and the numerical error is not known "
-      "(docs/theory/solid.md)",
-      compression.height * 1e3, compression.stretch, compression.ratio);
-}
-
 /// The step of a companion: failed if it has no equilibrium with the load.
 MechanicsStep companion_step(const Level& level, const Equilibrium* equilibrium, const Load& load,
                              double mesh_azimuth) {
@@ -111,6 +101,15 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
 }
 
 }  // namespace
+
+std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression) {
+  if (compression.ratio <= largest_compression) return std::nullopt;
+  return fmt::format(
+      "the mantle at Z = {:.3g} mm is compressed to {:.2f} of its length (ratio of stretches "
+      "{:.2f}): near this rubber folds, and the numerical error is not known "
+      "(docs/theory/solid.md)",
+      compression.height * 1e3, compression.stretch, compression.ratio);
+}
 
 PathRun::PathRun(Levels levels, const LoadPath& path, const SolidOptions& options,
                  const Checkpoint& checkpoint, const Progress& progress, MPI_Comm communicator)

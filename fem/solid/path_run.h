@@ -5,10 +5,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fem/solid/level.h"
+#include "fem/solid/postprocessing/mantle.h"
 #include "fem/solid/solid.h"
 #include "problem/mechanics_model.h"
 
@@ -21,6 +23,9 @@ struct Levels {
   std::vector<std::size_t> companions;  ///< those of the result's companions
   std::vector<ErrorPart> error_parts;   ///< of the result
 };
+
+/// What is to be said of a mantle that is compressed so far that rubber folds.
+std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression);
 
 /// The levels on their way along a load path.
 class PathRun {

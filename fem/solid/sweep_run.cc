@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/sweep_run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +12,7 @@
 
 #include "fem/beam/beam.h"
 #include "fem/solid/contact/follower.h"
+#include "fem/solid/path_run.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid {
@@ -22,7 +25,8 @@ constexpr double bent_height = 0.6;   ///< of the tip that is bent aside, in L
 constexpr double force_ratio = 1.25;  ///< of the holding forces, from one to the next
 constexpr double first_force = 0.01;  ///< in the tip's stiffness times L
 constexpr int most_forces = 80;
-constexpr unsigned int most_iterations = 10;  ///< of Newton's method: more is a step to be cut
+constexpr double remarkable_penetration = 0.01;  ///< between nodes, in d
+constexpr unsigned int most_iterations = 10;     ///< of Newton's method: more is a step to be cut
 
 /// 3EI/L³ of a slender cilium of the softest segment.
 double tip_stiffness(const Cilium& cilium) {
@@ -127,6 +131,19 @@ SurfaceContact contact_of(const Follower& follower, const FollowerOutcome& outco
   return contact;
 }
 
+/// What is to be said of a state: folds of the mantle, and what lies between the nodes.
+std::string remark(const Level& level, const Follower& follower) {
+  std::string text = fold_remark(level.mantle_compression(follower.current().solid)).value_or("");
+  const double depth = follower.penetration();
+  if (depth > remarkable_penetration * level.cilium().diameter)
+    text += fmt::format(
+        "{}between its nodes the solid's surface penetrates the surface by up to {:.3g} mm: the "
+        "mesh "
+        "is coarse beside the surface's edges",
+        text.empty() ? "" : "; ", depth * 1e3);
+  return text;
+}
+
 void require_one_surface(const LoadPath& path) {
   for (const Load& load : path)
     if (load.surface() != path.front().surface() || azimuth(load) != azimuth(path.front()))
@@ -159,6 +176,7 @@ MechanicsResult follow_sweep(std::unique_ptr<Level> level, const LoadPath& path,
     step.iterations = outcome.iterations;
     if (outcome.converged) {
       step.status = Status::converged;
+      step.message = remark(*level, follower);
       step.contact = contact_of(follower, outcome, turn);
       step.deformation = level->deformation(follower.current().solid, turn);
       step.applied_force = follower.current().force.dot(follower.surface_at({}).direction);

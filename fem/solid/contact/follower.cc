@@ -15,20 +15,21 @@ using namespace discretisation;
 using namespace equilibrium;
 namespace {
 
-constexpr double stiffness_factor = 1e3;  ///< of the augmented Lagrangian, in E d
-constexpr double penetration = 1e-6;      ///< allowed, in d
-constexpr double touch_depth = 1e-7;      ///< of a node that begins to touch, in d
-constexpr int most_corrections = 12;      ///< of the nodes' states and multipliers
-constexpr double longest_travel = 0.02;   ///< step, in L
-constexpr double feature_part = 0.5;      ///< step, in the surface's finest length
-constexpr double longest_release = 0.2;   ///< step of the holding force
-constexpr double shortest_step = 1e-4;    ///< in L, or of the holding force
-constexpr double relaxed_step = 1e-3;     ///< after a jump, in L
-constexpr double least_factor = 0.25;     ///< from a step to the next
+constexpr double stiffness_factor = 1e3;      ///< of the augmented Lagrangian, in E d
+constexpr double allowed_penetration = 1e-6;  ///< allowed, in d
+constexpr double touch_depth = 1e-7;          ///< of a node that begins to touch, in d
+constexpr int most_corrections = 12;          ///< of the nodes' states and multipliers
+constexpr double longest_travel = 0.02;       ///< step, in L
+constexpr double feature_part = 0.5;          ///< step, in the surface's finest length
+constexpr double longest_release = 0.2;       ///< step of the holding force
+constexpr double shortest_step = 1e-4;        ///< in L, or of the holding force
+constexpr double relaxed_step = 1e-3;         ///< after a jump, in L
+constexpr double least_factor = 0.25;         ///< from a step to the next
 constexpr double largest_factor = 2;
-constexpr double balance = 3e-3;             ///< of a step's works
+constexpr double balance = 1e-3;             ///< of a step's works
 constexpr double energy_noise = 1e-6;        ///< of the elastic energy
 constexpr double vanishing_loss = 1e-4;      ///< of the elastic energy: less is no jump
+constexpr double vanishing_energy = 1e-5;    ///< likewise, in the tip's stiffness times L²
 constexpr double longest_extrapolation = 2;  ///< in the last step
 // Of a jump:
 constexpr double farthest_walk = 4;        ///< in L
@@ -66,6 +67,7 @@ Follower::Follower(const SolidSpace& space, const ExtrudedQuadrature& quadrature
       direction_(direction),
       options_(options),
       nodes_(contact_nodes(space)),
+      faces_(contact_faces(space, nodes_)),
       law_{surface.friction, stiffness_factor * options.young_modulus * options.diameter},
       volumes_(loads::body_force(space, [](const Vector3&) -> Vector3 { return Vector3::Ones(); })),
       hold_(loads::section_force(space, quadrature, 1, quadrature.height(), direction)),
@@ -122,8 +124,8 @@ std::optional<ContactState> Follower::attempt(const SweepPlace& place, const Con
     iterations += result.iterations();
     if (!result.converged) return std::nullopt;
     state.forces = node_forces(nodes_, state.memory, surface, law_, state.solid.displacement);
-    const bool penetrates =
-        smallest_gap(nodes_, surface, state.solid.displacement) < -penetration * options_.diameter;
+    const bool penetrates = smallest_gap(nodes_, surface, state.solid.displacement) <
+                            -allowed_penetration * options_.diameter;
     if (brake.driver && !(state.forces[*brake.driver].normal > 0)) return std::nullopt;
     const bool corrected = correct_states(state.forces, law_, touch_depth * options_.diameter,
                                           brake.driver, state.memory);
@@ -249,7 +251,10 @@ bool Follower::jump(const SweepPlace& place, FollowerOutcome& outcome, const Pro
   outcome.surface_work += spent.surface;
   outcome.friction_work += spent.friction;
   const double lost = energy_before + spent.surface - spent.friction - state.energy;
-  if (place.hold == 0 && lost > vanishing_loss * std::max(energy_before, state.energy))
+  const double vanishing =
+      std::max(vanishing_loss * std::max(energy_before, state.energy),
+               vanishing_energy * options_.tip_stiffness * options_.length * options_.length);
+  if (place.hold == 0 && lost > vanishing)
     outcome.energy_lost = outcome.energy_lost.value_or(0) + lost;
   now_ = std::move(state);
   before_.reset();

@@ -76,6 +76,10 @@ class Follower {
 
   const ContactState& current() const { return now_; }
   const std::vector<ContactNode>& nodes() const { return nodes_; }
+  /// How deep the body penetrates the surface between its nodes, m.
+  double penetration() const {
+    return penetration_between(nodes_, faces_, surface_at(now_.place), now_.solid.displacement);
+  }
   RigidSurface surface_at(const SweepPlace& place) const;
   /// Copies of the mesh in the whole body: 1, or 2 of a half.
   double copies() const { return copies_; }
@@ -119,6 +123,7 @@ class Follower {
   Vector3 direction_;
   FollowerOptions options_;
   std::vector<ContactNode> nodes_;
+  std::vector<ContactFace> faces_;
   ContactLaw law_;
   dealii::Vector<double> volumes_;  ///< of the nodes, m³
   dealii::Vector<double> hold_;     ///< nodal forces of a unit holding force

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "fem/solid/discretisation/extruded_quadrature.h"
 #include "meshes/boundary_ids.h"
 
 namespace ciliaval::fem::solid::contact {
@@ -23,6 +24,9 @@ bool is_on_face(unsigned int node, unsigned int face) {
   return indices(node).at(face / 2) == 2 * (face % 2);
 }
 
+using dealii::types::global_dof_index;
+
+constexpr double on_base = 1e-6;     ///< Z, in the size of a cell
 constexpr double cone_slack = 1e-9;  ///< of |q| over μN
 constexpr double deep = 0.3;         ///< part of the largest penetration that makes a node touch
 
@@ -51,6 +55,20 @@ class ExpectedNormal {
   double normal_ = 0;
 };
 
+/// Calls visit(element, face) for the faces that may touch.
+template <class Visit>
+void for_each_face(const SolidSpace& space, const Visit& visit) {
+  dealii::types::material_id last = 0;
+  for (const SolidElement& element : space.elements())
+    last = std::max(last, element.cell->material_id());
+  for (const SolidElement& element : space.elements())
+    for (const unsigned int face : element.cell->face_indices()) {
+      if (!element.cell->at_boundary(face) || element.cell->material_id() != last) continue;
+      const auto id = element.cell->face(face)->boundary_id();
+      if (id == meshes::tip_id || id == meshes::mantle_id) visit(element, face);
+    }
+}
+
 void subtract(const ContactNode& node, const Matrix3& derivative,
               const dealii::AffineConstraints<double>& constraints,
               dealii::SparseMatrix<double>& matrix) {
@@ -69,28 +87,54 @@ Vector3 ContactNode::position(const dealii::Vector<double>& displacement) const 
 }
 
 std::vector<ContactNode> contact_nodes(const SolidSpace& space) {
-  dealii::types::material_id last = 0;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const SolidElement& element : space.elements()) {
-    last = std::max(last, element.cell->material_id());
-    smallest = std::min(smallest, element.size);
-  }
-  std::map<dealii::types::global_dof_index, ContactNode> found;
-  for (const SolidElement& element : space.elements())
-    for (const unsigned int face : element.cell->face_indices()) {
-      if (!element.cell->at_boundary(face) || element.cell->material_id() != last) continue;
-      const auto id = element.cell->face(face)->boundary_id();
-      if (id != meshes::tip_id && id != meshes::mantle_id) continue;
-      for (unsigned int a = 0; a < element_nodes; ++a) {
-        const Vector3 X = element.nodes.row(a).transpose();
-        if (!is_on_face(a, face) || X.z() < 1e-6 * smallest) continue;
-        const auto& dofs = element.dofs;
-        found[dofs[a]] = {{dofs[a], dofs[element_nodes + a], dofs[2 * element_nodes + a]}, X};
-      }
+  std::map<global_dof_index, ContactNode> found;
+  for_each_face(space, [&found](const SolidElement& element, unsigned int face) {
+    for (unsigned int a = 0; a < element_nodes; ++a) {
+      const Vector3 X = element.nodes.row(a).transpose();
+      if (!is_on_face(a, face) || X.z() < on_base * element.size) continue;
+      const auto& dofs = element.dofs;
+      found[dofs[a]] = {{dofs[a], dofs[element_nodes + a], dofs[2 * element_nodes + a]}, X};
     }
+  });
   std::vector<ContactNode> nodes;
   for (const auto& [dof, node] : found) nodes.push_back(node);
   return nodes;
+}
+
+std::vector<ContactFace> contact_faces(const SolidSpace& space,
+                                       const std::vector<ContactNode>& nodes) {
+  std::map<global_dof_index, std::size_t> places;
+  for (std::size_t i = 0; i < nodes.size(); ++i) places[nodes[i].dofs[0]] = i;
+  std::vector<ContactFace> faces;
+  for_each_face(space, [&](const SolidElement& element, unsigned int face) {
+    std::vector<std::size_t> on_face;
+    for (unsigned int a = 0; a < element_nodes; ++a)
+      if (const auto place = places.find(element.dofs[a]);
+          is_on_face(a, face) && place != places.end())
+        on_face.push_back(place->second);
+    if (on_face.size() != 9) return;  // on the base
+    std::copy_n(on_face.begin(), 9, faces.emplace_back().begin());
+  });
+  return faces;
+}
+
+double penetration_between(const std::vector<ContactNode>& nodes,
+                           const std::vector<ContactFace>& faces, const RigidSurface& surface,
+                           const dealii::Vector<double>& displacement) {
+  constexpr int intervals = 5;
+  double deepest = 0;
+  for (const ContactFace& face : faces)
+    for (int i = 0; i <= intervals; ++i)
+      for (int j = 0; j <= intervals; ++j) {
+        const Eigen::Matrix<double, 9, 1> weights =
+            plane_product(quadratic_basis(static_cast<double>(i) / intervals),
+                          quadratic_basis(static_cast<double>(j) / intervals));
+        Vector3 x = Vector3::Zero();
+        for (std::size_t a = 0; a < face.size(); ++a)
+          x += weights[static_cast<Eigen::Index>(a)] * nodes[face.at(a)].position(displacement);
+        deepest = std::max(deepest, -surface_point(surface, x).gap);
+      }
+  return deepest;
 }
 
 NodeForce node_force(const SurfacePoint& point, const Vector3& direction, const NodeMemory& memory,
@@ -142,8 +186,9 @@ bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law,
     const double size = force.trial.norm();
     if (before == NodeState::free) {
       if (force.gap >= -penetration || force.gap > deep * deepest) continue;
-      node.state = NodeState::slip;
-      node.along = size > 0 ? Eigen::Vector2d(force.trial / size) : Eigen::Vector2d::Zero();
+      // What has not moved on the surface sticks.
+      node.state = size > 0 || law.friction == 0 ? NodeState::slip : NodeState::stick;
+      if (size > 0) node.along = force.trial / size;
     } else if (!(force.normal > 0)) {
       node.state = NodeState::free;
       node.multiplier = 0;
@@ -203,7 +248,7 @@ std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
     node.friction = force.friction;
     node.place = surface_point(surface, nodes[i].position(displacement)).place;
     if (force.normal > 0) node.state = force.slides ? NodeState::slip : NodeState::stick;
-    if (force.friction.norm() > 0) node.along = force.friction.normalized();
+    if (force.slides && force.trial.norm() > 0) node.along = force.trial.normalized();
   }
   return memory;
 }

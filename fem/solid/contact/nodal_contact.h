@@ -23,6 +23,11 @@ struct ContactNode {
 /// The nodes of the tip's face and of the last segment's mantle, but for those on the base.
 std::vector<ContactNode> contact_nodes(const discretisation::SolidSpace& space);
 
+/// The faces of these nodes, by the nodes' places in the list, in the order of plane_product().
+using ContactFace = std::array<std::size_t, 9>;
+std::vector<ContactFace> contact_faces(const discretisation::SolidSpace& space,
+                                       const std::vector<ContactNode>& nodes);
+
 enum class NodeState { free, stick, slip };
 
 /// What a node remembers from the last equilibrium, and its state in the next one as far as it is
@@ -97,5 +102,10 @@ std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
 /// The smallest gap of the nodes, m.
 double smallest_gap(const std::vector<ContactNode>& nodes, const RigidSurface& surface,
                     const dealii::Vector<double>& displacement);
+
+/// How deep the faces penetrate, at 6 × 6 points of each, m: 0 or more.
+double penetration_between(const std::vector<ContactNode>& nodes,
+                           const std::vector<ContactFace>& faces, const RigidSurface& surface,
+                           const dealii::Vector<double>& displacement);
 
 }  // namespace ciliaval::fem::solid::contact
