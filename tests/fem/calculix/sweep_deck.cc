@@ -144,9 +144,9 @@ std::vector<Printed> read_steps(std::istream& in) {
 
 /// r = 2 Σ w x over the face of the half, which CalculiX's shape functions integrate, and the angle
 /// of ∫ (x − r) X dA, by the same rule.
-RefereeState state_of(const Printed& printed, const RefereeSweep& sweep, double travel,
-                      const MeshNodes& mesh, const std::vector<double>& weights) {
-  RefereeState state;
+SweepState state_of(const Printed& printed, const RefereeSweep& sweep, double travel,
+                    const MeshNodes& mesh, const std::vector<double>& weights) {
+  SweepState state;
   Vector3 direction = Vector3::Zero();
   Vector3 highest = Vector3::Zero();
   for (const auto& [number, u] : printed.displacements) {
@@ -168,8 +168,8 @@ RefereeState state_of(const Printed& printed, const RefereeSweep& sweep, double 
 
 }  // namespace
 
-std::vector<RefereeState> run_referee(const RefereeSweep& sweep,
-                                      const std::filesystem::path& folder) {
+std::vector<SweepState> run_referee(const RefereeSweep& sweep,
+                                    const std::filesystem::path& folder) {
   const MeshNodes mesh = half_mesh(sweep);
   std::ofstream deck(folder / "sweep.inp");
   write_sweep(deck, sweep, mesh);
@@ -182,7 +182,7 @@ std::vector<RefereeState> run_referee(const RefereeSweep& sweep,
   if (steps.size() != sweep.travels.size() + 1)
     throw SolverError("ccx printed " + std::to_string(steps.size()) + " steps");
   const std::vector<double> weights = tip_weights(mesh, sweep.cilium);
-  std::vector<RefereeState> states;
+  std::vector<SweepState> states;
   for (std::size_t i = 0; i < sweep.travels.size(); ++i)
     states.push_back(state_of(steps[i + 1], sweep, sweep.travels[i], mesh, weights));
   return states;

@@ -20,14 +20,15 @@ struct RefereeSweep {
   surroundings::Surface surface;
   double interference = 0;      ///< δ, m
   std::vector<double> travels;  ///< s of the samples, increasing, m
-  double stiffness = 1e12;      ///< pressure over penetration, N/m³
+  double stiffness = 1e11;      ///< pressure over penetration, N/m³; ten times as much: N changes
+                                ///< by 0.01 %, x by 0.03 %
   double holding_force = 5e-3;  ///< that first bends the tip to below the surface, N
   double run_in = 1.5e-3;       ///< travel of the surface while that force is taken away, m
-  double increment = 0.05;      ///< the largest part of a step that is done at once
+  double increment = 0.1;       ///< the largest part of a step that is done at once
 };
 
 /// The state of the whole cilium at a sample.
-struct RefereeState {
+struct SweepState {
   double normal_force = 0;        ///< N, N
   double friction_force = 0;      ///< T along e, N
   Vector3 tip = Vector3::Zero();  ///< mean position of the tip's face, m
@@ -35,7 +36,6 @@ struct RefereeState {
 };
 
 /// The samples. Throws SolverError if ccx fails.
-std::vector<RefereeState> run_referee(const RefereeSweep& sweep,
-                                      const std::filesystem::path& folder);
+std::vector<SweepState> run_referee(const RefereeSweep& sweep, const std::filesystem::path& folder);
 
 }  // namespace ciliaval::fem::calculix
