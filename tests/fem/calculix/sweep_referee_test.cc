@@ -111,6 +111,7 @@ TEST_F(CalculixSweepSlow, StiffRimsMeetTheSurfaceAlike) {
   EXPECT_NEAR(theirs.tip.x() / ours.tip.x(), 1, 0.001);
   EXPECT_NEAR(theirs.tip.z() / ours.tip.z(), 1, 1e-4);
   EXPECT_NEAR(theirs.angle, ours.angle, 0.03 * degree);
+  EXPECT_NEAR(theirs.friction_force, friction * theirs.normal_force, 1e-6 * theirs.normal_force);
 }
 
 // Over a sine of 0.3 mm, 20 mm long. Measured: N 1.2, x 0.2 and 0.3, z 0.04 and 0.06 % apart, as on
