@@ -190,9 +190,7 @@ std::vector<Vector3> calculix_forces(const MeshNodes& mesh, const Cilium& cilium
   return forces;
 }
 
-void write_calculix(std::ostream& out, const MeshNodes& mesh, const Cilium& cilium,
-                    const Load& load, double first_increment) {
-  const std::vector<Vector3> forces = calculix_forces(mesh, cilium, load);
+void write_calculix_model(std::ostream& out, const MeshNodes& mesh, const Cilium& cilium) {
   const std::vector<bool> used = calculix_node_set(mesh);
   const auto precision = out.precision(digits);
   write_mesh(out, mesh, used);
@@ -205,6 +203,14 @@ void write_calculix(std::ostream& out, const MeshNodes& mesh, const Cilium& cili
     write_list(out, boundary_nodes(mesh, meshes::symmetry_id, used));
     out << "*BOUNDARY\nSYMMETRY, 2, 2\n";
   }
+  out.precision(precision);
+}
+
+void write_calculix(std::ostream& out, const MeshNodes& mesh, const Cilium& cilium,
+                    const Load& load, double first_increment) {
+  const std::vector<Vector3> forces = calculix_forces(mesh, cilium, load);
+  write_calculix_model(out, mesh, cilium);
+  const auto precision = out.precision(digits);
   out << "*STEP, NLGEOM, INC=" << max_increments << "\n*STATIC\n"
       << first_increment << ", 1.\n*CLOAD\n";
   for (std::size_t i = 0; i < forces.size(); ++i)

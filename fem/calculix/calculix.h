@@ -26,11 +26,16 @@ Eigen::Matrix<double, 20, 4> serendipity_functions(const Vector3& at);
 std::vector<Vector3> calculix_forces(const meshes::MeshNodes& mesh, const Cilium& cilium,
                                      const Load& load);
 
-/// Writes the input of a static, geometrically nonlinear run of CalculiX: C3D20R elements, the
-/// neo-Hooke solid U = C₁₀(Ī₁ − 3) + (J − 1)²/D₁ with C₁₀ = μ/2, D₁ = 2/K, the base clamped, no
-/// displacement across a plane of symmetry. Its .dat file then holds the displacements of all
-/// nodes. Azimuth 0 is needed on a half. CalculiX cuts back `first_increment` of the load or lets
-/// it grow. Throws InputError as calculix_forces() does.
+/// Writes the part of CalculiX's input that is there before the loads: C3D20R elements (the nodes
+/// ALL, the elements SEGMENT0, SEGMENT1, ...; numbers are those of the mesh, from 1), the neo-Hooke
+/// solid U = C₁₀(Ī₁ − 3) + (J − 1)²/D₁ with C₁₀ = μ/2, D₁ = 2/K, the base clamped, no displacement
+/// across a plane of symmetry.
+void write_calculix_model(std::ostream& out, const meshes::MeshNodes& mesh, const Cilium& cilium);
+
+/// Writes the input of a static, geometrically nonlinear run of CalculiX: write_calculix_model()
+/// under the load. Its .dat file then holds the displacements of all nodes. Azimuth 0 is needed on
+/// a half. CalculiX cuts back `first_increment` of the load or lets it grow. Throws InputError as
+/// calculix_forces() does.
 void write_calculix(std::ostream& out, const meshes::MeshNodes& mesh, const Cilium& cilium,
                     const Load& load, double first_increment = 1);
 
