@@ -19,6 +19,7 @@ namespace ciliaval::compare::output {
 namespace {
 
 constexpr std::size_t most_jumps = 8;  ///< of a model that a terminal shows
+constexpr std::size_t most_messages = 3;
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 
 SweepLoad sweep_of(const Load& load) {
@@ -159,8 +160,9 @@ std::string events(const models::CaseResult& result) {
   for (const models::MechanicsRun& run : result.mechanics) {
     std::size_t shown = 0;
     std::string message;
+    std::size_t messages = 0;
     for (const MechanicsStep& step : run.result.steps) {
-      if (!step.message.empty() && step.message != message)
+      if (!step.message.empty() && step.message != message && ++messages <= most_messages)
         text += fmt::format("  {}: at the travel {:.4g} mm: {}\n", run.model,
                             1e3 * sweep_of(step.load).travel, step.message);
       message = step.message;
@@ -169,6 +171,9 @@ std::string events(const models::CaseResult& result) {
           fmt::format("  {}: has jumped at the travel {:.4g} mm; {:.4g} uJ are lost\n", run.model,
                       1e3 * sweep_of(step.load).travel, 1e6 * *step.contact->energy_lost);
     }
+    if (messages > most_messages)
+      text += fmt::format("  {}: {} more messages are in summary.json\n", run.model,
+                          messages - most_messages);
     if (shown > most_jumps)
       text += fmt::format("  {}: {} more jumps are in sweep.csv\n", run.model, shown - most_jumps);
   }
