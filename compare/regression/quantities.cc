@@ -96,13 +96,15 @@ void add_sweep(const models::MechanicsRun& run, const std::vector<std::size_t>& 
   const auto add = [&](std::string id, const char* unit, double value, double scale) {
     out.quantities.push_back({std::move(id), run.model, {}, unit, value, scale, scale, {}});
   };
-  for (const std::size_t i : steps)
+  for (const std::size_t i : steps) {
+    if (i >= run.result.steps.size()) break;
     if (const auto& contact = run.result.steps[i].contact) {
       const std::string prefix = fmt::format("steps/{}/mechanics/{}/contact/", i, run.model);
       out.outcomes.push_back({prefix + "state", std::string(output::to_string(contact->state))});
       add(prefix + "normal_force", "N", contact->normal_force, largest);
       add(prefix + "friction_force", "N", contact->friction_force, largest);
     }
+  }
   const std::string prefix = fmt::format("energy_balance/{}/", run.model);
   out.outcomes.push_back({prefix + "jumps", std::to_string(jumps)});
   for (const auto& [name, value] : {std::pair("surface_work", balance.surface_work),
@@ -115,6 +117,7 @@ void add_mechanics(const models::MechanicsRun& run, const std::vector<std::size_
                    Measurements& out) {
   const Largest largest(run);
   for (const std::size_t i : steps) {
+    if (i >= run.result.steps.size()) break;  // of a run that was cut off
     const MechanicsStep& step = run.result.steps[i];
     const std::string prefix = fmt::format("steps/{}/mechanics/{}", i, run.model);
     out.outcomes.push_back({prefix + "/status", std::string(output::to_string(step.status))});
@@ -172,7 +175,7 @@ void add_fields(const models::FieldRun& run, const std::vector<std::size_t>& ste
   };
   add_step("undeformed/fields/" + run.name(), run.undeformed, false);
   for (const std::size_t i : steps)
-    if (run.steps[i])
+    if (i < run.steps.size() && run.steps[i])
       add_step(fmt::format("steps/{}/fields/{}", i, run.name()), *run.steps[i], true);
 }
 

@@ -260,11 +260,13 @@ TEST(GoodCase, NumbersOfSegmentsVary) {
 constexpr std::string_view all_option_lines = R"toml(
 [models.elastica]
 form = "height"
+tip = "point"
 tolerance = 1e-9
 [models.beam]
 degree = 2
 refinement = 4
 shear_rigid = true
+tip = "point"
 tolerance = 1e-8
 max_iterations = 11
 max_cutbacks = 3
@@ -338,6 +340,8 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.of<analytic::elastica::ElasticaOptions>().form,
             analytic::elastica::ElasticaOptions::Form::height);
   EXPECT_EQ(o.of<analytic::elastica::ElasticaOptions>().tolerance, 1e-9);
+  EXPECT_EQ(o.of<analytic::elastica::ElasticaOptions>().tip, analytic::elastica::CiliumEnd::point);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().tip, fem::beam::TipShape::point);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().degree, 2U);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().refinement, 4U);
   EXPECT_TRUE(o.of<fem::beam::BeamOptions>().shear_rigid);
