@@ -17,7 +17,7 @@ namespace ciliaval::surroundings {
 namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
-constexpr double curvature_step = 1e-5;    ///< over the distance of two points
+constexpr double curvature_step = 1e-5;  ///< over the distance of two points
 constexpr double most_waves = 100'000;
 
 void require(bool holds, const std::string& message) {
