@@ -85,10 +85,13 @@ for name in names("centreline_"):
         ColorBy(display, ("POINTS", "kappa"))
 
 for name in names("surface"):
-    display = Show(read(name), view)
-    display.AmbientColor = display.DiffuseColor = [0.75, 0.7, 0.6]
-    display.ColorArrayName = ["POINTS", ""]
-    display.Opacity = 0.8
+    surface = read(name)
+    # Its border too: from the side the surface is a line.
+    for shown, width in ((surface, 1), (FeatureEdges(registrationName="border", Input=surface), 3)):
+        display = Show(shown, view)
+        display.AmbientColor = display.DiffuseColor = [0.55, 0.45, 0.3]
+        display.ColorArrayName = ["POINTS", ""]
+        display.LineWidth = width
 
 for name in names("contact_"):
     force = arrows(read(name), "force", 2 * diameter, name + " force")
