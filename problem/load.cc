@@ -266,6 +266,13 @@ void require_valid(const Load& load, const Cilium& cilium) {
         "the loaded section must lie above the base and not beyond the tip of the cilium");
 }
 
+void require_one_surface(const LoadPath& path) {
+  for (const Load& load : path)
+    if (!load.is<SweepLoad>() || load.surface() != path.front().surface() ||
+        azimuth(load) != azimuth(path.front()))
+      throw InputError("the steps of a sweep have one surface and one azimuth");
+}
+
 LoadPath sweep_path(const Load& start, const SweepWay& way) {
   if (way.samples < 2) throw InputError("a sweep needs two samples or more");
   constexpr std::size_t travel = 1;

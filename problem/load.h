@@ -203,6 +203,9 @@ bool operator==(const Load& a, const Load& b);
 /// valid surface, and δ < L.
 void require_valid(const Load& load, const Cilium& cilium);
 
+/// Throws InputError unless all loads are sweeps of one surface and azimuth.
+void require_one_surface(const LoadPath& path);
+
 /// The way of a sweep.
 struct SweepWay {
   double travel = 0;        ///< of the last place (if there_and_back, of the one in the middle), m

@@ -131,13 +131,11 @@ MechanicsStep step_of(const TipProblem& problem, const SweepSample& sample, cons
 }
 
 std::vector<SurfacePlace> places_of(const LoadPath& path, double length) {
+  require_one_surface(path);
   std::vector<SurfacePlace> places;
   for (const Load& load : path) {
-    const auto sweep = load.as<SweepLoad>();
-    if (!sweep || load.surface() != path.front().surface() ||
-        azimuth(load) != azimuth(path.front()))
-      throw InputError("the steps of a sweep have one surface and one azimuth");
-    places.push_back({1 - sweep->interference / length, sweep->travel / length});
+    const SweepLoad sweep = load.as<SweepLoad>().value();
+    places.push_back({1 - sweep.interference / length, sweep.travel / length});
   }
   return places;
 }

@@ -11,7 +11,6 @@
 
 #include "compare/app/terminal.h"
 #include "compare/models/registry.h"
-#include "compare/output/sweep.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app {
@@ -47,14 +46,6 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
                       first->second.string(), files[i].string(), cases[i].name));
   }
   return cases;
-}
-
-void refuse_sweep(const fs::path& file, const input::Case& problem, std::string_view what) {
-  if (output::is_sweep(problem))
-    throw InputError(
-        fmt::format("{}: {} needs a load with a magnitude, such as 'contact'; the case "
-                    "is a sweep, which `ciliaval run` follows",
-                    file.string(), what));
 }
 
 std::vector<fs::path> input_files(const fs::path& file, const input::Case& problem) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string_view>
 #include <vector>
 
 #include "compare/input/case.h"
@@ -12,10 +11,6 @@ namespace ciliaval::compare::app {
 /// All cases, or one InputError with the faults of all files; two cases of the same name are one.
 /// Prints what is odd about the users' meshes.
 std::vector<input::Case> read_cases(const std::vector<std::filesystem::path>& files);
-
-/// Throws InputError if the case is a sweep, for `what` of a command that needs a force or a flow.
-void refuse_sweep(const std::filesystem::path& file, const input::Case& problem,
-                  std::string_view what);
 
 /// The files that a command reads for a case: `file`, which is the case, or a study or test bench,
 /// then the case that it names; the case's mesh; the files of its external models.

@@ -45,7 +45,7 @@ struct Measurements {
 /// L, the tip's angle, applied force, contact arc length and tip uncertainty, or the slip-off; of
 /// each pair B and ΔB at each sensor, B of the straight cilium too. No means, in which errors could
 /// cancel. Of a sweep 27 of its steps, evenly chosen, with state and forces of the contact, and the
-/// number of jumps and the works of the whole path.
+/// number of jumps of the whole path.
 Measurements measurements(const models::CaseResult& result);
 
 }  // namespace ciliaval::compare::regression

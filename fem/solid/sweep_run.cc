@@ -97,9 +97,13 @@ FollowerOutcome press(const Level& level, Follower& follower, SweepPlace place, 
     place.hold = 0;
     return follower.go(place, progress);
   }
-  throw InputError(
-      "the surface is pressed on too far: a cilium bent to 0.6 of its length must have room under "
-      "it");
+  if (first_free == states.size())
+    throw InputError(
+        "the surface is pressed on too far: a cilium bent to 0.6 of its length must have room "
+        "under it");
+  throw SolverError(
+      "the body that a force holds aside under the surface was not found: from the beam's shape "
+      "Newton's method does not converge on this mesh; a lower refinement may");
 }
 
 SurfaceContact contact_of(const Follower& follower, const FollowerOutcome& outcome,
@@ -142,12 +146,6 @@ std::string remark(const Level& level, const Follower& follower) {
         "is coarse beside the surface's edges",
         text.empty() ? "" : "; ", depth * 1e3);
   return text;
-}
-
-void require_one_surface(const LoadPath& path) {
-  for (const Load& load : path)
-    if (load.surface() != path.front().surface() || azimuth(load) != azimuth(path.front()))
-      throw InputError("the places of a sweep must have the same surface and azimuth");
 }
 
 }  // namespace

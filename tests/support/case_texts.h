@@ -57,6 +57,28 @@ inline std::string replaced(std::string_view text, std::string_view part, std::s
   return std::string(text.substr(0, at)).append(by).append(text.substr(at + part.size()));
 }
 
+/// The good case's cilium, swept by the elastica over plateaus of 1 mm; `rest` has the keys of
+/// [load] but type and interference, and further tables.
+inline std::string plateau_sweep(std::string_view rest) {
+  return std::string(good_case.substr(0, good_case.find("[load]")))
+      .append(R"toml([models]
+mechanics = ["elastica"]
+fields = ["volume"]
+[surface]
+profile = "trapezoid"
+height = "1 mm"
+top = "12 mm"
+bottom = "12 mm"
+flank = "1 mm"
+radius = "0.5 mm"
+friction = 0.3
+[load]
+type = "sweep"
+interference = "1 mm"
+)toml")
+      .append(rest);
+}
+
 inline std::vector<std::string> lines(const std::string& text) {
   std::vector<std::string> result(1);
   for (const char c : text) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/app/commands/commands.h"
 
+#include <fmt/core.h>
+
 #include <stdexcept>
 
 #include "compare/app/case_files.h"
@@ -10,6 +12,7 @@
 #include "compare/models/registry.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
+#include "compare/output/sweep.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
@@ -36,7 +39,11 @@ budget::Budget run_budget(const input::Case& problem, const std::vector<std::str
 ExitCode execute(const Options& options, const std::string& words) {
   require_one_rank("budget");
   const input::Case problem = read_cases({options.file}).front();
-  refuse_sweep(options.file, problem, "an error budget");
+  if (output::is_sweep(problem))
+    throw InputError(
+        fmt::format("{}: an error budget needs a load with a magnitude, such as "
+                    "'contact'; the case is a sweep, which `ciliaval run` follows",
+                    options.file.string()));
   output::check_outputs({options.json, options.csv, options.plot},
                         input_files(options.file, problem));
   const budget::Budget budget = run_budget(problem, options.without);

@@ -49,7 +49,7 @@ struct Rates {
     const double slope = tip.profile(xi).slope;
     const double q = std::hypot(1, slope);
     slide = q * rates[n + 2] - rates[n + 3];
-    const double turning = tip.profile_curvature(xi) / (q * q) * rates[n + 2];
+    const double turning = tip.profile(xi).curvature / (q * q) * rates[n + 2];
     const Vector2d t(1 / q, -slope / q);
     friction_by_slide = (t.dot(force) + state.normal_force * turning) / slide;
   }

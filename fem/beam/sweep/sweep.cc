@@ -20,13 +20,11 @@ constexpr std::size_t most_angles = 2000;  ///< of a dense matrix
 constexpr double reported_depth = 1e-6;    ///< of what is in the surface unasked, in L
 
 std::vector<Place> places_of(const LoadPath& path, double length) {
+  require_one_surface(path);
   std::vector<Place> places;
   for (const Load& load : path) {
-    const auto sweep = load.as<SweepLoad>();
-    if (!sweep || load.surface() != path.front().surface() ||
-        azimuth(load) != azimuth(path.front()))
-      throw InputError("beam: the steps of a sweep have one surface and one azimuth");
-    places.push_back({1 - sweep->interference / length, sweep->travel / length});
+    const SweepLoad sweep = load.as<SweepLoad>().value();
+    places.push_back({1 - sweep.interference / length, sweep.travel / length});
   }
   return places;
 }

@@ -55,16 +55,11 @@ Tip::Tip(const PlaneBeam& beam, const Surface& surface, double length, double ra
       length_(length),
       radius_(radius),
       tolerance_(tolerance),
-      max_iterations_(max_iterations),
-      difference_(1e-7 * std::min(1.0, surface.finest_length() / length)) {}
+      max_iterations_(max_iterations) {}
 
 ProfilePoint Tip::profile(double xi) const {
   const ProfilePoint point = surface_.extended(xi * length_);
-  return {point.height / length_, point.slope};
-}
-
-double Tip::profile_curvature(double xi) const {
-  return (profile(xi + difference_).slope - profile(xi - difference_).slope) / (2 * difference_);
+  return {point.height / length_, point.slope, point.curvature * length_};
 }
 
 double Tip::arc(double from, double to) const {
@@ -133,7 +128,7 @@ void Tip::equations(const ContactStatus& status, const Place& place, const Pair&
   J.block<2, 1>(n, n + 3) = d1(theta);
 
   const double beta = std::atan(profile.slope);
-  const double turning = profile_curvature(xi) / (1 + profile.slope * profile.slope);  // dβ/dξ
+  const double turning = profile.curvature / (1 + profile.slope * profile.slope);  // dβ/dξ
   if (status.slip == 0) {
     residual[n + 2] = arc(start.xi, xi) - (eta - start.eta);
     J(n + 2, n + 2) = std::hypot(1, profile.slope);
@@ -176,7 +171,7 @@ void Tip::two_points(const ContactStatus& status, const Place& place, const Pair
   for (Index i = n; i < friction; i += 3) {
     Point x{unknowns[i], unknowns[i + 1], unknowns[i + 2], 0, 0, profile(unknowns[i + 1]), {}};
     x.beta = std::atan(x.profile.slope);
-    x.turning = profile_curvature(x.xi) / (1 + x.profile.slope * x.profile.slope);
+    x.turning = x.profile.curvature / (1 + x.profile.slope * x.profile.slope);
     x.force = x.N * (normal(x.beta) + ratio * tangent(x.beta));
     force += x.force;
     points.push_back(x);
@@ -344,7 +339,7 @@ std::optional<TipState> Tip::solve(ContactStatus status, const Place& place, con
     const bool goes_to_and_fro = iteration > 4 && relative > 0.7 * last;
     unknowns +=
         change * std::min(goes_to_and_fro ? 0.5 : 1.0, largest_turn / std::max(turn, relative / 4));
-    // p″ is right to 1e-9 or so, and a small force on a stiff beam to less than the tolerance.
+    // A small force on a stiff beam is right to less than the tolerance.
     const bool is_rounding = relative < 1e-9 && relative >= last / 2;
     if (iteration >= patience && relative > last / 2 && relative > 1e-3) return std::nullopt;
     last = relative;

@@ -83,7 +83,7 @@ struct TipState {
 ///     η = ∓R (an end)  or  p′ cos θ = sin θ (the line is tangent to the surface),
 ///
 /// with N = F·n, T = F·t, σ the arc length along the surface. Newton's method with the exact
-/// tangent; p″ is a difference of p′. Where two points touch, unknown are N_i, ξ_i, η_i and one
+/// tangent. Where two points touch, unknown are N_i, ξ_i, η_i and one
 /// ratio T_i/N_i, which is ± μ or else holds the first point: with both held the problem would have
 /// one equation too many. On a flat surface the line's η is where the resultant of the forces on
 /// both ends lies, N₁ and N₂ = N (1 ∓ η/R)/2.
@@ -125,9 +125,8 @@ class Tip {
   const PlaneBeam& beam() const { return beam_; }
   double radius() const { return radius_; }
   double friction() const { return surface_.friction; }
-  /// Profile in units of L, and p″ by differences.
+  /// Profile in units of L.
   surroundings::ProfilePoint profile(double xi) const;
-  double profile_curvature(double xi) const;
   /// The angle of the surface's slope, β = atan p′, at a touching pair.
   double slope_angle(double xi) const { return std::atan(profile(xi).slope); }
 
@@ -150,7 +149,6 @@ class Tip {
   double radius_;
   double tolerance_;
   unsigned int max_iterations_;
-  double difference_;  ///< of p′, in L
 };
 
 }  // namespace ciliaval::fem::beam::sweep

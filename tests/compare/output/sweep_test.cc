@@ -10,6 +10,7 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataReader.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -22,6 +23,7 @@
 #include "compare/output/results.h"
 #include "compare/output/vtk/output.h"
 #include "compare/regression/quantities.h"
+#include "tests/support/case_texts.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
@@ -35,33 +37,7 @@ const output::Provenance origin{"1.2.3", "abc", {}, "ciliaval run x.toml", "toda
 
 const models::CaseResult& result() {
   static const models::CaseResult value = [] {
-    return models::run(input::read_case(R"([case]
-name = "sweep"
-[cilium]
-diameter = "3 mm"
-[[cilium.segment]]
-name = "base"
-length = "3 mm"
-young_modulus = "0.1 MPa"
-poisson_ratio = 0.49
-[[cilium.segment]]
-name = "magnet"
-length = "17 mm"
-young_modulus = "3 MPa"
-poisson_ratio = 0.49
-magnetization = "75 kA/m"
-[surface]
-profile = "trapezoid"
-height = "1 mm"
-top = "10 mm"
-bottom = "10 mm"
-flank = "1 mm"
-radius = "0.5 mm"
-friction = 0.3
-[load]
-type = "sweep"
-interference = "1 mm"
-travel = "22 mm"
+    return models::run(input::read_case(plateau_sweep(R"(travel = "22 mm"
 samples = 41
 azimuth = "30 deg"
 [signal]
@@ -69,10 +45,7 @@ sampling_rate = "50 Hz"
 cutoff = "1 Hz"
 [sensor]
 position = ["0 mm", "0 mm", "-1.55 mm"]
-[models]
-mechanics = ["elastica"]
-fields = ["line"]
-)",
+)"),
                                         "sweep.toml", models::known()),
                        models::mechanics_models(), models::field_models());
   }();
@@ -149,7 +122,7 @@ TEST(SweepResults, SeriesRepeatsTheSummary) {
     EXPECT_EQ(number("elastica.normal_force"),
               step["mechanics"]["elastica"]["contact"]["normal_force"]);
     EXPECT_EQ(number("elastica.tip_z"), step["mechanics"]["elastica"]["tip"][2]);
-    EXPECT_EQ(number("elastica/line.dB0_x"), step["fields"]["elastica/line"]["dB"][0][0]);
+    EXPECT_EQ(number("elastica/volume.dB0_x"), step["fields"]["elastica/volume"]["dB"][0][0]);
   }
 }
 
@@ -158,7 +131,7 @@ TEST(SweepResults, SignalIsAsLongAsTheSweepAndStartsAtRest) {
   // 22 mm at 10 mm/s, 50 a second, both ends.
   ASSERT_EQ(rows.size(), 1 + 111U);
   EXPECT_EQ(rows[0][0], "time");
-  EXPECT_EQ(rows[0][4], "elastica/line.filtered0_x");
+  EXPECT_EQ(rows[0][4], "elastica/volume.filtered0_x");
   EXPECT_EQ(std::stod(rows[1][4]), 0);
   double largest = 0;
   for (std::size_t i = 1; i < rows.size(); ++i)
@@ -201,16 +174,16 @@ TEST(SweepResults, VtkHasTheSurfaceAndTheForceOfEachSample) {
   EXPECT_THAT(test::read_text(folder.path() / "surface.pvd"), HasSubstr("timestep=\"0.022\""));
 }
 
-TEST(SweepResults, BaselineHasForcesAndWorksOfSomeSteps) {
+TEST(SweepResults, BaselineHasForcesOfSomeStepsAndTheNumberOfJumps) {
   const regression::Measurements measured = regression::measurements(result());
-  int normal_forces = 0;
-  bool lost = false;
-  for (const regression::Measurement& m : measured.quantities) {
-    normal_forces += m.id.ends_with("contact/normal_force") ? 1 : 0;
-    lost = lost || (m.id == "energy_balance/elastica/energy_lost" && m.value > 0);
-  }
-  EXPECT_EQ(normal_forces, 27);
-  EXPECT_TRUE(lost);
+  const auto forces = std::ranges::count_if(measured.quantities, [](const auto& m) {
+    return m.id.ends_with("contact/normal_force") && m.value > 0;
+  });
+  EXPECT_EQ(forces, 27);
+  const auto jumps = std::ranges::find(measured.outcomes, "energy_balance/elastica/jumps",
+                                       &regression::Outcome::id);
+  ASSERT_NE(jumps, measured.outcomes.end());
+  EXPECT_EQ(jumps->value, "1");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "tests/support/case_texts.h"
 
 namespace ciliaval::compare::sensing {
 namespace {
@@ -24,40 +25,11 @@ constexpr double noise = 1e-6;  ///< T
 const models::ModelPair pair{"elastica", "volume"};
 
 input::Case sweep() {
-  return input::read_case(std::string(R"([case]
-name = "steps"
-[cilium]
-diameter = "3 mm"
-[[cilium.segment]]
-name = "base"
-length = "3 mm"
-young_modulus = "0.1 MPa"
-poisson_ratio = 0.49
-[[cilium.segment]]
-name = "magnet"
-length = "17 mm"
-young_modulus = "3 MPa"
-poisson_ratio = 0.49
-magnetization = "75 kA/m"
-[surface]
-profile = "trapezoid"
-height = "1 mm"
-top = "12 mm"
-bottom = "12 mm"
-flank = "1 mm"
-radius = "0.5 mm"
-friction = 0.3
-[load]
-type = "sweep"
-interference = "1 mm"
-travel = "52 mm"
+  return input::read_case(plateau_sweep(R"(travel = "52 mm"
 samples = 209
 azimuth = "20 deg"
 [sensor]
 position = [["-0.1 mm", "0.2 mm", "-1.55 mm"], ["2 mm", "0 mm", "-1.55 mm"]]
-[models]
-mechanics = ["elastica"]
-fields = ["volume"]
 )"),
                           "steps.toml", models::known());
 }
