@@ -58,7 +58,7 @@ pictures() {
 }
 
 install_packages
-build release ciliaval
+build release ciliaval ciliaval_python # the pages are made by Python
 mkdir -p results
 if [ $# -gt 0 ]; then
   step run "$@" -o results

@@ -1,8 +1,11 @@
 # Every package that CiliaVal uses, for its own build and, through CiliaValConfig.cmake, for its users.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Boost 1.74 REQUIRED COMPONENTS filesystem)
-find_package(deal.II 9.4 REQUIRED)
 find_package(TBB REQUIRED)
+if(CILIAVAL_ANALYTIC_ALONE) # the paper's models need no more
+  return()
+endif()
+find_package(deal.II 9.4 REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(fmt REQUIRED)

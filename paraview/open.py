@@ -5,7 +5,10 @@
 # Lengths are metres; the time of ParaView is the load in N, N/m or m (or the number of the step,
 # if the load does not increase from step to step), of a sweep how far the surface has moved.
 import glob
+import json
+import math
 import os
+import re
 import sys
 
 from paraview.simple import *
@@ -23,7 +26,9 @@ def names(prefix):
 def read(name):
     source = PVDReader(registrationName=name, FileName=os.path.join(here, name + ".pvd"))
     times.extend(source.TimestepValues)
-    source.UpdatePipeline(max(source.TimestepValues))
+    # What is shown from now on is of the last step, and so are the ranges that scales follow.
+    view.ViewTime = max(times)
+    source.UpdatePipeline(view.ViewTime)
     return source
 
 
@@ -38,31 +43,88 @@ def arrows(source, vector, length, name):
     return glyph
 
 
-def field_lines(octree, name):
-    """Lines of B through a line across the tip, in the plane of bending."""
-    height = top[2]
-    # Lines end where leaves of different sizes meet, but not on a grid.
+def field_lines(source, name):
+    """Lines of B through lines across both ends of the magnet, in the plane of bending."""
+    across = [diameter * x / max(abs(tip[0]), abs(tip[1])) for x in tip]
+    for end, centre in (("tip", top), ("base", bottom)):
+        lines = StreamTracer(registrationName=f"{name} lines, {end}", Input=source, SeedType="Line")
+        lines.Vectors = ["POINTS", "B"]
+        lines.MaximumStreamlineLength = 5 * top[2]
+        lines.SeedType.Point1 = [a - b for a, b in zip(centre, across)]
+        lines.SeedType.Point2 = [a + b for a, b in zip(centre, across)]
+        lines.SeedType.Resolution = 10
+        display = Show(lines, view)
+        display.LineWidth = 2
+        paint(display, [0.0, 0.0, 0.0])
+
+
+def on_a_grid(octree, name):
+    """Lines would end where leaves of different sizes meet, but not on a grid."""
     around = ResampleToImage(registrationName=name + " grid", Input=octree)
     around.UseInputBounds = 0
-    around.SamplingBounds = [c + s * height for c in (0.0, 0.0, height / 2) for s in (-1.2, 1.2)]
+    around.SamplingBounds = [c + s * top[2] for c in (0.0, 0.0, top[2] / 2) for s in (-1.2, 1.2)]
     around.SamplingDimensions = [61, 61, 61]
-    across = [diameter * x / max(abs(tip[0]), abs(tip[1])) for x in tip]
-    lines = StreamTracer(registrationName=name + " lines", Input=around, SeedType="Line")
-    lines.Vectors = ["POINTS", "B"]
-    lines.MaximumStreamlineLength = 5 * height
-    lines.SeedType.Point1 = [a - b for a, b in zip(top, across)]
-    lines.SeedType.Point2 = [a + b for a, b in zip(top, across)]
-    lines.SeedType.Resolution = 20
-    display = Show(lines, view)
-    display.LineWidth = 2
+    return around
+
+
+def paint(display, colour):
+    """One colour, of no array."""
     display.ColorArrayName = ["POINTS", ""]
-    display.AmbientColor = display.DiffuseColor = [0.0, 0.0, 0.0]
+    display.AmbientColor = display.DiffuseColor = colour
 
 
+def loaded_points(load, rod):
+    """Where the load of the last step acts on a centreline, and along which direction."""
+    points = paraview.servermanager.Fetch(rod).GetPoints()
+    line = [points.GetPoint(i) for i in range(points.GetNumberOfPoints())]
+    if "height" in load:
+        chosen = [min(line, key=lambda point: abs(point[2] - load["height"]))]
+    elif "arclength" in load:
+        length = segment_lengths and sum(segment_lengths) or top[2]
+        chosen = [line[round(load["arclength"] / length * (len(line) - 1))]]
+    elif load["type"] in ("flow", "dead"):
+        chosen = [line[round(part * (len(line) - 1))] for part in (0.2, 0.4, 0.6, 0.8, 1.0)]
+    else:
+        chosen = []  # the surface of a sweep has arrows of its own
+    return chosen, [math.cos(load["azimuth"]), math.sin(load["azimuth"]), 0.0]
+
+
+def load_arrows(load, rod):
+    """Arrows of one length that end where the load acts."""
+    points, direction = loaded_points(load, rod)
+    for i, point in enumerate(points):
+        length = (2 if len(points) == 1 else 1) * diameter
+        arrow = Arrow(registrationName=f"load arrow {i}")
+        placed = Transform(registrationName=f"load {i}", Input=arrow)
+        placed.Transform.Scale = [length] * 3
+        placed.Transform.Rotate = [0, 0, math.degrees(load["azimuth"])]
+        reach = length + diameter / 2
+        placed.Transform.Translate = [p - reach * e for p, e in zip(point, direction)]
+        paint(Show(placed, view), [0.8, 0.1, 0.1])
+
+
+def beside(name):
+    """Text of a file of the results, or nothing: a folder may have been moved."""
+    try:
+        with open(os.path.join(here, os.pardir, name), encoding="utf-8") as stream:
+            return stream.read()
+    except OSError:
+        return ""
+
+
+segments = re.findall(r"\[\[cilium\.segment\]\]\s*name = ['\"](.*)['\"]", beside("case.toml"))
+segment_lengths = [
+    float(length)
+    for length in re.findall(
+        r'\[\[cilium\.segment\]\][^[]*?\nlength = "([-+.0-9e]+) m"', beside("case.toml")
+    )
+]
 bodies = names("body_")
 diameter = 1e-3
 tip = [1.0, 0.0, 0.0]  # the direction of bending
 top = [0.0, 0.0, 0.0]  # where the tip is
+bottom = [0.0, 0.0, segment_lengths[0] if len(segment_lengths) > 1 else 0.0]  # of the magnet
+rod = None
 for name in names("centreline_"):
     rod = read(name)
     diameter = 2 * rod.PointData["radius"].GetRange()[1]
@@ -89,15 +151,16 @@ for name in names("surface"):
     # Its border too: from the side the surface is a line.
     for shown, width in ((surface, 1), (FeatureEdges(registrationName="border", Input=surface), 3)):
         display = Show(shown, view)
-        display.AmbientColor = display.DiffuseColor = [0.55, 0.45, 0.3]
-        display.ColorArrayName = ["POINTS", ""]
+        paint(display, [0.55, 0.45, 0.3])
         display.LineWidth = width
 
 for name in names("contact_"):
     force = arrows(read(name), "force", 2 * diameter, name + " force")
-    display = Show(force, view)
-    display.ColorArrayName = ["POINTS", ""]
-    display.AmbientColor = display.DiffuseColor = [0.8, 0.1, 0.1]
+    paint(Show(force, view), [0.8, 0.1, 0.1])
+
+summary = beside("summary.json")
+if rod and summary:
+    load_arrows(json.loads(summary)["steps"][-1]["load"], rod)
 
 for name in bodies:
     body = read(name)
@@ -108,6 +171,21 @@ for name in bodies:
     display.NonlinearSubdivisionLevel = 2
     display.Opacity = 0.6
     ColorBy(display, ("CELLS", "MaterialIDs"))
+if bodies and segments:
+    # Categories, each with its name: no scale.
+    palette = [[0.75, 0.75, 0.7], [0.25, 0.35, 0.6], [0.85, 0.6, 0.2], [0.35, 0.6, 0.4]]
+    materials = GetColorTransferFunction("MaterialIDs")
+    materials.InterpretValuesAsCategories = 1
+    materials.Annotations = [word for i, name in enumerate(segments) for word in (str(i), name)]
+    materials.IndexedColors = [x for i in range(len(segments)) for x in palette[i % len(palette)]]
+    key = GetScalarBar(materials, view)
+    key.Title = "segment"
+    key.ComponentTitle = ""
+    key.WindowLocation = "Upper Right Corner"
+    key.ScalarBarLength = 0.1
+    key.TitleFontSize = key.LabelFontSize = 8
+    key.HorizontalTitle = 1
+    display.SetScalarBarVisibility(view, True)
 
 for name in names("dipoles_"):
     moments = read(name)
@@ -118,17 +196,18 @@ octrees = names("field_*_potential")
 for name in octrees:
     field = read(name)
     if name == octrees[-1]:  # the most detailed deformation
-        field_lines(field, name)
+        field_lines(on_a_grid(field, name), name)
     Hide(field, view)
 
-for name in names("field_"):
-    if name in octrees:
-        continue
+grids = [name for name in names("field_") if name not in octrees]
+for name in grids:
     field = read(name)
     valid = Threshold(registrationName=name + " valid", Input=field)
     valid.Scalars = ["POINTS", "valid"]
     valid.LowerThreshold = 1
     valid.UpperThreshold = 1
+    if name == grids[-1] and not octrees:
+        field_lines(field, name)
     plane = Slice(registrationName=name + " in the plane of bending", Input=valid)
     plane.SliceType.Origin = [0, 0, 0]
     plane.SliceType.Normal = [-tip[1], tip[0], 0.0]
@@ -140,7 +219,7 @@ for name in names("field_"):
     colours.UseLogScale = 1
     display.SetScalarBarVisibility(view, True)
     bar = GetScalarBar(colours, view)
-    bar.Title = "|B| in T, " + name[len("field_"):].replace("_", "/")
+    bar.Title = "magnitude of B in T, " + name[len("field_"):].replace("_", "/")
     bar.ComponentTitle = ""
     bar.TitleFontSize = 8
     bar.LabelFontSize = 8
@@ -148,10 +227,15 @@ for name in names("field_"):
 
 for name in names("sensors"):
     points = read(name)
-    Show(points, view).PointSize = 8
+    symbols = Glyph(registrationName=name + " symbols", Input=points, GlyphType="Box")
+    symbols.ScaleArray = ["POINTS", "No scale array"]
+    symbols.OrientationArray = ["POINTS", "No orientation array"]
+    symbols.ScaleFactor = diameter / 4
+    symbols.GlyphMode = "All Points"
+    paint(Show(symbols, view), [0.1, 0.5, 0.2])
     changes = [vector for vector in points.PointData.keys() if vector.startswith("dB_")]
     for vector in changes:
-        Show(arrows(points, vector, diameter, vector), view)
+        paint(Show(arrows(points, vector, diameter, vector), view), [0.1, 0.5, 0.2])
     for vector in changes[:-1]:  # the arrows of the others lie on the most detailed pair's
         Hide(FindSource(vector), view)
 

@@ -50,6 +50,9 @@ void require_valid(const Cilium& cilium) {
                        "': Poisson's ratio must lie between -1 and 0.5, both excluded");
     if (!std::isfinite(segment.magnetization))
       throw InputError("segment '" + segment.name + "': the magnetization must be finite");
+    if (!(std::isfinite(segment.density) && segment.density >= 0))
+      throw InputError("segment '" + segment.name +
+                       "': the density must be finite and not negative");
   }
 }
 

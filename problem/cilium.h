@@ -15,6 +15,7 @@ struct Segment {
   double poisson_ratio = 0;  ///< ν, −1 < ν < 0.5
   double magnetization =
       0;  ///< M = B_r/μ₀ along the reference axis, base to tip positive, A/m; 0: not magnetic
+  double density = 0;  ///< ρ, kg/m³, which gravity needs; 0: not known
 
   /// μ = E/(2(1+ν)), Pa.
   double shear_modulus() const { return young_modulus / (2 * (1 + poisson_ratio)); }

@@ -40,7 +40,8 @@ void estimate_errors(MechanicsResult& result) {
         estimate([&](const MechanicsStep& of) { return tip(of).theta(); }, algebraic);
     // A prescribed force is the sum of the nodal loads: rounding errors, the quadrature's included
     // (docs/evidence/solid.md).
-    const bool is_prescribed = !step.load.is<ProbeLoad>() && !step.load.is<FlowLoad>();
+    const bool is_prescribed =
+        !step.load.is<ProbeLoad>() && !step.load.is<FlowLoad>() && !step.load.is<SweepLoad>();
     const double rounding =
         5 * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(step.unknowns));
     step.applied_force_uncertainty = estimate(

@@ -45,9 +45,9 @@ double drag_per_height(std::span<const double> values, const Cilium& cilium) {
 }
 
 std::vector<const LoadType*>& all_types() {
-  static std::vector<const LoadType*> types{&ContactLoad::type(), &FlowLoad::type(),
-                                            &SectionLoad::type(), &DeadLoad::type(),
-                                            &ProbeLoad::type(),   &SweepLoad::type()};
+  static std::vector<const LoadType*> types{
+      &ContactLoad::type(), &FlowLoad::type(),  &SectionLoad::type(),    &DeadLoad::type(),
+      &ProbeLoad::type(),   &SweepLoad::type(), &EnvironmentLoad::type()};
   return types;
 }
 
@@ -162,6 +162,17 @@ const LoadType& SweepLoad::type() {
   return type;
 }
 
+const LoadType& EnvironmentLoad::type() {
+  static const LoadType type{
+      "environment",
+      "nothing but the environment: weight, field",
+      {parameter("scale", quantity::number, {0, 1e6, false, turn_round}, "1",
+                 "`environment`: a factor on gravity and field of [environment].",
+                 ", environment times {:g}", 1, 1),
+       azimuth_parameter}};
+  return type;
+}
+
 std::span<const LoadType* const> load_types() {
   return all_types();
 }
@@ -232,18 +243,39 @@ Load with_azimuth(const Load& load, double azimuth) {
   return result;
 }
 
+Load turned(const Load& load, double angle) {
+  return with_environment(with_azimuth(load, azimuth(load) + angle),
+                          surroundings::turned(load.environment(), angle));
+}
+
+surroundings::Environment acting_environment(const Load& load) {
+  const auto alone = load.as<EnvironmentLoad>();
+  return alone ? surroundings::scaled(load.environment(), alone->scale) : load.environment();
+}
+
+Load with_environment(const Load& load, const surroundings::Environment& environment) {
+  Load result = load;
+  result.set_environment(environment);
+  return result;
+}
+
+Load nothing_of(const Load& load) {
+  return with_environment(with_magnitude(load, 0), surroundings::scaled(load.environment(), 0));
+}
+
 Load interpolate(const Load& from, const Load& to, double t) {
   if (&from.type() != &to.type())
     throw InputError("a load path cannot change from one load type to another");
   Load result = from;
   for (std::size_t i = 0; i < from.values().size(); ++i)
     result.set_value(i, std::lerp(from.values()[i], to.values()[i], t));
+  result.set_environment(surroundings::interpolate(from.environment(), to.environment(), t));
   return result;
 }
 
 bool operator==(const Load& a, const Load& b) {
   return &a.type() == &b.type() && std::ranges::equal(a.values(), b.values()) &&
-         a.surface() == b.surface();
+         a.surface() == b.surface() && a.environment() == b.environment();
 }
 
 void refuse_type(const Load& load, std::string_view model) {
@@ -253,6 +285,7 @@ void refuse_type(const Load& load, std::string_view model) {
 
 void require_valid(const Load& load, const Cilium& cilium) {
   if (!std::isfinite(azimuth(load))) throw InputError("the azimuth must be finite");
+  surroundings::require_valid(load.environment(), cilium);
   if (const auto sweep = load.as<SweepLoad>()) return require_valid(*sweep, load, cilium);
   if (!std::isfinite(magnitude(load)) || magnitude(load) < 0)
     throw InputError(

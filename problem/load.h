@@ -16,6 +16,7 @@
 
 #include "problem/cilium.h"
 #include "problem/parameter.h"
+#include "problem/surroundings/environment.h"
 #include "problem/surroundings/surface.h"
 #include "problem/types.h"
 
@@ -115,8 +116,16 @@ struct SweepLoad {
   double azimuth = 0;  ///< φ of e, rad
 };
 
-/// One step of a load path: a load type and the values of its parameters, SI, and of a sweep the
-/// surface.
+/// Nothing but the environment (surroundings::Environment), which acts with the factor `scale`:
+/// what a step has where no other load is asked for.
+struct EnvironmentLoad {
+  static const LoadType& type();
+  double scale = 1;    ///< of gravity and field
+  double azimuth = 0;  ///< φ of the plane in which the cilium bends, rad
+};
+
+/// One step of a load path: a load type and the values of its parameters, SI; of a sweep the
+/// surface; and the environment, whatever the type.
 class Load {
  public:
   static constexpr std::size_t most_parameters = 8;
@@ -142,6 +151,9 @@ class Load {
   void set_value(std::size_t parameter, double value) { values_.at(parameter) = value; }
   /// The surface of a sweep; null of another load.
   const std::shared_ptr<const surroundings::Surface>& surface() const { return surface_; }
+  /// What surrounds the cilium; see acting_environment() for what acts on it.
+  const surroundings::Environment& environment() const { return environment_; }
+  void set_environment(const surroundings::Environment& environment) { environment_ = environment; }
 
   template <LoadParameters T>
   bool is() const {
@@ -162,6 +174,7 @@ class Load {
   const LoadType* type_;
   std::array<double, most_parameters> values_{};
   std::shared_ptr<const surroundings::Surface> surface_;
+  surroundings::Environment environment_;
 };
 
 /// Loads that the cilium bears one after the other, all of one type.
@@ -188,11 +201,20 @@ std::optional<double> contact_height(const Load& load);
 std::optional<double> loaded_arclength(const Load& load);
 /// The same load with another magnitude.
 Load with_magnitude(const Load& load, double magnitude);
-/// The same load in another direction, rad.
+/// The same load in another direction, rad; the environment stays.
 Load with_azimuth(const Load& load, double azimuth);
-/// (1−t)·from + t·to in every parameter, for load stepping. Throws InputError if the types differ.
+/// Load and environment turned by the angle about the z axis, rad.
+Load turned(const Load& load, double angle);
+/// The environment that acts under the load: of an EnvironmentLoad by its factor.
+surroundings::Environment acting_environment(const Load& load);
+/// The same load with another environment.
+Load with_environment(const Load& load, const surroundings::Environment& environment);
+/// The load of magnitude 0 without an environment, under which the cilium is straight.
+Load nothing_of(const Load& load);
+/// (1−t)·from + t·to in every parameter and in the environment, for load stepping. Throws
+/// InputError if the types differ.
 Load interpolate(const Load& from, const Load& to, double t);
-/// Whether type, values and surface are the same.
+/// Whether type, values, surface and environment are the same.
 bool operator==(const Load& a, const Load& b);
 
 /// Throws the InputError of a model that does not know the load's type.
@@ -200,7 +222,7 @@ bool operator==(const Load& a, const Load& b);
 
 /// Throws InputError if the load is not one the cilium can bear in the models' sense: magnitude
 /// finite and not negative (turn the azimuth by 180° instead), 0 < h < L, 0 < S ≤ L; of a sweep a
-/// valid surface, and δ < L.
+/// valid surface, and δ < L; a valid environment.
 void require_valid(const Load& load, const Cilium& cilium);
 
 /// Throws InputError unless all loads are sweeps of one surface and azimuth.

@@ -88,15 +88,47 @@ struct MechanicsResult {
   double algebraic_error = 0;
 };
 
-/// Called with a short line of text while a long solution goes on ("step 2/4, load 0.5, iteration
-/// 3, residual 1e-4").
-using Progress = std::function<void(const std::string&)>;
+/// How far a long solution is.
+struct ProgressReport {
+  std::string text;       ///< a short line, "step 2/4, load 0.5, iteration 3, residual 1e-4"
+  std::size_t done = 0;   ///< equal parts of the work that are done, such as steps …
+  std::size_t parts = 0;  ///< … of so many; 0: the report does not say
+  const MechanicsStep* step = nullptr;  ///< of a mechanics model: the step that is just done
+
+  ProgressReport(std::string line) : text(std::move(line)) {}  // NOLINT: a text is a report
+  ProgressReport(const char* line) : text(line) {}             // NOLINT
+  ProgressReport(std::string line, std::size_t parts_done, std::size_t all_parts)
+      : text(std::move(line)), done(parts_done), parts(all_parts) {}
+};
+
+/// Called with reports while a long solution goes on.
+using Progress = std::function<void(const ProgressReport&)>;
 
 /// The same with a text in front of each line. `progress` must outlive it.
 inline Progress with_prefix(const Progress& progress, std::string prefix) {
   if (!progress) return {};
-  return
-      [&progress, prefix = std::move(prefix)](const std::string& text) { progress(prefix + text); };
+  return [&progress, prefix = std::move(prefix)](ProgressReport report) {
+    report.text = prefix + report.text;
+    progress(report);
+  };
+}
+
+/// The same for a piece of the work: its own parts and steps are not those of the whole.
+inline Progress of_a_piece(const Progress& progress, std::string prefix) {
+  if (!progress) return {};
+  return [&progress, prefix = std::move(prefix)](const ProgressReport& report) {
+    progress(prefix + report.text);
+  };
+}
+
+/// Reports the last of the steps, which is just done, of a path of so many.
+inline void report_step(const Progress& progress, const std::vector<MechanicsStep>& steps,
+                        std::size_t path) {
+  if (!progress) return;
+  ProgressReport report("step " + std::to_string(steps.size()) + "/" + std::to_string(path),
+                        steps.size(), path);
+  report.step = &steps.back();
+  progress(report);
 }
 
 /// What a model keeps of its way along a load path, to go on from there: bytes of its own making

@@ -20,6 +20,7 @@ inline constexpr Quantity magnetization{"a", "magnetization M = B_r/mu_0", "A/m"
 inline constexpr Quantity force{"a", "force", "N", "1 mN"};
 inline constexpr Quantity force_per_length{"a", "force per length", "N/m", "0.3 N/m"};
 inline constexpr Quantity velocity{"a", "velocity", "m/s", "0.5 m/s"};
+inline constexpr Quantity acceleration{"an", "acceleration", "m/s^2", "-9.81 m/s2"};
 inline constexpr Quantity density{"a", "density", "kg/m^3", "1000 kg/m^3"};
 inline constexpr Quantity angle{"an", "angle", "rad", "30 deg"};
 inline constexpr Quantity frequency{"a", "frequency", "Hz", "100 Hz"};

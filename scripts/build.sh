@@ -28,10 +28,10 @@ install_packages() {
     die "apt-get could not install ${missing[*]}"
 }
 
-# build PRESET [TARGET]: configures it, with $configure_options, and builds it or its target; what has not changed is not built again.
+# build PRESET [TARGET…]: configures it, with $configure_options, and builds all of it or the targets; what has not changed is not built again.
 build() {
   say "building build/$1"
   local log
   log=$(cmake --preset "$1" "${configure_options[@]}" 2>&1) || { printf '%s\n' "$log" >&2; die "configuring the preset '$1' failed"; }
-  cmake --build --preset "$1" ${2:+--target "$2"} >&2 || die "the build failed"
+  cmake --build --preset "$1" ${2:+--target "${@:2}"} >&2 || die "the build failed"
 }

@@ -28,6 +28,7 @@ compare/study: $shared compare/budget analytic/elastica/elastica.h
 compare/claims: $shared compare/sensing compare/signal compare/study analytic/rod/field_models.h
 compare/report: $shared compare/budget compare/convergence
 compare/app: .
+python/core: problem compare/input compare/models compare/output compare/study
 tests: ."
 git ls-files '*.h' '*.cc' | xargs awk '
   function complain(text) { print FILENAME ":" FNR ": " text; failed = 1 }

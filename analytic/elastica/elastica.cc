@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analytic/elastica/arclength.h"
+#include "analytic/elastica/environment/step.h"
 #include "analytic/elastica/height.h"
 #include "analytic/elastica/planar.h"
 #include "analytic/elastica/probe.h"
@@ -23,6 +24,11 @@ struct SlipOff {
   double force = 0;                    ///< N
   std::optional<double> displacement;  ///< m, for a probe
 };
+
+/// Whether the equations are those with an environment: that of an EnvironmentLoad may be empty.
+bool has_environment(const Load& load) {
+  return load.is<EnvironmentLoad>() || !surroundings::is_empty(load.environment());
+}
 
 bool has_height_form(const ElasticaOptions& options) {
   return options.form == ElasticaOptions::Form::height;
@@ -99,6 +105,12 @@ std::string slipped_off(const Load& load, double force, std::optional<double> di
   return message.str();
 }
 
+void say_slipped_off(MechanicsStep& step) {
+  step.status = Status::slipped_off;
+  step.message =
+      slipped_off(step.load, step.slip_off_force.value_or(0), step.slip_off_displacement);
+}
+
 void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsStep& step) {
   const PlanarProblem problem = planar_problem(cilium, step.load);
   PlanarUnits units = planar_units(cilium, step.load);
@@ -114,12 +126,7 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsS
       shape = solver(options)(problem);
     }
   }
-  if (!shape) {
-    step.status = Status::slipped_off;
-    step.message =
-        slipped_off(step.load, step.slip_off_force.value_or(0), step.slip_off_displacement);
-    return;
-  }
+  if (!shape) return say_slipped_off(step);
   // Near 90° the height form has noise of some 1e-11, which finer pieces would resolve.
   const double resolution = std::max(options.tolerance / 10, height_form ? 1e-11 : 1e-13);
   step.deformation =
@@ -146,7 +153,14 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
   if (!(options_.tolerance > 0 && options_.tolerance <= 1e-3))
     throw InputError("elastica: the tolerance must lie between 0 and 1e-3");
   require_valid(cilium);
-  for (const Load& load : path) require_valid(load, cilium);
+  for (const Load& load : path) {
+    require_valid(load, cilium);
+    if (has_environment(load) && has_height_form(options_))
+      throw InputError("elastica: the height form takes no environment");
+    if (has_environment(load)) environment::rod_of(cilium, load);  // refuses what is not planar
+    if (has_environment(load) && load.is<SweepLoad>())
+      throw InputError("the elastica takes a sweep without an environment only");
+  }
   if (!path.empty() && path.front().is<SweepLoad>()) {
     if (has_height_form(options_)) refuse_type(path.front(), "elastica's height form");
     return solve_sweep(cilium, path, options_.tip, options_.tolerance, progress);
@@ -159,23 +173,26 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
     MechanicsStep step;
     step.load = load;
     try {
-      if (contact_height(load)) {
+      if (has_environment(load)) {
+        environment::solve_step(cilium, options_.tolerance, step);
+        if (step.status == Status::slipped_off) say_slipped_off(step);
+      } else if (contact_height(load)) {
         const SlipOff limit = slip_off(cilium, load, options_);
         step.slip_off_force = limit.force;
         step.slip_off_displacement = limit.displacement;
         if (const auto largest = slip_off_limit(step))
           step.slip_off_uncertainty = options_.tolerance * *largest;
+        solve_step(cilium, options_, step);
+      } else {
+        solve_step(cilium, options_, step);
       }
-      solve_step(cilium, options_, step);
     } catch (const SolverError& error) {
       step.status = Status::failed;
       step.message = error.what();
     }
     step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.steps.push_back(std::move(step));
-    if (progress)
-      progress("elastica: step " + std::to_string(result.steps.size()) + "/" +
-               std::to_string(path.size()));
+    report_step(progress, result.steps, path.size());
   }
   return result;
 }

@@ -27,11 +27,8 @@ constexpr double event_accuracy = 1e-8;
 constexpr double force_accuracy = 1e-7;  ///< relative; near an event the forces are steep
 
 PlanarUnits units_of(const Cilium& cilium) {
-  double stiffest = 0;
-  for (const Segment& segment : cilium.segments)
-    stiffest = std::max(stiffest, segment.young_modulus);
   const double length = cilium.length();
-  return {length, stiffest * cilium.second_moment() / (length * length)};
+  return {length, tip_stiffness(cilium) / (length * length)};
 }
 
 /// The shape under the forces of a contact, step by step up from the base.
@@ -158,9 +155,7 @@ MechanicsResult solve_sweep(const Cilium& cilium, const LoadPath& path, CiliumEn
             const auto now = std::chrono::steady_clock::now();
             result.steps.back().seconds = std::chrono::duration<double>(now - begin).count();
             begin = now;
-            if (progress)
-              progress("elastica: sample " + std::to_string(result.steps.size()) + "/" +
-                       std::to_string(path.size()));
+            report_step(progress, result.steps, path.size());
           });
   } catch (const SolverError& error) {
     failure = error.what();

@@ -65,9 +65,25 @@ void differentiate(const System& system, TipContact& contact) {
 
 }  // namespace
 
+double tip_stiffness(const Cilium& cilium) {
+  const double L = cilium.length();
+  const std::vector<double> ends = cilium.interfaces();
+  double compliance = 0;  // 3 ∫ (L − S)²/E dS, m³/Pa
+  for (std::size_t i = 0; i < cilium.segments.size(); ++i)
+    compliance += (std::pow(L - ends[i], 3) - std::pow(L - ends[i + 1], 3)) /
+                  cilium.segments[i].young_modulus;
+  return std::pow(L, 3) / compliance * cilium.second_moment();
+}
+
 TipProblem tip_problem(const Cilium& cilium, CiliumEnd end) {
-  const PlanarProblem same = planar_problem(cilium, SectionLoad{1, cilium.length(), 0});
-  TipProblem problem{.ends = same.ends, .compliance = same.compliance, .length = cilium.length()};
+  TipProblem problem;
+  problem.length = cilium.length();
+  for (const double interface : cilium.interfaces())
+    problem.ends.push_back(interface / cilium.length());
+  problem.ends.back() = 1;
+  for (const Segment& segment : cilium.segments)
+    problem.compliance.push_back(tip_stiffness(cilium) /
+                                 (segment.young_modulus * cilium.second_moment()));
   if (end == CiliumEnd::disc) problem.rim = cilium.diameter / 2 / cilium.length();
   return problem;
 }

@@ -12,14 +12,14 @@
 #include "problem/surroundings/surface.h"
 
 /// The planar elastica whose end a rigid surface presses (the sweep). Without units: lengths in L,
-/// forces in max(EI)/L², moments in max(EI)/L. θ is the angle from the vertical towards the travel,
-/// x the offset along it.
+/// forces in EI/L², moments in EI/L, EI that of tip_stiffness(). θ is the angle from the vertical
+/// towards the travel, x the offset along it.
 namespace ciliaval::analytic::elastica {
 
 /// The cilium and what touches.
 struct TipProblem {
   std::vector<double> ends;        ///< S of the segments' ends: 0, …, 1
-  std::vector<double> compliance;  ///< max(EI)/EI of each segment, ≥ 1
+  std::vector<double> compliance;  ///< EI of tip_stiffness() over that of each segment
   double length = 1;               ///< L, m
   double rim = 0;                  ///< R/L of the end's disc, or 0: a point on the centreline
   double side = -1;  ///< of the rim, where a guess does not say which corner touches (Touch::side)
@@ -102,6 +102,10 @@ enum class CiliumEnd {
   point,  ///< the end of the centreline
   disc    ///< an end face of the last segment's diameter, with its rim, and the mantle
 };
+
+/// EI of the uniform rod that a horizontal force at its tip bends as far as the cilium:
+/// L³/(3 ∫ (L − S)²/EI dS), N m². In its units the numbers of all cilia are of the order of 1.
+double tip_stiffness(const Cilium& cilium);
 
 /// The tip's problem of a cilium in the plane of the travel.
 TipProblem tip_problem(const Cilium& cilium, CiliumEnd end = CiliumEnd::point);

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "compare/app/terminal.h"
+#include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "problem/error.h"
 
@@ -49,19 +50,12 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
 }
 
 std::vector<fs::path> input_files(const fs::path& file, const input::Case& problem) {
-  std::vector<fs::path> files{file};
-  for (const auto& [option, mesh] : input::user_meshes(models::known(), problem.options))
-    files.push_back(mesh);
+  std::vector<fs::path> files = models::named_files(problem);
+  files.push_back(file);
   for (const char* table : {"study", "bench"})
     if (is_study_file(file) || is_bench_file(file))
       if (const auto name = toml::parse_file(file.string())[table]["case"].value<std::string>())
         files.push_back(file.parent_path() / *name);
-  for (const input::external::ExternalModel& model : problem.external) {
-    files.insert(files.end(), model.centreline_files.begin(), model.centreline_files.end());
-    files.insert(files.end(), {model.readings_file, model.background_file});
-  }
-  files.push_back(problem.surface.file);
-  std::erase_if(files, [](const fs::path& name) { return name.empty(); });
   return files;
 }
 

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@
 
 #include "compare/app/commands/commands.h"
 #include "compare/app/terminal.h"
+#include "compare/output/provenance.h"
+#include "compare/output/text_table.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
@@ -32,6 +35,7 @@ using commands::ExitCode;
 constexpr const char* examples = R"(
 Examples:
   ciliaval list                          what there is: models, loads, cases
+  ciliaval new my --load flow            a case file to start from, my.toml
   ciliaval validate my.toml              is the case file right?
   ciliaval run my.toml                   results in results/<case name>
   ciliaval check                         are the results of all shipped cases as accepted?
@@ -41,6 +45,7 @@ Examples:
   ciliaval claims                        what of the paper holds, by which model?
   ciliaval study my.study.toml           how does the signal change with stiffness, size, load?
   ciliaval report                        one page of everything in results/
+  ciliaval schema > case.schema.json     for editors (docs/guide/cases.md)
   ciliaval mesh my.toml -o my.msh        the solid's mesh, for Gmsh (.vtu: for ParaView)
   ciliaval run a.toml b.toml -o out      two cases, results in out/<case name>
   paraview --script=results/<case name>/vtk/open.py
@@ -75,16 +80,34 @@ std::string command_line(int argc, char** argv) {
   return text;
 }
 
-/// Throws InputError if the first word is not a command; CLI11 would only say that one is missing.
-void check_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
+/// Throws InputError if the first word is not a command, or if the command has not the options that
+/// are asked for: CLI11 would say that a command is missing, or take an option's value for a file.
+void check_words(const CLI::App& app, std::span<char* const> words) {
+  if (words.size() < 2 || words[1][0] == '-') return;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return;
-  throw ciliaval::InputError(
-      fmt::format("there is no command `{}`; the commands are {}; "
-                  "`ciliaval --help` explains them",
-                  argv[1], fmt::join(names, ", ")));
+  const std::string name = words[1];
+  const auto near = [](const std::string& word, const std::vector<std::string>& known) {
+    return ciliaval::support::did_you_mean(
+        word, std::vector<std::string_view>(known.begin(), known.end()));
+  };
+  if (std::ranges::find(names, name) == names.end())
+    throw ciliaval::InputError(
+        fmt::format("there is no command `{}`; the commands are {}; `ciliaval --help` explains "
+                    "them{}",
+                    name, fmt::join(names, ", "), near(name, names)));
+  std::vector<std::string> options;
+  for (const CLI::App* of : std::initializer_list<const CLI::App*>{&app, app.get_subcommand(name)})
+    for (const CLI::Option* option : of->get_options())
+      for (const std::string& word : option->get_lnames()) options.push_back("--" + word);
+  for (const std::string word : words.subspan(2)) {
+    if (word == "--") return;
+    const std::string option = word.substr(0, word.find('='));
+    if (!option.starts_with("--") || std::ranges::find(options, option) != options.end()) continue;
+    throw ciliaval::InputError(
+        fmt::format("`ciliaval {0}` has no option `{1}`, `ciliaval {0} --help` names all{2}", name,
+                    option, near(option, options)));
+  }
 }
 
 /// Help, version or a fault of the command line, as CLI11 words it.
@@ -125,16 +148,20 @@ ExitCode execute(int argc, char** argv) {
       "Cross-validation of models of magnetic-cilium tactile sensors: runs several models of\n"
       "the bending and of the magnetic field on one case and says what separates them.",
       "ciliaval"};
-  app.set_version_flag("--version", commands::version_line());
+  app.set_version_flag("--version", ciliaval::compare::output::version_line());
   app.footer(examples);
   app.require_subcommand(1);
+  app.fallthrough();  // the command's options first, then these
+  app.add_flag_callback("--quiet", ciliaval::compare::app::silence_progress,
+                        "No progress on stderr; behind any command");
   commands::CommandLine line{app, command_line(argc, argv), {}};
   for (const auto add :
-       {commands::add_run, commands::add_validate, commands::add_mesh, commands::add_check,
-        commands::add_converge, commands::add_budget, commands::add_sense, commands::add_study,
-        commands::add_claims, commands::add_report, commands::add_list})
+       {commands::add_new, commands::add_draw, commands::add_run, commands::add_validate,
+        commands::add_mesh, commands::add_check, commands::add_converge, commands::add_budget,
+        commands::add_sense, commands::add_study, commands::add_claims, commands::add_report,
+        commands::add_list, commands::add_schema})
     add(line);
-  check_command(app, argc, argv);
+  check_words(app, std::span(argv, static_cast<std::size_t>(argc)));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -174,8 +201,9 @@ void start_ranks() {
 void print_error(const std::string& message, bool of_this_rank_alone) {
   using namespace std::chrono_literals;
   if (ciliaval::fem::rank() > 0 && !of_this_rank_alone) std::this_thread::sleep_for(10s);
-  const std::string line = fmt::format(
-      "{}{}\n", is_located(message) ? "" : "ciliaval: ", ciliaval::support::printable(message));
+  const std::string line =
+      fmt::format("{}{}\n", is_located(message) ? "" : ciliaval::compare::app::message_prefix(),
+                  ciliaval::support::printable(message));
   const int file = ciliaval::fem::rank() > 0 ? silenced_stderr : STDERR_FILENO;
   if (write(file, line.data(), line.size()) < 0) return;  // there is nobody left to tell
 }
@@ -199,6 +227,7 @@ int main(int argc, char** argv) {
     open_standard_streams();
     spare_open_mpi_the_network();
     if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
+    ciliaval::compare::output::set_line_width(ciliaval::compare::app::terminal_columns());
     code = execute(argc, argv);
   } catch (const std::exception& error) {
     code = code_of(error);

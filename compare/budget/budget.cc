@@ -79,7 +79,6 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
   input::Case surrounded = problem;
   surrounded.load_path = computed.path.loads;
   for (const std::string& id : chain.mechanics) {
-    if (progress) progress(id + ": starting");
     const models::MechanicsRun& run =
         computed.around
             .emplace(id, models::run_mechanics(models::entry_of(mechanics, id), surrounded, fields,
@@ -207,7 +206,10 @@ void add_fields(const Chain& chain, const Computed& computed, std::size_t step, 
   };
   const std::string_view unit = magnitude_unit(computed.path.loads.front());
   add(
-      "sensitivity", unit == "N/m" ? "T/(N/m)" : fmt::format("T/{}", unit),
+      "sensitivity",
+      unit == "N/m"  ? "T/(N/m)"
+      : unit.empty() ? "T"
+                     : fmt::format("T/{}", unit),
       [&](const StageFields& fields) -> Vector {
         const auto value = derivative(fields);
         return value ? Vector(value->value) : std::nullopt;
@@ -310,6 +312,7 @@ Budget error_budget(const input::Case& problem, std::span<const models::Mechanic
   const auto start = std::chrono::steady_clock::now();
   Budget budget;
   budget.case_name = problem.name;
+  budget.sensor_names = input::sensor_names(problem);
   budget.load_path = problem.load_path;
   budget.chain = make_chain(problem, without);
   const Chain& chain = budget.chain;

@@ -72,6 +72,7 @@ struct BudgetRow {
 
 struct Budget {
   std::string case_name;
+  std::vector<std::string> sensor_names;
   LoadPath load_path;
   Chain chain;
   std::vector<BudgetRow> rows;

@@ -12,7 +12,6 @@
 
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
-#include "compare/output/table.h"
 #include "compare/output/text_table.h"
 #include "problem/error.h"
 
@@ -101,15 +100,20 @@ std::string group_table(const Group& group, const std::string& title, bool is_fi
   return "\n" + output::text_table(rows, alignment + ">");
 }
 
+std::string sensor_name(const Budget& budget, std::size_t sensor) {
+  return sensor < budget.sensor_names.size() ? budget.sensor_names[sensor] : std::to_string(sensor);
+}
+
 std::string step_text(const Budget& budget, std::size_t step) {
   Group mechanics = group_of(budget, step, "tip");
   const Group angle = group_of(budget, step, "tip_angle");
   mechanics.insert(mechanics.end(), angle.begin(), angle.end());
+  const std::string at = " at sensor " + sensor_name(budget, 0);
   const std::string text =
       group_table(mechanics, "tip", false) +
-      group_table(group_of(budget, step, "B"), "B at sensor 0", true) +
-      group_table(group_of(budget, step, "dB"), "dB at sensor 0", true) +
-      group_table(group_of(budget, step, "sensitivity"), "d(dB)/d(load) at sensor 0", true);
+      group_table(group_of(budget, step, "B"), "B" + at, true) +
+      group_table(group_of(budget, step, "dB"), "dB" + at, true) +
+      group_table(group_of(budget, step, "sensitivity"), "d(dB)/d(load)" + at, true);
   if (text.empty()) return {};
   return fmt::format("\nStep {} of {}: {}\n", step + 1, budget.load_path.size(),
                      output::describe(budget.load_path[step])) +
@@ -133,7 +137,7 @@ std::string chain_text(const Budget& budget) {
 }
 
 constexpr const char* legend =
-    "\nEach line is next - previous model, +- its numerical uncertainty: discretisation, "
+    "Each line is next - previous model, +- its numerical uncertainty: discretisation, "
     "quadrature,\n"
     "of dB/dF also truncation. Models on the same deformation share its error, which cancels.\n"
     "~ below its uncertainty: cannot be told from zero. ? inconclusive: an uncertainty is not "
@@ -163,62 +167,14 @@ Json row_json(const BudgetRow& row) {
   return json;
 }
 
-models::Verdict verdict_of(const std::string& text) {
-  for (const models::Verdict verdict :
-       {models::Verdict::resolved, models::Verdict::below_uncertainty,
-        models::Verdict::inconclusive})
-    if (to_string(verdict) == text) return verdict;
-  throw FileError("there is no verdict `" + text + "`");
-}
-
-BudgetLink read_link(const Json& json) {
-  return {json.at("from").get<std::string>(),
-          json.at("to").get<std::string>(),
-          json.at("physics").get<std::string>(),
-          json.at("value").get<double>(),
-          output::number_or_none(json.at("uncertainty")),
-          verdict_of(json.at("verdict").get<std::string>())};
-}
-
-BudgetRow read_row(const Json& json) {
-  BudgetRow row;
-  row.step = json.at("step").get<std::size_t>();
-  if (!json.at("sensor").is_null()) row.sensor = json["sensor"].get<std::size_t>();
-  row.quantity = json.at("quantity").get<std::string>();
-  row.component = output::text_or_none(json.at("component"));
-  row.unit = json.at("unit").get<std::string>();
-  row.paper = json.at("paper").get<double>();
-  row.best = json.at("best").get<double>();
-  row.total = read_link(json.at("total"));
-  for (const Json& link : json.at("links")) row.links.push_back(read_link(link));
-  if (!json.at("beside").is_null()) row.beside = read_link(json["beside"]);
-  return row;
-}
-
-/// "solid/volume stacked" taken apart.
-Stage read_stage(const Json& json) {
-  const std::string name = json.at("name").get<std::string>();
-  const std::size_t slash = name.find('/');
-  if (slash == std::string::npos) throw FileError("`" + name + "` is no pair of models");
-  Stage stage;
-  stage.mechanics = name.substr(0, slash);
-  stage.field = name.substr(slash + 1);
-  if (const std::size_t blank = stage.field.find(' '); blank != std::string::npos) {
-    stage.variant = stage.field.substr(blank + 1);
-    stage.field.resize(blank);
-  }
-  stage.physics = output::text_or_none(json.at("physics"));
-  return stage;
-}
-
 }  // namespace
 
-std::string budget_text(const Budget& budget) {
+std::string budget_text(const Budget& budget, output::Footnotes which) {
   std::string text = chain_text(budget);
   for (std::size_t step = 0; step < budget.load_path.size(); ++step)
     text += step_text(budget, step);
   if (budget.rows.empty()) return text + "\nThere is no difference to split.\n";
-  text += legend;
+  text += '\n' + output::footnotes(which, legend);
   const bool others = std::any_of(budget.rows.begin(), budget.rows.end(),
                                   [](const BudgetRow& row) { return row.sensor.value_or(0) > 0; });
   if (others) text += "The other sensors are in the JSON and the CSV.\n";
@@ -228,6 +184,7 @@ std::string budget_text(const Budget& budget) {
 std::string budget_json(const Budget& budget, const output::Provenance& provenance) {
   Json json{{"schema", 1},
             {"case", budget.case_name},
+            {"sensor_names", budget.sensor_names},
             {"provenance", output::to_json(provenance)},
             {"loads", Json::array()},
             {"chain", Json::array()},
@@ -248,25 +205,15 @@ std::string budget_csv(const Budget& budget) {
           "uncertainty", "verdict");
   for (const BudgetRow& row : budget.rows) {
     const auto add = [&](std::string_view kind, const BudgetLink& link) {
-      csv.row(row.step, row.sensor, row.quantity, row.component, row.unit, kind, link.from, link.to,
-              link.value, link.uncertainty, models::to_string(link.verdict));
+      csv.row(row.step, row.sensor ? sensor_name(budget, *row.sensor) : "", row.quantity,
+              row.component, row.unit, kind, link.from, link.to, link.value, link.uncertainty,
+              models::to_string(link.verdict));
     };
     for (const BudgetLink& link : row.links) add("link", link);
     add("total", row.total);
     if (row.beside) add("beside", *row.beside);
   }
   return csv.text();
-}
-
-Budget read_budget(const Json& json) {
-  Budget budget;
-  budget.case_name = json.at("case").get<std::string>();
-  for (const Json& stage : json.at("chain")) budget.chain.stages.push_back(read_stage(stage));
-  budget.chain.not_run = json.at("not_run").get<std::vector<std::string>>();
-  budget.remarks = json.at("remarks").get<std::vector<std::string>>();
-  for (const Json& row : json.at("rows")) budget.rows.push_back(read_row(row));
-  budget.seconds = json.at("seconds").get<double>();
-  return budget;
 }
 
 }  // namespace ciliaval::compare::budget

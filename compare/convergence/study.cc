@@ -146,7 +146,7 @@ Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
 void extrapolate_all(const std::vector<Quantities>& levels, const ModelRefinement& refinement,
                      RefinementStudy& study) {
   for (const auto& [id, finest] : levels.front()) {
-    ConvergedQuantity quantity{id, finest.unit, {}, {}};
+    ConvergedQuantity quantity{id, finest.unit, finest.size(), {}, {}};
     for (std::size_t i = 0; i < levels.size() && levels[i].contains(id); ++i)
       quantity.levels.push_back(
           {refinement.sequence.size(study.settings[i]), levels[i].at(id).value});
@@ -186,21 +186,79 @@ Json quantity_json(const ConvergedQuantity& quantity) {
   return json;
 }
 
-ConvergedQuantity read_quantity(const Json& json) {
-  ConvergedQuantity quantity{
-      json.at("id").get<std::string>(), json.at("unit").get<std::string>(), {}, {}};
-  for (const Json& level : json.at("levels"))
-    quantity.levels.push_back({level.at("size").get<double>(), level.at("value").get<double>()});
-  Extrapolation& e = quantity.extrapolation;
-  e.conclusive = json.at("conclusive").get<bool>();
-  e.reason = output::text_or_none(json.at("reason"));
-  e.order = output::number_or_none(json.at("order"));
-  if (e.conclusive) {
-    e.limit = json.at("limit").get<double>();
-    e.uncertainty = json.at("uncertainty").get<double>();
-    e.safety = json.at("safety").get<double>();
+/// What the levels say of the numbers of some models.
+struct Judgement {
+  std::size_t failed = 0;  ///< models
+  std::size_t numbers = 0;
+  std::size_t conclusive = 0;
+  double largest = 0;  ///< interval over the scale
+  std::string where;   ///< the number that has it
+
+  void add(const Judgement& other) {
+    failed += other.failed;
+    numbers += other.numbers;
+    conclusive += other.conclusive;
+    if (other.largest > largest || where.empty()) {
+      largest = other.largest;
+      where = other.where;
+    }
   }
-  return quantity;
+};
+
+Judgement judge(const RefinementStudy& study) {
+  Judgement result;
+  result.failed = study.failure.empty() ? 0 : 1;
+  for (const ConvergedQuantity& quantity : study.quantities) {
+    ++result.numbers;
+    if (!quantity.extrapolation.conclusive) continue;
+    ++result.conclusive;
+    const double relative =
+        quantity.scale > 0 ? quantity.extrapolation.uncertainty / quantity.scale : 0;
+    if (relative > result.largest || result.where.empty()) {
+      result.largest = relative;
+      result.where = quantity.id;
+    }
+  }
+  return result;
+}
+
+std::string describe(const Judgement& judgement) {
+  std::string text =
+      fmt::format("{} of {} numbers have an interval", judgement.conclusive, judgement.numbers);
+  if (judgement.conclusive > 0)
+    text += fmt::format(", the widest +-{:.2g} % of its scale ({})", 100 * judgement.largest,
+                        judgement.where);
+  return text;
+}
+
+std::string verdict(const Judgement& all) {
+  std::string_view word = "converged";
+  if (all.conclusive < all.numbers) word = "converged in part";
+  if (all.failed > 0 || all.conclusive == 0) word = "inconclusive";
+  return fmt::format(
+      "\nVerdict: {}: {}{}\n", word, describe(all),
+      all.failed > 0 ? fmt::format("; {} models failed on a level", all.failed) : "");
+}
+
+std::string quantity_table(const RefinementStudy& study) {
+  output::TextRows rows{{"quantity", "finest", "order", "extrapolated", "+-", "unit"}};
+  for (const ConvergedQuantity& quantity : study.quantities) {
+    if (!is_shown(quantity.id)) continue;
+    const Extrapolation& e = quantity.extrapolation;
+    if (e.conclusive) {
+      rows.push_back({quantity.id, output::number_cell(quantity.levels.front().value, 1, "{:.9g}"),
+                      output::number_cell(e.order, 1, "{:.2f}"),
+                      output::number_cell(e.limit, 1, "{:.9g}"),
+                      output::number_cell(e.uncertainty, 1, "{:.2g}"), quantity.unit});
+      continue;
+    }
+    std::vector<double> values;
+    for (const RefinementLevel& level : quantity.levels) values.push_back(level.value);
+    rows.push_back({quantity.id, "-", "-", "-", "-",
+                    fmt::format("{}; inconclusive: {}: {:.9g}", quantity.unit, e.reason,
+                                fmt::join(values, ", "))});
+  }
+  return output::text_table(rows, "<>>>><");
 }
 
 }  // namespace
@@ -254,35 +312,19 @@ RefinementStudy refinement_study(const input::Case& problem, const ModelRefineme
   return study;
 }
 
-std::string study_text(const std::vector<RefinementStudy>& studies) {
+std::string study_text(const std::vector<RefinementStudy>& studies, bool list) {
   std::string text;
+  Judgement all;
   for (const RefinementStudy& study : studies) {
     text += fmt::format("{}, {} {:g} ({:.3g} s)\n", study.model, study.option,
                         fmt::join(study.settings, ", "), fmt::join(study.seconds, ", "));
-    if (!study.failure.empty()) {
-      text += fmt::format("  inconclusive: {}\n", study.failure);
-      continue;
-    }
-    output::TextRows rows{{"quantity", "finest", "order", "extrapolated", "+-", "unit"}};
-    for (const ConvergedQuantity& quantity : study.quantities) {
-      if (!is_shown(quantity.id)) continue;
-      const Extrapolation& e = quantity.extrapolation;
-      if (e.conclusive) {
-        rows.push_back(
-            {quantity.id, output::number_cell(quantity.levels.front().value, 1, "{:.9g}"),
-             output::number_cell(e.order, 1, "{:.2f}"), output::number_cell(e.limit, 1, "{:.9g}"),
-             output::number_cell(e.uncertainty, 1, "{:.2g}"), quantity.unit});
-        continue;
-      }
-      std::vector<double> values;
-      for (const RefinementLevel& level : quantity.levels) values.push_back(level.value);
-      rows.push_back({quantity.id, "-", "-", "-", "-",
-                      fmt::format("{}; inconclusive: {}: {:.9g}", quantity.unit, e.reason,
-                                  fmt::join(values, ", "))});
-    }
-    text += output::text_table(rows, "<>>>><");
+    const Judgement judgement = judge(study);
+    text += study.failure.empty() ? fmt::format("  {}\n", describe(judgement))
+                                  : fmt::format("  inconclusive: {}\n", study.failure);
+    if (list && study.failure.empty()) text += quantity_table(study);
+    all.add(judgement);
   }
-  return text;
+  return text + verdict(all) + (list ? "" : "The list of numbers: --all\n");
 }
 
 std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
@@ -301,23 +343,6 @@ std::string study_json(const std::string& case_name, const std::vector<Refinemen
     json["studies"].push_back(std::move(entry));
   }
   return output::to_text(json);
-}
-
-std::vector<RefinementStudy> read_studies(const Json& json) {
-  std::vector<RefinementStudy> studies;
-  for (const Json& entry : json.at("studies")) {
-    RefinementStudy study;
-    study.model = entry.at("model").get<std::string>();
-    study.option = entry.at("option").get<std::string>();
-    study.size_name = entry.value("size_name", "size of the level");
-    study.settings = entry.at("settings").get<std::vector<double>>();
-    study.seconds = entry.at("seconds").get<std::vector<double>>();
-    study.failure = output::text_or_none(entry.at("failure"));
-    for (const Json& quantity : entry.at("quantities"))
-      study.quantities.push_back(read_quantity(quantity));
-    studies.push_back(std::move(study));
-  }
-  return studies;
 }
 
 std::string study_csv(const std::vector<RefinementStudy>& studies) {

@@ -32,6 +32,7 @@ std::vector<ModelRefinement> refinements(const input::Case& problem);
 struct ConvergedQuantity {
   std::string id;
   std::string unit;
+  double scale = 0;  ///< regression::Measurement::size(): the largest deflection, |ΔB|, …
   std::vector<RefinementLevel> levels;
   Extrapolation extrapolation;
 };
@@ -54,17 +55,15 @@ struct RefinementStudy {
 RefinementStudy refinement_study(const input::Case& problem, const ModelRefinement& refinement,
                                  unsigned int count, const Progress& progress = {});
 
-/// Tables for people: of each model the tip, its angle and the field components, with what the
-/// levels say.
-std::string study_text(const std::vector<RefinementStudy>& studies);
+/// For people: a line for each model, how many numbers have an interval and the largest of these
+/// over its scale, or a failure; with `list` the tip, its angle and the field components with what
+/// the levels say; then the verdict on all.
+std::string study_text(const std::vector<RefinementStudy>& studies, bool list);
 /// {"schema": 1, "case", "provenance", "studies": [{"model", "option", "size_name", "settings",
 /// "seconds", "failure", "quantities": [{"id", "unit", "levels": [{"size", "value"}], "conclusive",
 /// "reason", "order", "limit", "uncertainty", "safety"}]}]}
 std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
                        const output::Provenance& provenance);
-/// The studies of a text that study_json() made. Throws what nlohmann::json does if it is not.
-std::vector<RefinementStudy> read_studies(const nlohmann::ordered_json& json);
-
 /// A row for each quantity: model, option, quantity, unit, conclusive, order, limit, uncertainty,
 /// safety, reason, then size and value of each level, finest first.
 std::string study_csv(const std::vector<RefinementStudy>& studies);

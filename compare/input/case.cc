@@ -44,6 +44,16 @@ std::map<std::string, std::filesystem::path> user_meshes(const Models& models,
   return result;
 }
 
+std::string sensor_name(const Case& c, std::size_t sensor) {
+  return sensor < c.sensor_names.size() ? c.sensor_names[sensor] : std::to_string(sensor);
+}
+
+std::vector<std::string> sensor_names(const Case& c) {
+  std::vector<std::string> names;
+  for (std::size_t s = 0; s < c.sensors.size(); ++s) names.push_back(sensor_name(c, s));
+  return names;
+}
+
 Case read_case(std::string_view text, std::string_view file, const Models& known) {
   const toml::table table = parse_toml(text, file);
   Faults faults;
@@ -59,6 +69,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   const bool load = is_right([&] { read_load(root, folder, c); });
   read_sensor(root, c);
+  read_readings(root, file, c.readings);
   c.signal = sweep::read_signal(root);
   const bool models = is_right([&] { read_models(root, known, c); });
   change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {
@@ -77,7 +88,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   // What the models themselves demand; a case that comes so far has it.
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
-  external::read_external_files(c.external, c.cilium, c.load_path, c.sensors.size());
+  external::read_external_files(c.external, c.cilium, c.load_path, sensor_names(c));
   return c;
 }
 

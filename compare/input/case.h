@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "compare/input/external/external.h"
+#include "compare/input/external/reading_options.h"
 #include "compare/input/model_entry.h"
 #include "compare/input/sweep/signal.h"
 #include "compare/input/sweep/surface.h"
@@ -31,9 +33,12 @@ struct Case {
   sweep::Statement surface;                              ///< of a sweep; each of its loads has it
   std::optional<compare::signal::SignalOptions> signal;  ///< what a logger makes of a sweep
   std::vector<Vector3> sensors;                          ///< m
+  std::vector<std::string>
+      sensor_names;                    ///< of the sensors by [[sensor]]; empty: they are numbered
   std::vector<std::string> mechanics;  ///< ids of mechanics models, in the order asked for
   std::vector<std::string> fields;     ///< ids of field models
   std::vector<external::ExternalModel> external;  ///< what other programs and test benches gave
+  external::ReadingOptions readings;              ///< how `ciliaval sense` reads a file
   ModelOptions options;
 };
 
@@ -45,6 +50,11 @@ Case read_case(const std::filesystem::path& file, const Models& models);
 
 /// The same from a text; `file` is the name that the messages give.
 Case read_case(std::string_view text, std::string_view file, const Models& models);
+
+/// The name of a sensor; its number from 0 where the case gives none.
+std::string sensor_name(const Case& c, std::size_t sensor);
+/// Those of all sensors.
+std::vector<std::string> sensor_names(const Case& c);
 
 /// The values along the path of a parameter of Case::stated_by, such as "velocity"; empty if the
 /// file does not state it.

@@ -61,6 +61,39 @@ void check_load(const Case& c, const Report& report) {
   }
 }
 
+/// Whether an environment acts at any step.
+template <class Acts>
+bool any_environment(const LoadPath& path, const Acts& acts) {
+  return std::ranges::any_of(path, [&](const Load& load) { return acts(load.environment()); });
+}
+
+bool has_environment(const LoadPath& path) {
+  return any_environment(path, [](const auto& e) { return !surroundings::is_empty(e); });
+}
+
+bool has_magnet(const Cilium& cilium) {
+  return std::ranges::any_of(cilium.segments,
+                             [](const Segment& s) { return s.magnetization != 0; });
+}
+
+/// Weight needs densities, and a field a magnet.
+void check_environment(const Case& c, const Report& report) {
+  const auto has_weight = [](const surroundings::Environment& e) { return !e.gravity.isZero(0); };
+  const auto has_field = [](const auto& e) { return !e.uniform_field.isZero(0); };
+  for (std::size_t i = 0; i < c.cilium.segments.size(); ++i)
+    if (any_environment(c.load_path, has_weight) && c.cilium.segments[i].density == 0)
+      report(fmt::format("cilium.segment[{}]", i),
+             fmt::format("the segment '{}' needs a 'density', for [environment] has a 'gravity'",
+                         c.cilium.segments[i].name));
+  if (any_environment(c.load_path, has_field) && !has_magnet(c.cilium))
+    report("environment.uniform_field",
+           "'uniform_field' needs a magnet: no [[cilium.segment]] has a 'magnetization'");
+  if (has_environment(c.load_path) && c.load_path.front().is<SweepLoad>())
+    report("environment", fmt::format("no model takes an environment beside the load type '{}': "
+                                      "leave out one of the two",
+                                      SweepLoad::type().name));
+}
+
 /// The places of a profile in a file that the tip needs at least: from over the base at the start
 /// to over the base at the end, if it hangs straight.
 void check_profile(const Case& c, const Report& report) {
@@ -106,7 +139,8 @@ void check_signal(const Case& c, const Report& report) {
 void check_models(const Case& c, const Models& known, const RightTables& right,
                   const Report& report) {
   known.for_each([&](const auto& entry) {
-    const bool is_asked_for = asks_for(c.mechanics, entry.id) || asks_for(c.fields, entry.id);
+    const bool is_mechanics = asks_for(c.mechanics, entry.id);
+    const bool is_asked_for = is_mechanics || asks_for(c.fields, entry.id);
     const auto& loads = entry.loads;
     if (is_asked_for && right.load && !loads.empty() &&
         std::find(loads.begin(), loads.end(), &c.load_path.front().type()) == loads.end()) {
@@ -117,6 +151,11 @@ void check_models(const Case& c, const Models& known, const RightTables& right,
              fmt::format("{0} takes the load types '{1}', not '{2}': leave out '{0}', or state the "
                          "load as one of those",
                          entry.id, fmt::join(names, "', '"), type(c.load_path.front())));
+    } else if (is_mechanics && right.load && !entry.takes_environment &&
+               has_environment(c.load_path)) {
+      report(
+          path_of_id("mechanics", c.mechanics, entry.id),
+          fmt::format("{0} takes no [environment]: leave out '{0}', or the environment", entry.id));
     }
     if (entry.check) entry.check({c, is_asked_for, right.cilium, right.load, report});
   });
@@ -132,9 +171,7 @@ std::size_t bodies(const Case& c, const Models& known) {
 
 void check_fields(const Case& c, const Models& known, bool cilium_is_right, const Report& report) {
   if (c.fields.empty()) return;
-  const bool magnetic = std::any_of(c.cilium.segments.begin(), c.cilium.segments.end(),
-                                    [](const Segment& s) { return s.magnetization != 0; });
-  if (cilium_is_right && !magnetic)
+  if (cilium_is_right && !has_magnet(c.cilium))
     report("models.fields", "'fields' need a magnet: no [[cilium.segment]] has a 'magnetization'");
   std::vector<std::string_view> with_body;
   for (const MechanicsEntry& entry : known.mechanics)
@@ -196,6 +233,7 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
                        "in the unit",
                        c.cilium.length() / c.cilium.diameter, most_slender));
   if (right.cilium && right.load) check_load(c, report);
+  if (right.cilium && right.load) check_environment(c, report);
   if (right.load) check_profile(c, report);
   if (right.load) check_signal(c, report);
   if (right.models) check_models(c, known, right, report);

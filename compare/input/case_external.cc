@@ -78,6 +78,19 @@ external::ExternalModel read_model(Section& table, const Models& known,
 
 }  // namespace
 
+void read_readings(Section& root, std::string_view file, external::ReadingOptions& readings) {
+  constexpr std::size_t longest = 1000;  // a map of many sensors
+  Section table = root.section("readings");
+  for (const auto& [key, text] : external::reading_keys)
+    if (const toml::node* node = table.find(key)) {
+      const auto value = read_line(*node, key, longest, table.faults());
+      readings.*
+          text = {value.value_or(""), fmt::format("{}:{}:{}: [readings] {}", file,
+                                                  place(*node).line, place(*node).column, key)};
+    }
+  table.finish();
+}
+
 void read_external(Section& models, const Models& known,
                    std::vector<external::ExternalModel>& external) {
   models.tables("external", 0, most_external,

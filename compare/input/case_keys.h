@@ -38,6 +38,13 @@ inline constexpr QuantityKey magnetization{
     {-1e8, 1e8, false, "the strongest magnets have about 1.2e6 A/m; divide a B_r in T by mu_0"},
     "0 A/m",
     "Axial magnetisation B_r/mu_0 from base to tip; negative points to the base."};
+inline constexpr QuantityKey density{
+    "cilium.segment",
+    "density",
+    quantity::density,
+    {1e-3, 1e5, false, unit_slip},
+    "not known",
+    "Of the material, for its weight: `gravity` of [environment] needs it of each segment."};
 inline constexpr QuantityKey samples{
     "load",
     "samples",

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compare/input/case_sections.h"
+#include "compare/input/environment/environment.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -214,8 +215,15 @@ void set_stated_magnitudes(Case& c) {
 void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
-  Section table = require_section(root, "load");
+  const bool is_alone = root.find("load") == nullptr;
+  const std::vector<surroundings::Environment> around = environment::read_environment(root);
+  const bool has_environment = root.table()->contains(environment::table_name);
   root.find("surface");
+  if (is_alone && has_environment) {
+    if (faults.size() == before) c.load_path = environment::path_of(around);
+    return;
+  }
+  Section table = require_section(root, "load");
   if (!table.exists()) return;
   const toml::node* node = table.require("type");
   std::optional<std::string> type;
@@ -230,7 +238,20 @@ void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   PathReader reader(typed);
   const std::function<void(Case&)> make_steps = read_steps(typed, *find_load_type(*type), reader);
   typed.finish();
-  if (faults.size() == before) make_steps(c);
+  if (*type == EnvironmentLoad::type().name && !has_environment)
+    faults.add(place(*node), fmt::format("the load type '{}' needs the table [{}]", *type,
+                                         environment::table_name));
+  if (faults.size() != before) return;
+  make_steps(c);
+  if (environment::put_into(around, c.load_path)) {
+    for (std::vector<double>& stated : c.stated_by)
+      stated.resize(c.load_path.size(), stated.front());
+  } else {
+    faults.add(place(*root.table()->at_path("environment.uniform_field").node()),
+               fmt::format("'uniform_field' lists {} fields, but the load has {} steps: list one "
+                           "field, or one for each step",
+                           around.size(), c.load_path.size()));
+  }
 }
 
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path) {

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "problem/support/words.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -30,6 +33,7 @@ void read_segments(Section& cilium, std::vector<Segment>& segments) {
     segment.young_modulus = table.value(key::young_modulus).value_or(0);
     segment.poisson_ratio = table.value(key::poisson_ratio).value_or(0);
     segment.magnetization = table.value(key::magnetization).value_or(0);
+    segment.density = table.value(key::density).value_or(0);
     const bool known = std::any_of(segments.begin(), segments.end(),
                                    [&](const Segment& s) { return s.name == segment.name; });
     if (known && !segment.name.empty())
@@ -123,6 +127,33 @@ void read_options(Section& models, const Models& known, ModelOptions& options) {
   });
 }
 
+/// [[sensor]]: the sensors by name.
+void read_named_sensors(Section& root, Case& c) {
+  root.tables("sensor", 1, most_sensors, [&](Section& table) {
+    Faults& faults = table.faults();
+    std::string name;
+    if (const toml::node* node = table.require("name")) {
+      name = read_text(*node, "name", faults).value_or("unknown");
+      const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
+      if (!is_plain_file_name(name) || is_number)
+        faults.add(place(*node),
+                   fmt::format("the sensor name {} must be letters, digits, '.', '_' and '-', not "
+                               "digits alone, which are a sensor's number",
+                               in_quotes(name)));
+      if (std::ranges::any_of(c.sensor_names, [&](const std::string& other) {
+            return support::equal_but_case(name, other);
+          }))
+        faults.add(place(*node),
+                   fmt::format("the sensor name {} is already taken", in_quotes(name)));
+    }
+    std::optional<Vector3> point;
+    if (const toml::node* node = table.require("position"))
+      point = read_point(*node, key::position, faults);
+    c.sensor_names.push_back(std::move(name));
+    c.sensors.push_back(point.value_or(Vector3::Zero()));
+  });
+}
+
 }  // namespace
 
 bool is_plain_file_name(std::string_view name) {
@@ -134,11 +165,15 @@ bool is_plain_file_name(std::string_view name) {
 std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults) {
   const toml::array* list = node.as_array();
   if (list == nullptr || list->size() != 3) {
-    faults.add(
-        place(node),
-        fmt::format("'{}' must be a point: a point has three coordinates, such as [\"0 mm\", "
-                    "\"0 mm\", \"-1.55 mm\"]; found {}",
-                    k.name, list == nullptr ? describe(node) : fmt::format("{}", list->size())));
+    const std::string what =
+        k.quantity.name == quantity::length.name
+            ? "be a point: a point has three coordinates, such as [\"0 mm\", \"0 mm\", "
+              "\"-1.55 mm\"]"
+            : fmt::format("have three components along x, y and z, each {} {} such as \"{}\"",
+                          k.quantity.article, k.quantity.name, k.quantity.example);
+    faults.add(place(node),
+               fmt::format("'{}' must {}; found {}", k.name, what,
+                           list == nullptr ? describe(node) : fmt::format("{}", list->size())));
     return std::nullopt;
   }
   Vector3 point = Vector3::Zero();
@@ -204,6 +239,8 @@ void read_cilium(Section& root, Case& c) {
 
 void read_sensor(Section& root, Case& c) {
   Faults& faults = root.faults();
+  if (const toml::node* node = root.find("sensor"); node != nullptr && node->is_array())
+    return read_named_sensors(root, c);
   Section table = root.section("sensor");
   if (const toml::node* node = table.require("position")) {
     const toml::array* list = node->as_array();

@@ -21,7 +21,9 @@ void read_cilium(Section& root, Case& c);  ///< [cilium], [[cilium.segment]]
 /// [load], and [surface] of a sweep; needs the diameter for `velocity`. `folder` is that of the
 /// case file.
 void read_load(Section& root, const std::filesystem::path& folder, Case& c);
-void read_sensor(Section& root, Case& c);  ///< [sensor]
+void read_sensor(Section& root, Case& c);  ///< [sensor] or [[sensor]]
+/// [readings]; `file` is the case file, for messages.
+void read_readings(Section& root, std::string_view file, external::ReadingOptions& readings);
 /// [models], [models.<id>]
 void read_models(Section& root, const Models& known, Case& c);
 
@@ -48,7 +50,7 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
 /// the tip of 3 mm + 17 mm.
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
 
-/// A point of three coordinates, each as the key says, or a fault.
+/// A point or vector of three components, each as the key says, or a fault.
 std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults);
 
 /// A text for people: a line, not empty, of at most `longest` bytes. Adds a fault otherwise.

@@ -29,8 +29,7 @@ std::string valid(const Texts& texts) {
 
 /// What a later version will read under this dotted name; empty: nothing.
 std::string_view later(std::string_view name) {
-  if (name == "environment") return "gravity, buoyancy and uniform fields";
-  if (name == "cilium.segment.density") return "weight (it goes with [environment])";
+  if (name == "environment.magnet") return "magnets beside the cilium";
   return {};
 }
 
@@ -146,7 +145,7 @@ void Section::tables(std::string_view key, std::size_t fewest, std::size_t most,
                      const std::function<void(Section&)>& f) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
-  const std::string path = fmt::format("{}.{}", path_, key);
+  const std::string path = path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
   const toml::array* list = node->as_array();
   if (list == nullptr || list->size() < fewest || list->size() > most)
     return faults_->add(

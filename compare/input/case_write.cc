@@ -9,6 +9,7 @@
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
 #include "compare/input/case_sections.h"
+#include "compare/input/environment/environment.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -80,6 +81,7 @@ std::string cilium(const Case& c) {
     text += fmt::format("\n[[cilium.segment]]\nname = {}\n", toml_text(s.name));
     text += line(key::segment_length, s.length) + line(key::young_modulus, s.young_modulus) +
             line(key::poisson_ratio, s.poisson_ratio) + line(key::magnetization, s.magnetization);
+    if (s.density != 0) text += line(key::density, s.density);
   }
   return text;
 }
@@ -87,13 +89,29 @@ std::string cilium(const Case& c) {
 std::string sensor(const Case& c) {
   if (c.sensors.empty()) return {};
   std::vector<std::string> points;
+  const bool named = !c.sensor_names.empty();
   for (const Vector3& p : c.sensors) {
     std::vector<std::string> coordinates;
     for (const double x : p) coordinates.push_back(value(key::position, x));
     points.push_back(list(coordinates));
   }
+  if (named) {
+    std::string text;
+    for (std::size_t s = 0; s < points.size(); ++s)
+      text += fmt::format("\n[[sensor]]\nname = {}\nposition = {}\n", toml_text(sensor_name(c, s)),
+                          points[s]);
+    return text;
+  }
   return fmt::format("\n[sensor]\nposition = {}\n",
                      points.size() == 1 ? points.front() : list(points));
+}
+
+std::string readings(const external::ReadingOptions& options) {
+  std::string text;
+  for (const auto& [key, value] : external::reading_keys)
+    if (const auto& stated = options.*value; stated.given())
+      text += fmt::format("{} = {}\n", key, toml_text(stated.text));
+  return text.empty() ? text : "\n[readings]\n" + text;
 }
 
 std::string external(const external::ExternalModel& model) {
@@ -138,11 +156,11 @@ std::string to_toml(const Case& c, const Models& known) {
   text += cilium(c);
   if (!c.load_path.empty()) {
     text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));
-    text += parameters(c);
+    text += parameters(c) + environment::to_toml(c.load_path);
   }
   if (c.surface.surface) text += sweep::to_toml(c.surface);
   if (c.signal) text += sweep::to_toml(*c.signal);
-  return text + sensor(c) + models(c, known);
+  return text + sensor(c) + readings(c.readings) + models(c, known);
 }
 
 }  // namespace ciliaval::compare::input

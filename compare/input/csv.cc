@@ -21,75 +21,19 @@
 namespace ciliaval::compare::input {
 namespace {
 
-// They bound the memory of a file that is no table of readings.
 constexpr std::uintmax_t largest_file = 100'000'000;  ///< bytes
-constexpr std::size_t most_cells = 1000;              ///< of a line
-constexpr std::size_t most_rows = 1'000'000;
-constexpr std::size_t most_faults = 100;
 
-struct Cell {
-  std::string text;
-  Place place;
-};
-
-/// The cells of a line, of very many the first; quotes as in RFC 4180, but not over several lines.
-std::vector<Cell> cells_of(std::string_view line, std::size_t number) {
-  std::vector<Cell> cells{{{}, {number, 1}}};
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size() && cells.size() <= most_cells; ++i) {
-    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back().text += line[i++];
-    } else if (line[i] == '"') {
-      quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      cells.push_back({{}, {number, i + 2}});
-    } else {
-      cells.back().text += line[i];
-    }
-  }
-  for (Cell& cell : cells) cell.text = std::string(support::trimmed(cell.text));
-  return cells;
-}
-
-/// "x [mm]" taken apart; no unit: none, or that of the comment.
+/// A column's header; no unit: none, or that of the comment.
 struct Header {
   std::string name;
   std::optional<std::string> unit;
   Place place;
 };
-
-Header header_of(const Cell& cell, const std::map<std::string, std::string>& units) {
-  Header header{cell.text, std::nullopt, cell.place};
-  const auto open = cell.text.find_first_of("[(");
-  if (open != std::string::npos && cell.text.back() == (cell.text[open] == '[' ? ']' : ')')) {
-    const std::string_view text = cell.text;
-    header.name = support::trimmed(text.substr(0, open));
-    header.unit = support::trimmed(text.substr(open + 1, text.size() - open - 2));
-  } else if (const auto found = units.find(cell.text); found != units.end()) {
-    header.unit = found->second;
-  }
-  return header;
-}
-
-/// "# units: S m, x m, theta rad".
-std::map<std::string, std::string> units_of(std::string_view comment) {
-  std::map<std::string, std::string> units;
-  const auto begin = comment.find("units:");
-  if (begin == std::string_view::npos) return units;
-  for (const Cell& cell : cells_of(comment.substr(begin + 6), 1))
-    if (const auto blank = cell.text.find(' '); blank != std::string::npos)
-      units[cell.text.substr(0, blank)] =
-          support::trimmed(std::string_view(cell.text).substr(blank));
-  return units;
-}
-
-/// Takes the first line, without LF or CRLF, off a text.
-std::string_view take_line(std::string_view& text) {
-  const auto end = text.find('\n');
-  std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  return line;
+Header header_of(const CsvCell& cell, const std::map<std::string, std::string>& units) {
+  auto [name, unit] = name_and_unit(cell.text);
+  if (!unit)
+    if (const auto found = units.find(name); found != units.end()) unit = found->second;
+  return {std::move(name), std::move(unit), cell.place};
 }
 
 class Reader {
@@ -107,26 +51,28 @@ class Reader {
   }
 
   CsvTable read(std::string_view text) {
-    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-      faults_.add({}, "the file is in UTF-16: save it as UTF-8");
-      return table_;
-    }
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+    if (!take_byte_order_mark(text, faults_)) return table_;
     std::map<std::string, std::string> units;
-    bool header = false;
+    std::optional<std::pair<std::string_view, std::size_t>> header;  // the line and its number
+    bool is_header_read = false;
     std::size_t number = 0;
-    while (!text.empty() && faults_.size() < most_faults) {
+    const auto read_once = [&] {
+      return std::exchange(is_header_read, true) ||
+             read_header(header->first, header->second, units);
+    };
+    while (!text.empty() && faults_.size() < most_csv_faults) {
       const std::string_view line = take_line(text);
       ++number;
       const auto first = line.find_first_not_of(" \t");
       if (first == std::string_view::npos) continue;
       if (line[first] == '#' || line[first] == '%') {
-        units.merge(units_of(line));
+        units.merge(csv_units(line));
       } else if (!header) {
-        if (!read_header(line, number, units)) return table_;
-        header = true;
-      } else if (table_.rows.size() == most_rows) {
-        faults_.add({number, 1}, fmt::format("there are more than {} rows", most_rows));
+        header = {line, number};  // its units may stand in the comments below it
+      } else if (!read_once()) {
+        return table_;
+      } else if (table_.rows.size() == most_csv_rows) {
+        faults_.add({number, 1}, fmt::format("there are more than {} rows", most_csv_rows));
         return table_;
       } else {
         read_row(line, number);
@@ -136,7 +82,7 @@ class Reader {
       faults_.add({},
                   "the file is empty: it needs a header line with the names and units of the "
                   "columns");
-    else if (table_.rows.empty())
+    else if (table_.rows.empty() && read_once())
       faults_.add({number, 1}, "there are no rows below the header");
     return table_;
   }
@@ -153,10 +99,10 @@ class Reader {
                                 separator == ';' ? "semicolons" : "tabs"));
         return false;
       }
-    const std::vector<Cell> cells = cells_of(line, number);
+    const std::vector<CsvCell> cells = csv_cells(line, number);
     width_ = cells.size();
-    if (width_ > most_cells) {
-      faults_.add({number, 1}, fmt::format("there are more than {} columns", most_cells));
+    if (width_ > most_csv_cells) {
+      faults_.add({number, 1}, fmt::format("there are more than {} columns", most_csv_cells));
       return false;
     }
     for (std::size_t i = 0; i < cells.size(); ++i) take(header_of(cells[i], units), i);
@@ -206,7 +152,7 @@ class Reader {
   }
 
   void read_row(std::string_view line, std::size_t number) {
-    const std::vector<Cell> cells = cells_of(line, number);
+    const std::vector<CsvCell> cells = csv_cells(line, number);
     if (cells.size() != width_) {
       const Place where = cells[std::min(cells.size() - 1, width_)].place;
       faults_.add(where,
@@ -224,7 +170,7 @@ class Reader {
     }
   }
 
-  void add_number(std::size_t column, const Cell& cell) {
+  void add_number(std::size_t column, const CsvCell& cell) {
     std::string_view text = cell.text;
     if (text.starts_with('+')) text.remove_prefix(1);
     double value = 0;
@@ -248,6 +194,60 @@ class Reader {
 };
 
 }  // namespace
+
+std::vector<CsvCell> csv_cells(std::string_view line, std::size_t number, char separator) {
+  std::vector<CsvCell> cells{{{}, {number, 1}}};
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size() && cells.size() <= most_csv_cells; ++i) {
+    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      cells.back().text += line[i++];
+    } else if (line[i] == '"') {
+      quoted = !quoted;
+    } else if (line[i] == separator && !quoted) {
+      cells.push_back({{}, {number, i + 2}});
+    } else {
+      cells.back().text += line[i];
+    }
+  }
+  for (CsvCell& cell : cells) cell.text = std::string(support::trimmed(cell.text));
+  return cells;
+}
+
+std::pair<std::string, std::optional<std::string>> name_and_unit(std::string_view header) {
+  const auto open = header.find_first_of("[(");
+  if (open == std::string_view::npos || header.back() != (header[open] == '[' ? ']' : ')'))
+    return {std::string(header), std::nullopt};
+  return {std::string(support::trimmed(header.substr(0, open))),
+          std::string(support::trimmed(header.substr(open + 1, header.size() - open - 2)))};
+}
+
+std::map<std::string, std::string> csv_units(std::string_view comment) {
+  std::map<std::string, std::string> units;
+  const auto begin = comment.find("units:");
+  if (begin == std::string_view::npos) return units;
+  for (const CsvCell& cell : csv_cells(comment.substr(begin + 6), 1))
+    if (const auto blank = cell.text.find(' '); blank != std::string::npos)
+      units[cell.text.substr(0, blank)] =
+          support::trimmed(std::string_view(cell.text).substr(blank));
+  return units;
+}
+
+std::string_view take_line(std::string_view& text) {
+  const auto end = text.find('\n');
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+bool take_byte_order_mark(std::string_view& text, Faults& faults) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    faults.add({}, "the file is in UTF-16: save it as UTF-8");
+    return false;
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  return true;
+}
 
 CsvTable read_csv(std::string_view text, std::span<const CsvColumn> columns,
                   std::span<const std::string_view> ignored, Faults& faults) {

@@ -64,6 +64,7 @@ struct SubTables {
   std::vector<const QuantityKey*> keys;
   std::function<void(Section& model, ModelOptions&)> read;
   std::function<std::string(const ModelOptions&)> write;
+  std::vector<std::string_view> points{};  ///< the keys that are points, of three coordinates
 };
 
 /// A model as all others know it. A part that is left out has the simplest meaning: no options, not
@@ -78,6 +79,7 @@ struct Entry {
   /// Mechanics: the error limit, for which the first of the refinements is raised; empty: none.
   std::function<ErrorLimit(const ModelOptions&)> error_limit{};
   std::vector<const LoadType*> loads{};  ///< that a mechanics model takes; empty: it says so itself
+  bool takes_environment = false;        ///< mechanics: weight and fields of [environment]
   bool has_body = false;                 ///< mechanics: gives Deformation::body; field: needs it
   bool is_collective = false;            ///< all MPI ranks call it, and no two threads at a time
   bool is_slow = false;                  ///< `ciliaval check --quick` leaves it out

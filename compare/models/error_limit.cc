@@ -18,6 +18,12 @@ using input::ErrorLimit;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
+/// Whether the cilium is straight because nothing acts on it.
+bool bears_nothing(const Load& load) {
+  return surroundings::is_empty(acting_environment(load)) &&
+         (load.is<EnvironmentLoad>() || magnitude(load) == 0);
+}
+
 /// The largest estimate of the tip's error over its displacement, of the steps that converged; 0
 /// where nothing has moved.
 double largest_tip_error(const MechanicsResult& result) {
@@ -26,7 +32,7 @@ double largest_tip_error(const MechanicsResult& result) {
   };
   double largest = 0;
   for (const MechanicsStep& step : result.steps) {
-    if (step.status != Status::converged || magnitude(step.load) == 0) continue;
+    if (step.status != Status::converged || bears_nothing(step.load)) continue;
     const double moved = (tip(*step.deformation) - tip(result.undeformed)).norm();
     largest = std::max(largest, step.tip_uncertainty ? *step.tip_uncertainty / moved : unknown);
   }
@@ -42,7 +48,7 @@ double largest_field_error(const MechanicsRun& run, const input::Case& problem,
     double scale = 0;
     double error = 0;
     for (std::size_t i = 0; i < fields.steps.size(); ++i) {
-      if (!fields.steps[i] || magnitude(run.result.steps[i].load) == 0) continue;
+      if (!fields.steps[i] || bears_nothing(run.result.steps[i].load)) continue;
       const std::optional<Vector3>& dB = fields.steps[i]->dB[s];
       if (!dB) return unknown;
       scale = std::max(scale, dB->norm());

@@ -129,7 +129,7 @@ void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e
     if (shape.relative && std::isfinite(agreement->correlation))
       shape.correlation = agreement->correlation * agreement->correlation;
   } else {
-    shape.note = "undefined: z does not increase along the centreline, w(z) is not a function";
+    shape.note = "undefined: z does not increase along the centreline; w(z) is not a function";
   }
   out.push_back(std::move(shape));
 }
@@ -217,6 +217,14 @@ const MechanicsRun& mechanics_of(const FieldRun& run, const CaseResult& result) 
   if (run.measured) return none;
   const auto found = std::ranges::find(result.mechanics, run.mechanics, &MechanicsRun::model);
   return found != result.mechanics.end() ? *found : none;
+}
+
+/// Of each component of ΔB.
+std::optional<Vector3> change_uncertainties(const MechanicsRun& mechanics, const FieldRun& run,
+                                            std::size_t step, std::size_t sensor) {
+  const auto value = field_value(run, mechanics, step, sensor, true);
+  if (!value || !value->numerical || !value->from_mechanics) return std::nullopt;
+  return *value->numerical + Vector3::Constant(*value->from_mechanics);
 }
 
 /// Whether both fields are those of one deformation.
@@ -308,9 +316,13 @@ std::optional<double> change_uncertainty(const CaseResult& result, const FieldRu
 
 std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const FieldRun& run,
                                          std::size_t step, std::size_t sensor) {
-  const auto value = field_value(run, mechanics, step, sensor, true);
-  if (!value || !value->numerical || !(run.measured || value->from_mechanics)) return std::nullopt;
-  return value->numerical->cwiseAbs().maxCoeff() + value->from_mechanics.value_or(0);
+  const auto components = change_uncertainties(mechanics, run, step, sensor);
+  return components ? std::optional(components->maxCoeff()) : std::nullopt;
+}
+
+std::optional<Vector3> change_uncertainties(const CaseResult& result, const FieldRun& run,
+                                            std::size_t step, std::size_t sensor) {
+  return change_uncertainties(mechanics_of(run, result), run, step, sensor);
 }
 
 std::vector<Comparison> compare_models(const CaseResult& result) {

@@ -97,6 +97,9 @@ std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const Fi
                                          std::size_t step, std::size_t sensor);
 std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
                                          std::size_t step, std::size_t sensor);
+/// The same of each component.
+std::optional<Vector3> change_uncertainties(const CaseResult& result, const FieldRun& run,
+                                            std::size_t step, std::size_t sensor);
 
 /// Every pair of mechanics models and every pair of field results, step by step and over the path.
 std::vector<Comparison> compare_models(const CaseResult& result);

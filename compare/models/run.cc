@@ -14,6 +14,7 @@
 #include <variant>
 
 #include "compare/input/case_keys.h"
+#include "compare/input/environment/environment.h"
 #include "compare/input/units.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
@@ -103,17 +104,17 @@ void append_field(const FieldModel& model, const Cilium& cilium, const Deformati
 
 /// "sensor 1: …; sensors 2, 4: …", or the message alone if it is that of every sensor.
 std::string describe(const std::vector<std::pair<std::size_t, std::string>>& failures,
-                     std::size_t sensors) {
-  std::map<std::string, std::vector<std::size_t>> sensors_of;
+                     const input::Case& problem) {
+  std::map<std::string, std::vector<std::string>> sensors_of;
   std::vector<std::string> messages;  // in the order in which they came
   for (const auto& [sensor, message] : failures) {
     if (sensors_of[message].empty()) messages.push_back(message);
-    sensors_of[message].push_back(sensor);
+    sensors_of[message].push_back(input::sensor_name(problem, sensor));
   }
-  if (messages.size() == 1 && failures.size() >= sensors) return messages.front();
+  if (messages.size() == 1 && failures.size() >= problem.sensors.size()) return messages.front();
   std::vector<std::string> parts;
   for (const std::string& message : messages) {
-    const std::vector<std::size_t>& where = sensors_of[message];
+    const std::vector<std::string>& where = sensors_of[message];
     parts.push_back(fmt::format("sensor{} {}: {}", where.size() > 1 ? "s" : "",
                                 fmt::join(where, ", "), message));
   }
@@ -129,7 +130,7 @@ FieldStep field_at_sensors(const FieldModel& model, const input::Case& problem,
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::pair<std::size_t, std::string>> failures;
   append_field(model, problem.cilium, deformation, problem.sensors, step, failures);
-  step.failure = describe(failures, problem.sensors.size());
+  step.failure = describe(failures, problem);
   step.seconds = seconds_since(start);
   return step;
 }
@@ -159,17 +160,20 @@ struct FieldsOfASolution {
 };
 
 FieldsOfASolution fields_of(const FieldModel& model, const MechanicsResult& solution,
-                            const input::Case& problem,
-                            const std::function<void(const std::string&)>& tell) {
+                            const input::Case& problem, const Progress& progress) {
+  const std::size_t parts = solution.steps.size() + 1;
+  const auto tell = [&](const std::string& text, std::size_t done) {
+    if (progress) progress({text, done, parts});
+  };
   FieldsOfASolution fields;
-  tell("undeformed cilium");
+  tell("undeformed cilium", 0);
   fields.undeformed = field_at_sensors(model, problem, solution.undeformed);
   for (const std::optional<Vector3>& B : fields.undeformed.B)
     fields.undeformed.dB.push_back(B ? std::optional<Vector3>(Vector3::Zero()) : std::nullopt);
   for (std::size_t i = 0; i < solution.steps.size(); ++i) {
     fields.steps.emplace_back();
     if (solution.steps[i].status != Status::converged) continue;
-    tell(fmt::format("step {}/{}", i + 1, solution.steps.size()));
+    tell(fmt::format("step {}/{}", i + 1, solution.steps.size()), i + 1);
     fields.steps.back() = field_at_sensors(model, problem, *solution.steps[i].deformation);
     subtract(*fields.steps.back(), fields.undeformed);
   }
@@ -179,16 +183,15 @@ FieldsOfASolution fields_of(const FieldModel& model, const MechanicsResult& solu
 /// Sets what the discretisation error of the mechanics makes of the fields.
 void estimate_from_mechanics(const FieldModel& model, const MechanicsResult& mechanics,
                              const input::Case& problem, FieldsOfASolution& fields,
-                             const std::function<void(const std::string&)>& tell) {
+                             const Progress& progress) {
   if (mechanics.error_parts.empty()) return;
   std::vector<FieldsOfASolution> solutions;
   const FieldModel& cheap = model.for_differences();
+  const Progress of_estimate = with_prefix(progress, "error estimate, ");
   for (std::size_t i = 0; i <= mechanics.companions.size(); ++i)
-    solutions.push_back(i == 0 && &cheap == &model ? fields
-                                                   : fields_of(cheap, solution(mechanics, i),
-                                                               problem, [&](const std::string& of) {
-                                                                 tell("error estimate, " + of);
-                                                               }));
+    solutions.push_back(i == 0 && &cheap == &model
+                            ? fields
+                            : fields_of(cheap, solution(mechanics, i), problem, of_estimate));
   const auto set = [&](FieldStep& step, const auto& step_of_solution) {
     for (std::size_t s = 0; s < problem.sensors.size(); ++s) {
       const auto estimate = [&](AtSensors FieldStep::*values) {
@@ -209,9 +212,11 @@ void estimate_from_mechanics(const FieldModel& model, const MechanicsResult& mec
       });
 }
 
-/// The horizontal force of a load whose shape is known from outside, N; NaN for a probe.
+/// The horizontal force of a load whose shape is known from outside, N, without the environment's;
+/// NaN for a probe.
 double stated_force(const Load& load, const Cilium& cilium, const Vector3& tip) {
   if (load.is<ProbeLoad>()) return std::numeric_limits<double>::quiet_NaN();
+  if (load.is<EnvironmentLoad>()) return 0;
   if (load.is<FlowLoad>()) return magnitude(load) * tip.z();
   return magnitude(load) * (load.is<DeadLoad>() ? cilium.length() : 1);
 }
@@ -280,8 +285,8 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
   MechanicsRun run{id, {}};
   std::string failure;
   try {
-    Progress named;
-    if (progress) named = [&](const std::string& text) { progress(id + ": " + text); };
+    const Progress named = with_prefix(progress, id + ": ");
+    if (named) named({"starting", 0, problem.load_path.size()});
     run.result = model.solve_from(problem.cilium, problem.load_path, checkpoint, named);
     if (run.result.steps.size() != problem.load_path.size())
       failure = "the model gave " + std::to_string(run.result.steps.size()) +
@@ -311,11 +316,9 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
   FieldRun run;
   run.mechanics = mechanics.model;
   run.field = id;
-  const auto tell = [&](const std::string& of) {
-    if (progress) progress(run.name() + ": " + of);
-  };
-  FieldsOfASolution fields = fields_of(model, mechanics.result, problem, tell);
-  estimate_from_mechanics(model, mechanics.result, problem, fields, tell);
+  const Progress named = with_prefix(progress, run.name() + ": ");
+  FieldsOfASolution fields = fields_of(model, mechanics.result, problem, named);
+  estimate_from_mechanics(model, mechanics.result, problem, fields, named);
   run.undeformed = std::move(fields.undeformed);
   run.steps = std::move(fields.steps);
   return run;
@@ -328,7 +331,6 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   const std::vector<const FieldEntry*> field_entries = chosen(fields, problem.fields);
   CaseResult result{problem, {}, {}};
   for (const MechanicsEntry* entry : mechanics_entries) {
-    if (progress) progress(entry->id + ": starting");
     const auto kept = checkpoints.find(entry->id);
     result.mechanics.push_back(
         run_mechanics(*entry, problem, fields, progress,
@@ -365,6 +367,7 @@ std::optional<support::Fingerprint> fingerprint(const input::Case& problem,
     add(input::key::young_modulus, of, segment.young_modulus);
     add(input::key::poisson_ratio, of, segment.poisson_ratio);
     add(input::key::magnetization, of, segment.magnetization);
+    if (segment.density != 0) add(input::key::density, of, segment.density);
   }
   all.emplace_back("number of load steps", std::to_string(problem.load_path.size()));
   for (std::size_t i = 0; i < problem.load_path.size(); ++i) {
@@ -376,6 +379,9 @@ std::optional<support::Fingerprint> fingerprint(const input::Case& problem,
           fmt::format(", {} {}", key.name, input::format_quantity(load.values()[p], key.quantity));
     }
     all.emplace_back(fmt::format("load of step {}", i + 1), text);
+    if (load.environment() != surroundings::Environment{})
+      all.emplace_back(fmt::format("environment of step {}", i + 1),
+                       input::environment::to_toml({load}));
   }
   for (const input::Option& option : entry.options) {
     if (std::ranges::find(*entry.checkpoint_without, option.name) !=

@@ -2,6 +2,7 @@
 #include "compare/output/csv_writer.h"
 
 #include <charconv>
+#include <utility>
 
 #include "problem/support/words.h"
 
@@ -20,7 +21,8 @@ bool is_formula(std::string_view text) {
 }  // namespace
 
 void CsvWriter::comment(std::string_view text) {
-  text_ += fmt::format("# {}\n", support::printable(text, ""));
+  (text_.empty() || is_row_begun_ ? comments_ : text_) +=
+      fmt::format("# {}\n", support::printable(text, ""));
 }
 
 void CsvWriter::add(std::string_view text) {
@@ -38,7 +40,7 @@ void CsvWriter::append(std::string_view cell) {
 }
 
 void CsvWriter::end_row() {
-  text_ += '\n';
+  text_ += '\n' + std::exchange(comments_, {});
   is_row_begun_ = false;
 }
 

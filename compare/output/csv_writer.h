@@ -10,12 +10,14 @@
 
 namespace ciliaval::compare::output {
 
-/// The text of a CSV file (RFC 4180). Numbers have the digits that give them back, a zero has no
-/// sign, an undefined value is an empty cell. A text that a spreadsheet would take for a formula
-/// gets an apostrophe in front; control characters and bytes that are no UTF-8 are shown as `\x1B`.
+/// The text of a CSV file (RFC 4180), whose first line names the columns. Numbers have the digits
+/// that give them back, a zero has no sign, an undefined value is an empty cell. A text that a
+/// spreadsheet would take for a formula gets an apostrophe in front; control characters and bytes
+/// that are no UTF-8 are shown as `\x1B`.
 class CsvWriter {
  public:
-  /// A line that readers skip.
+  /// A line that readers skip, below the row that is begun and never the first of the file: NumPy
+  /// takes the names of the columns from that, whatever it is.
   void comment(std::string_view text);
 
   /// A whole row.
@@ -50,6 +52,7 @@ class CsvWriter {
   void append(std::string_view cell);
 
   std::string text_;
+  std::string comments_;  ///< for below the first row
   bool is_row_begun_ = false;
 };
 

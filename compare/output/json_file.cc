@@ -61,10 +61,6 @@ std::optional<double> number_or_none(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
 
-std::string text_or_none(const Json& json) {
-  return json.is_null() ? std::string() : json.get<std::string>();
-}
-
 std::string to_text(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
 }

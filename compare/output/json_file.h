@@ -27,7 +27,6 @@ nlohmann::ordered_json or_null(const std::string& text);
 
 /// What or_null() was made of.
 std::optional<double> number_or_none(const nlohmann::ordered_json& json);
-std::string text_or_none(const nlohmann::ordered_json& json);
 
 /// The text of a result file. Bytes that are no UTF-8 become U+FFFD.
 std::string to_text(const nlohmann::ordered_json& json);

@@ -90,8 +90,8 @@ std::string series_of(const fs::path& file) {
 
 /// Whether a run writes a file of this name, relative to the folder of its case.
 bool is_result(const fs::path& name, const Series& series) {
-  for (const char* file : {"summary.json", "report.html", "errors.csv", "sweep.csv", "signal.csv",
-                           "case.toml", "vtk/open.py"})
+  for (const char* file : {"summary.json", "report.html", "errors.csv", "fields.csv", "sweep.csv",
+                           "signal.csv", "case.toml", "vtk/open.py"})
     if (name == file) return true;
   const std::string extension = name.extension().string();
   if (!name.has_parent_path()) return extension == ".csv" && series.csv.contains(series_of(name));

@@ -38,6 +38,10 @@ Provenance provenance(const std::string& command) {
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))};
 }
 
+std::string version_line() {
+  return fmt::format("ciliaval {} (git {})", CILIAVAL_VERSION, CILIAVAL_GIT);
+}
+
 nlohmann::ordered_json to_json(const Provenance& provenance) {
   return {{"version", provenance.version},
           {"git", provenance.git},

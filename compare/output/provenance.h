@@ -19,6 +19,9 @@ struct Provenance {
 /// This program's provenance, now. `command` is handed through.
 Provenance provenance(const std::string& command);
 
+/// "ciliaval 0.1.0 (git …)": this program, as results that are kept name it.
+std::string version_line();
+
 /// The "provenance" of a result file: version, git, libraries, command, date.
 nlohmann::ordered_json to_json(const Provenance& provenance);
 

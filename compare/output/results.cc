@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/output/results.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "compare/input/environment/environment.h"
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
@@ -45,6 +47,13 @@ Json load_json(const Load& load) {
   for (std::size_t i = 0; i < load.values().size(); ++i)
     json[std::string(load.type().parameters[i].key.name)] = load.values()[i];
   return json;
+}
+
+Json environment_json(const surroundings::Environment& environment) {
+  return {{"gravity", vector(environment.gravity)},
+          {"fluid_density", environment.fluid_density},
+          {"uniform_field", vector(environment.uniform_field)},
+          {"magnetic_energy", input::environment::name(environment.magnetic_energy)}};
 }
 
 Json contact_json(const SurfaceContact& contact) {
@@ -113,6 +122,8 @@ Json step_json(const models::CaseResult& result, std::size_t index) {
   Json json{{"load", load_json(result.problem.load_path[index])}};
   if (const auto velocity = input::stated_values(result.problem, "velocity"); !velocity.empty())
     json["load"]["velocity"] = velocity[index];
+  const surroundings::Environment& environment = result.problem.load_path[index].environment();
+  if (!surroundings::is_empty(environment)) json["environment"] = environment_json(environment);
   json["mechanics"] = Json::object();
   for (const models::MechanicsRun& run : result.mechanics)
     json["mechanics"][run.model] = mechanics_json(run, index);
@@ -142,6 +153,12 @@ Json comparison_json(const models::Comparison& c) {
   }
   if (!c.note.empty()) json["note"] = c.note;
   return json;
+}
+
+/// A sensor's name, or its number where it has none; empty for none.
+std::string sensor_cell(std::optional<std::size_t> sensor, std::span<const std::string> names) {
+  if (!sensor) return {};
+  return *sensor < names.size() ? names[*sensor] : std::to_string(*sensor);
 }
 
 }  // namespace
@@ -205,6 +222,7 @@ std::string summary_json(const models::CaseResult& result,
   json["provenance"] = to_json(provenance);
   json["sensors"] = Json::array();
   for (const Vector3& sensor : result.problem.sensors) json["sensors"].push_back(vector(sensor));
+  json["sensor_names"] = input::sensor_names(result.problem);
   json["undeformed"] = {{"fields", Json::object()}};
   for (const models::FieldRun& run : result.fields)
     json["undeformed"]["fields"][run.name()] = field_json(run.undeformed);
@@ -220,15 +238,52 @@ std::string summary_json(const models::CaseResult& result,
   return to_text(json);
 }
 
-std::string errors_csv(const std::vector<models::Comparison>& comparisons) {
+std::string errors_csv(const std::vector<models::Comparison>& comparisons,
+                       std::span<const std::string> sensors) {
   CsvWriter csv;
   csv.row("step", "sensor", "quantity", "component", "statistic", "model", "reference",
           "difference", "relative", "scale", "unit", "uncertainty", "verdict", "r2", "correlation",
           "note");
   for (const models::Comparison& c : comparisons)
-    csv.row(c.step, c.sensor, c.quantity, c.component, c.statistic, c.model, c.reference,
-            c.difference, c.relative, c.scale, c.unit, c.uncertainty, to_string(c.verdict), c.r2,
-            c.correlation, c.note);
+    csv.row(c.step, sensor_cell(c.sensor, sensors), c.quantity, c.component, c.statistic, c.model,
+            c.reference, c.difference, c.relative, c.scale, c.unit, c.uncertainty,
+            to_string(c.verdict), c.r2, c.correlation, c.note);
+  return csv.text();
+}
+
+std::string fields_csv(const models::CaseResult& result) {
+  const input::Case& problem = result.problem;
+  std::vector<std::string> units;
+  CsvWriter csv;
+  const auto column = [&](std::string_view name, std::string_view unit) {
+    csv.add(name);
+    if (!unit.empty()) units.push_back(fmt::format("{} {}", name, unit));
+  };
+  column("step", "");
+  for (const LoadParameter& parameter : problem.load_path.front().type().parameters)
+    column(parameter.key.name, parameter.key.quantity.unit);
+  column("sensor", "");
+  column("pair", "");
+  for (const char* quantity : {"B", "dB", "uncertainty"})
+    for (const char* axis : {"x", "y", "z"}) column(fmt::format("{}_{}", quantity, axis), "T");
+  csv.comment(fmt::format("units: {}", fmt::join(units, ", ")));
+  csv.end_row();
+  const auto add = [&](const std::optional<Vector3>& v) {
+    for (Eigen::Index i = 0; i < 3; ++i) csv.add(v ? std::optional((*v)[i]) : std::nullopt);
+  };
+  for (std::size_t step = 0; step < problem.load_path.size(); ++step)
+    for (std::size_t sensor = 0; sensor < problem.sensors.size(); ++sensor)
+      for (const models::FieldRun& run : result.fields) {
+        const std::optional<models::FieldStep>& field = run.steps[step];
+        csv.add(step);
+        for (const double value : problem.load_path[step].values()) csv.add(value);
+        csv.add(input::sensor_name(problem, sensor));
+        csv.add(run.name());
+        add(field ? field->B[sensor] : std::nullopt);
+        add(field ? field->dB[sensor] : std::nullopt);
+        add(models::change_uncertainties(result, run, step, sensor));
+        csv.end_row();
+      }
   return csv.text();
 }
 
@@ -253,7 +308,8 @@ void write_results(const models::CaseResult& result,
                    centreline_csv(run.result.steps[i].deformation->centreline));
   if (is_sweep(result.problem)) write_file(folder / "sweep.csv", sweep_csv(result));
   if (result.problem.signal) write_file(folder / "signal.csv", signal_csv(result));
-  write_file(folder / "errors.csv", errors_csv(comparisons));
+  if (!result.fields.empty()) write_file(folder / "fields.csv", fields_csv(result));
+  write_file(folder / "errors.csv", errors_csv(comparisons, input::sensor_names(result.problem)));
   write_file(folder / "summary.json", summary_json(result, comparisons, provenance));
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,15 +32,22 @@ std::string summary_json(const models::CaseResult& result,
                          const std::vector<models::Comparison>& comparisons,
                          const Provenance& provenance);
 
-/// errors.csv as text: a header and one line for each comparison; what is undefined is empty.
-std::string errors_csv(const std::vector<models::Comparison>& comparisons);
+/// errors.csv as text: a header and one line for each comparison; what is undefined is empty. The
+/// sensors have their names, or numbers where there are none.
+std::string errors_csv(const std::vector<models::Comparison>& comparisons,
+                       std::span<const std::string> sensors = {});
 
-/// `S,x,y,z,theta,kappa` at output_points(), units in the comment line above; at a break κ is that
+/// fields.csv as text: a row for each step, sensor and pair of models with the load's parameters,
+/// B, ΔB and the numerical uncertainty of ΔB, the field model's own and its shape's; units in the
+/// comment line. What is undefined or unknown is empty.
+std::string fields_csv(const models::CaseResult& result);
+
+/// `S,x,y,z,theta,kappa` at output_points(), units in the comment line; at a break κ is that
 /// of the upper piece.
 std::string centreline_csv(const Centreline& centreline);
 
-/// Writes summary.json, errors.csv, the centrelines of all converged steps and of a sweep sweep.csv
-/// and signal.csv into a folder.
+/// Writes summary.json, errors.csv, fields.csv of a case with fields, the centrelines of all
+/// converged steps and of a sweep sweep.csv and signal.csv into a folder.
 void write_results(const models::CaseResult& result,
                    const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
                    const std::filesystem::path& folder);

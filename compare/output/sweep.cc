@@ -32,6 +32,12 @@ std::optional<Vector3> tip_of(const MechanicsStep& step) {
   return centreline.at(centreline.length()).position;
 }
 
+/// What stands after B in the columns of a sensor: "0", or "_left" for a sensor with a name.
+std::string column_label(const input::Case& problem, std::size_t sensor) {
+  return fmt::format("{}{}", problem.sensor_names.empty() ? "" : "_",
+                     input::sensor_name(problem, sensor));
+}
+
 void add(CsvWriter& csv, const std::optional<Vector3>& v) {
   for (Eigen::Index i = 0; i < 3; ++i) csv.add(v ? std::optional((*v)[i]) : std::nullopt);
 }
@@ -79,7 +85,8 @@ Columns columns_of(const models::CaseResult& result) {
   for (const models::FieldRun& run : result.fields)
     for (std::size_t s = 0; s < result.problem.sensors.size(); ++s)
       for (const char* quantity : {"B", "dB"})
-        columns.add_vector(fmt::format("{}.{}{}_", run.name(), quantity, s), "T");
+        columns.add_vector(
+            fmt::format("{}.{}{}_", run.name(), quantity, column_label(result.problem, s)), "T");
   return columns;
 }
 
@@ -212,12 +219,13 @@ std::string differences(const models::CaseResult& result) {
                       number_cell(std::sqrt(squares / compared), 1e-3, "{:.4f}"),
                       number_cell(force, 1e-3, "{:.4g}"), number_cell(force_at, 1e-3, "{:.4g}")});
     }
-  return rows.size() == 1 ? "" : "\n" + text_table(rows, "<>");
+  return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
 }
 
-/// The range of ΔB at the first sensor.
-std::string fields_table(const models::CaseResult& result) {
-  TextRows rows{{"dB at sensor 0 (uT)", "x from", "to", "y from", "to", "z from", "to"}};
+/// The range of ΔB at a sensor.
+std::string fields_table(const models::CaseResult& result, std::size_t sensor) {
+  TextRows rows{{fmt::format("dB at sensor {} (uT)", input::sensor_name(result.problem, sensor)),
+                 "x from", "to", "y from", "to", "z from", "to"}};
   for (const models::FieldRun& run : result.fields) {
     std::vector<std::string>& row = rows.emplace_back();
     row.push_back(run.name());
@@ -225,21 +233,16 @@ std::string fields_table(const models::CaseResult& result) {
       double low = std::numeric_limits<double>::infinity();
       double high = -low;
       for (const auto& step : run.steps)
-        if (step && step->dB.front()) {
-          low = std::min(low, (*step->dB.front())[i]);
-          high = std::max(high, (*step->dB.front())[i]);
+        if (step && step->dB[sensor]) {
+          low = std::min(low, (*step->dB[sensor])[i]);
+          high = std::max(high, (*step->dB[sensor])[i]);
         }
       for (const double end : {low, high})
         row.push_back(std::isfinite(end) ? number_cell(end, 1e-6, "{:.2f}") : "-");
     }
   }
-  return rows.size() == 1 || result.problem.sensors.empty() ? "" : "\n" + text_table(rows, "<>");
+  return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
 }
-
-constexpr const char* legend =
-    "(1) work of the surface less friction, losses at jumps and elastic energy, over the largest\n"
-    "    of them.\n"
-    "(2) of the two tips, and of the two normal forces, over the samples that both have.\n";
 
 }  // namespace
 
@@ -314,7 +317,8 @@ std::string signal_csv(const models::CaseResult& result) {
         if (step && step->dB[s]) dB.push_back(*step->dB[s]);
       if (dB.size() != path.size()) continue;
       for (const char* kind : {"dB", "filtered"})
-        columns.add_vector(fmt::format("{}.{}{}_", run.name(), kind, s), "T");
+        columns.add_vector(
+            fmt::format("{}.{}{}_", run.name(), kind, column_label(result.problem, s)), "T");
       records.push_back(
           signal::record(times, dB, *result.problem.signal, static_cast<std::uint32_t>(s)));
     }
@@ -332,9 +336,11 @@ std::string signal_csv(const models::CaseResult& result) {
   return csv.text();
 }
 
-std::string sweep_table(const models::CaseResult& result) {
-  return heading(result.problem.load_path) + models_table(result) + events(result) +
-         differences(result) + fields_table(result) + "\n" + legend;
+std::string sweep_table(const models::CaseResult& result, std::size_t sensors) {
+  std::string text = heading(result.problem.load_path) + models_table(result) + events(result) +
+                     differences(result);
+  for (std::size_t sensor = 0; sensor < sensors; ++sensor) text += fields_table(result, sensor);
+  return text;
 }
 
 }  // namespace ciliaval::compare::output

@@ -41,7 +41,13 @@ std::string sweep_csv(const models::CaseResult& result);
 /// InputError as signal::record().
 std::string signal_csv(const models::CaseResult& result);
 
-/// The sweep for a terminal: a line for each model, its jumps, the differences of the tips.
-std::string sweep_table(const models::CaseResult& result);
+/// The sweep for a terminal: a line for each model, its jumps, the differences of the tips, the
+/// range of ΔB at the first `sensors`.
+std::string sweep_table(const models::CaseResult& result, std::size_t sensors);
+/// Its footnotes.
+inline constexpr const char* sweep_legend =
+    "(1) work of the surface less friction, losses at jumps and elastic energy, over the largest\n"
+    "    of them.\n"
+    "(2) of the two tips, and of the two normal forces, over the samples that both have.\n";
 
 }  // namespace ciliaval::compare::output

@@ -29,10 +29,11 @@ std::string percent(const models::Comparison* c) {
 const models::Comparison* find(const std::vector<models::Comparison>& comparisons,
                                std::optional<std::size_t> step, std::string_view quantity,
                                std::string_view component, std::string_view statistic,
-                               std::string_view model, std::string_view reference) {
+                               std::string_view model, std::string_view reference,
+                               std::size_t sensor = 0) {
   const auto it =
       std::find_if(comparisons.begin(), comparisons.end(), [&](const models::Comparison& c) {
-        return c.step == step && c.sensor.value_or(0) == 0 && c.quantity == quantity &&
+        return c.step == step && c.sensor.value_or(sensor) == sensor && c.quantity == quantity &&
                c.component == component && c.statistic == statistic && c.model == model &&
                c.reference == reference;
       });
@@ -95,7 +96,7 @@ std::string mechanics_errors(const models::CaseResult& result,
            number_cell(shape->r2, 1, "{:.6f}"), number_cell(shape->correlation, 1, "{:.6f}"),
            std::string(to_string(tip->verdict))});
     }
-  return rows.size() == 1 ? "" : "\n" + text_table(rows, "<>>>>>><");
+  return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>>>>>><"));
 }
 
 constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
@@ -104,47 +105,61 @@ std::optional<double> component(const std::optional<Vector3>& v, Eigen::Index ax
   return v ? std::optional((*v)[axis]) : std::nullopt;
 }
 
-/// Whether a pair has B or ΔB at the sensor that is shown.
-bool has_field(const models::FieldRun& run, std::size_t step) {
-  return run.steps[step] && (run.steps[step]->B.front() || run.steps[step]->dB.front());
+/// The sensors of which a terminal shows tables.
+std::size_t shown_sensors(const input::Case& problem) {
+  constexpr std::size_t most = 16;
+  return std::min(problem.sensors.size(), most);
+}
+
+/// Whether a pair has B or ΔB at a sensor.
+bool has_field(const models::FieldRun& run, std::size_t step, std::size_t sensor) {
+  return run.steps[step] && (run.steps[step]->B[sensor] || run.steps[step]->dB[sensor]);
 }
 
 std::string fields_table(const models::CaseResult& result,
-                         const std::vector<models::Comparison>& comparisons, std::size_t step) {
-  TextRows rows{{"field at sensor 0", "Bx", "By", "Bz (mT)", "dBx", "dBy", "dBz (uT)", "+-dB",
-                 "x (%)", "y", "z (2)", "time (s)"}};
-  std::string failures;
+                         const std::vector<models::Comparison>& comparisons, std::size_t step,
+                         std::size_t sensor) {
+  TextRows rows{{"field at sensor " + input::sensor_name(result.problem, sensor), "Bx", "By",
+                 "Bz (mT)", "dBx", "dBy", "dBz (uT)", "+-dB", "x (%)", "y", "z (2)", "time (s)"}};
   const models::FieldRun* reference = nullptr;  // the most detailed pair that has a field here
   for (const models::FieldRun& run : result.fields)
-    if (has_field(run, step)) reference = &run;
+    if (has_field(run, step, sensor)) reference = &run;
   for (const models::FieldRun& run : result.fields) {
-    if (!run.steps[step]) continue;
+    if (!has_field(run, step, sensor)) continue;
     const models::FieldStep& field = *run.steps[step];
-    if (!field.failure.empty()) failures += fmt::format("  {}: {}\n", run.name(), field.failure);
-    if (!has_field(run, step)) continue;
     std::vector<std::string>& row = rows.emplace_back();
     row.push_back(run.name());
     for (Eigen::Index i = 0; i < 3; ++i)
-      row.push_back(number_cell(component(field.B.front(), i), 1e-3, "{:.4f}"));
+      row.push_back(number_cell(component(field.B[sensor], i), 1e-3, "{:.4f}"));
     for (Eigen::Index i = 0; i < 3; ++i)
-      row.push_back(number_cell(component(field.dB.front(), i), 1e-6, "{:.2f}"));
-    row.push_back(number_cell(models::change_uncertainty(result, run, step, 0), 1e-6, "{:.1g}"));
+      row.push_back(number_cell(component(field.dB[sensor], i), 1e-6, "{:.2f}"));
+    row.push_back(
+        number_cell(models::change_uncertainty(result, run, step, sensor), 1e-6, "{:.1g}"));
     for (const char* axis : axis_names)
       row.push_back(&run == reference ? "ref."
                                       : percent(find(comparisons, step, "dB", axis, "value",
-                                                     run.name(), reference->name())));
+                                                     run.name(), reference->name(), sensor)));
     row.push_back(fmt::format("{:.2g}", field.seconds));
   }
-  return (rows.size() == 1 ? "" : "\n" + text_table(rows, "<>")) + failures;
+  return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
+}
+
+/// Why values are missing.
+std::string failures(const models::CaseResult& result, std::size_t step) {
+  std::string text;
+  for (const models::FieldRun& run : result.fields)
+    if (run.steps[step] && !run.steps[step]->failure.empty())
+      text += fmt::format("  {}: {}\n", run.name(), run.steps[step]->failure);
+  return text;
 }
 
 /// Every pair against the most detailed one that has a field at any step.
 std::string path_errors(const models::CaseResult& result,
-                        const std::vector<models::Comparison>& comparisons) {
+                        const std::vector<models::Comparison>& comparisons, std::size_t sensor) {
   const models::FieldRun* last = nullptr;
   for (const models::FieldRun& run : result.fields)
     for (std::size_t step = 0; step < run.steps.size(); ++step)
-      if (has_field(run, step)) last = &run;
+      if (has_field(run, step, sensor)) last = &run;
   if (last == nullptr) return {};
   const std::string reference = last->name();
   TextRows rows{{"field", "Bx", "By", "Bz", "dBx", "dBy", "dBz"}};
@@ -155,15 +170,84 @@ std::string path_errors(const models::CaseResult& result,
     for (const char* quantity : {"B", "dB"})
       for (const char* axis : axis_names) {
         const models::Comparison* c =
-            find(comparisons, std::nullopt, quantity, axis, "rrmse", run.name(), reference);
+            find(comparisons, std::nullopt, quantity, axis, "rrmse", run.name(), reference, sensor);
         any = any || c != nullptr;
         row.push_back(percent(c));
       }
     if (any) rows.push_back(std::move(row));
   }
   if (rows.size() == 1) return {};
-  return fmt::format("\nOver the load path, at sensor 0: RRMSE (3) against {}, in %\n{}", reference,
-                     text_table(rows, "<>"));
+  return fmt::format("\nOver the load path, at sensor {}: RRMSE (3) against {}, in %\n{}",
+                     input::sensor_name(result.problem, sensor), reference, text_table(rows, "<>"));
+}
+
+std::string more_or_less(double ratio, const char* more, const char* less) {
+  return fmt::format("{:.2g} % {}", 100 * std::abs(ratio - 1), ratio >= 1 ? more : less);
+}
+
+/// Whether the pair's difference in any component of ΔB is resolved.
+std::string_view field_verdict(const std::vector<models::Comparison>& comparisons, std::size_t step,
+                               const std::string& model, const std::string& reference,
+                               std::size_t sensor) {
+  models::Verdict verdict = models::Verdict::inconclusive;
+  for (const char* axis : axis_names)
+    if (const auto* c = find(comparisons, step, "dB", axis, "value", model, reference, sensor))
+      if (verdict != models::Verdict::resolved && c->verdict != models::Verdict::inconclusive)
+        verdict = c->verdict;
+  return to_string(verdict);
+}
+
+/// What the pairs see at a sensor, against the most detailed one.
+std::string field_meaning(const models::CaseResult& result,
+                          const std::vector<models::Comparison>& comparisons, std::size_t step,
+                          std::size_t sensor) {
+  const models::FieldRun* reference = nullptr;
+  const auto change_of = [&](const models::FieldRun& run) {
+    return run.steps[step] ? run.steps[step]->dB[sensor] : std::nullopt;
+  };
+  for (const models::FieldRun& run : result.fields)
+    if (change_of(run)) reference = &run;
+  if (reference == nullptr) return {};
+  const double signal = change_of(*reference)->norm();
+  std::string text =
+      fmt::format("  |dB| at sensor {} by {}: {:.4g} uT\n",
+                  input::sensor_name(result.problem, sensor), reference->name(), 1e6 * signal);
+  for (const models::FieldRun& run : result.fields)
+    if (&run != reference && change_of(run) && signal != 0)
+      text += fmt::format("  {} sees {}: {}\n", run.name(),
+                          more_or_less(change_of(run)->norm() / signal, "more", "less"),
+                          field_verdict(comparisons, step, run.name(), reference->name(), sensor));
+  return text;
+}
+
+/// What the numbers mean, at the last step that has any: how far each model bends and what its pair
+/// sees, against the most detailed one.
+std::string meaning(const models::CaseResult& result,
+                    const std::vector<models::Comparison>& comparisons) {
+  std::string text;
+  for (std::size_t step = result.problem.load_path.size(); step-- > 0 && text.empty();) {
+    const models::MechanicsRun* best = nullptr;
+    for (const models::MechanicsRun& run : result.mechanics)
+      if (run.result.steps[step].deformation) best = &run;
+    if (best == nullptr) continue;
+    const auto deflection = [&](const models::MechanicsRun& run) {
+      const Centreline& centreline = run.result.steps[step].deformation->centreline;
+      return centreline.at(centreline.length()).position.head<2>().norm();
+    };
+    for (const models::MechanicsRun& run : result.mechanics) {
+      if (&run == best || !run.result.steps[step].deformation || deflection(*best) == 0) continue;
+      const auto* tip = find(comparisons, step, "tip", "", "value", run.model, best->model);
+      if (tip == nullptr) continue;
+      text += fmt::format("  {} bends {} than {}: {}\n", run.model,
+                          more_or_less(deflection(run) / deflection(*best), "further", "less far"),
+                          best->model, to_string(tip->verdict));
+    }
+    for (std::size_t sensor = 0; sensor < shown_sensors(result.problem); ++sensor)
+      text += field_meaning(result, comparisons, step, sensor);
+    if (!text.empty())
+      text = fmt::format("At step {} of {}:\n{}", step + 1, result.problem.load_path.size(), text);
+  }
+  return text;
 }
 
 constexpr const char* mechanics_legend =
@@ -188,33 +272,63 @@ std::string describe(const Load& load) {
     const LoadParameter& parameter = load.type().parameters[i];
     text += fmt::format(fmt::runtime(parameter.words), parameter.display_factor * load.values()[i]);
   }
+  const Vector3 field = 1e3 * load.environment().uniform_field;
+  if (!field.isZero(0))
+    text += fmt::format(", field ({:g}, {:g}, {:g}) mT", field.x(), field.y(), field.z());
   return text;
 }
 
-std::string table(const models::CaseResult& result,
-                  const std::vector<models::Comparison>& comparisons) {
-  const input::Case& problem = result.problem;
-  std::string text = problem.name + (problem.title.empty() ? "" : ": " + problem.title) + '\n';
-  if (is_sweep(problem)) return text + sweep_table(result) + path_errors(result, comparisons);
-  bool pairs = false;
-  for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
-    text += fmt::format("\nStep {} of {}: {}\n", step + 1, problem.load_path.size(),
-                        describe(problem.load_path[step]));
-    text += mechanics_table(result, step);
-    const std::string errors = mechanics_errors(result, comparisons, step);
-    pairs = pairs || !errors.empty();
-    text += errors;
-    if (!problem.sensors.empty()) text += fields_table(result, comparisons, step);
+std::string describe(const MechanicsStep& step) {
+  std::string text = describe(step.load);
+  if (step.deformation) {
+    const Centreline& centreline = step.deformation->centreline;
+    const CentrelinePoint tip = centreline.at(centreline.length());
+    text += fmt::format(": tip at ({:.4f}, {:.4f}, {:.4f}) mm, {:.3f} deg", 1e3 * tip.position.x(),
+                        1e3 * tip.position.y(), 1e3 * tip.position.z(), tip.theta() / degree);
+  } else {
+    text += fmt::format(": {}", to_string(step.status));
   }
-  if (!problem.sensors.empty()) text += path_errors(result, comparisons);
-  text += '\n';
-  if (pairs) text += mechanics_legend;
-  if (!result.fields.empty() && !problem.sensors.empty()) text += fields_legend;
-  if (problem.sensors.size() == 2)
-    text += "The other sensor is in summary.json and errors.csv.\n";
-  else if (problem.sensors.size() > 2)
-    text += fmt::format("The other {} sensors are in summary.json and errors.csv.\n",
-                        problem.sensors.size() - 1);
+  return text + fmt::format(", {:.3g} s", step.seconds);
+}
+
+std::string footnotes(Footnotes which, std::string_view text) {
+  if (which == Footnotes::text || text.empty()) return std::string(text);
+  return "What the columns, marks and (1), (2), … are: --explain\n";
+}
+
+std::string table(const models::CaseResult& result,
+                  const std::vector<models::Comparison>& comparisons, Footnotes which) {
+  const input::Case& problem = result.problem;
+  const std::size_t sensors = shown_sensors(problem);
+  const auto of_path = [&] {
+    std::string text;
+    for (std::size_t s = 0; s < sensors; ++s) text += path_errors(result, comparisons, s);
+    return text;
+  };
+  std::string text = problem.name + (problem.title.empty() ? "" : ": " + problem.title) + '\n';
+  std::string legend;
+  if (is_sweep(problem)) {
+    text += sweep_table(result, sensors) + of_path();
+    legend = sweep_legend;
+  } else {
+    text += meaning(result, comparisons);
+    for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
+      text += fmt::format("\nStep {} of {}: {}\n", step + 1, problem.load_path.size(),
+                          describe(problem.load_path[step]));
+      text += mechanics_table(result, step);
+      const std::string errors = mechanics_errors(result, comparisons, step);
+      if (!errors.empty()) legend = mechanics_legend;
+      text += errors;
+      for (std::size_t s = 0; s < sensors; ++s) text += fields_table(result, comparisons, step, s);
+      text += failures(result, step);
+    }
+    text += of_path();
+  }
+  if (!result.fields.empty() && sensors > 0) legend += fields_legend;
+  text += '\n' + footnotes(which, legend);
+  if (sensors < problem.sensors.size())
+    text += fmt::format("The other {} sensors are in fields.csv and errors.csv.\n",
+                        problem.sensors.size() - sensors);
   return text;
 }
 

@@ -21,7 +21,31 @@ std::size_t width_of(const std::string& text) {
   }));
 }
 
+std::size_t line_width = 0;
+
+/// The columns of each block: the first one, and as many others as fit into a line.
+std::vector<std::vector<std::size_t>> blocks_of(const std::vector<std::size_t>& widths) {
+  constexpr std::size_t gap = 2;
+  if (widths.empty()) return {};
+  std::vector<std::vector<std::size_t>> blocks{{0}};
+  std::size_t used = gap + widths.front();
+  for (std::size_t i = 1; i < widths.size(); ++i) {
+    const std::size_t needed = gap + widths[i];
+    if (line_width > 0 && used + needed > line_width && blocks.back().size() > 1) {
+      blocks.push_back({0});
+      used = gap + widths.front();
+    }
+    blocks.back().push_back(i);
+    used += needed;
+  }
+  return blocks;
+}
+
 }  // namespace
+
+void set_line_width(std::size_t columns) {
+  line_width = columns;
+}
 
 std::string text_table(const TextRows& rows, std::string_view alignment) {
   TextRows cells = rows;
@@ -34,15 +58,17 @@ std::string text_table(const TextRows& rows, std::string_view alignment) {
     }
   }
   std::string text;
-  for (const std::vector<std::string>& row : cells) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string padding(widths[i] - width_of(row[i]), ' ');
-      const bool is_left = alignment[std::min(i, alignment.size() - 1)] == '<';
-      text += "  " + (is_left ? row[i] + padding : padding + row[i]);
+  for (const std::vector<std::size_t>& columns : blocks_of(widths))
+    for (const std::vector<std::string>& row : cells) {
+      for (const std::size_t i : columns) {
+        if (i >= row.size()) break;
+        const std::string padding(widths[i] - width_of(row[i]), ' ');
+        const bool is_left = alignment[std::min(i, alignment.size() - 1)] == '<';
+        text += "  " + (is_left ? row[i] + padding : padding + row[i]);
+      }
+      text.erase(text.find_last_not_of(' ') + 1);
+      text += '\n';
     }
-    text.erase(text.find_last_not_of(' ') + 1);
-    text += '\n';
-  }
   return text;
 }
 

@@ -11,8 +11,12 @@ namespace ciliaval::compare::output {
 
 using TextRows = std::vector<std::vector<std::string>>;
 
+/// Width of a terminal's line, in which text_table() fits its rows; 0, as at first: no limit.
+void set_line_width(std::size_t columns);
+
 /// Rows of cells for a terminal, the columns as wide as their widest cell. `alignment` has `<` or
 /// `>` for each column; its last one stands for all further columns. Rows may be shorter.
+/// Where the line is too short, the further columns follow below, each time after the first one.
 std::string text_table(const TextRows& rows, std::string_view alignment = ">");
 
 /// A number in a unit by a format such as "{:.4f}", or a dash for an undefined one. A number that

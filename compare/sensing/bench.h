@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "compare/output/provenance.h"
-#include "compare/plot/gnuplot.h"
 #include "compare/sensing/inversion.h"
 #include "compare/sensing/sensing.h"
 
@@ -65,7 +64,7 @@ struct BenchRow {
   BenchErrors linear_fit;
 };
 
-/// The reading of one draw, for the plot.
+/// The reading of one draw, for a figure.
 struct BenchPoint {
   Vector2 truth;
   Vector2 found;
@@ -86,7 +85,4 @@ std::string bench_text(const Bench& bench, const BenchResult& result);
 /// docs/guide/sensing.md; "provenance" as in summary.json.
 std::string bench_json(const Bench& bench, const BenchResult& result,
                        const output::Provenance& provenance);
-/// The readings of the first draw over the true loads, in the plane of the load.
-std::string bench_script(const Bench& bench, const BenchResult& result);
-
 }  // namespace ciliaval::compare::sensing

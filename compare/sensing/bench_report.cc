@@ -112,24 +112,4 @@ std::string bench_json(const Bench& bench, const BenchResult& result,
   return output::to_text(json);
 }
 
-std::string bench_script(const Bench& bench, const BenchResult& result) {
-  const auto [shown, size] = output::shown_unit(magnitude_unit(bench.problem.load_path.front()));
-  const double factor = 1 / size;
-  std::string truth;
-  std::string found;
-  for (const BenchPoint& p : result.first_draw) {
-    truth += fmt::format("{} {}\n", factor * p.truth.x(), factor * p.truth.y());
-    found += fmt::format("{} {}\n", factor * p.found.x(), factor * p.found.y());
-  }
-  return "$truth << EOD\n" + truth + "EOD\n$found << EOD\n" + found +
-         fmt::format(
-             "EOD\nset title {}\nset size ratio -1\nset grid\n"
-             "set xlabel {}\nset ylabel {}\nset key outside bottom center horizontal\n"
-             "plot $truth with points pt 6 ps 1.4 lc 'gray40' title 'true load', \\\n"
-             "  $found with points pt 7 ps 0.6 lc 1 title {}\n",
-             plot::quoted(bench.title), plot::quoted(fmt::format("load along x, {}", shown)),
-             plot::quoted(fmt::format("load along y, {}", shown)),
-             plot::quoted("found by " + bench.models.name() + " with all errors, one sensor"));
-}
-
 }  // namespace ciliaval::compare::sensing

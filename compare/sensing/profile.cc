@@ -127,7 +127,7 @@ std::string_view to_string(HeightReading::Status status) {
 SensedProfile sense_profile(const LevelCurve& curve, const SensorReadings& readings, double noise) {
   SensedProfile profile;
   profile.noise = noise;
-  const double sigma = noise * readings.noise_factor;
+  const double sigma = noise * readings.noise_factor();
   for (const Sample& sample : readings.samples) {
     const LevelCurve::Place place = curve.nearest(sample.change);
     const auto freedom = static_cast<double>(sample.change.size() - 1);

@@ -1,167 +1,282 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A file of readings, less all offsets.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
+#include <limits>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "compare/input/csv.h"
 #include "compare/input/external/background.h"
+#include "compare/input/units.h"
+#include "compare/sensing/logger/file.h"
 #include "compare/sensing/sensing.h"
 #include "problem/error.h"
+#include "problem/support/words.h"
 
 namespace ciliaval::compare::sensing {
 namespace {
 
-using Kind = input::CsvColumn::Kind;
+using input::Faults;
+using input::external::Background;
+using input::external::ReadingOptions;
 
 constexpr std::string_view unloaded = "unloaded";
 
-/// Columns of the file.
-constexpr std::size_t sample_column = 0;
-constexpr std::size_t sensor_column = 1;
-constexpr std::size_t azimuth_column = 2;
-constexpr std::size_t field_column = 3;
-constexpr std::size_t change_column = 6;
+/// Which rows are of the unloaded cilium, besides those of the sample `unloaded`.
+struct UnloadedPart {
+  enum class Kind { named, model, rows, time };
+  Kind kind = Kind::named;
+  double first = 0;  ///< row from 1, or s
+  double last = 0;
 
-input::CsvTable readings_table(std::string_view text, std::size_t sensors, input::Faults& faults) {
-  const std::vector<input::CsvColumn> columns =
-      input::external::with_field_columns({{"sample", Kind::word, quantity::number, false},
-                                           {"sensor", Kind::word, quantity::number, false},
-                                           {"azimuth", Kind::quantity, quantity::angle, false}});
-  constexpr std::array<std::string_view, 1> ignored{"time"};
-  input::CsvTable table = input::read_csv(text, columns, ignored, faults);
-  if (!faults.empty()) return table;
-  input::external::require_field_or_change(table, field_column, change_column, faults);
-  if (!faults.empty()) return table;
-  input::external::require_field_range(
-      table, table.has(change_column) ? change_column : field_column, faults);
-  if (sensors > 1 && !(table.has(sample_column) && table.has(sensor_column)))
-    faults.add({}, fmt::format("the case has {} sensors: the file needs the columns 'sample' and "
-                               "'sensor', and a row for each",
-                               sensors));
-  return table;
+  bool holds(const logger::Row& row) const {
+    if (kind != Kind::rows && kind != Kind::time) return false;
+    const double value = kind == Kind::rows ? static_cast<double>(row.number) : row.time;
+    return value >= first && value <= last;
+  }
+};
+
+/// "0 s..1 s", "0..1 s", "rows 1..20" or "model".
+UnloadedPart unloaded_part(const ReadingOptions::Text& option) {
+  UnloadedPart part;
+  if (!option.given()) return part;
+  const std::string_view text = support::trimmed(option.text);
+  if (text == "model") {
+    part.kind = UnloadedPart::Kind::model;
+    return part;
+  }
+  const auto refuse = [&](std::string_view why) {
+    return InputError(
+        fmt::format("{}: {} {}: write \"0 s..1 s\" by the time, \"rows 1..20\" by the "
+                    "rows below the header, or \"model\"",
+                    option.where, input::in_quotes(text), why));
+  };
+  constexpr std::string_view rows = "rows ";
+  const bool by_rows = text.starts_with(rows);
+  const std::string_view range = by_rows ? text.substr(rows.size()) : text;
+  const auto dots = range.find("..");
+  if (dots == std::string_view::npos) throw refuse("is no range");
+  const std::string_view first = support::trimmed(range.substr(0, dots));
+  const std::string_view last = support::trimmed(range.substr(dots + 2));
+  if (by_rows) {
+    constexpr std::size_t bound = input::most_csv_rows + 1;
+    const auto from = input::external::index_in(std::string(first), bound);
+    const auto to = input::external::index_in(std::string(last), bound);
+    if (!from || !to || *from < 1) throw refuse("is no range of rows from 1 on");
+    part = {UnloadedPart::Kind::rows, static_cast<double>(*from), static_cast<double>(*to)};
+  } else {
+    // A number alone has the unit of the other end.
+    const auto unit = last.find_first_not_of("0123456789.+-eE ");
+    const bool bare = first.find_first_not_of("0123456789.+-eE ") == std::string_view::npos;
+    try {
+      part = {UnloadedPart::Kind::time,
+              input::parse_quantity(bare && unit != std::string_view::npos
+                                        ? fmt::format("{} {}", first, last.substr(unit))
+                                        : std::string(first),
+                                    quantity::time),
+              input::parse_quantity(last, quantity::time)};
+    } catch (const InputError& fault) {
+      throw refuse(fmt::format("is no range of time ({})", fault.what()));
+    }
+  }
+  if (part.last < part.first) throw refuse("ends before it begins");
+  return part;
 }
 
 /// The rows of a sample, by sensor.
-using Rows = std::vector<std::vector<std::size_t>>;
+struct RowsOfSample {
+  std::string name;
+  std::vector<std::vector<const logger::Row*>> rows;
+};
 
-/// The samples in the order of the file.
-std::vector<std::pair<std::string, Rows>> samples_of(const input::CsvTable& table,
-                                                     std::size_t sensors, input::Faults& faults) {
-  std::vector<std::pair<std::string, Rows>> samples;
-  std::map<std::string, std::size_t> index;
-  for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const std::string name =
-        table.has(sample_column) ? table.words[sample_column][i] : std::to_string(i + 1);
-    const auto sensor = input::external::sensor_of(table, sensor_column, i, sensors, faults);
-    if (!sensor) continue;
-    const auto [place, is_new] = index.emplace(name, samples.size());
-    if (is_new) samples.emplace_back(name, Rows(sensors));
-    std::vector<std::size_t>& rows = samples[place->second].second[*sensor];
-    if (!rows.empty() && name != unloaded)
-      faults.add(table.rows[i], fmt::format("there is a second row of sample {}, sensor {}",
-                                            input::in_quotes(name), *sensor));
-    rows.push_back(i);
-  }
-  for (const auto& [name, rows] : samples)
-    for (std::size_t s = 0; s < sensors; ++s)
-      if (rows[s].empty())
-        faults.add(table.rows.back(), fmt::format("there is no row of sample {}, sensor {}",
-                                                  input::in_quotes(name), s));
-  return samples;
+/// Rows by sample in the order of the file, and those of the unloaded cilium.
+struct Sorted {
+  std::vector<RowsOfSample> samples;
+  RowsOfSample unloaded;
+};
+
+/// What the rows of one sample have in common.
+std::string sample_name(const logger::File& file, const logger::Row& row) {
+  if (file.has_sample) return row.sample;
+  if (file.has_sensor) return fmt::format("{} s", row.time);
+  return std::to_string(row.number);
 }
 
-/// The mean of each sensor's rows, each less the background at its azimuth.
-Eigen::VectorXd mean_of(const input::CsvTable& table, const Rows& rows,
-                        const input::external::Background* background, input::Faults& faults) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * rows.size()));
-  for (std::size_t s = 0; s < rows.size(); ++s)
-    for (const std::size_t row : rows[s]) {
-      Vector3 B = input::external::row_vector(table, field_column, row);
-      if (background != nullptr) {
-        if (const auto ambient = background->at(table.numbers[azimuth_column][row], s))
-          B -= *ambient;
-        else
-          faults.add(
-              table.rows[row],
-              "the background has a single azimuth, which is not this row's: measure it at more");
-      }
-      result.segment<3>(static_cast<Eigen::Index>(3 * s)) +=
-          B / static_cast<double>(rows[s].size());
+Sorted sorted(const logger::File& file, const UnloadedPart& part,
+              std::span<const std::string> sensors, Faults& faults) {
+  Sorted result;
+  result.unloaded.name = unloaded;
+  result.unloaded.rows.resize(sensors.size());
+  std::unordered_map<std::string, std::size_t> index;
+  for (const logger::Row& row : file.rows) {
+    if (part.holds(row) || (file.has_sample && row.sample == unloaded)) {
+      result.unloaded.rows[row.sensor].push_back(&row);
+      continue;
     }
+    std::string name = sample_name(file, row);
+    const auto [place, is_new] = index.try_emplace(std::move(name), result.samples.size());
+    if (is_new) result.samples.push_back({place->first, {}});
+    auto& rows = result.samples[place->second].rows;
+    rows.resize(sensors.size());
+    rows[row.sensor].push_back(&row);
+  }
+  const auto require_all = [&](const RowsOfSample& sample) {
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      if (sample.rows[s].empty() && faults.size() < input::most_csv_faults)
+        faults.add(file.rows.back().place, fmt::format("there is no row of sample {}, sensor {}",
+                                                       input::in_quotes(sample.name), sensors[s]));
+  };
+  for (const RowsOfSample& sample : result.samples) require_all(sample);
+  if (std::ranges::any_of(result.unloaded.rows, [](const auto& rows) { return !rows.empty(); }))
+    require_all(result.unloaded);
   return result;
 }
 
-SensorReadings readings_of(const input::CsvTable& table,
-                           const input::external::Background* background, std::size_t sensors,
-                           input::Faults& faults) {
-  const auto samples = samples_of(table, sensors, faults);
-  SensorReadings result;
-  if (!faults.empty()) return result;
-  const bool change = table.has(change_column);
-  Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * sensors));
-  for (const auto& [name, rows] : samples) {
-    if (name != unloaded) continue;
-    if (change) {
-      faults.add(table.rows[rows.front().front()],
-                 "the change dB of the unloaded cilium is zero: leave its rows out");
-      return result;
-    }
-    offset = mean_of(table, rows, background, faults);
-    std::size_t fewest = table.rows.size();
-    for (const auto& of_sensor : rows) fewest = std::min(fewest, of_sensor.size());
-    result.noise_factor = std::sqrt(1 + 1 / static_cast<double>(fewest));
-    result.measured_offset = true;
-  }
-  for (const auto& [name, rows] : samples) {
-    if (name == unloaded) continue;
-    Sample sample{name, {}};
-    if (change) {
-      sample.change.resize(offset.size());
-      for (std::size_t s = 0; s < sensors; ++s)
-        sample.change.segment<3>(static_cast<Eigen::Index>(3 * s)) =
-            input::external::row_vector(table, change_column, rows[s].front());
-    } else {
-      sample.change = mean_of(table, rows, background, faults) - offset;
-    }
-    result.samples.push_back(std::move(sample));
-  }
-  if (result.samples.empty() && faults.empty())
+/// Adds the faults of rows that are unloaded and of an option that says otherwise.
+void check_unloaded(const logger::File& file, const Sorted& rows, const UnloadedPart& part,
+                    const ReadingOptions::Text& option, Faults& faults) {
+  using Kind = UnloadedPart::Kind;
+  const logger::Row* named = nullptr;
+  for (const auto& of_sensor : rows.unloaded.rows)
+    for (const logger::Row* row : of_sensor)
+      if (named == nullptr && file.has_sample && row->sample == unloaded) named = row;
+  const bool any =
+      std::ranges::any_of(rows.unloaded.rows, [](const auto& r) { return !r.empty(); });
+  if (file.is_change && named != nullptr)
+    faults.add(named->place, "the change dB of the unloaded cilium is zero: leave its rows out");
+  else if (file.is_change && part.kind != Kind::named)
+    faults.add({},
+               fmt::format("the change dB needs no unloaded reading: leave {} out", option.where));
+  else if (named != nullptr && part.kind != Kind::named)
+    faults.add(named->place,
+               fmt::format("there are rows of the sample `unloaded`: leave {} out", option.where));
+  else if (!any && (part.kind == Kind::rows || part.kind == Kind::time))
+    faults.add(
+        {}, fmt::format("no row lies in \"{}\" of {}: the file has {}", option.text, option.where,
+                        part.kind == Kind::rows
+                            ? fmt::format("the rows 1..{}", file.row_count)
+                            : fmt::format("the times {:g} s..{:g} s", file.rows.front().time,
+                                          file.rows.back().time)));
+  else if (!rows.samples.empty() && !any && !file.is_change && part.kind == Kind::named)
+    faults.add({},
+               "there is no reading of the unloaded cilium, without which the earth's field would "
+               "be read as load: name its rows `unloaded` in a column 'sample', or say which they "
+               "are: --unloaded \"0 s..1 s\" by the time or --unloaded \"rows 1..20\"; --unloaded "
+               "model takes the model's own B instead");
+  if (rows.samples.empty() && faults.empty())
     faults.add({}, "there is no reading but of the unloaded cilium");
-  result.measured_offset = result.measured_offset || change;
+}
+
+/// The mean of each sensor's rows, each less the background at its azimuth. Adds their scatter.
+Eigen::VectorXd mean_of(const RowsOfSample& sample, const Background* background, Scatter& scatter,
+                        Faults& faults) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * sample.rows.size()));
+  std::vector<Vector3> read;
+  for (std::size_t s = 0; s < sample.rows.size(); ++s) {
+    read.clear();
+    for (const logger::Row* row : sample.rows[s]) {
+      read.push_back(row->B);
+      if (background == nullptr) continue;
+      if (const auto ambient = background->at(row->azimuth, s))
+        read.back() -= *ambient;
+      else
+        faults.add(row->place,
+                   "the background has a single azimuth, which is not this row's: measure it at "
+                   "more");
+    }
+    Vector3 mean = Vector3::Zero();
+    for (const Vector3& B : read) mean += B / static_cast<double>(read.size());
+    for (const Vector3& B : read) scatter.squares += (B - mean).squaredNorm();
+    scatter.freedom += 3 * (read.size() - 1);
+    result.segment<3>(static_cast<Eigen::Index>(3 * s)) = mean;
+  }
+  return result;
+}
+
+std::size_t fewest_rows(const RowsOfSample& sample) {
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const auto& rows : sample.rows) fewest = std::min(fewest, rows.size());
+  return fewest;
+}
+
+SensorReadings readings_of(const logger::File& file, const Background* background,
+                           std::span<const std::string> sensors, const ReadingOptions& options,
+                           Faults& faults) {
+  const UnloadedPart part = unloaded_part(options.unloaded);
+  SensorReadings result;
+  result.remark = file.remark;
+  if (part.kind == UnloadedPart::Kind::time && !file.has_time) {
+    faults.add({},
+               fmt::format("{} is a range of time, but {}; --unloaded \"rows 1..20\" needs none",
+                           options.unloaded.where, file.timeless));
+    return result;
+  }
+  const Sorted rows = sorted(file, part, sensors, faults);
+  if (faults.empty()) check_unloaded(file, rows, part, options.unloaded, faults);
+  if (!faults.empty()) return result;
+  result.measured_offset = file.is_change;
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * sensors.size()));
+  if (!rows.unloaded.rows.front().empty()) {
+    offset = mean_of(rows.unloaded, background, result.scatter, faults);
+    const std::size_t count = fewest_rows(rows.unloaded);
+    result.offset_variance = 1 / static_cast<double>(count);
+    result.measured_offset = true;
+    result.remark += fmt::format("; {} unloaded", count);
+  }
+  result.samples.reserve(rows.samples.size());
+  for (const RowsOfSample& of_sample : rows.samples) {
+    Sample sample{of_sample.name, mean_of(of_sample, background, result.scatter, faults) - offset,
+                  fewest_rows(of_sample)};
+    if (file.has_time) sample.time = of_sample.rows.front().front()->time;
+    result.samples.push_back(std::move(sample));
+    if (faults.size() >= input::most_csv_faults) break;
+  }
   return result;
 }
 
 /// Throws InputError with the faults of a file.
-void require_none(const input::Faults& faults, const std::filesystem::path& file) {
+void require_none(const Faults& faults, const std::filesystem::path& file) {
   if (!faults.empty()) throw InputError(faults.report(file.string()));
+}
+
+/// Adds a fault unless each row tells its sensor and its sample, where the case has several.
+void check_sensors(const logger::File& file, std::size_t sensors, Faults& faults) {
+  const bool wide = file.rows.size() == sensors * file.row_count;
+  if (sensors == 1 || wide) return;
+  if (!file.has_sensor || !(file.has_sample || file.has_time))
+    faults.add({}, fmt::format("the case has {} sensors: the file needs the columns 'sample' and "
+                               "'sensor', and a row for each; or columns for each, such as "
+                               "s0_Bx, s0_By, s0_Bz, s1_Bx",
+                               sensors));
 }
 
 }  // namespace
 
 SensorReadings read_sensor_readings(const std::filesystem::path& file,
                                     const std::optional<std::filesystem::path>& background,
-                                    std::size_t sensors) {
-  std::optional<input::external::Background> ambient;
+                                    std::span<const std::string> sensors,
+                                    const ReadingOptions& options) {
+  std::optional<Background> ambient;
   if (background) {
-    input::Faults faults;
+    Faults faults;
     const std::string text = input::read_csv_file(*background);
     ambient.emplace(text, sensors, faults);
     require_none(faults, *background);
   }
-  input::Faults faults;
-  const std::string text = input::read_csv_file(file);
-  const input::CsvTable table = readings_table(text, sensors, faults);
-  if (faults.empty() && ambient && !table.has(azimuth_column))
+  Faults faults;
+  const logger::File read = logger::read_file(input::read_csv_file(file), sensors, options, faults);
+  if (faults.empty()) check_sensors(read, sensors.size(), faults);
+  if (faults.empty() && ambient && !read.has_azimuth)
     faults.add({}, "the background depends on the azimuth: the readings need a column 'azimuth'");
-  if (faults.empty() && ambient && table.has(change_column))
+  if (faults.empty() && ambient && read.is_change)
     faults.add({}, "the change dB has no background any more: leave the background out");
   require_none(faults, file);
-  SensorReadings result = readings_of(table, ambient ? &*ambient : nullptr, sensors, faults);
+  SensorReadings result =
+      readings_of(read, ambient ? &*ambient : nullptr, sensors, options, faults);
   require_none(faults, file);
   return result;
 }

@@ -98,12 +98,28 @@ models::ModelPair parse_pair(const std::string& text) {
   return pair;
 }
 
+void require_load_to_sense(const LoadPath& path) {
+  constexpr double vertical = 1e-9;
+  if (path.front().is<EnvironmentLoad>())
+    throw InputError("the load type 'environment' has no load to be found from readings");
+  for (const Load& load : path) {
+    if (load.environment() != path.front().environment())
+      throw InputError("a load is found in one environment: list one 'uniform_field'");
+    if (surroundings::component(load.environment(), Vector3::UnitX()) > vertical ||
+        surroundings::component(load.environment(), Vector3::UnitY()) > vertical)
+      throw InputError(
+          "a load is found by a response that is the same from all sides: an [environment] beside "
+          "it points along z");
+  }
+}
+
 Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
                     const Progress& progress) {
   const models::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), mechanics);
   for (const auto& [option, mesh] : input::user_meshes({{entry}, {}}, problem.options))
     throw InputError("a solid with a mesh of the user is not the same from all sides: leave out " +
                      option);
+  require_load_to_sense(problem.load_path);
   if (!(largest > 0) || !std::isfinite(largest))
     throw InputError("the largest load must be finite and positive");
   Shapes shapes;
@@ -120,6 +136,7 @@ Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, do
   for (const auto& [magnitude, is_check] : path)
     loads.push_back(with_magnitude(with_azimuth(problem.load_path.front(), 0), magnitude));
   const auto model = entry.make(problem.options);
+  if (progress) progress({"starting", 0, loads.size()});
   const MechanicsResult result = model->solve(problem.cilium, loads, progress);
   shapes.undeformed = result.undeformed;
   for (std::size_t i = 0; i < result.steps.size(); ++i) {

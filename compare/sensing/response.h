@@ -27,9 +27,13 @@ struct Shapes {
   std::vector<double> check_magnitudes;
 };
 
+/// Throws InputError unless the path has loads that readings can tell: not of the type
+/// `environment`, in one environment that is the same from all sides.
+void require_load_to_sense(const LoadPath& path);
+
 /// The shapes of the case's load up to the largest magnitude, by the mechanics model. Throws
 /// SolverError if the cilium slips off below it, or the model fails; InputError if the case's
-/// cilium is not the same from all sides (a solid's mesh of the user).
+/// cilium is not the same from all sides (a solid's mesh of the user), or its environment.
 Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
                     const Progress& progress = {});
 

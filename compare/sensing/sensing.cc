@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -44,6 +46,32 @@ SenseStatus status_of(const SensedLoad& sensed) {
   return SenseStatus::found;
 }
 
+double Scatter::deviation() const {
+  return freedom == 0 ? 0 : std::sqrt(squares / static_cast<double>(freedom));
+}
+
+double SensorReadings::noise_factor(const Sample& sample) const {
+  return std::sqrt(1 / static_cast<double>(sample.rows) + offset_variance);
+}
+
+double SensorReadings::noise_factor() const {
+  double largest = 0;
+  for (const Sample& sample : samples) largest = std::max(largest, noise_factor(sample));
+  return largest;
+}
+
+std::optional<std::string> scatter_remark(const Scatter& scatter, double noise) {
+  if (scatter.freedom == 0) return std::nullopt;
+  const double chi_squared = scatter.squares / (noise * noise);
+  if (boost::math::gamma_q(static_cast<double>(scatter.freedom) / 2, chi_squared / 2) >= unlikely)
+    return std::nullopt;
+  return fmt::format(
+      "Rows that are averaged differ by {:.3g} uT (standard deviation), more than the noise of "
+      "{:.3g} "
+      "uT: state --noise as the sensor has it, and see that they are of one load.",
+      scatter.deviation() * 1e6, noise * 1e6);
+}
+
 double FlowLaw::velocity(double force_per_height) const {
   return std::sqrt(2 * std::max(0.0, force_per_height) / (density * diameter * drag_coefficient));
 }
@@ -67,17 +95,18 @@ std::string sensing_text(const Sensing& s) {
       "interpolated to {:.1g} of the largest |dB|, {:.4g} uT\n",
       s.case_name, s.largest * factor, unit, s.models.name(), s.noise.x() * 1e6, s.noise.y() * 1e6,
       s.noise.z() * 1e6, s.interpolation_error / s.largest_change, s.largest_change * 1e6);
+  for (const std::string& remark : s.remarks) text += remark + '\n';
   if (!s.measured_offset)
     text +=
-        "There is no reading of the unloaded cilium: the model's own B is taken off instead. Add "
-        "rows with the sample `unloaded`.\n";
+        "There is no reading of the unloaded cilium: the model's own B is taken off instead, and "
+        "the earth's field and the sensor's offset are read as load.\n";
   output::TextRows rows{{"sample", fmt::format("load ({})", unit), "+-", "azimuth", "+- deg"}};
   if (s.flow) rows[0].insert(rows[0].end(), {"v (m/s)", "from", "to"});
   rows[0].emplace_back("status");
-  for (const auto& [name, sensed] : s.samples) {
+  for (const auto& [reading, sensed] : s.samples) {
     const bool has_azimuth = sensed.azimuth_interval() < std::numbers::pi;
     std::vector<std::string>& row = rows.emplace_back();
-    row = {name, fmt::format("{:.5g}", sensed.magnitude() * factor),
+    row = {reading.name, fmt::format("{:.5g}", sensed.magnitude() * factor),
            fmt::format("{:.2g}", sensed.magnitude_interval() * factor),
            has_azimuth ? fmt::format("{:.2f}", sensed.azimuth() / degree) : "-",
            has_azimuth ? fmt::format("{:.2f}", sensed.azimuth_interval() / degree) : ""};
@@ -99,19 +128,21 @@ std::string sensing_json(const Sensing& s, const output::Provenance& provenance)
             {"largest", s.largest},
             {"interpolation_error", s.interpolation_error},
             {"offset", s.measured_offset ? "measured" : "of the model"},
+            {"remarks", s.remarks},
             {"samples", Json::array()}};
-  for (const auto& [name, sensed] : s.samples) {
+  for (const auto& [reading, sensed] : s.samples) {
     const Eigen::Matrix2d& c = sensed.covariance;
-    Json sample{{"sample", name},
-                {"status", to_string(status_of(sensed))},
-                {"load", {sensed.load.x(), sensed.load.y()}},
-                {"magnitude", sensed.magnitude()},
-                {"magnitude_interval", sensed.magnitude_interval()},
-                {"azimuth", sensed.azimuth()},
-                {"azimuth_interval", sensed.azimuth_interval()},
-                {"covariance", {{c(0, 0), c(0, 1)}, {c(1, 0), c(1, 1)}}},
-                {"chi_squared", sensed.chi_squared},
-                {"misfit_probability", sensed.misfit_probability}};
+    Json sample{{"sample", reading.name}, {"rows", reading.rows}};
+    if (reading.time) sample["time"] = *reading.time;
+    sample.update({{"status", to_string(status_of(sensed))},
+                   {"load", {sensed.load.x(), sensed.load.y()}},
+                   {"magnitude", sensed.magnitude()},
+                   {"magnitude_interval", sensed.magnitude_interval()},
+                   {"azimuth", sensed.azimuth()},
+                   {"azimuth_interval", sensed.azimuth_interval()},
+                   {"covariance", {{c(0, 0), c(0, 1)}, {c(1, 0), c(1, 1)}}},
+                   {"chi_squared", sensed.chi_squared},
+                   {"misfit_probability", sensed.misfit_probability}});
     if (s.flow) {
       const auto [velocity, low, high] = velocities(*s.flow, sensed);
       sample["velocity"] = velocity;
@@ -134,9 +165,11 @@ std::string sensing_csv(const Sensing& s) {
   if (s.flow)
     for (const char* name : {"velocity [m/s]", "velocity_low [m/s]", "velocity_high [m/s]"})
       csv.add(name);
+  const bool has_time = !s.samples.empty() && s.samples.front().first.time;
+  if (has_time) csv.add("time [s]");
   csv.end_row();
-  for (const auto& [name, sensed] : s.samples) {
-    csv.add(name);
+  for (const auto& [reading, sensed] : s.samples) {
+    csv.add(reading.name);
     csv.add(to_string(status_of(sensed)));
     for (const double value :
          {sensed.load.x(), sensed.load.y(), sensed.magnitude(), sensed.magnitude_interval(),
@@ -145,6 +178,7 @@ std::string sensing_csv(const Sensing& s) {
       csv.add(value);
     if (s.flow)
       for (const double v : velocities(*s.flow, sensed)) csv.add(v);
+    if (has_time) csv.add(reading.time.value_or(std::numeric_limits<double>::quiet_NaN()));
     csv.end_row();
   }
   return csv.text();

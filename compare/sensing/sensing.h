@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "compare/input/external/reading_options.h"
 #include "compare/output/provenance.h"
 #include "compare/sensing/inversion.h"
 
@@ -14,31 +17,48 @@ namespace ciliaval::compare::sensing {
 
 /// The readings of all sensors at one time.
 struct Sample {
-  std::string name;        ///< as the file has it, or the row's number from 1
-  Eigen::VectorXd change;  ///< ΔB of all sensors one after the other, T
+  std::string name;                 ///< as the file has it, or the row's number from 1
+  Eigen::VectorXd change;           ///< ΔB of all sensors one after the other, T
+  std::size_t rows = 1;             ///< whose mean it is; of the sensor with the fewest
+  std::optional<double> time = {};  ///< of the first row, s; none if the file has none
+};
+
+/// How much rows that should read the same differ.
+struct Scatter {
+  double squares = 0;        ///< Σ (B − mean)², T²
+  std::size_t freedom = 0;   ///< degrees of freedom
+  double deviation() const;  ///< standard deviation of a component, T
 };
 
 /// Readings of loads that are not known, less all offsets.
 struct SensorReadings {
   std::vector<Sample> samples;
   bool measured_offset = false;  ///< else the samples hold B, from which the offset is to be taken
-  /// Standard deviation of ΔB over that of a reading: √(1 + 1/n) with the mean of n unloaded ones.
-  double noise_factor = 1;
+  double offset_variance = 0;    ///< 1/n, with the mean of n unloaded readings; else 0
+  Scatter scatter;               ///< of the rows of each sample, and of the unloaded ones
+  std::string remark;            ///< what was read of the file, for people
+
+  /// Standard deviation of ΔB over that of a reading: √(1/m + 1/n) with m rows and n unloaded ones.
+  double noise_factor(const Sample& sample) const;
+  /// The largest of all samples.
+  double noise_factor() const;
 };
 
-/// Reads readings from a CSV file with a header and units (docs/guide/sensing.md): columns Bx, By,
-/// Bz, or dBx, dBy, dBz; with several sensors `sample` and `sensor`, a row for each; `azimuth`,
-/// that of the sensor's own x axis, where the background is taken off; `time` is ignored. Rows of
-/// the sample `unloaded` are the straight cilium: with more than one row of a sensor, their mean.
-/// The earth's field and the undeformed magnet's field are subtracted:
+/// Reads readings from a file as loggers write it (logger/file.h, docs/guide/sensing.md) for a case
+/// with these sensors. Rows of one name in the column `sample` are averaged; without the column
+/// each row is a sample, or all rows of one time where each sensor has its own rows. The unloaded
+/// rows are those of the sample `unloaded`, or those that `options.unloaded` names. The earth's
+/// field and the undeformed magnet's field are subtracted:
 ///
 ///   ΔB = (B − background(azimuth)) − (B_unloaded − background(azimuth of the unloaded)).
 ///
-/// Without unloaded rows B itself is left where ΔB should be: `measured_offset` is false.
-/// Throws InputError with every fault found, a line each: `file:line:column: what is wrong`.
+/// With `options.unloaded` "model", B itself is left where ΔB should be: `measured_offset` is
+/// false. Without an unloaded row the file is refused. Throws InputError with every fault found, a
+/// line each: `file:line:column: what is wrong`.
 SensorReadings read_sensor_readings(const std::filesystem::path& file,
                                     const std::optional<std::filesystem::path>& background,
-                                    std::size_t sensors);
+                                    std::span<const std::string> sensors,
+                                    const input::external::ReadingOptions& options);
 
 /// The outcome for a reading.
 enum class SenseStatus {
@@ -72,16 +92,22 @@ struct Sensing {
   double interpolation_error = 0;   ///< T
   double largest_change = 0;        ///< T
   bool measured_offset = false;
+  std::vector<std::string> remarks;  ///< what was read, and what is doubtful about it
   std::optional<FlowLaw> flow;
-  std::vector<std::pair<std::string, SensedLoad>> samples;  ///< by name
+  std::vector<std::pair<Sample, SensedLoad>> samples;
 };
+
+/// A doubt about rows that should read the same and differ by more than the noise (T); none if
+/// noise alone does so once in a thousand times.
+std::optional<std::string> scatter_remark(const Scatter& scatter, double noise);
 
 /// A table for people.
 std::string sensing_text(const Sensing& sensing);
 /// {"schema": 1, "case", "models", "noise", "unit", "largest", "interpolation_error", "offset",
-/// "samples": [{"sample", "status", "load": [x, y], "magnitude", "magnitude_interval", "azimuth",
-/// "azimuth_interval", "covariance", "chi_squared", "misfit_probability", "velocity",
-/// "velocity_interval": [low, high]}]}; angles in rad, half-widths of 95 %.
+/// "remarks", "samples": [{"sample", "rows", "time" (s, if known), "status", "load": [x, y],
+/// "magnitude", "magnitude_interval", "azimuth", "azimuth_interval", "covariance", "chi_squared",
+/// "misfit_probability", "velocity", "velocity_interval": [low, high]}]}; angles in rad,
+/// half-widths of 95 %.
 std::string sensing_json(const Sensing& sensing, const output::Provenance& provenance);
 /// A line for each sample, units in the header.
 std::string sensing_csv(const Sensing& sensing);

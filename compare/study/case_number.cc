@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "compare/input/case_sections.h"
+#include "compare/input/environment/environment.h"
 #include "compare/models/registry.h"
 
 namespace ciliaval::compare::study {
@@ -26,17 +27,20 @@ CaseNumber plain(std::string path, const QuantityKey& k,
 void append_segments(const input::Case& c, std::vector<CaseNumber>& all) {
   static constexpr Range proportion_range{0, 1, true, "a segment is a part of the cilium"};
   using Member = std::pair<const QuantityKey*, double Segment::*>;
-  const std::array<Member, 4> members{{{&input::key::segment_length, &Segment::length},
+  const std::array<Member, 5> members{{{&input::key::segment_length, &Segment::length},
                                        {&input::key::young_modulus, &Segment::young_modulus},
                                        {&input::key::poisson_ratio, &Segment::poisson_ratio},
-                                       {&input::key::magnetization, &Segment::magnetization}}};
+                                       {&input::key::magnetization, &Segment::magnetization},
+                                       {&input::key::density, &Segment::density}}};
   for (std::size_t i = 0; i < c.cilium.segments.size(); ++i) {
     const std::string table = "cilium.segment." + c.cilium.segments[i].name;
-    for (const auto& [k, member] : members)
+    for (const auto& [k, member] : members) {
+      if (k == &input::key::density && c.cilium.segments[i].density == 0) continue;
       all.push_back(plain(
           fmt::format("{}.{}", table, k->name), *k,
           [=, m = member](const input::Case& x) { return x.cilium.segments[i].*m; },
           [=, m = member](input::Case& x, double v) { x.cilium.segments[i].*m = v; }));
+    }
     if (c.cilium.segments.size() < 2) continue;
     all.push_back(
         {table + ".proportion", quantity::number, proportion_range,
@@ -110,6 +114,45 @@ void append_surface(const input::Case& c, std::vector<CaseNumber>& all) {
         }));
 }
 
+/// A number of the environment, set at all steps.
+CaseNumber around(const std::string& path, const QuantityKey& k,
+                  const std::function<double&(surroundings::Environment&)>& number) {
+  return plain(
+      path, k,
+      [=](const input::Case& x) {
+        surroundings::Environment environment = x.load_path.front().environment();
+        return number(environment);
+      },
+      [=](input::Case& x, double v) {
+        for (Load& load : x.load_path) {
+          surroundings::Environment environment = load.environment();
+          number(environment) = v;
+          load.set_environment(environment);
+        }
+      });
+}
+
+/// Gravity and field by their components, the field unless it tells the steps apart.
+void append_environment(const input::Case& c, std::vector<CaseNumber>& all) {
+  using surroundings::Environment;
+  const Environment& first = c.load_path.front().environment();
+  const bool is_path = std::ranges::any_of(c.load_path, [&](const Load& load) {
+    return load.environment().uniform_field != first.uniform_field;
+  });
+  const auto append = [&all](const QuantityKey& k, Vector3 Environment::*vector) {
+    for (const auto& [name, axis] : {std::pair("x", 0), std::pair("y", 1), std::pair("z", 2)})
+      all.push_back(around(fmt::format("environment.{}.{}", k.name, name), k,
+                           [=, a = axis](Environment& e) -> double& { return (e.*vector)[a]; }));
+  };
+  if (!first.gravity.isZero(0)) {
+    append(input::environment::gravity, &Environment::gravity);
+    all.push_back(around("environment.fluid_density", input::environment::fluid_density,
+                         [](Environment& e) -> double& { return e.fluid_density; }));
+  }
+  if (!is_path && !first.uniform_field.isZero(0))
+    append(input::environment::uniform_field, &Environment::uniform_field);
+}
+
 void append_options(const input::Case& c, std::vector<CaseNumber>& all) {
   models::known().for_each([&](const auto& entry) {
     for (const input::Option& option : entry.options) {
@@ -129,6 +172,7 @@ std::vector<CaseNumber> case_numbers(const input::Case& c) {
   std::vector<CaseNumber> all;
   append_cilium(c, all);
   append_load(c, all);
+  append_environment(c, all);
   append_surface(c, all);
   if (!c.sensors.empty())
     for (const auto& [name, axis] : {std::pair("x", 0), std::pair("y", 1), std::pair("z", 2)})

@@ -24,8 +24,10 @@ MechanicsStep solve_one(const MechanicsModel& model, const Cilium& cilium, const
   return model.solve(cilium, {load}, progress).steps.at(0);
 }
 
-/// The magnitude that bends the softest material by some radians over the whole length.
+/// The magnitude that bends the softest material by some radians over the whole length; of the
+/// environment the one that the case states.
 double soft_magnitude(const Cilium& cilium, const Load& load) {
+  if (load.is<EnvironmentLoad>()) return 1;
   double E = 0;
   for (const Segment& s : cilium.segments)
     E = E == 0 ? s.young_modulus : std::min(E, s.young_modulus);
@@ -123,9 +125,9 @@ LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const Me
                      const Progress& progress) {
   if (const auto limit = slip_off_limit(step)) return {*limit, step.slip_off_uncertainty};
   // A model that meets its limit on the way says so: any load beyond will do, and that of the
-  // elastica is near.
-  const MechanicsStep guess =
-      solve_one(analytic::elastica::Elastica(elastica), cilium, step.load, progress);
+  // elastica is near. It is planar, so the environment is left to the model.
+  const MechanicsStep guess = solve_one(analytic::elastica::Elastica(elastica), cilium,
+                                        with_environment(step.load, {}), progress);
   double magnitude = 1.5 * slip_off_limit(guess).value_or(ciliaval::magnitude(step.load));
   constexpr int most_trials = 8;
   for (int i = 0; i < most_trials; ++i, magnitude *= 2) {
@@ -144,7 +146,9 @@ LargestLoad magnitude_at_rotation(const MechanicsModel& model, const Cilium& cil
                                   const Load& load, double rotation, const Progress& progress) {
   std::map<double, LargestLoad> angles;  // uncertainty and remark, by magnitude
   const auto excess = [&](double magnitude) {
-    if (magnitude == 0) return -rotation;
+    const bool is_straight =
+        surroundings::is_empty(load.environment()) || load.is<EnvironmentLoad>();
+    if (magnitude == 0 && is_straight) return -rotation;
     const MechanicsStep step = solve_one(model, cilium, with_magnitude(load, magnitude), progress);
     if (step.status != Status::converged)
       throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
@@ -154,7 +158,9 @@ LargestLoad magnitude_at_rotation(const MechanicsModel& model, const Cilium& cil
     return centreline.at(centreline.length()).theta() - rotation;
   };
   double lower = 0;
-  double at_lower = -rotation;
+  double at_lower = excess(lower);
+  if (at_lower >= 0)
+    throw SolverError("range: the environment alone turns the tip by the rotation asked for");
   double upper = magnitude(load) > 0 ? magnitude(load) : soft_magnitude(cilium, load);
   double at_upper = excess(upper);
   constexpr int most_doublings = 60;

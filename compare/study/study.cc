@@ -93,6 +93,17 @@ void append_optimisation(const Optimisation& o, support::Fingerprint& all) {
   }
 }
 
+/// The case with the content of its files in place of their names: a file may lie anywhere.
+input::Case with_contents(input::Case c) {
+  input::change_files(models::known(), c.options,
+                      [](input::Option::File kind, std::filesystem::path& file) {
+                        if (kind == input::Option::File::mesh)
+                          file = support::describe_content(file);
+                      });
+  if (!c.surface.file.empty()) c.surface.file = support::describe_content(c.surface.file);
+  return c;
+}
+
 /// The case with the study's fixed numbers and these values of parameters.
 input::Case with_values(const Study& study, const std::vector<Parameter>& parameters,
                         const std::vector<double>& values) {
@@ -122,6 +133,8 @@ Quantity quantity_of(Output output, const Load& load) {
   if (output == Output::range || output == Output::resolution) return magnitude;
   if (output != Output::sensitivity) return quantity::flux_density;
   if (magnitude.unit == "N") return {"a", "flux density per force", "T/N", "50 uT/mN"};
+  if (magnitude.unit.empty())
+    return {"a", "flux density per factor on the environment", "T", "50 uT"};
   if (magnitude.unit == "m") return {"a", "flux density per length", "T/m", "50 uT/mm"};
   return {"a", "flux density per force per length", "T/(N/m)", "50 uT m/N"};
 }
@@ -201,12 +214,11 @@ std::string format_value(const Parameter& parameter, double value) {
 }
 
 support::Fingerprint fingerprint(const Study& study) {
-  toml::table base = input::parse_toml(input::to_toml(study.base, models::known()), study.name);
+  toml::table base =
+      input::parse_toml(input::to_toml(with_contents(study.base), models::known()), study.name);
   base.erase("case");  // its name and title
   support::Fingerprint all;
   append_values(base, "", all);
-  for (const auto& [option, mesh] : input::user_meshes(models::known(), study.base.options))
-    all.emplace_back("content of " + option, support::describe_content(mesh));
   for (const Setting& s : study.fixed)
     all.emplace_back("fixed " + s.number.path, fmt::to_string(s.value));
   std::size_t count = 0;

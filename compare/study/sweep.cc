@@ -18,6 +18,19 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* owner = "study";
 
+/// Whether the models of the study's pairs with this mechanics model may run in several threads
+/// beside each other: collective ones use the cores themselves.
+bool runs_in_threads(const Study& study, const std::string& mechanics,
+                     std::span<const models::MechanicsEntry> mechanics_models,
+                     std::span<const models::FieldEntry> field_models) {
+  if (models::entry_of(mechanics_models, mechanics).is_collective) return false;
+  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
+    return pair.mechanics == mechanics && models::entry_of(field_models, pair.field).is_collective;
+  });
+}
+
+}  // namespace
+
 std::string to_bytes(const std::vector<PairResult>& results) {
   Json pairs = Json::array();
   for (const PairResult& result : results) {
@@ -43,25 +56,24 @@ std::vector<PairResult> from_bytes(const std::string& bytes) {
   return results;
 }
 
-/// One mechanics model at one point.
-struct Task {
-  std::size_t point = 0;
-  std::string mechanics;
-  std::string name() const { return fmt::format("{} at point {}", mechanics, point); }
-};
-
-/// Whether the models of the study's pairs with this mechanics model may run in several threads
-/// beside each other: collective ones use the cores themselves.
-bool runs_in_threads(const Study& study, const std::string& mechanics,
-                     std::span<const models::MechanicsEntry> mechanics_models,
-                     std::span<const models::FieldEntry> field_models) {
-  if (models::entry_of(mechanics_models, mechanics).is_collective) return false;
-  return std::none_of(study.pairs.begin(), study.pairs.end(), [&](const models::ModelPair& pair) {
-    return pair.mechanics == mechanics && models::entry_of(field_models, pair.field).is_collective;
-  });
+std::string Task::name() const {
+  return fmt::format("{} at point {}", mechanics, point);
 }
 
-}  // namespace
+Tasks missing_tasks(const Study& study, const Solutions& solutions,
+                    std::span<const models::MechanicsEntry> mechanics_models,
+                    std::span<const models::FieldEntry> field_models) {
+  Tasks missing;
+  for (const std::string& mechanics : study.mechanics()) {
+    std::vector<Task>& tasks = runs_in_threads(study, mechanics, mechanics_models, field_models)
+                                   ? missing.side_by_side
+                                   : missing.one_by_one;
+    for (std::size_t point = 0; point < study.all_points(); ++point)
+      if (Task task{point, mechanics}; solutions.find(task.name()) == nullptr)
+        tasks.push_back(std::move(task));
+  }
+  return missing;
+}
 
 Solutions::Solutions(output::store::Store& store, const Study& study, const std::string& program)
     : store_(&store) {
@@ -86,15 +98,7 @@ std::size_t Solutions::add(const std::string& name, std::vector<PairResult> resu
 StudyResult run_study(const Study& study, Solutions& solutions,
                       std::span<const models::MechanicsEntry> mechanics_models,
                       std::span<const models::FieldEntry> field_models, const Progress& progress) {
-  std::vector<Task> side_by_side;
-  std::vector<Task> one_by_one;
-  for (const std::string& mechanics : study.mechanics())
-    for (std::size_t point = 0; point < study.all_points(); ++point)
-      if (Task task{point, mechanics}; solutions.find(task.name()) == nullptr)
-        (runs_in_threads(study, mechanics, mechanics_models, field_models) ? side_by_side
-                                                                           : one_by_one)
-            .push_back(std::move(task));
-
+  const Tasks missing = missing_tasks(study, solutions, mechanics_models, field_models);
   const auto done = [&, all = study.all_points() * study.mechanics().size()](std::size_t solved) {
     return fmt::format("{}: {}/{} solved", study.name, solved, all);
   };
@@ -102,14 +106,14 @@ StudyResult run_study(const Study& study, Solutions& solutions,
     const std::size_t solved =
         solutions.add(task.name(), evaluate(study, study.case_at(task.point), task.mechanics,
                                             mechanics_models, field_models, inner));
-    if (progress) progress(done(solved));
+    if (progress) progress({done(solved), solved, study.all_points() * study.mechanics().size()});
   };
   // A grain of one: the solutions take different times.
-  tbb::parallel_for(std::size_t{0}, side_by_side.size(),
-                    [&](std::size_t i) { solve(side_by_side[i], {}); });
-  for (const Task& task : one_by_one) {
+  tbb::parallel_for(std::size_t{0}, missing.side_by_side.size(),
+                    [&](std::size_t i) { solve(missing.side_by_side[i], {}); });
+  for (const Task& task : missing.one_by_one) {
     const std::string at = study.describe(task.point);
-    solve(task, with_prefix(progress, fmt::format("{}, {}: ", done(solutions.size()), at)));
+    solve(task, of_a_piece(progress, fmt::format("{}, {}: ", done(solutions.size()), at)));
   }
   StudyResult result{study, {}};
   for (std::size_t point = 0; point < study.all_points(); ++point) {

@@ -36,6 +36,29 @@ class Solutions {
   std::mutex mutex_;
 };
 
+/// A solution as the store keeps it: every number as it was.
+std::string to_bytes(const std::vector<PairResult>& results);
+std::vector<PairResult> from_bytes(const std::string& bytes);
+
+/// A part of a study that is solved by itself: one mechanics model at one point, with the fields of
+/// its pairs.
+struct Task {
+  std::size_t point = 0;
+  std::string mechanics;
+  /// Of its solution.
+  std::string name() const;
+};
+
+/// Tasks by how they use the cores.
+struct Tasks {
+  std::vector<Task> side_by_side;  ///< rods and their fields: several at once
+  std::vector<Task> one_by_one;    ///< models that use all cores by themselves
+};
+/// What is not solved yet.
+Tasks missing_tasks(const Study& study, const Solutions& solutions,
+                    std::span<const models::MechanicsEntry> mechanics_models,
+                    std::span<const models::FieldEntry> field_models);
+
 /// A study with the results of all pairs at all points.
 struct StudyResult {
   Study study;

@@ -41,10 +41,14 @@ class PathSolver {
       applied_ = {};
     }
     const Loads from = applied_;
-    const Loads to = loads(load, *beam_);
-    const PathReport report =
-        advance(beam_->system, state_, from, to,
-                {options_.tolerance, options_.max_iterations, options_.max_cutbacks}, {}, progress);
+    const Loads to = loads(cilium_, load, *beam_);
+    const PathReport report = advance(beam_->system, state_, from, to,
+                                      {options_.tolerance,
+                                       options_.max_iterations,
+                                       options_.max_cutbacks,
+                                       {},
+                                       largest_turn(load)},
+                                      {}, progress);
     applied_ = report.converged ? to : combine(1 - report.reached, from, report.reached, to);
     MechanicsStep step;
     step.load = load;
@@ -71,22 +75,22 @@ PathProgress told(const Progress& progress, std::size_t step, std::size_t steps)
   if (!progress) return {};
   return [progress, step, steps](double fraction, const NewtonReport& report) {
     std::ostringstream text;
-    text << "beam: step " << step + 1 << "/" << steps << ", fraction " << fraction
+    text << "step " << step + 1 << "/" << steps << ", fraction " << fraction
          << " of the increment, " << report.increments.size() << " iterations, residual "
          << report.residuals.back() << (report.converged ? "" : ", not converged");
     progress(text.str());
   };
 }
 
-MechanicsStep solve_step(const Load& load, PathSolver& path, ContactSolver& contact,
-                         const PathProgress& progress) {
+MechanicsStep solve_step(const Cilium& cilium, const Load& load, PathSolver& path,
+                         ContactSolver& contact, const PathProgress& progress) {
   const auto finished = [&](auto& solver) {
     MechanicsStep step = solver.solve(load, progress);
     if (step.status != Status::converged) return step;
     const System& system = solver.beam().system;
     step.unknowns = system.n_unknowns();
     const Vector3 reaction = system.reaction(system.residual(solver.state(), solver.applied()), 0);
-    step.applied_force = -reaction.dot(direction(load));
+    step.applied_force = -reaction.dot(direction(load)) - environment_force(cilium, load);
     step.deformation = Deformation{centreline(system, solver.state()), nullptr};
     return step;
   };
@@ -101,9 +105,10 @@ std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
     steps.push_back(
-        solve_step(path[i], path_solver, contact_solver, told(progress, i, path.size())));
+        solve_step(cilium, path[i], path_solver, contact_solver, told(progress, i, path.size())));
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
     steps.back().seconds = time.count();
+    report_step(progress, steps, path.size());
   }
   return steps;
 }
@@ -141,7 +146,11 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
                             const Progress& progress) const {
   require_valid(options_);
   ciliaval::require_valid(cilium);
-  for (const Load& load : path) ciliaval::require_valid(load, cilium);
+  for (const Load& load : path) {
+    ciliaval::require_valid(load, cilium);
+    if (load.is<SweepLoad>() && !surroundings::is_empty(load.environment()))
+      throw InputError("the beam takes a sweep without an environment only");
+  }
   MechanicsResult result = solve_all(cilium, path, options_, progress);
   if (options_.error_estimate) {
     BeamOptions higher = options_;

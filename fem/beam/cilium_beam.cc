@@ -2,6 +2,8 @@
 #include "fem/beam/cilium_beam.h"
 
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "problem/error.h"
 
@@ -26,6 +28,13 @@ void append(Mesh& mesh, double end, const Section& law, const BeamOptions& optio
   }
 }
 
+CiliumBeam finished(Mesh mesh, std::size_t loaded, const Cilium& cilium) {
+  std::vector<std::size_t> segments;
+  for (std::size_t e = 0; e < mesh.n_elements(); ++e)
+    segments.push_back(cilium.segment_at(std::midpoint(mesh.vertices[e], mesh.vertices[e + 1])));
+  return {System(straight_curve, std::move(mesh), {{0}}), loaded, std::move(segments)};
+}
+
 }  // namespace
 
 CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
@@ -45,7 +54,7 @@ CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
     append(mesh, ends[k + 1], law, options);
     if (load_at.value_or(L) == ends[k + 1]) loaded = mesh.n_elements();
   }
-  return {System(straight_curve, std::move(mesh), {{0}}), loaded};
+  return finished(std::move(mesh), loaded, cilium);
 }
 
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
@@ -69,10 +78,37 @@ CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOption
     mesh.velocities[loaded - n + i] = fraction;
     mesh.velocities[loaded + i] = 1 - fraction;
   }
-  return {System(straight_curve, std::move(mesh), {{0}}), loaded};
+  return finished(std::move(mesh), loaded, cilium);
 }
 
-Loads loads(const Load& load, const CiliumBeam& beam) {
+Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam) {
+  const surroundings::Environment environment = acting_environment(load);
+  Loads result;
+  if (surroundings::is_empty(environment)) return result;
+  result.magnetic_energy = environment.magnetic_energy;
+  for (const std::size_t segment : beam.segments) {
+    result.force_per_length.push_back(
+        cilium.area() * surroundings::weight_per_volume(environment, cilium.segments[segment]));
+    result.magnetic_force.push_back(surroundings::pole_force(environment, cilium, segment));
+  }
+  return result;
+}
+
+std::optional<double> largest_turn(const Load& load) {
+  if (surroundings::is_empty(acting_environment(load))) return std::nullopt;
+  return turn_in_environment;
+}
+
+double environment_force(const Cilium& cilium, const Load& load) {
+  const surroundings::Environment environment = acting_environment(load);
+  double force = 0;
+  for (const Segment& segment : cilium.segments)
+    force += cilium.area() * segment.length *
+             surroundings::weight_per_volume(environment, segment).dot(direction(load));
+  return force;
+}
+
+Loads loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam) {
   if (load.is<ProbeLoad>()) throw InputError("the force of a probe is a result, not a load");
   const Vector3 force = magnitude(load) * direction(load);
   Loads result;
@@ -82,9 +118,9 @@ Loads loads(const Load& load, const CiliumBeam& beam) {
     result.force_per_length.assign(beam.system.mesh().n_elements(), force);
   else if (load.is<ContactLoad>() || load.is<SectionLoad>())
     result.points.push_back({beam.loaded, force, Vector3::Zero()});
-  else
+  else if (!load.is<EnvironmentLoad>())
     refuse_type(load, "beam");
-  return result;
+  return combine(1, result, 1, environment_loads(cilium, load, beam));
 }
 
 }  // namespace ciliaval::fem::beam

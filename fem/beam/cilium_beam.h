@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "fem/beam/beam.h"
 #include "fem/beam/newton.h"
@@ -14,6 +16,7 @@ namespace ciliaval::fem::beam {
 struct CiliumBeam {
   System system;
   std::size_t loaded = 0;
+  std::vector<std::size_t> segments{};  ///< of each element
 };
 
 /// Clamped straight beam with 2^refinement equal elements between segment interfaces and `load_at`
@@ -26,8 +29,15 @@ CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
                                           std::size_t host);
 
-/// The load as forces on the beam; a contact load is its point force on the loaded vertex. Not for
-/// a probe, whose force is not known (throws InputError).
-Loads loads(const Load& load, const CiliumBeam& beam);
+/// Weight and field of the environment that acts under the load.
+Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam);
+/// NewtonOptions::largest_turn: none without an environment.
+std::optional<double> largest_turn(const Load& load);
+/// The environment's horizontal force along the load's direction, N.
+double environment_force(const Cilium& cilium, const Load& load);
+
+/// Load and environment as forces on the beam; a contact load is its point force on the loaded
+/// vertex. Not for a probe, whose force is not known (throws InputError).
+Loads loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam);
 
 }  // namespace ciliaval::fem::beam

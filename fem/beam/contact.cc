@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <utility>
 #include <vector>
+
+#include "fem/beam/centreline.h"
 
 namespace ciliaval::fem::beam {
 namespace {
@@ -59,11 +62,25 @@ std::string slipped_off(const Load& load, double force, double displacement) {
   return text.str();
 }
 
-Loads tip_force(const CiliumBeam& beam, double force) {
-  Loads loads;
-  loads.points.push_back({beam.loaded, force * Vector3::UnitX(), Vector3::Zero()});
-  return loads;
-}
+/// A dead force on the tip, besides the environment of the load.
+class TipForce {
+ public:
+  TipForce(const Cilium& cilium, const Load& load, const CiliumBeam& beam)
+      : vertex_(beam.loaded),
+        direction_(direction(load)),
+        environment_(environment_loads(cilium, load, beam)) {}
+  Loads operator()(double force) const {
+    Loads loads = environment_;
+    loads.points.push_back({vertex_, force * direction_, Vector3::Zero()});
+    return loads;
+  }
+  const Vector3& direction_of_force() const { return direction_; }
+
+ private:
+  std::size_t vertex_;
+  Vector3 direction_;
+  Loads environment_;
+};
 
 /// A dead force at the tip and the equilibrium under it.
 struct TipLoaded {
@@ -71,11 +88,12 @@ struct TipLoaded {
   State state;
 };
 
-std::optional<TipLoaded> tip_loaded(CiliumBeam& beam, const TipLoaded& from, double force,
+std::optional<TipLoaded> tip_loaded(CiliumBeam& beam, const TipForce& tip_force,
+                                    const TipLoaded& from, double force,
                                     const NewtonOptions& options, int& iterations) {
   TipLoaded to{force, from.state};
   const PathReport report =
-      advance(beam.system, to.state, tip_force(beam, from.force), tip_force(beam, force), options);
+      advance(beam.system, to.state, tip_force(from.force), tip_force(force), options);
   iterations += report.iterations;
   return report.converged ? std::optional(std::move(to)) : std::nullopt;
 }
@@ -88,34 +106,39 @@ struct SunkTip {
   double deflection = 0;  ///< m
 };
 std::optional<SunkTip> force_that_sinks_the_tip(const Cilium& cilium, const BeamOptions& options,
-                                                double height, int& iterations) {
+                                                const Load& load, int& iterations) {
+  const double height = contact_height(load).value();
   CiliumBeam beam = cilium_beam(cilium, options, cilium.length());
   const NewtonOptions newton_options{
-      options.tolerance, options.max_iterations, options.max_cutbacks, {}};
+      options.tolerance, options.max_iterations, options.max_cutbacks, {}, largest_turn(load)};
   const int last = iterations + search_limit;
   const std::size_t node = beam.system.vertex_node(beam.loaded);
   const auto above = [&](const TipLoaded& l) { return l.state.position[node][2] > height; };
+  const TipForce tip_force(cilium, load, beam);
   TipLoaded low{0, beam.system.reference_state()};
+  const PathReport hanging = advance(beam.system, low.state, {}, tip_force(0), newton_options);
+  iterations += hanging.iterations;
+  if (!hanging.converged) return std::nullopt;
   std::optional<TipLoaded> high =
-      tip_loaded(beam, low, beam.system.force_scale(), newton_options, iterations);
+      tip_loaded(beam, tip_force, low, beam.system.force_scale(), newton_options, iterations);
   // The height falls as sqrt(2EI/F) at worst: four times the force for half the height.
   while (high && above(*high)) {
     if (iterations > last) return std::nullopt;
     low = *std::move(high);
-    high = tip_loaded(beam, low, 2 * low.force, newton_options, iterations);
+    high = tip_loaded(beam, tip_force, low, 2 * low.force, newton_options, iterations);
   }
   const std::array condition{at_height(beam.loaded, height, Condition::Unknown::load_factor)};
   while (high && iterations <= last) {
     State state = high->state;
     const NewtonReport report =
-        newton(beam.system, state, tip_force(beam, high->force), newton_options, condition);
+        newton(beam.system, state, tip_force(high->force), newton_options, condition);
     iterations += static_cast<int>(report.increments.size());
     const double force = state.load_factor * high->force;
     // At the bracket's upper end itself, rounding error may put the force just outside.
     if (report.converged && force >= low.force && force <= high->force * (1 + 1e-9))
-      return SunkTip{force, state.position[node][0]};
+      return SunkTip{force, state.position[node].dot(tip_force.direction_of_force())};
     std::optional<TipLoaded> middle =
-        tip_loaded(beam, low, (low.force + high->force) / 2, newton_options, iterations);
+        tip_loaded(beam, tip_force, low, (low.force + high->force) / 2, newton_options, iterations);
     if (!middle) return std::nullopt;
     (above(*middle) ? low : *high) = *std::move(middle);
   }
@@ -131,9 +154,7 @@ double estimated_force(const System& system, double displacement, double height)
 }  // namespace
 
 Loads ContactSolver::force_at_vertex(double force) const {
-  Loads loads;
-  loads.points.push_back({beam_->loaded, force * direction(*last_), Vector3::Zero()});
-  return loads;
+  return TipForce(cilium_, *last_, *beam_)(force);
 }
 
 double ContactSolver::displacement_of(const State& state) const {
@@ -144,15 +165,54 @@ double ContactSolver::magnitude_of(const Loaded& trial) const {
   return last_->is<ProbeLoad>() ? displacement_of(trial.state) : trial.force;
 }
 
-void ContactSolver::stand_straight(const Load& load) {
+std::optional<double> ContactSolver::untouched_arclength(const Load& load,
+                                                         MechanicsStep& step) const {
   const double height = contact_height(load).value();
+  CiliumBeam beam = cilium_beam(cilium_, options_);
+  State state = beam.system.reference_state();
+  const PathReport report = advance(
+      beam.system, state, {}, environment_loads(cilium_, load, beam),
+      {options_.tolerance, options_.max_iterations, options_.max_cutbacks, {}, largest_turn(load)});
+  step.iterations += report.iterations;
+  if (!report.converged) {
+    step.message = report.message;
+    return std::nullopt;
+  }
+  const Centreline line = centreline(beam.system, state);
+  double low = 0;
+  double high = line.length();
+  if (line.at(high).position.z() < height) {
+    step.message = "the environment alone bends the cilium below the contact height";
+    return std::nullopt;
+  }
+  while (true) {
+    const double middle = std::midpoint(low, high);
+    if (!(middle > low && middle < high)) return middle;
+    (line.at(middle).position.z() < height ? low : high) = middle;
+  }
+}
+
+bool ContactSolver::stand_untouched(const Load& load, MechanicsStep& step) {
+  std::optional<double> arclength = contact_height(load);
+  const bool is_bent = !surroundings::is_empty(acting_environment(load));
+  if (is_bent) arclength = untouched_arclength(load, step);
+  if (!arclength) return false;
   const std::vector<double> ends = cilium_.interfaces();
   const std::size_t last = cilium_.segments.size() - 1;
-  for (host_ = 0; host_ < last && ends[host_ + 1] <= height + at_end * ends.back();) ++host_;
+  for (host_ = 0; host_ < last && ends[host_ + 1] <= *arclength + at_end * ends.back();) ++host_;
   beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_);
-  current_ = {beam_->system.reference_state(std::max(height - ends[host_], 0.0)), 0};
+  current_ = {beam_->system.reference_state(std::max(*arclength - ends[host_], 0.0)), 0};
   last_ = with_magnitude(load, 0);
   entry_magnitude_ = 0;
+  if (!is_bent) return true;
+  const PathReport report = advance(
+      beam_->system, current_.state, {}, environment_loads(cilium_, load, *beam_),
+      {options_.tolerance, options_.max_iterations, options_.max_cutbacks, {}, largest_turn(load)});
+  step.iterations += report.iterations;
+  step.message = report.message;
+  if (load.is<ProbeLoad>()) last_ = with_magnitude(load, displacement_of(current_.state));
+  entry_magnitude_ = magnitude(*last_);
+  return report.converged;
 }
 
 bool ContactSolver::find_arclength(Loaded& trial, double magnitude, MechanicsStep& step,
@@ -163,7 +223,8 @@ bool ContactSolver::find_arclength(Loaded& trial, double magnitude, MechanicsSte
   if (last_->is<ProbeLoad>()) {
     conditions.push_back(
         {beam_->loaded, direction(*last_), magnitude, Condition::Unknown::load_factor});
-    unit = trial.force > 0 ? trial.force : estimated_force(beam_->system, magnitude, height);
+    const double displacement = std::max(std::abs(magnitude), 1e-3 * height);
+    unit = trial.force != 0 ? trial.force : estimated_force(beam_->system, displacement, height);
     trial.state.load_factor = trial.force / unit;
   }
   const NewtonReport report =
@@ -274,7 +335,8 @@ void ContactSolver::enter_next_segment() {
 
 bool ContactSolver::goes_on(const Load& load) const {
   return last_ && type(*last_) == type(load) && contact_height(*last_) == contact_height(load) &&
-         azimuth(*last_) == azimuth(load) && magnitude(load) >= entry_magnitude_;
+         azimuth(*last_) == azimuth(load) && last_->environment() == load.environment() &&
+         magnitude(load) >= entry_magnitude_;
 }
 
 MechanicsStep ContactSolver::solve(const Load& load, const PathProgress& progress) {
@@ -293,9 +355,14 @@ MechanicsStep ContactSolver::solve(const Load& load, const PathProgress& progres
     step.message = slipped_off(load, limit.force, limit.displacement);
     return step;
   };
+  if (load.environment() != environment_) slip_offs_.clear();
+  environment_ = load.environment();
   const auto known = slip_offs_.find(height);
   if (known != slip_offs_.end() && is_beyond(known->second)) return slip(known->second);
-  if (!goes_on(load)) stand_straight(load);
+  if (!goes_on(load) && !stand_untouched(load, step)) {
+    last_.reset();
+    return step;
+  }
   Leg leg = follow(load, step, progress);
   while (leg == Leg::end_reached) {
     if (host_ + 1 == cilium_.segments.size())
@@ -304,7 +371,7 @@ MechanicsStep ContactSolver::solve(const Load& load, const PathProgress& progres
     leg = follow(load, step, progress);
   }
   if (leg == Leg::failed) {
-    const auto sunk = force_that_sinks_the_tip(cilium_, options_, height, step.iterations);
+    const auto sunk = force_that_sinks_the_tip(cilium_, options_, load, step.iterations);
     if (sunk && is_beyond({sunk->force, sunk->deflection})) {
       last_.reset();
       return slip({sunk->force, sunk->deflection});

@@ -40,8 +40,11 @@ class ContactSolver {
     double force = 0;  ///< N
   };
 
-  /// The unloaded cilium with the vertex at S = h.
-  void stand_straight(const Load& load);
+  /// The cilium that no force touches, with the vertex at z = h: straight, or bent by the
+  /// environment. False if that bends it below h, or if no equilibrium is found.
+  bool stand_untouched(const Load& load, MechanicsStep& step);
+  /// S of the material point at z = h of the cilium that the environment bends.
+  std::optional<double> untouched_arclength(const Load& load, MechanicsStep& step) const;
   /// Raises or lowers the magnitude to the load's, or to its value at the segment's end.
   Leg follow(const Load& load, MechanicsStep& step, const PathProgress& progress);
   /// Newton's method with s_c for the unknown, and of a probe the force; false if it fails.
@@ -67,7 +70,8 @@ class ContactSolver {
 
   Cilium cilium_;
   BeamOptions options_;
-  std::map<double, SlipOff> slip_offs_;  ///< by height
+  std::map<double, SlipOff> slip_offs_;  ///< by height, in this environment:
+  surroundings::Environment environment_;
   std::optional<CiliumBeam> beam_;
   Loaded current_;
   Loads applied_;

@@ -57,6 +57,25 @@ void add_residual(const ReferenceElement& reference, const ElementData& data, st
       w * (strain.kappa - data.kappa0[g] - h * data.section.moment_compliance.cwiseProduct(m));
 }
 
+/// c·d₃ = e₃·Λᵀc as a function of p: the power of a force e₃ on a tangent c.
+StressPower turned_magnet(const Interpolation& x, const Vector3& c) {
+  return stress_power(x.p, c, strain(x.p, x.s, c), Vector3::UnitZ(), Vector3::Zero());
+}
+
+/// Takes c·∂r/∂ξ or h c·d₃ off the power f of the section forces, per unit of ξ.
+void add_magnetic_energy(const ElementData& data, const Interpolation& x, StressPower& f) {
+  if (data.magnetic_force.isZero(0)) return;
+  if (data.magnetic_energy == surroundings::MagneticEnergy::F) {
+    f.value -= data.magnetic_force.dot(x.t);
+    f.t -= data.magnetic_force;
+    return;
+  }
+  const StressPower d3 = turned_magnet(x, data.magnetic_force);
+  f.value -= data.length * d3.value;
+  f.p -= data.length * d3.p;
+  f.pp -= data.length * d3.pp;
+}
+
 /// Adds one Gauss point's part of the tangent, without the curvature of the rotation update.
 void add_tangent(const ReferenceElement& reference, const ElementData& data, std::size_t g,
                  const Strain& strain, const StressPower& f, const std::vector<Matrix43>& E,
@@ -126,9 +145,11 @@ double element_energy(const ReferenceElement& reference, const ElementData& data
     const Vector3& m = state.moment[g];
     const double complementary = 0.5 * n.dot(data.section.force_compliance.cwiseProduct(n)) +
                                  0.5 * m.dot(data.section.moment_compliance.cwiseProduct(m));
-    energy +=
-        reference.weights[g] * (n.dot(e.gamma - data.gamma0[g]) + m.dot(e.kappa - data.kappa0[g]) -
-                                data.length * (complementary + data.force_per_length.dot(x.r)));
+    StressPower magnetic{};
+    add_magnetic_energy(data, x, magnetic);
+    energy += reference.weights[g] *
+              (magnetic.value + n.dot(e.gamma - data.gamma0[g]) + m.dot(e.kappa - data.kappa0[g]) -
+               data.length * (complementary + data.force_per_length.dot(x.r)));
   }
   return energy;
 }
@@ -146,7 +167,8 @@ void element_residual(const ReferenceElement& reference, const ElementData& data
   for (std::size_t g = 0; g < reference.n_points(); ++g) {
     const Interpolation x(reference, state.position, state.rotation, g);
     const Strain e = strain(x.p, x.s, x.t);
-    const StressPower f = stress_power(x.p, x.t, e, state.force[g], state.moment[g]);
+    StressPower f = stress_power(x.p, x.t, e, state.force[g], state.moment[g]);
+    add_magnetic_energy(data, x, f);
     add_residual(reference, data, g, x, e, f, state.force[g], state.moment[g], residual, gradient);
     if (tangent != nullptr) add_tangent(reference, data, g, e, f, E, *tangent);
   }
@@ -164,8 +186,15 @@ Eigen::VectorXd element_length_derivative(const ReferenceElement& reference,
   Eigen::VectorXd derivative = Eigen::VectorXd::Zero(reference.n_unknowns());
   for (std::size_t g = 0; g < reference.n_points(); ++g) {
     const double w = reference.weights[g];
-    for (std::size_t a = 0; a < reference.n_nodes(); ++a)
-      derivative.segment<3>(node_row(a)) -= w * reference.N(g, a) * data.force_per_length;
+    const Interpolation x(reference, state.position, state.rotation, g);
+    const bool turns = data.magnetic_energy == surroundings::MagneticEnergy::R;
+    const Vector4 by_p = turns ? turned_magnet(x, data.magnetic_force).p : Vector4(Vector4::Zero());
+    for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
+      const double wN = w * reference.N(g, a);
+      derivative.segment<3>(node_row(a)) -= wN * data.force_per_length;
+      derivative.segment<3>(node_row(a) + 3) -=
+          wN * spin_derivative(state.rotation[a]).transpose() * by_p;
+    }
     const Index row = point_row(reference, g);
     derivative.segment<3>(row) =
         -w * (Vector3::UnitZ() + data.section.force_compliance.cwiseProduct(state.force[g]));

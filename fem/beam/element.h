@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fem/beam/section.h"
+#include "problem/surroundings/environment.h"
 #include "problem/types.h"
 
 namespace ciliaval::fem::beam {
@@ -39,6 +40,9 @@ struct ElementData {
   std::vector<Vector3> kappa0;  ///< hK₀ at the Gauss points, rad
   Vector3 force_per_length = Vector3::Zero();  ///< dead load per reference length, N/m
   Vector3 force_per_height = Vector3::Zero();  ///< load per unit of current height z, N/m
+  /// c = M A B₀, N: energy −∫ c·∂r/∂S dS by the law F, −∫ c·d₃ dS by the law R.
+  Vector3 magnetic_force = Vector3::Zero();
+  surroundings::MagneticEnergy magnetic_energy = surroundings::MagneticEnergy::F;
 };
 
 /// Views of an element's part of the state.
@@ -54,7 +58,8 @@ void set_reference_strains(const ReferenceElement& reference, std::span<const Ve
                            std::span<const Quaternion> rotation, ElementData& data);
 
 /// Hellinger–Reissner energy of the element less the work of its dead load,
-///   Π = Σ_g w_g [n·(γ − hΓ₀) + m·(κ − hK₀) − ½h (n·C_n n + m·C_m m) − h q·r],   J.
+///   Π = Σ_g w_g [n·(γ − hΓ₀) + m·(κ − hK₀) − ½h (n·C_n n + m·C_m m) − h q·r − c·a],   J,
+/// with a = ∂r/∂ξ (law F) or h d₃ (law R).
 /// force_per_height has no potential and is left out.
 double element_energy(const ReferenceElement& reference, const ElementData& data,
                       const ElementState& state);

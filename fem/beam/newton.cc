@@ -202,6 +202,18 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
   return report;
 }
 
+namespace {
+
+/// The largest angle between a section in one state and in the other, rad.
+double turn_between(const State& a, const State& b) {
+  double turn = 0;
+  for (std::size_t j = 0; j < a.rotation.size(); ++j)
+    turn = std::max(turn, a.rotation[j].angularDistance(b.rotation[j]));
+  return turn;
+}
+
+}  // namespace
+
 PathReport advance(System& system, State& state, const Loads& from, const Loads& to,
                    const NewtonOptions& options, std::span<const Condition> conditions,
                    const PathProgress& progress) {
@@ -210,7 +222,14 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
   unsigned int halvings = 0;
   for (int increments = 1; report.reached < 1; ++increments) {
     const double aim = std::min(1.0, report.reached + step);
+    const State before = options.largest_turn ? state : State{};
     report.last = newton(system, state, combine(1 - aim, from, aim, to), options, conditions);
+    if (options.largest_turn && report.last.converged &&
+        turn_between(before, state) > *options.largest_turn) {
+      state = before;
+      report.last.converged = false;
+      report.last.reason = "a section turned too far in one increment";
+    }
     report.iterations += static_cast<int>(report.last.increments.size());
     if (progress) progress(aim, report.last);
     if (report.last.converged) {

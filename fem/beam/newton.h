@@ -17,7 +17,12 @@ struct NewtonOptions {
   unsigned int max_cutbacks = 8;  ///< halvings of one load increment
   /// Of the increment, if not the same: the state's error is of the order of its square.
   std::optional<double> increment_tolerance = {};
+  /// Of a section in one increment of a path, rad: where equilibria are several, as in a field, a
+  /// long increment may end at another one than the path leads to.
+  std::optional<double> largest_turn = {};
 };
+/// largest_turn under an environment.
+inline constexpr double turn_in_environment = 0.5;
 
 /// Increments of one load after which it is given up: with few iterations and many cutbacks they
 /// may be ever so small, and all converge.

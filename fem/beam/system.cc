@@ -61,6 +61,12 @@ void require_straight_where_moving(const Mesh& mesh, const ReferenceCurve& curve
   }
 }
 
+/// sum += factor · of_elements; an empty one is zero.
+void add(double factor, const std::vector<Vector3>& of_elements, std::vector<Vector3>& sum) {
+  if (sum.size() < of_elements.size()) sum.resize(of_elements.size(), Vector3::Zero());
+  for (std::size_t e = 0; e < of_elements.size(); ++e) sum[e] += factor * of_elements[e];
+}
+
 }  // namespace
 
 Pose straight_curve(double S) {
@@ -75,10 +81,9 @@ Loads combine(double a, const Loads& x, double b, const Loads& y) {
     for (const PrescribedDisplacement& end : loads->displacements)
       sum.displacements.push_back({end.vertex, factor * end.displacement, factor * end.rotation});
     sum.force_per_height += factor * loads->force_per_height;
-    if (sum.force_per_length.size() < loads->force_per_length.size())
-      sum.force_per_length.resize(loads->force_per_length.size(), Vector3::Zero());
-    for (std::size_t e = 0; e < loads->force_per_length.size(); ++e)
-      sum.force_per_length[e] += factor * loads->force_per_length[e];
+    add(factor, loads->force_per_length, sum.force_per_length);
+    add(factor, loads->magnetic_force, sum.magnetic_force);
+    if (!loads->magnetic_force.empty()) sum.magnetic_energy = loads->magnetic_energy;
   }
   return sum;
 }
@@ -151,6 +156,8 @@ ElementData System::element_data(const State& state, const Loads& loads,
   data.section = mesh_.sections[element];
   data.force_per_height = loads.force_per_height;
   if (!loads.force_per_length.empty()) data.force_per_length = loads.force_per_length.at(element);
+  if (!loads.magnetic_force.empty()) data.magnetic_force = loads.magnetic_force.at(element);
+  data.magnetic_energy = loads.magnetic_energy;
   std::vector<Vector3> position;
   std::vector<Quaternion> rotation;
   for (std::size_t a = 0; a < reference_.n_nodes(); ++a) {

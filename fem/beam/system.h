@@ -59,6 +59,8 @@ struct Loads {
   std::vector<PointLoad> points;               ///< several on one vertex add up
   std::vector<Vector3> force_per_length;       ///< dead, N/m, one for each element; empty: none
   Vector3 force_per_height = Vector3::Zero();  ///< per unit of current height z, N/m
+  std::vector<Vector3> magnetic_force;         ///< c of each element (ElementData), N; empty: none
+  surroundings::MagneticEnergy magnetic_energy = surroundings::MagneticEnergy::F;
   std::vector<PrescribedDisplacement> displacements;
 };
 

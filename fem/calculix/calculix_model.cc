@@ -386,6 +386,7 @@ MechanicsResult Calculix::solve(const Cilium& cilium, const LoadPath& path,
       progress("step " + number + "/" + std::to_string(path.size()) + ", " +
                std::to_string(mesh.unknowns()) + " unknowns");
     result.steps.push_back(problem.step(path[i], "step_" + number));
+    report_step(progress, result.steps, path.size());
   }
   return result;
 }

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "fem/solid/contact/follower.h"
 #include "fem/solid/equilibrium/load_path.h"
 #include "problem/mechanics_model.h"
 
@@ -33,6 +34,13 @@ void serialize(Archive& archive, std::optional<T>& value, unsigned int /*version
 }
 
 template <class Archive>
+void serialize(Archive& archive, ciliaval::surroundings::Environment& environment,
+               unsigned int /*version*/) {
+  auto& [gravity, fluid_density, field, energy] = environment;
+  archive& gravity& fluid_density& field& energy;
+}
+
+template <class Archive>
 void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/) {
   std::string type(load.type().name);
   archive& type;
@@ -43,6 +51,16 @@ void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/)
     archive& value;
     load.set_value(i, value);
   }
+  ciliaval::surroundings::Environment environment = load.environment();
+  archive& environment;
+  load.set_environment(environment);
+}
+
+template <class Archive, int rows, int columns>
+void serialize(Archive& archive, Eigen::Matrix<double, rows, columns>& matrix,
+               unsigned int /*version*/) {
+  static_assert(rows > 0 && columns > 0);
+  archive& make_array(matrix.data(), static_cast<std::size_t>(matrix.size()));
 }
 
 template <class Archive>
@@ -55,8 +73,7 @@ void serialize(Archive& archive, ciliaval::fem::solid::discretisation::SolidStat
   if (unknowns != displacement.size()) displacement.reinit(unknowns);
   pressure.resize(elements);
   archive& make_array(displacement.begin(), unknowns);
-  for (auto& coefficients : pressure)
-    archive& make_array(coefficients.data(), static_cast<std::size_t>(coefficients.size()));
+  for (auto& coefficients : pressure) archive& coefficients;
 }
 
 template <class Archive>
@@ -81,18 +98,60 @@ void serialize(Archive& archive, ciliaval::fem::solid::equilibrium::LoadPathStat
 }
 
 template <class Archive>
+void serialize(Archive& archive, ciliaval::SurfaceContact& contact, unsigned int /*version*/) {
+  auto& [state, where, normal_force, friction_force, point, elastic_energy, surface_work,
+         friction_work, energy_lost] = contact;
+  archive& state& where& normal_force& friction_force& elastic_energy& surface_work& friction_work&
+      energy_lost& point;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::solid::contact::SweepPlace& place,
+               unsigned int /*version*/) {
+  auto& [interference, travel, hold] = place;
+  archive& interference& travel& hold;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::solid::contact::NodeMemory& memory,
+               unsigned int /*version*/) {
+  auto& [multiplier, friction, place, state, along] = memory;
+  archive& multiplier& friction& place& state& along;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::solid::contact::NodeForce& node,
+               unsigned int /*version*/) {
+  auto& [gap, normal, friction, trial, slides, force, derivative] = node;
+  archive& gap& normal& friction& trial& slides& force& derivative;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::solid::contact::ContactState& contact,
+               unsigned int /*version*/) {
+  auto& [place, solid, memory, forces, energy, force] = contact;
+  archive& place& solid& memory& forces& energy& force;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::fem::solid::contact::FollowerState& state,
+               unsigned int /*version*/) {
+  auto& [now, before, step] = state;
+  archive& now& before& step;
+}
+
+template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
          slip_off_uncertainty, contact_arclength, contact, tip_uncertainty, tip_angle_uncertainty,
          applied_force_uncertainty, unknowns, iterations, seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
-  static_cast<void>(contact);      // of a sweep, which is not kept
   // Estimated anew.
   static_cast<void>(tip_uncertainty);
   static_cast<void>(tip_angle_uncertainty);
   static_cast<void>(applied_force_uncertainty);
   archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
-      slip_off_uncertainty& contact_arclength& unknowns& iterations& seconds;
+      slip_off_uncertainty& contact_arclength& contact& unknowns& iterations& seconds;
 }
 
 }  // namespace boost::serialization

@@ -27,9 +27,10 @@ constexpr double farthest_extrapolation = 3;
 /// Marks the text of every level but the finest, once.
 Progress coarser_progress(const Progress& progress) {
   if (!progress) return {};
-  return [&progress](const std::string& text) {
+  return [&progress](ProgressReport report) {
     const std::string prefix = "coarser mesh, ";
-    progress(text.starts_with(prefix) ? text : prefix + text);
+    if (!report.text.starts_with(prefix)) report.text = prefix + report.text;
+    progress(report);
   };
 }
 
@@ -50,8 +51,8 @@ struct Correction {
 std::vector<Correction> corrections(const Load& load, std::span<const EquilibriumPair> behind) {
   const auto usable = [&load](const EquilibriumPair& pair) {
     return same_place(pair.own->load, load) && same_place(pair.coarse->load, load) &&
-           magnitude(pair.own->load) == magnitude(pair.coarse->load) &&
-           magnitude(pair.own->load) != 0;
+           pair.own->load == pair.coarse->load &&
+           pair.own->load.environment() == load.environment() && magnitude(pair.own->load) != 0;
   };
   if (behind.empty() || !usable(behind[0])) return {};
   const double F = magnitude(load);
@@ -114,7 +115,7 @@ Newton& Level::newton() {
 void Level::start_from_rest(const Load& first) {
   if (solver_) return;
   solver_ = std::make_unique<LoadPathSolver>(
-      *space_, *quadrature_, newton(), first, options_.path,
+      *space_, *quadrature_, cilium_, newton(), first, options_.path,
       [this](const Load& target, const Progress& report) { return initial_guess(target, report); });
 }
 
@@ -124,16 +125,18 @@ LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
   return solver_->advance(load, progress, on_equilibrium);
 }
 
-void Level::restore(std::optional<LoadPathState> state) {
-  if (!state) return solver_.reset();
-  const auto fits = [this](const Equilibrium& equilibrium) {
-    return equilibrium.state.displacement.size() == space_->unknowns() &&
-           equilibrium.state.pressure.size() == space_->elements().size();
-  };
-  if (!fits(state->current) || (state->previous && !fits(*state->previous)))
+void Level::require_own(const SolidState& state) const {
+  if (state.displacement.size() != space_->unknowns() ||
+      state.pressure.size() != space_->elements().size())
     throw CheckpointError(
         "the checkpoint cannot be used: its states are those of other meshes; start anew with "
         "--fresh, which deletes it");
+}
+
+void Level::restore(std::optional<LoadPathState> state) {
+  if (!state) return solver_.reset();
+  require_own(state->current.state);
+  if (state->previous) require_own(state->previous->state);
   start_from_rest(state->current.load);
   solver_->restore(std::move(*state));
 }
@@ -177,13 +180,9 @@ Guess Level::guess(const Load& load) const {
   const MechanicsResult solved = beam::Beam(rough).solve(cilium_, {load});
   const MechanicsStep& step = solved.steps.front();
   if (!step.deformation) return {};
-  return {from_rod(step.deformation->centreline), step.applied_force};
-}
-
-SolidState Level::from_rod(const Centreline& rod) const {
-  SolidState state = rod_guess(rod, cilium_, *space_);
+  SolidState state = rod_guess(step.deformation->centreline, cilium_, *space_);
   prescribe(*space_, supports(quadrature_->extent()), state);
-  return state;
+  return {std::move(state), step.applied_force};
 }
 
 Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
@@ -196,7 +195,7 @@ Deformation Level::deformation(const SolidState& state, const SpreadLoad& load,
 
 Deformation Level::deformation(const Equilibrium& equilibrium, double azimuth) const {
   return deformation(equilibrium.state,
-                     spread_load(acting(equilibrium.load, equilibrium.applied_force),
+                     spread_load(cilium_, acting(equilibrium.load, equilibrium.applied_force),
                                  quadrature_->area(), options_.path.kernel_width),
                      azimuth);
 }

@@ -84,8 +84,8 @@ class Level {
   const discretisation::SolidSpace& space() const { return *space_; }
   const discretisation::ExtrudedQuadrature& quadrature() const { return *quadrature_; }
   equilibrium::Newton& newton();
-  /// A rod's state as a state of the level.
-  discretisation::SolidState from_rod(const Centreline& rod) const;
+  /// Throws CheckpointError if it is not a state of a mesh of this size.
+  void require_own(const discretisation::SolidState& state) const;
 
  private:
   /// The space on the triangulation and its mapping.

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/path_run.h"
 
-#include <deal.II/base/mpi.h>
-
 #include <fmt/format.h>
 
-#include <boost/serialization/map.hpp>
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -13,6 +10,7 @@
 
 #include "fem/parallel.h"
 #include "fem/solid/archive.h"
+#include "fem/solid/checkpoint.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 
@@ -22,7 +20,6 @@ using namespace equilibrium;
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using dealii::Utilities::MPI::broadcast;
 
 /// Of the entry of a checkpoint with the levels' states, from which the next step goes on.
 constexpr const char* state_name = "states";
@@ -38,7 +35,7 @@ double mesh_azimuth(const SolidOptions& options, const Load& load) {
 
 /// The load in the frame of the mesh.
 Load in_mesh_frame(const SolidOptions& options, const Load& load) {
-  return with_azimuth(load, azimuth(load) - mesh_azimuth(options, load));
+  return turned(load, -mesh_azimuth(options, load));
 }
 
 /// S of the centreline's lowest point at z = h; empty if there is none.
@@ -60,8 +57,7 @@ std::optional<double> contact_arclength(const Centreline& centreline, double hei
 
 /// Whether the level is in equilibrium with the load.
 bool is_at(const Level& level, const Load& load) {
-  return level.state() != nullptr && same_place(level.state()->current.load, load) &&
-         magnitude(level.state()->current.load) == magnitude(load);
+  return level.state() != nullptr && level.state()->current.load == load;
 }
 
 /// λₙ/λ₁ on the mantle beyond which the error is not known: two thirds of that of creases. Not far
@@ -152,15 +148,12 @@ void PathRun::add(MechanicsStep step) {
                            : nullptr,
                        step.load, turn));
   result_.steps.push_back(std::move(step));
+  report_step(progress_, result_.steps, path_.size());
 }
 
 void PathRun::go_on_from_checkpoint() {
-  const Checkpoint::Entries kept = broadcast(communicator_, checkpoint_.kept);
+  const Checkpoint::Entries kept = kept_entries(checkpoint_, state_name, communicator_);
   if (kept.empty()) return;
-  if (!kept.contains(state_name))
-    throw CheckpointError(
-        "the checkpoint cannot be used: it is of another version; start anew with --fresh, which "
-        "deletes it");
   for (std::size_t i = 1; kept.contains(std::to_string(i)); ++i) {
     MechanicsStep step;
     std::vector<std::optional<Equilibrium>> companions;
@@ -181,8 +174,7 @@ void PathRun::go_on_from_checkpoint() {
 }
 
 void PathRun::save(const MechanicsStep* finished) const {
-  std::string failure;
-  if (rank(communicator_) == 0 && checkpoint_.save) {
+  save_entries(checkpoint_, communicator_, [&] {
     std::vector<std::optional<LoadPathState>> states;
     for (const auto& level : levels_.all)
       states.push_back(level->state() != nullptr ? std::optional(*level->state()) : std::nullopt);
@@ -199,20 +191,13 @@ void PathRun::save(const MechanicsStep* finished) const {
       entries.emplace(std::to_string(result_.steps.size() + 1),
                       serialized(*finished, state, companions));
     }
-    try {
-      checkpoint_.save(entries);
-    } catch (const CheckpointError& error) {
-      failure = error.what();
-    }
-  }
-  failure = broadcast(communicator_, failure);
-  if (!failure.empty()) throw CheckpointError(failure);
+    return entries;
+  });
 }
 
 MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   const auto start = Clock::now();
-  Progress shown;
-  if (progress_) shown = [this, i](const std::string& text) { progress_(label(i) + text); };
+  const Progress shown = with_prefix(progress_, label(i));
   std::function<void()> on_equilibrium;
   if (keep) on_equilibrium = [this] { save(nullptr); };
   const Load load = in_mesh_frame(options_, path_[i]);

@@ -48,6 +48,22 @@ constexpr unsigned int section_square_cells = 4;
 
 constexpr unsigned int finest_refinement = mesh_level_count - 2;
 
+/// The meshes of a sweep from coarse to fine, with fine layers at the tip: cells along a side of
+/// the section's square, and of which level the rest is. A rim that touches is too soft where its
+/// nodes are far apart along the circumference, and too stiff in thick layers, which costs more
+/// than all else (docs/evidence/sweep.md).
+struct SweepMesh {
+  unsigned int square_cells;
+  unsigned int level;
+};
+constexpr std::array<SweepMesh, mesh_level_count> sweep_meshes{
+    {{2, 0}, {4, 0}, {4, 1}, {4, 2}, {8, 3}}};
+
+/// Error of a sweep over the difference of its two finest meshes, if from mesh to mesh the
+/// differences fall by no more than to three quarters: r/(1 − r). The strip along a sharp rim that
+/// bears the force is narrower than the cells (docs/evidence/sweep.md).
+constexpr double slow_convergence = 3;
+
 /// The section's part of the error with the 16 cells of the finer meshes over that with 8: cells
 /// half as wide, of an order of at least 2.
 constexpr double finer_section = 0.25;
@@ -84,6 +100,8 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
   ciliaval::require_valid(cilium);
   for (const Load& load : path) {
     ciliaval::require_valid(load, cilium);
+    if (load.is<SweepLoad>() && !surroundings::is_empty(load.environment()))
+      throw InputError("the solid takes a sweep without an environment only");
     if (type(load) != type(path.front()))
       throw InputError("a load path cannot change from one load type to another");
     const std::optional<double> height = contact_height(load);
@@ -95,12 +113,28 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
   }
 }
 
+bool is_sweep(const LoadPath& path) {
+  return !path.empty() && path.front().is<SweepLoad>();
+}
+
+/// Whether the environment lies in the plane of the load, as the solid's symmetry needs.
+bool is_planar(const Load& load) {
+  constexpr double rounding = 1e-9;
+  const Vector3 across = Vector3::UnitZ().cross(direction(load));
+  return surroundings::component(load.environment(), across) <= rounding;
+}
+
 /// The mesh of a level for a load path, with a plane at each loaded section; half of it if the
 /// options say so.
 meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidOptions& options,
                                                 const LoadPath& path) {
   meshes::cylinder::CylinderMeshOptions mesh = level_mesh(index);
-  mesh.half = options.symmetry;
+  if (is_sweep(path)) {
+    mesh = level_mesh(sweep_meshes.at(index).level);
+    mesh.square_cells = sweep_meshes[index].square_cells;
+    mesh.fine_tip = true;
+  }
+  mesh.half = options.symmetry && std::ranges::all_of(path, is_planar);
   for (const Load& load : path)
     if (const auto section = load.as<SectionLoad>()) mesh.planes.push_back(section->arclength);
   return mesh;
@@ -116,21 +150,6 @@ LevelOptions make_level_options(const Cilium& cilium, const SolidOptions& option
           options.initial_guess == InitialGuess::beam};
 }
 
-std::unique_ptr<Level> user_level(const Cilium& cilium, const SolidOptions& options,
-                                  const LevelOptions& level_options) {
-  return std::make_unique<Level>(cilium, meshes::MeshFile{options.mesh, options.mesh_unit},
-                                 materials(cilium, options), level_options);
-}
-
-/// The mesh of the refinement alone, or the user's: a sweep needs no other for its guesses.
-std::unique_ptr<Level> make_sweep_level(const Cilium& cilium, const LoadPath& path,
-                                        const SolidOptions& options, MPI_Comm communicator) {
-  const LevelOptions level_options = make_level_options(cilium, options, communicator);
-  if (!options.mesh.empty()) return user_level(cilium, options, level_options);
-  return std::make_unique<Level>(cilium, path_mesh(mesh_level(options.refinement), options, path),
-                                 materials(cilium, options), level_options, nullptr);
-}
-
 /// The meshes from the coarsest to the refinement asked for and that of the section's error; a
 /// user's mesh alone.
 Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
@@ -138,7 +157,9 @@ Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOption
   const LevelOptions level_options = make_level_options(cilium, options, communicator);
   Levels levels;
   if (!options.mesh.empty()) {
-    levels.all.push_back(user_level(cilium, options, level_options));
+    levels.all.push_back(std::make_unique<Level>(cilium,
+                                                 meshes::MeshFile{options.mesh, options.mesh_unit},
+                                                 materials(cilium, options), level_options));
     return levels;
   }
   const auto add = [&](const meshes::cylinder::CylinderMeshOptions& mesh, Level* coarser) {
@@ -148,6 +169,18 @@ Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOption
   levels.finest = mesh_level(options.refinement);
   for (unsigned int i = 0; i <= levels.finest; ++i)
     add(path_mesh(i, options, path), levels.all.empty() ? nullptr : levels.all.back().get());
+  if (is_sweep(path)) {
+    levels.companions = {levels.finest - 1};
+    levels.error_parts = {{"all directions", 0, 1, slow_convergence}};
+    // What the last step along the circumference changed, if it is not among them.
+    std::size_t finer = levels.finest;
+    while (sweep_meshes.at(finer).square_cells == sweep_meshes.at(finer - 1).square_cells) --finer;
+    if (finer < levels.finest) {
+      levels.companions.insert(levels.companions.end(), {finer, finer - 1});
+      levels.error_parts.push_back({"section", 2, 3, 1});
+    }
+    return levels;
+  }
   auto section = path_mesh(0, options, path);
   section.square_cells = section_square_cells;
   add(section, levels.all.front().get());
@@ -217,12 +250,11 @@ MechanicsResult Solid::solve_from(const Cilium& cilium, const LoadPath& path,
   require_valid(cilium, path, options_);
   try {
     start_mpi();
-    if (!path.empty() && path.front().is<SweepLoad>())
-      return follow_sweep(make_sweep_level(cilium, path, options_, communicator_), path, options_,
-                          progress);
-    return PathRun(make_levels(cilium, path, options_, communicator_), path, options_, checkpoint,
-                   progress, communicator_)
-        .follow();
+    Levels levels = make_levels(cilium, path, options_, communicator_);
+    if (is_sweep(path))
+      return SweepRun(std::move(levels), path, options_, checkpoint, progress, communicator_)
+          .follow();
+    return PathRun(std::move(levels), path, options_, checkpoint, progress, communicator_).follow();
   } catch (const CheckpointError&) {
     throw;  // on all ranks
   } catch (const RankFailure&) {

@@ -6,27 +6,29 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "fem/beam/beam.h"
-#include "fem/solid/contact/follower.h"
-#include "fem/solid/path_run.h"
+#include "fem/solid/archive.h"
+#include "fem/solid/checkpoint.h"
 #include "problem/error.h"
+#include "problem/error_estimate.h"
 
 namespace ciliaval::fem::solid {
 using namespace contact;
+using namespace discretisation;
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double bent_height = 0.6;   ///< of the tip that is bent aside, in L
-constexpr double force_ratio = 1.25;  ///< of the holding forces, from one to the next
-constexpr double first_force = 0.01;  ///< in the tip's stiffness times L
-constexpr int most_forces = 80;
 constexpr double remarkable_penetration = 0.01;  ///< between nodes, in d
 constexpr unsigned int most_iterations = 10;     ///< of Newton's method: more is a step to be cut
+
+/// Of the entry of a checkpoint with the levels' states.
+constexpr const char* state_name = "sweep";
 
 /// 3EI/L³ of a slender cilium of the softest segment.
 double tip_stiffness(const Cilium& cilium) {
@@ -46,64 +48,6 @@ FollowerOptions follower_options(const Level& level) {
 SweepPlace place_of(const Load& load) {
   const SweepLoad sweep = load.as<SweepLoad>().value();
   return {sweep.interference, sweep.travel, 0};
-}
-
-/// A state in which a horizontal force holds the tip.
-struct Held {
-  double force;  ///< N
-  discretisation::SolidState state;
-};
-
-/// The beam's states, bent further and further aside, as states of the level.
-std::vector<Held> bent_aside(const Level& level, double azimuth) {
-  const Cilium& cilium = level.cilium();
-  const beam::Beam beam({.degree = 4, .tolerance = 1e-6, .error_estimate = false});
-  double force = first_force * tip_stiffness(cilium) * cilium.length();
-  std::vector<Held> states;
-  for (int i = 0; i < most_forces; ++i, force *= force_ratio) {
-    const MechanicsResult solved =
-        beam.solve(cilium, {SectionLoad{force, cilium.length(), azimuth}});
-    const auto& deformation = solved.steps.front().deformation;
-    if (!deformation) break;
-    states.push_back({force, level.from_rod(deformation->centreline)});
-    if (deformation->centreline.at(cilium.length()).position.z() < bent_height * cilium.length())
-      break;
-  }
-  return states;
-}
-
-/// Brings the cilium back from far ahead to where the surface holds it.
-FollowerOutcome press(const Level& level, Follower& follower, SweepPlace place, double azimuth,
-                      const Progress& progress) {
-  std::vector<Held> states = bent_aside(level, azimuth);
-  const auto is_free = [&](const Held& held) {
-    return smallest_gap(follower.nodes(), follower.surface_at(place), held.state.displacement) > 0;
-  };
-  // The last one that is met on the way back, and the free one before it.
-  std::size_t first_free = states.size();
-  while (first_free > 0 && is_free(states[first_free - 1])) --first_free;
-  if (first_free == 0) {
-    follower.start_open(place);
-    if (smallest_gap(follower.nodes(), follower.surface_at(place),
-                     follower.current().solid.displacement) >= 0) {
-      FollowerOutcome open;
-      open.converged = true;
-      return open;
-    }
-  }
-  for (std::size_t i = first_free; i < states.size(); ++i) {
-    place.hold = states[i].force;
-    if (!follower.start_held(place, std::move(states[i].state))) continue;
-    place.hold = 0;
-    return follower.go(place, progress);
-  }
-  if (first_free == states.size())
-    throw InputError(
-        "the surface is pressed on too far: a cilium bent to 0.6 of its length must have room "
-        "under it");
-  throw SolverError(
-      "the body that a force holds aside under the surface was not found: from the beam's shape "
-      "Newton's method does not converge on this mesh; a lower refinement may");
 }
 
 SurfaceContact contact_of(const Follower& follower, const FollowerOutcome& outcome,
@@ -136,56 +80,162 @@ SurfaceContact contact_of(const Follower& follower, const FollowerOutcome& outco
 }
 
 /// What is to be said of a state: folds of the mantle, and what lies between the nodes.
-std::string remark(const Level& level, const Follower& follower) {
-  std::string text = fold_remark(level.mantle_compression(follower.current().solid)).value_or("");
-  const double depth = follower.penetration();
-  if (depth > remarkable_penetration * level.cilium().diameter)
+std::string remark(double penetration, const Cilium& cilium,
+                   const std::optional<std::string>& fold) {
+  std::string text = fold.value_or("");
+  if (penetration > remarkable_penetration * cilium.diameter)
     text += fmt::format(
         "{}between its nodes the solid's surface penetrates the surface by up to {:.3g} mm: the "
         "mesh "
         "is coarse beside the surface's edges",
-        text.empty() ? "" : "; ", depth * 1e3);
+        text.empty() ? "" : "; ", penetration * 1e3);
   return text;
 }
 
 }  // namespace
 
-MechanicsResult follow_sweep(std::unique_ptr<Level> level, const LoadPath& path,
-                             const SolidOptions& options, const Progress& progress) {
+SweepRun::SweepRun(Levels levels, const LoadPath& path, const SolidOptions& options,
+                   const Checkpoint& checkpoint, const Progress& progress, MPI_Comm communicator)
+    : levels_(std::move(levels)),
+      path_(path),
+      checkpoint_(checkpoint),
+      progress_(progress),
+      communicator_(communicator),
+      turn_(options.mesh.empty() ? azimuth(path.front()) : 0),
+      in_mesh_(with_azimuth(path.front(), azimuth(path.front()) - turn_)),
+      result_{} {
   require_one_surface(path);
-  const double turn = options.mesh.empty() ? azimuth(path.front()) : 0;
-  const Load in_mesh = with_azimuth(path.front(), azimuth(path.front()) - turn);
-  Follower follower(level->space(), level->quadrature(), level->newton(), *path.front().surface(),
-                    direction(in_mesh), follower_options(*level));
-  MechanicsResult result;
-  result.undeformed = level->undeformed(turn);
-  result.algebraic_error = options.newton_tolerance;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const auto start = Clock::now();
-    const std::string label =
-        "step " + std::to_string(i + 1) + "/" + std::to_string(path.size()) + ", ";
-    const Progress shown = with_prefix(progress, label);
-    const FollowerOutcome outcome =
-        i == 0 ? press(*level, follower, place_of(path[0]), azimuth(in_mesh), shown)
-               : follower.go(place_of(path[i]), shown);
-    MechanicsStep step;
-    step.load = path[i];
-    step.unknowns = level->unknowns();
-    step.iterations = outcome.iterations;
-    if (outcome.converged) {
-      step.status = Status::converged;
-      step.message = remark(*level, follower);
-      step.contact = contact_of(follower, outcome, turn);
-      step.deformation = level->deformation(follower.current().solid, turn);
-      step.applied_force = follower.current().force.dot(follower.surface_at({}).direction);
-    } else {
-      step.message = label + outcome.trouble;
-    }
-    step.seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    result.steps.push_back(std::move(step));
-    if (progress) progress(label + std::to_string(outcome.iterations) + " iterations");
+  std::map<std::size_t, std::size_t> way_of;  // by level
+  const auto way = [&](std::size_t index) {
+    const auto [found, is_new] = way_of.try_emplace(index, ways_.size());
+    Level& level = *levels_.all[index];
+    if (is_new)
+      ways_.push_back(
+          {&level, std::make_unique<Follower>(level.space(), level.quadrature(), level.newton(),
+                                              *path.front().surface(), direction(in_mesh_),
+                                              follower_options(level))});
+    return found->second;
+  };
+  way(levels_.finest);
+  for (const std::size_t level : levels_.companions) companions_.push_back(way(level));
+  result_.undeformed = ways_.front().level->undeformed(turn_);
+  for (const std::size_t companion : companions_)
+    result_.companions.push_back({ways_[companion].level->undeformed(turn_), {}});
+  result_.error_parts = levels_.error_parts;
+  result_.algebraic_error = options.newton_tolerance;
+}
+
+MechanicsResult SweepRun::follow() {
+  go_on_from_checkpoint();
+  bool failed = false;
+  while (result_.steps.size() < path_.size()) {
+    solve(result_.steps.size());
+    failed = failed || result_.steps.back().status == Status::failed;
+    if (!failed) save();
   }
-  return result;
+  estimate_errors(result_);
+  return std::move(result_);
+}
+
+void SweepRun::solve(std::size_t i) {
+  const auto began = Clock::now();
+  const std::string label =
+      "step " + std::to_string(i + 1) + "/" + std::to_string(path_.size()) + ", ";
+  const Progress shown = with_prefix(progress_, label);
+  const Progress of_companions = with_prefix(shown, "error estimate, ");
+  std::vector<MechanicsStep> steps(ways_.size());
+  for (std::size_t w = 0; w < ways_.size(); ++w) {
+    Way& way = ways_[w];
+    steps[w].load = path_[i];
+    if (way.lost) continue;
+    if (i == 0) way.follower->start(place_of(path_[0]));
+    steps[w] =
+        step_of(way, i, way.follower->go(place_of(path_[i]), w == 0 ? shown : of_companions));
+    way.lost = w > 0 && steps[w].status != Status::converged;
+  }
+  for (std::size_t c = 0; c < companions_.size(); ++c)
+    result_.companions[c].steps.push_back(steps[companions_[c]]);
+  MechanicsStep& step = steps.front();
+  const Way& finest = ways_.front();
+  if (step.status != Status::converged) {
+    step.message = label + step.message;
+  } else {
+    const auto fold =
+        fold_remark(finest.level->mantle_compression(finest.follower->current().solid));
+    step.message = remark(finest.follower->penetration(), finest.level->cilium(), fold);
+    // Without companions there is no estimate.
+    if (fold)
+      for (MechanicsResult& companion : result_.companions) {
+        companion.steps.back().status = Status::failed;
+        companion.steps.back().deformation.reset();
+      }
+  }
+  step.seconds = std::chrono::duration<double>(Clock::now() - began).count();
+  result_.steps.push_back(std::move(step));
+  report_step(progress_, result_.steps, path_.size());
+}
+
+MechanicsStep SweepRun::step_of(const Way& way, std::size_t i,
+                                const FollowerOutcome& outcome) const {
+  MechanicsStep step;
+  step.load = path_[i];
+  step.unknowns = way.level->unknowns();
+  step.iterations = outcome.iterations;
+  step.message = outcome.trouble;
+  if (!outcome.converged) return step;
+  step.status = Status::converged;
+  step.contact = contact_of(*way.follower, outcome, turn_);
+  step.deformation = way.level->deformation(way.follower->current().solid, turn_);
+  step.applied_force = way.follower->current().force.dot(direction(in_mesh_));
+  return step;
+}
+
+void SweepRun::go_on_from_checkpoint() {
+  const Checkpoint::Entries kept = kept_entries(checkpoint_, state_name, communicator_);
+  if (kept.empty()) return;
+  const auto restore = [this](const Way& way, MechanicsResult& result, MechanicsStep step,
+                              const std::optional<SolidState>& state) {
+    step.load = path_.at(result.steps.size());  // with its surface
+    if (state) step.deformation = way.level->deformation(*state, turn_);
+    result.steps.push_back(std::move(step));
+  };
+  for (std::size_t i = 1; kept.contains(std::to_string(i)); ++i) {
+    std::vector<MechanicsStep> steps;
+    std::vector<std::optional<SolidState>> states;
+    deserialize(kept.at(std::to_string(i)), steps, states);
+    restore(ways_.front(), result_, std::move(steps.at(0)), states.at(0));
+    for (std::size_t c = 0; c < companions_.size(); ++c)
+      restore(ways_[companions_[c]], result_.companions[c], std::move(steps.at(c + 1)),
+              states.at(c + 1));
+  }
+  std::vector<std::pair<FollowerState, bool>> states;
+  deserialize(kept.at(state_name), states);
+  for (std::size_t w = 0; w < ways_.size(); ++w) {
+    auto& [state, lost] = states.at(w);
+    ways_[w].level->require_own(state.now.solid);
+    if (state.before) ways_[w].level->require_own(state.before->solid);
+    ways_[w].follower->restore(std::move(state));
+    ways_[w].lost = lost;
+  }
+}
+
+void SweepRun::save() const {
+  save_entries(checkpoint_, communicator_, [this] {
+    std::vector<MechanicsStep> steps;
+    std::vector<std::optional<SolidState>> states;
+    const auto add = [&](const MechanicsStep& step, const Way& way) {
+      steps.push_back(step);
+      states.push_back(step.deformation ? std::optional(way.follower->current().solid)
+                                        : std::nullopt);
+    };
+    add(result_.steps.back(), ways_.front());
+    for (std::size_t c = 0; c < companions_.size(); ++c)
+      add(result_.companions[c].steps.back(), ways_[companions_[c]]);
+    std::vector<std::pair<FollowerState, bool>> ways;
+    for (const Way& way : ways_) ways.emplace_back(way.follower->state(), way.lost);
+    return Checkpoint::Entries{{state_name, serialized(ways)},
+                               {std::to_string(result_.steps.size()), serialized(steps, states)}};
+  });
 }
 
 }  // namespace ciliaval::fem::solid

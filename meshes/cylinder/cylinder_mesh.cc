@@ -168,8 +168,9 @@ std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions
   }
   std::sort(fixed.begin(), fixed.end());
 
-  // The tip is free: nothing to resolve there.
-  const std::vector<double> graded(interfaces.begin(), interfaces.end() - 1);
+  // At a free tip there is nothing to resolve.
+  const std::vector<double> graded(interfaces.begin(),
+                                   interfaces.end() - (options.fine_tip ? 0 : 1));
   const double d = cilium.diameter;
   const auto size = [&](double S) {
     double distance = cilium.length();

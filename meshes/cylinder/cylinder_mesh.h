@@ -25,15 +25,16 @@ struct CylinderMeshOptions {
   double coarsest_layer = 0.4;  ///< largest thickness of a layer
   double growth = 0.25;         ///< growth of the thickness with the distance from the nearest of
                                 ///< those planes; 0: all layers as thin as the finest
+  bool fine_tip = false;        ///< grow from the tip, too
   bool half = false;            ///< only Y ≥ 0, cut along mesh lines: the half of the whole mesh
   std::vector<double> planes;   ///< further reference arc lengths S where mesh planes must lie, m
 };
 
 /// Arc lengths 0 = Z₀ < Z₁ < … = L of the planes between the layers, m. All segment interfaces and
 /// all planes asked for are among them (one within 1e-9 L of an earlier one counts as that one);
-/// between them the thickness follows min(coarsest, finest + growth·distance to the clamped end or
-/// the next interface). Throws InputError if the options are out of range or a plane lies outside
-/// [0, L].
+/// between them the thickness follows min(coarsest, finest + growth·distance to the clamped end,
+/// the next interface or a fine tip). Throws InputError if the options are out of range or a plane
+/// lies outside [0, L].
 std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions& options);
 
 /// The straight cylinder of the cilium: an o-grid (inner square and rings) extruded through

@@ -62,7 +62,7 @@ class Discretised {
     add_stiffness(*space, state, *internal_forces(*space, state), constraints, matrix);
     forces.reinit(space->unknowns());
     const discretisation::ExtrudedQuadrature quadrature(*space);
-    loads::external_forces(*space, quadrature,
+    loads::external_forces(*space, quadrature, paper_cilium(),
                            ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = 0.5},
                            0.5e-3)(state.displacement, forces, constraints, &matrix);
     constraints.set_zero(forces);

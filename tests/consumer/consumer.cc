@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A user's program: the tip of the paper's cilium under 1 mN by the elastica and by the beam FEM.
-#include <analytic/elastica/elastica.h>
-#include <fem/beam/beam.h>
+#include <ciliaval/analytic/elastica/elastica.h>
+#include <ciliaval/fem/beam/beam.h>
 
 #include <cstdio>
 

@@ -45,6 +45,7 @@ struct Subject {
   std::function<void(input::ModelOptions&)> set;  ///< the options of both
   std::string reference_field;
   std::function<void(input::ModelOptions&)> refine;  ///< those of the reference
+  RandomCase (*draw)(std::uint32_t seed) = random_case;
 };
 
 const std::vector<Subject>& subjects() {
@@ -55,21 +56,25 @@ const std::vector<Subject>& subjects() {
     // GMRES is slow where a segment is nearly incompressible.
     solid.solver = fem::solid::solvers::SolverKind::direct;
   };
+  const auto finer_beam = [](input::ModelOptions& options) {
+    auto& beam = options.of<fem::beam::BeamOptions>();
+    beam.refinement = 2;
+    beam.degree = 8;
+  };
+  const auto accurate_elastica = [](input::ModelOptions& options) {
+    options.of<analytic::elastica::ElasticaOptions>().tolerance = 1e-15;
+  };
   static const std::vector<Subject> all{
       {"solid", "solid", "mesh", as_they_are, "mesh", next_mesh},
+      {"solid-sweep", "solid", "mesh", as_they_are, "mesh", next_mesh, random_sweep},
+      {"beam-sweep", "beam", "line", as_they_are, "line", finer_beam, random_sweep},
       {"coarse-solid", "solid", "mesh",
        [](input::ModelOptions& options) { options.of<fem::solid::SolidOptions>().refinement = 0; },
        "mesh", next_mesh},
-      {"beam", "beam", "line", as_they_are, "line",
-       [](input::ModelOptions& options) {
-         auto& beam = options.of<fem::beam::BeamOptions>();
-         beam.refinement = 2;
-         beam.degree = 8;
-       }},
-      {"elastica", "elastica", "volume", as_they_are, "volume",
-       [](input::ModelOptions& options) {
-         options.of<analytic::elastica::ElasticaOptions>().tolerance = 1e-15;
-       }},
+      {"beam", "beam", "line", as_they_are, "line", finer_beam},
+      {"elastica", "elastica", "volume", as_they_are, "volume", accurate_elastica},
+      {"elastica-sweep", "elastica", "volume", as_they_are, "volume", accurate_elastica,
+       random_sweep},
       // The magnet of a rod in vacuum has a closed form.
       {"potential", "elastica", "potential",
        [](input::ModelOptions& options) {
@@ -201,7 +206,7 @@ bool cover(const Subject& subject, std::uint32_t cases, std::uint32_t first_seed
     ++left_out;
   };
   for (std::uint32_t seed = first_seed; seed < first_seed + cases; ++seed) {
-    const RandomCase drawn = random_case(seed);
+    const RandomCase drawn = subject.draw(seed);
     input::Case problem = problem_of(drawn, subject);
     fmt::print("seed {}: {}, {} segments, L/d {:.1f}, {:.0f} deg: ", seed, type(drawn.load),
                drawn.cilium.segments.size(), drawn.cilium.length() / drawn.cilium.diameter,
@@ -263,8 +268,8 @@ int main(int argc, char** argv) {
         return test::cover(subject, number(2, 20), number(3, 0)) ? 0 : 1;
       }
     throw InputError(
-        "usage: coverage solid|coarse-solid|beam|elastica|potential [number of cases [first "
-        "seed]]");
+        "usage: coverage solid|coarse-solid|beam|elastica|potential|solid-sweep|beam-sweep|"
+        "elastica-sweep [number of cases [first seed]]");
   } catch (const std::exception& error) {
     fmt::print(stderr, "coverage: {}\n", error.what());
     return 2;

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "analytic/elastica/elastica.h"
+#include "problem/surroundings/surface.h"
 
 namespace ciliaval::test {
 namespace {
@@ -80,6 +83,39 @@ double elastica_angle(const Cilium& cilium, const Load& load) {
   return step.deformation->centreline.at(cilium.length()).theta();
 }
 
+std::vector<Vector3> random_sensors(Draw& draw, const Cilium& cilium) {
+  std::vector<Vector3> sensors;
+  for (int i = 0; i < 4; ++i) {
+    const double depth = draw.log_even(0.05 * cilium.radius(), 10 * cilium.length());
+    const double aside = draw.even(0, 1) * std::max(depth, cilium.radius());
+    const double phi = draw.even(0, 2 * pi);
+    sensors.emplace_back(aside * std::cos(phi), aside * std::sin(phi), -depth);
+  }
+  return sensors;
+}
+
+surroundings::Profile random_profile(Draw& draw, std::uint32_t turn, const Cilium& cilium) {
+  const double L = cilium.length();
+  const double height = L * draw.log_even(0.002, 0.02);
+  const double length = L * draw.log_even(0.3, 2);
+  switch (turn) {
+    case 0:
+      return surroundings::FlatProfile{};
+    case 1:
+      return surroundings::SineProfile{height, length};
+    default: {
+      const double flank = height * draw.log_even(1, 5);
+      // The arcs take a part of the flanks.
+      const double room = std::hypot(height, flank) / 2 / std::tan(std::atan2(height, flank) / 2);
+      return surroundings::TrapezoidProfile{.height = height,
+                                            .top = length,
+                                            .bottom = length,
+                                            .flank = flank,
+                                            .radius = draw.even(0.1, 0.9) * room};
+    }
+  }
+}
+
 }  // namespace
 
 RandomCase random_case(std::uint32_t seed) {
@@ -108,12 +144,22 @@ RandomCase random_case(std::uint32_t seed) {
   result.tip_angle = elastica_angle(result.cilium, result.load);
   if (const auto h = contact_height(shape))
     result.kernel_width = std::min(result.kernel_width, std::min(*h, L - *h) / 3);
-  for (int i = 0; i < 4; ++i) {
-    const double depth = draw.log_even(0.05 * result.cilium.radius(), 10 * L);
-    const double aside = draw.even(0, 1) * std::max(depth, result.cilium.radius());
-    const double phi = draw.even(0, 2 * pi);
-    result.sensors.emplace_back(aside * std::cos(phi), aside * std::sin(phi), -depth);
-  }
+  result.sensors = random_sensors(draw, result.cilium);
+  return result;
+}
+
+RandomCase random_sweep(std::uint32_t seed) {
+  Draw draw(seed);
+  RandomCase result;
+  result.cilium = random_cilium(draw);
+  const double L = result.cilium.length();
+  auto surface = std::make_shared<const surroundings::Surface>(
+      surroundings::Surface{random_profile(draw, seed % 3, result.cilium), draw.even(0, 0.6), 0});
+  const double interference = draw.log_even(0.003, 0.1) * L;
+  const double travel = draw.even(0, 2) * L;
+  result.load = Load(SweepLoad{interference, travel, 0, draw.even(0, 2 * pi)}, std::move(surface));
+  result.tip_angle = elastica_angle(result.cilium, result.load);
+  result.sensors = random_sensors(draw, result.cilium);
   return result;
 }
 

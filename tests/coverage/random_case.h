@@ -14,7 +14,7 @@ namespace ciliaval::test {
 struct RandomCase {
   Cilium cilium;
   Load load;
-  double tip_angle = 0;          ///< that of the elastica under the load, rad
+  double tip_angle = 0;          ///< that of the elastica under the load, rad; infinite: none
   double kernel_width = 0.5e-3;  ///< m
   std::vector<Vector3> sensors;  ///< m
 };
@@ -24,5 +24,9 @@ struct RandomCase {
 /// 60°, four sensors: 0.05 radii to 10 lengths below the base. The kernel is the default's, or a
 /// third of the room that the height leaves it.
 RandomCase random_case(std::uint32_t seed);
+
+/// Such a cilium under a surface, flat, a sine or a trapezoid by turns, pressed on it by 0.003 to
+/// 0.1 lengths, with a friction up to 0.6.
+RandomCase random_sweep(std::uint32_t seed);
 
 }  // namespace ciliaval::test

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -246,10 +247,19 @@ TEST_F(ParaView, OpensTheFolderWarpedWithTubesArrowsAndFieldLines) {
               step(1)["mechanics"]["beam"]["tip"][0].get<double>() + radius, 0.05 * radius);
   EXPECT_GT(objects.at("dipoles_beam arrows")["points"], 64);
   EXPECT_EQ(shown("field_solid_volume in the plane of bending", "Cut")["coloured_by"], "B");
-  const json& lines = shown("field_solid_potential lines", "StreamTracer");
-  EXPECT_GT(lines["points"], 1000);
-  EXPECT_GT(lines["median_cosine"], 0.9999) << "the lines do not follow B";
-  EXPECT_TRUE(objects.at("dB_solid_volume")["shown"]);
+  for (const char* end : {"tip", "base"}) {
+    const json& lines = shown(std::string("field_solid_potential lines, ") + end, "StreamTracer");
+    EXPECT_GT(lines["points"], 500);
+    EXPECT_GT(lines["median_cosine"], 0.9999) << "the lines do not follow B";
+  }
+  shown("load 0", "TransformFilter");
+  // The arrow of the drawn step is a diameter long.
+  const json& arrow = shown("dB_solid_volume", "Glyph");
+  double length = 0;
+  for (const std::size_t axis : {0, 2, 4})
+    length = std::max(
+        length, arrow["bounds"][axis + 1].get<double>() - arrow["bounds"][axis].get<double>());
+  EXPECT_NEAR(length, 2 * radius, 0.3 * radius);
   EXPECT_FALSE(objects.at("dB_elastica_line")["shown"]);
   EXPECT_EQ(objects["picture"]["size"], json({1200, 900}));
   EXPECT_GT(objects["picture"]["drawn"], 0.05);

@@ -57,6 +57,13 @@ inline std::string replaced(std::string_view text, std::string_view part, std::s
   return std::string(text.substr(0, at)).append(by).append(text.substr(at + part.size()));
 }
 
+/// A list of the same text.
+inline std::string repeated(std::string_view part, int count) {
+  std::string list = "[";
+  for (int i = 0; i < count; ++i) list.append(part).append(", ");
+  return list + "]";
+}
+
 /// The good case's cilium, swept by the elastica over plateaus of 1 mm; `rest` has the keys of
 /// [load] but type and interference, and further tables.
 inline std::string plateau_sweep(std::string_view rest) {

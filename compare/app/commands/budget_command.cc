@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "compare/app/case_files.h"
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
 #include "compare/budget/budget.h"
 #include "compare/budget/report.h"
@@ -23,7 +24,8 @@ struct Options {
   std::vector<std::string> without;  ///< models left out, "sensitivity"
   OptionalFile json;
   OptionalFile csv;
-  OptionalFile plot;  ///< an SVG file
+  OptionalFile plot;     ///< a figure
+  bool explain = false;  ///< print the footnotes
 };
 
 budget::Budget run_budget(const input::Case& problem, const std::vector<std::string>& without) {
@@ -33,7 +35,7 @@ budget::Budget run_budget(const input::Case& problem, const std::vector<std::str
 }
 
 /// Splits the difference between the paper's model and the best one into the parts of its
-/// assumptions, whatever models the case lists. The plot comes last: without gnuplot, everything
+/// assumptions, whatever models the case lists. The plot comes last: without Python, everything
 /// else is there. Returns `solver` if a model failed somewhere, `undecided` if no link could be
 /// judged.
 ExitCode execute(const Options& options, const std::string& words) {
@@ -50,17 +52,12 @@ ExitCode execute(const Options& options, const std::string& words) {
   for (const budget::BudgetRow& row : budget.rows)
     if (const std::string message = budget::fault(row); !message.empty())
       throw std::logic_error("the error budget is wrong, please report it: " + message);
-  print(budget::budget_text(budget));
+  print(budget::budget_text(budget, footnotes_of(options.explain)));
   if (options.json)
     output::write_file(*options.json, budget::budget_json(budget, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, budget::budget_csv(budget));
-  if (options.plot) {
-    const budget::Waterfall drawing = budget::waterfall(budget);
-    if (drawing.script.empty())
-      print("Nothing to plot.\n");
-    else
-      plot::write_svg(*options.plot, drawing.script, drawing.size);
-  }
+  if (options.plot)
+    draw_figure(budget::budget_json(budget, output::provenance(words)), *options.plot);
   if (budget.failed) return ExitCode::solver;
   return budget.decided() ? ExitCode::pass : ExitCode::undecided;
 }
@@ -85,8 +82,9 @@ void add_budget(CommandLine& line) {
       ->take_all();
   add_output(budget, "--json", options->json, "Write the budget as JSON too");
   add_output(budget, "--csv", options->csv, "Write the budget as CSV too");
-  add_output(budget, "--plot", options->plot,
-             "Plot tip and dB of the last step as a waterfall; SVG, by gnuplot", "FILE.svg");
+  add_explain(budget, options->explain);
+  add_plot(budget, options->plot,
+           "Plot tip and dB of the last step as a waterfall: SVG, PDF or PNG");
 }
 
 }  // namespace ciliaval::compare::app::commands

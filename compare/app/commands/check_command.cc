@@ -47,9 +47,8 @@ models::CaseResult run_case(input::Case problem, const std::vector<std::string>&
   std::erase_if(problem.fields, is_left_out);
   ProgressLine line;
   const Progress progress = line.callback();
-  Progress named;
-  if (progress) named = [&](const std::string& text) { progress(problem.name + ": " + text); };
-  return models::run(problem, models::mechanics_models(), models::field_models(), named);
+  return models::run(problem, models::mechanics_models(), models::field_models(),
+                     with_prefix(progress, problem.name + ": "));
 }
 
 /// All baselines, before anything runs.
@@ -174,7 +173,7 @@ void add_check(CommandLine& line) {
       "(docs/guide/accuracy.md).",
       options, execute);
   check->add_option("CASE", options->files, "Case files (TOML); none: all shipped ones")
-      ->check(CLI::ExistingFile);
+      ->transform(input_file());
   check->add_flag(
       "--quick", options->quick,
       "Leave out the models that `ciliaval list` calls slow: seconds instead of minutes");

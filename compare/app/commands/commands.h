@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "compare/output/table.h"
+
 namespace ciliaval::compare::app::commands {
 
 /// What the program returns.
@@ -39,21 +41,32 @@ struct CommandLine {
 
 using OptionalFile = std::optional<std::filesystem::path>;
 
-/// A positional file that must exist.
+/// Takes the name of a file that exists, or the name of a case, study or bench that comes with the
+/// program, without its `.toml`: `fig3b`.
+CLI::Validator input_file();
+
+/// A positional file that must exist, or be one that comes with the program.
 CLI::Option* add_file(CLI::App* command, const char* name, std::filesystem::path& file,
                       const char* description);
 /// An option that names a file to write.
 void add_output(CLI::App* command, const char* name, OptionalFile& file, const char* description,
                 const char* type = "FILE");
 
+/// `--explain`, and what it does to a table.
+void add_explain(CLI::App* command, bool& explain);
+output::Footnotes footnotes_of(bool explain);
+
+/// An option that names a figure to write: SVG, PDF or PNG by its name.
+void add_plot(CLI::App* command, OptionalFile& file, const char* description,
+              const char* name = "--plot");
+
 /// Throws InputError under mpirun.
 void require_one_rank(const char* command);
 
-/// "ciliaval 0.1.0 (git …)"
-std::string version_line();
-
 // Each adds a command with its options and help. The commands throw InputError before anything
 // runs, SolverError and FileError.
+void add_draw(CommandLine& line);
+void add_new(CommandLine& line);
 void add_run(CommandLine& line);
 void add_validate(CommandLine& line);
 void add_mesh(CommandLine& line);
@@ -65,5 +78,6 @@ void add_study(CommandLine& line);
 void add_claims(CommandLine& line);
 void add_report(CommandLine& line);
 void add_list(CommandLine& line);
+void add_schema(CommandLine& line);
 
 }  // namespace ciliaval::compare::app::commands

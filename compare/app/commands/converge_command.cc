@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "compare/app/case_files.h"
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
-#include "compare/convergence/plot.h"
 #include "compare/convergence/study.h"
 #include "compare/models/registry.h"
 #include "compare/output/output_file.h"
@@ -18,13 +18,14 @@ namespace {
 struct Options {
   std::filesystem::path file;
   unsigned int levels = 3;
+  bool list = false;  ///< print the numbers
   OptionalFile json;
   OptionalFile csv;
-  OptionalFile plot;  ///< an SVG file
+  OptionalFile plot;  ///< a figure
 };
 
 /// Refines each model of a case through the levels of its meshes, degrees, sums and tolerances. The
-/// plot comes last: without gnuplot, everything else is there. Returns `solver` if a model failed
+/// plot comes last: without Python, everything else is there. Returns `solver` if a model failed
 /// on a level, `undecided` if the case has no model that can be refined.
 ExitCode execute(const Options& options, const std::string& words) {
   require_one_rank("converge");
@@ -44,19 +45,16 @@ ExitCode execute(const Options& options, const std::string& words) {
   }
   print(studies.empty()
             ? "The case has no model that can be refined: a closed form has no levels.\n"
-            : convergence::study_text(studies));  // first: a full disk must not cost the table
+            : convergence::study_text(studies,
+                                      options.list));  // first: a full disk must not cost the table
   if (options.json)
     output::write_file(*options.json,
                        convergence::study_json(problem.name, studies, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, convergence::study_csv(studies));
   if (studies.empty()) return ExitCode::undecided;
-  if (options.plot) {
-    const convergence::ConvergencePlot drawing = convergence::convergence_plot(problem, studies);
-    if (drawing.script.empty())
-      print("Nothing to plot: at no load step do the levels' values differ.\n");
-    else
-      plot::write_svg(*options.plot, drawing.script, drawing.size);
-  }
+  if (options.plot)
+    draw_figure(convergence::study_json(problem.name, studies, output::provenance(words)),
+                *options.plot);
   return failed ? ExitCode::solver : ExitCode::pass;
 }
 
@@ -75,11 +73,12 @@ void add_converge(CommandLine& line) {
       ->add_option("--levels", options->levels,
                    "How many levels of each refinement, from the coarsest, or as many as there are")
       ->capture_default_str();
+  converge->add_flag("--all", options->list,
+                     "Print each number with its order, extrapolated value and interval");
   add_output(converge, "--json", options->json, "Write the study as JSON too");
   add_output(converge, "--csv", options->csv, "Write the study as CSV too");
-  add_output(converge, "--plot", options->plot,
-             "Plot the errors over the levels' sizes, with the fitted orders; SVG, by gnuplot",
-             "FILE.svg");
+  add_plot(converge, options->plot,
+           "Plot the errors over the levels' sizes, with the fitted orders: SVG, PDF or PNG");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -17,9 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
-  std::vector<fs::path> files;
-};
+struct Options {};
 
 std::string title_of(const fs::path& file) {
   try {
@@ -49,37 +47,6 @@ std::string list_of_cases() {
   return text;
 }
 
-ExitCode validate(const Options& options, const std::string&) {
-  std::vector<fs::path> files;
-  for (const fs::path& file : options.files) {
-    if (is_bench_file(file)) {
-      const sensing::Bench bench = sensing::read_bench(file);
-      print(fmt::format("{}: the test bench is valid: {} loads at {} azimuths, {} draws\n",
-                        file.string(), bench.problem.load_path.size(), bench.azimuths,
-                        bench.draws));
-      continue;
-    }
-    if (!is_study_file(file)) {
-      files.push_back(file);
-      continue;
-    }
-    const study::Study study = study::reader::read_study(file);
-    const std::string what = study.optimisation ? fmt::format("an optimum over {} numbers",
-                                                              study.optimisation->parameters.size())
-                                                : fmt::format("{} points", study.point_count());
-    print(fmt::format("{}: study \"{}\" is valid: {}, {} pairs of models\n", file.string(),
-                      study.name, what, study.pairs.size()));
-  }
-  const std::vector<input::Case> cases = read_cases(files);
-  for (std::size_t i = 0; i < cases.size(); ++i)
-    print(
-        fmt::format("{}: case \"{}\" is valid: {} load steps, {} sensors, mechanics {}, fields "
-                    "{}\n",
-                    files[i].string(), cases[i].name, cases[i].load_path.size(),
-                    cases[i].sensors.size(), cases[i].mechanics.size(), cases[i].fields.size()));
-  return ExitCode::pass;
-}
-
 ExitCode list(const Options&, const std::string&) {
   std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
   const auto add = [&](const auto& entries) {
@@ -101,14 +68,6 @@ ExitCode list(const Options&, const std::string&) {
 }
 
 }  // namespace
-
-void add_validate(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
-  line.add("validate", "Read and check case files, run nothing", options, validate)
-      ->add_option("CASE", options->files, "Case, study and test bench files (TOML)")
-      ->required()
-      ->check(CLI::ExistingFile);
-}
 
 void add_list(CommandLine& line) {
   line.add("list", "List models, loads, shipped cases, studies and benches",

@@ -3,10 +3,10 @@
 
 #include <fmt/core.h>
 
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
-#include "compare/report/report.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
@@ -26,15 +26,16 @@ The page shows what lies in DIR and in the folders in it, whatever the files are
 
 What is not there is named in the page with its command. No number is computed: each is from a
 file that the page names. A file that is damaged is named, the others are shown, and the exit code
-is 4; so it is where gnuplot, which draws the figures, is not installed (docs/guide/report.md).)";
+is 4. The page is made by the Python package: `python3 -m ciliaval.report DIR` does the same
+(docs/guide/report.md).)";
 
 struct Options {
   std::filesystem::path folder = "results";
   OptionalFile output;  ///< else report.html in the folder
 };
 
-/// Where a result file is damaged or a figure cannot be drawn, the page is written with what can be
-/// shown and `input_output` returned.
+/// Where a result file is damaged, the page is written with what can be shown and `input_output`
+/// returned.
 ExitCode execute(const Options& options, const std::string& words) {
   const std::filesystem::path& folder = options.folder;
   require_one_rank("report");
@@ -46,14 +47,14 @@ ExitCode execute(const Options& options, const std::string& words) {
     throw InputError(fmt::format(
         "`{}` is there and may be a result: the page replaces .html files only", file.string()));
   output::check_outputs({file}, {});
-  report::Figures figures;
-  const report::Report made = report::results_page(folder, output::provenance(words), figures);
-  output::write_file(file, made.html);
-  for (const std::string& what : made.damaged) warn(what);
-  if (!figures.failure().empty()) warn(figures.failure());
+  const output::Provenance maker = output::provenance(words);
+  const ModuleEnd made = run_python_module(
+      "ciliaval.report",
+      {folder.string(), "-o", file.string(), "--made-by",
+       fmt::format("{} on {}: {}", output::version_line(), maker.date, maker.command)});
+  for (const std::string& what : made.warnings) warn(what);
   print(fmt::format("Report: {}\n", file.string()));
-  return made.damaged.empty() && figures.failure().empty() ? ExitCode::pass
-                                                           : ExitCode::input_output;
+  return made.warnings.empty() ? ExitCode::pass : ExitCode::input_output;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "compare/app/case_files.h"
 #include "compare/app/commands/commands.h"
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
 #include "compare/models/errors.h"
 #include "compare/models/registry.h"
@@ -21,7 +22,6 @@
 #include "compare/output/store/store.h"
 #include "compare/output/table.h"
 #include "compare/output/vtk/output.h"
-#include "compare/report/report.h"
 #include "fem/parallel.h"
 
 namespace ciliaval::compare::app::commands {
@@ -32,7 +32,8 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<fs::path> files;
   fs::path directory = "results";
-  bool fresh = false;  ///< empty the stores of runs that were killed
+  bool fresh = false;    ///< empty the stores of runs that were killed
+  bool explain = false;  ///< print the footnotes
 };
 
 /// A case of `ciliaval run`, what it may write to, and what it goes on from.
@@ -57,7 +58,7 @@ Prepared prepare(const fs::path& file, const input::Case& problem, const Options
     if (!result.store)
       result.store = std::make_unique<output::store::Store>(
           options.directory / ("." + problem.name + ".sqlite"), options.fresh);
-    fingerprint->emplace_back("program", version_line());
+    fingerprint->emplace_back("program", output::version_line());
     output::store::Store& store = *result.store;
     store.require_fingerprint(id, *fingerprint);
     const Checkpoint& checkpoint =
@@ -96,16 +97,16 @@ void end_store(output::store::Store& store, const models::CaseResult& result) {
   if (!needed) store.remove();
 }
 
-/// report.html beside summary.json. Figures that cannot be drawn are named, on the page and here:
-/// the results are as good without them.
+/// report.html beside summary.json. The results are as good without it.
 void write_case_report(const fs::path& folder) {
-  report::Figures figures;
-  output::write_file(folder / "report.html", report::case_page(folder, figures));
-  if (!figures.failure().empty())
-    warn(fmt::format("report.html is without its figures: {}", figures.failure()));
+  try {
+    run_python_module("ciliaval.report", {folder.string(), "--case"});
+  } catch (const FileError& error) {
+    warn(fmt::format("there is no report.html: {}", error.what()));
+  }
 }
 
-ExitCode run_one(Prepared& prepared, const std::string& words) {
+ExitCode run_one(Prepared& prepared, output::Footnotes footnotes, const std::string& words) {
   ProgressLine line;
   const Progress progress = line.callback();
   const input::Case& problem = prepared.problem;
@@ -121,7 +122,7 @@ ExitCode run_one(Prepared& prepared, const std::string& words) {
                        [&] { write_case_report(folder.path()); });
   folder.commit();
   line.clear();
-  print(output::table(result, comparisons));
+  print(output::table(result, comparisons, footnotes));
   if (prepared.store) end_store(*prepared.store, result);
   return models::all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
@@ -152,7 +153,7 @@ ExitCode execute(const Options& options, const std::string& words) {
     prepared.push_back(prepare(options.files[i], cases[i], options));
   ExitCode code = ExitCode::pass;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    const ExitCode one = run_one(prepared[i], words);
+    const ExitCode one = run_one(prepared[i], footnotes_of(options.explain), words);
     if (one != ExitCode::pass) code = one;
     print(fmt::format("Results: {}\n{}", prepared[i].folder.target().string(),
                       i + 1 < prepared.size() ? "\n" : ""));
@@ -166,15 +167,14 @@ void add_run(CommandLine& line) {
   const auto options = std::make_shared<Options>();
   CLI::App* run =
       line.add("run", "Run cases, compare the models, write the results", options, execute);
-  run->add_option("CASE", options->files, "Case files (TOML)")
-      ->required()
-      ->check(CLI::ExistingFile);
+  run->add_option("CASE", options->files, "Case files (TOML)")->required()->transform(input_file());
   run->add_option("-o,--output", options->directory,
                   "Folder for the results, one subfolder for each case")
       ->type_name("DIR")
       ->capture_default_str();
   run->add_flag("--fresh", options->fresh,
                 "Start anew: forget what a run that was killed or did not converge has solved");
+  add_explain(run, options->explain);
 }
 
 }  // namespace ciliaval::compare::app::commands

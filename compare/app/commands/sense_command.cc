@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/app/commands/commands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
+#include <map>
 #include <string_view>
 
 #include "compare/app/case_files.h"
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
 #include "compare/input/units.h"
 #include "compare/output/output_file.h"
@@ -15,6 +19,7 @@
 #include "compare/sensing/profile.h"
 #include "compare/sensing/sensing.h"
 #include "problem/error.h"
+#include "problem/support/words.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
@@ -27,8 +32,13 @@ READINGS.csv has a header with units and a row for each reading:
   first, 71.4, -1.2, 2230.9
   second, 100.2, 14.8, 2226.0
 
-or dBx, dBy, dBz, what the load has changed. Without READINGS, CASE is a simulated test bench,
-NAME.sense.toml: errors of speed and direction, and which error of the sensor makes them.
+or dBx, dBy, dBz, what the load has changed. Files of loggers are read too: separators , ; and
+tab, decimal commas, headers such as X, B_x, Bx [mG] or Bx_uT, several sensors side by side:
+
+  ciliaval sense mine.toml log.csv --unit mG --unloaded "0 s..2 s" --map "bx=Ch 1,by=Ch 2,bz=Ch 3"
+
+Without READINGS, CASE is a simulated test bench, NAME.sense.toml: errors of speed and direction,
+and which error of the sensor makes them.
 
 Of a case with the load `sweep`: the levels of the surface, in the order of the rows.
 The load found is the least-squares solution with the chosen pair of models, its interval that of
@@ -39,12 +49,14 @@ struct Options {
   std::filesystem::path file;
   std::filesystem::path readings;
   OptionalFile background;
+  input::external::ReadingOptions reading{
+      {"", "--map"}, {"", "--unit"}, {"", "--scale"}, {"", "--unloaded"}};
   std::string models = "elastica/volume";
   std::string noise = "1 uT";          ///< standard deviation of each component of a reading
   std::optional<std::string> largest;  ///< load; else 1.25 times the case's largest
   OptionalFile json;
   OptionalFile csv;
-  OptionalFile plot;               ///< of a bench, an SVG file
+  OptionalFile plot;               ///< a figure
   std::vector<std::string> given;  ///< names of the options on the command line
 };
 
@@ -66,7 +78,7 @@ double largest_load(const input::Case& problem, const Options& options) {
 
 ExitCode exit_code(const sensing::Sensing& sensing) {
   bool any = false;
-  for (const auto& [name, sensed] : sensing.samples) {
+  for (const auto& [sample, sensed] : sensing.samples) {
     const sensing::SenseStatus status = sensing::status_of(sensed);
     if (status == sensing::SenseStatus::failed) return ExitCode::solver;
     any = any || status == sensing::SenseStatus::found || status == sensing::SenseStatus::nothing;
@@ -93,7 +105,7 @@ ExitCode simulate_bench(const Options& options, const std::string& words) {
     output::write_file(*options.json,
                        sensing::bench_json(bench, result, output::provenance(words)));
   if (options.plot)
-    plot::write_svg(*options.plot, sensing::bench_script(bench, result), {700, 760});
+    draw_figure(sensing::bench_json(bench, result, output::provenance(words)), *options.plot);
   return ExitCode::pass;
 }
 
@@ -111,9 +123,15 @@ sensing::SensorReadings readings_of(const Options& options, const input::Case& p
   std::vector<std::filesystem::path> inputs = input_files(options.file, problem);
   inputs.push_back(options.readings);
   if (options.background) inputs.push_back(*options.background);
-  output::check_outputs({options.json, options.csv}, inputs);
-  return sensing::read_sensor_readings(options.readings, options.background,
-                                       problem.sensors.size());
+  output::check_outputs({options.json, options.csv, options.plot}, inputs);
+  // What the command line says goes before the case.
+  input::external::ReadingOptions reading = problem.readings;
+  for (const auto& [key, text] : input::external::reading_keys)
+    if ((options.reading.*text).given()) reading.*text = options.reading.*text;
+  sensing::SensorReadings read = sensing::read_sensor_readings(
+      options.readings, options.background, input::sensor_names(problem), reading);
+  read.remark = fmt::format("{}: {}.", options.readings.filename().string(), read.remark);
+  return read;
 }
 
 /// The surface's levels from the readings of a sweep. Returns `undecided` if there is none.
@@ -122,7 +140,7 @@ ExitCode sense_surface(const input::Case& problem, const Options& options,
   const sensing::SensorReadings read = readings_of(options, problem);
   if (!read.measured_offset)
     throw InputError(options.readings.string() +
-                     ": the levels of a surface need dBx, dBy, dBz, or rows `unloaded`");
+                     ": the levels of a surface need dBx, dBy, dBz, or unloaded rows");
   double largest = 0;
   for (const Load& load : problem.load_path) largest = std::max(largest, 4 * magnitude(load));
   if (options.largest) largest = input::parse_quantity(*options.largest, quantity::length);
@@ -137,10 +155,12 @@ ExitCode sense_surface(const input::Case& problem, const Options& options,
   profile.case_name = problem.name;
   profile.models = pair;
   line.clear();
-  print(sensing::profile_text(profile));
+  print(support::printable(read.remark) + '\n' + sensing::profile_text(profile));
   if (options.json)
     output::write_file(*options.json, sensing::profile_json(profile, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, sensing::profile_csv(profile));
+  if (options.plot)
+    draw_figure(sensing::profile_json(profile, output::provenance(words)), *options.plot);
   return profile.levels.empty() ? ExitCode::undecided : ExitCode::pass;
 }
 
@@ -151,6 +171,7 @@ ExitCode sense_readings(const Options& options, const std::string& words) {
   const input::Case problem = read_cases({options.file}).front();
   if (problem.sensors.empty()) throw InputError(options.file.string() + ": the case has no sensor");
   if (output::is_sweep(problem)) return sense_surface(problem, options, words);
+  sensing::require_load_to_sense(problem.load_path);
   sensing::Sensing sensing;
   sensing.case_name = problem.name;
   sensing.models = sensing::parse_pair(options.models);
@@ -166,17 +187,26 @@ ExitCode sense_readings(const Options& options, const std::string& words) {
   const sensing::Response response(problem, sensing.models.field, shapes, problem.sensors);
   sensing.interpolation_error = response.interpolation_error();
   sensing.largest_change = response.largest_change();
-  const sensing::Inversion invert(response, read.noise_factor * sensing.noise);
   sensing.measured_offset = read.measured_offset;
-  for (const sensing::Sample& sample : read.samples)
+  sensing.remarks.push_back(support::printable(read.remark));
+  if (auto doubt = sensing::scatter_remark(read.scatter, sensing.noise.x()))
+    sensing.remarks.push_back(std::move(*doubt));
+  std::map<double, sensing::Inversion> inversions;  // by the noise of a mean
+  for (const sensing::Sample& sample : read.samples) {
+    const double factor = read.noise_factor(sample);
+    const auto invert =
+        inversions.try_emplace(factor, response, Vector3(factor * sensing.noise)).first;
     sensing.samples.emplace_back(
-        sample.name,
-        invert(read.measured_offset ? sample.change
-                                    : Eigen::VectorXd(sample.change - response.undeformed())));
+        sample, invert->second(read.measured_offset
+                                   ? sample.change
+                                   : Eigen::VectorXd(sample.change - response.undeformed())));
+  }
   print(sensing::sensing_text(sensing));
   if (options.json)
     output::write_file(*options.json, sensing::sensing_json(sensing, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, sensing::sensing_csv(sensing));
+  if (options.plot)
+    draw_figure(sensing::sensing_json(sensing, output::provenance(words)), *options.plot);
   return exit_code(sensing);
 }
 
@@ -187,15 +217,21 @@ ExitCode execute(const Options& options, const std::string& words) {
       throw InputError(options.file.string() +
                        " is a test bench, which makes its own readings: leave " +
                        options.readings.string() + " out");
-    refuse_options(options, {"--background", "--models", "--noise", "--largest", "--csv"},
+    refuse_options(options,
+                   {"--background", "--models", "--noise", "--largest", "--csv", "--map", "--unit",
+                    "--scale", "--unloaded"},
                    "a test bench states its models and errors in its file and has no table");
     return simulate_bench(options, words);
   }
   if (options.readings.empty())
     throw InputError("there is no file of readings after " + options.file.string() +
                      "; a test bench to be simulated is called NAME.sense.toml");
-  refuse_options(options, {"--plot"}, "a plot shows a test bench, not readings");
   return sense_readings(options, words);
+}
+
+void add_text(CLI::App* sense, const char* name, input::external::ReadingOptions::Text& option,
+              const char* type, const char* what) {
+  sense->add_option(name, option.text, what)->type_name(type);
 }
 
 }  // namespace
@@ -218,6 +254,15 @@ void add_sense(CommandLine& line) {
                    "taken off the readings, which then have a column `azimuth`")
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
+  add_text(sense, "--map", options->reading.map, "\"bx=NAME, by=NAME, bz=NAME\"",
+           "The columns of the readings, where their headers are not Bx, By, Bz or X, Y, Z");
+  add_text(sense, "--unit", options->reading.unit, "UNIT",
+           "Of columns without one: T, mT, uT, nT, G, mG, or LSB with --scale");
+  add_text(sense, "--scale", options->reading.scale, "QUANTITY",
+           "The flux density of an LSB, \"0.15 uT\" or \"6842 LSB/G\"; or three for x, y, z");
+  add_text(sense, "--unloaded", options->reading.unloaded, "RANGE",
+           "The readings of the straight cilium: \"0 s..1 s\", \"rows 1..20\", or `model` for\n"
+           "the model's own B; left out: rows of the sample `unloaded`");
   sense->add_option("--models", options->models, "The pair of models to invert, such as solid/mesh")
       ->type_name("MECHANICS/FIELD")
       ->capture_default_str();
@@ -230,9 +275,9 @@ void add_sense(CommandLine& line) {
       ->type_name("QUANTITY");
   add_output(sense, "--json", options->json, "Write the loads as JSON too");
   add_output(sense, "--csv", options->csv, "Write the loads as CSV too");
-  add_output(sense, "--plot", options->plot,
-             "Of a test bench: plot the loads found over the true ones; SVG, by gnuplot",
-             "FILE.svg");
+  add_plot(sense, options->plot,
+           "Figure of the loads found: over time with their bands, or over the true loads of\n"
+           "a bench, or of the levels of a surface; SVG, PDF or PNG");
   sense->parse_complete_callback([options, sense] {
     for (const CLI::Option* option : sense->get_options())
       if (option->count() > 0) options->given.push_back(option->get_name());

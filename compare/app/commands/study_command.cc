@@ -6,15 +6,16 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 
 #include "compare/app/case_files.h"
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
 #include "compare/models/registry.h"
 #include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "compare/output/store/store.h"
+#include "compare/study/folder.h"
 #include "compare/study/optimum/optimise.h"
 #include "compare/study/reader/study_reader.h"
 #include "compare/study/summary/report.h"
@@ -64,30 +65,6 @@ struct Options {
   bool fresh = false;  ///< forget what an earlier run of the study has computed
 };
 
-constexpr const char* store_name = "points.sqlite";
-
-/// Makes the study's folder if it is not there. Throws FileError if something else lies there.
-void make_folder(const fs::path& folder) {
-  try {
-    if (fs::is_symlink(folder))
-      throw FileError(fmt::format(
-          "`{}` is a link to `{}`, which may belong to something else: remove the link or choose "
-          "another folder with -o DIR",
-          folder.string(), fs::read_symlink(folder).string()));
-    fs::create_directories(folder);
-    if (!fs::exists(folder / store_name) && !fs::is_empty(folder))
-      throw FileError(
-          fmt::format("`{}` is not the folder of a study: it has other files in it; "
-                      "move it away or choose another folder with -o DIR",
-                      folder.string()));
-  } catch (const fs::filesystem_error& error) {
-    throw FileError(
-        fmt::format("cannot write to the output folder `{}`: {}; choose another with "
-                    "-o DIR",
-                    folder.string(), error.code().message()));
-  }
-}
-
 /// Says what the study goes on from.
 void announce(const study::Study& study, std::size_t kept) {
   if (kept == 0) return;
@@ -130,18 +107,18 @@ ExitCode exit_code(const Results& result) {
 }
 
 /// Computes the outputs of each pair of models at each point, from where an earlier call was
-/// stopped. The plots come last: without gnuplot, everything else is there. Returns `solver` if
+/// stopped. The figures come last: without Python, everything else is there. Returns `solver` if
 /// every point failed.
 ExitCode execute(const Options& options, const std::string& words) {
   require_one_rank("study");
   const study::Study study = study::reader::read_study(options.file);
   const fs::path folder = options.directory / study.name;
   std::vector<fs::path> inputs = input_files(options.file, study.base);
-  inputs.push_back(folder / store_name);
+  inputs.push_back(folder / study::store_name);
   output::check_outputs({options.json}, inputs);
-  make_folder(folder);
-  output::store::Store store(folder / store_name, options.fresh);
-  study::Solutions solutions(store, study, version_line());
+  study::make_folder(folder);
+  output::store::Store store(folder / study::store_name, options.fresh);
+  study::Solutions solutions(store, study, output::version_line());
   announce(study, solutions.size());
   const Results result = solve(study, solutions);
   std::string text = study::summary::text(result.sweep);
@@ -162,8 +139,11 @@ ExitCode execute(const Options& options, const std::string& words) {
   output::write_file(folder / "study.json", json_text);
   print(text + fmt::format("\nResults: {}\n", folder.string()));
   if (options.json) output::write_file(*options.json, json_text);  // a full disk costs no table
-  for (const study::summary::StudyPlot& drawing : study::summary::plots(result.sweep))
-    plot::write_svg(folder / drawing.name, drawing.script, drawing.size);
+  try {
+    draw_figure(folder / "study.json", folder);
+  } catch (const FileError& error) {
+    warn(fmt::format("the study is without its figures: {}", error.what()));
+  }
   return exit_code(result);
 }
 
@@ -174,14 +154,15 @@ void add_study(CommandLine& line) {
   CLI::App* study = line.add(
       "study",
       "Parameter study: vary numbers of a case, alone or together, run pairs of models at each\n"
-      "point, and write tables and plots of the signal, its sensitivity and its range; propagate\n"
+      "point, and write tables and figures of the signal, its sensitivity and its range; "
+      "propagate\n"
       "tolerances to their standard deviations; find the best design within limits.",
       options, execute);
   study->footer(study_help);
   add_file(study, "STUDY", options->file, "Study file (TOML)");
   study
       ->add_option("-o,--output", options->directory,
-                   "Folder for the results: study.csv, study.json, plots and the store of what\n"
+                   "Folder for the results: study.csv, study.json, figures and the store of what\n"
                    "is solved, in a subfolder of the study's name")
       ->type_name("DIR")
       ->capture_default_str();

@@ -2,12 +2,15 @@
 #include "compare/input/external/background.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+
+#include "problem/support/words.h"
 
 namespace ciliaval::compare::input::external {
 namespace {
@@ -31,13 +34,26 @@ std::optional<std::size_t> index_in(const std::string& text, std::size_t bound) 
 }
 
 std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, std::size_t row,
-                                     std::size_t sensors, Faults& faults) {
+                                     std::span<const std::string> sensors, Faults& faults) {
   if (!table.has(column)) return 0;
-  const auto sensor = index_in(table.words[column][row], sensors);
+  const auto sensor = sensor_index(table.words[column][row], sensors);
   if (!sensor)
-    faults.add(table.rows[row], fmt::format("the sensor {} is none of the case's, 0 to {}",
-                                            in_quotes(table.words[column][row]), sensors - 1));
+    faults.add(table.rows[row],
+               fmt::format("the sensor {} is none of the case's, {}",
+                           in_quotes(table.words[column][row]), sensor_list(sensors)));
   return sensor;
+}
+
+std::optional<std::size_t> sensor_index(const std::string& text,
+                                        std::span<const std::string> sensors) {
+  for (std::size_t s = 0; s < sensors.size(); ++s)
+    if (support::equal_but_case(text, sensors[s])) return s;
+  return index_in(text, sensors.size());
+}
+
+std::string sensor_list(std::span<const std::string> sensors) {
+  return sensors.front() == "0" ? fmt::format("0 to {}", sensors.size() - 1)
+                                : fmt::format("{}", fmt::join(sensors, ", "));
 }
 
 std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns) {
@@ -61,22 +77,25 @@ void require_field_or_change(const CsvTable& table, std::size_t field, std::size
                "the undeformed cilium");
 }
 
-void require_field_range(const CsvTable& table, std::size_t first, Faults& faults) {
+void require_field_range(const Vector3& field, Place where, Faults& faults) {
   constexpr double largest = 100;  // T: more than any magnet makes
+  if (const double read = field.cwiseAbs().maxCoeff(); read > largest)
+    faults.add(where, fmt::format("a field of {:.3g} T was read; fields up to {:g} T are taken: is "
+                                  "the unit in the header right?",
+                                  read, largest));
+}
+
+void require_field_range(const CsvTable& table, std::size_t first, Faults& faults) {
   for (std::size_t i = 0; i < table.rows.size(); ++i)
-    if (const double read = row_vector(table, first, i).cwiseAbs().maxCoeff(); read > largest)
-      faults.add(table.rows[i],
-                 fmt::format("a field of {:.3g} T was read; fields up to {:g} T are taken: is the "
-                             "unit in the header right?",
-                             read, largest));
+    require_field_range(row_vector(table, first, i), table.rows[i], faults);
 }
 
 double apart(double a, double b) {
   return std::abs(std::remainder(a - b, turn));
 }
 
-Background::Background(std::string_view text, std::size_t sensors, Faults& faults)
-    : rows_(sensors) {
+Background::Background(std::string_view text, std::span<const std::string> sensors, Faults& faults)
+    : rows_(sensors.size()) {
   const std::array<CsvColumn, 5> columns{{{"azimuth", Kind::quantity, quantity::angle, true},
                                           {"Bx", Kind::quantity, quantity::flux_density, true},
                                           {"By", Kind::quantity, quantity::flux_density, true},
@@ -90,21 +109,21 @@ Background::Background(std::string_view text, std::size_t sensors, Faults& fault
     const auto sensor = sensor_of(table, 4, i, sensors, faults);
     if (!sensor) continue;
     const double azimuth = table.numbers[0][i] - turn * std::floor(table.numbers[0][i] / turn);
-    for (std::size_t s = for_all ? 0 : *sensor; s < (for_all ? sensors : *sensor + 1); ++s) {
+    for (std::size_t s = for_all ? 0 : *sensor; s < (for_all ? sensors.size() : *sensor + 1); ++s) {
       if (std::any_of(rows_[s].begin(), rows_[s].end(), [&](const Row& row) {
             return apart(row.azimuth, azimuth) <= same_azimuth;
           })) {
         faults.add(table.rows[i],
                    fmt::format("there is a second row of the azimuth {:g} deg and sensor {}",
-                               azimuth * 180 / std::numbers::pi, s));
+                               azimuth * 180 / std::numbers::pi, sensors[s]));
         break;
       }
       rows_[s].push_back({azimuth, row_vector(table, 1, i)});
     }
   }
-  for (std::size_t s = 0; s < sensors; ++s) {
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
     if (rows_[s].empty() && faults.empty())
-      faults.add({}, fmt::format("there is no row of sensor {}", s));
+      faults.add({}, fmt::format("there is no row of sensor {}", sensors[s]));
     std::sort(rows_[s].begin(), rows_[s].end(),
               [](const Row& a, const Row& b) { return a.azimuth < b.azimuth; });
   }

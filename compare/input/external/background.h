@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,7 +22,14 @@ std::optional<std::size_t> index_in(const std::string& text, std::size_t bound);
 /// The sensor of a row; 0 where the file has no such column and the case one sensor. One that the
 /// case does not have is a fault.
 std::optional<std::size_t> sensor_of(const CsvTable& table, std::size_t column, std::size_t row,
-                                     std::size_t sensors, Faults& faults);
+                                     std::span<const std::string> sensors, Faults& faults);
+
+/// The sensor of a name, or of a number from 0; none if there is no such sensor.
+std::optional<std::size_t> sensor_index(const std::string& text,
+                                        std::span<const std::string> sensors);
+
+/// The sensors for messages: "0 to 3" or "left, right".
+std::string sensor_list(std::span<const std::string> sensors);
 
 /// Optional columns for what sensors read, after others: Bx, By, Bz, dBx, dBy, dBz.
 std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns);
@@ -30,7 +39,10 @@ std::vector<CsvColumn> with_field_columns(std::vector<CsvColumn> columns);
 void require_field_or_change(const CsvTable& table, std::size_t field, std::size_t change,
                              Faults& faults);
 
-/// Adds a fault for each row with a component beyond ±100 T in the three columns from `first` on.
+/// Adds a fault for a field with a component beyond ±100 T.
+void require_field_range(const Vector3& field, Place where, Faults& faults);
+
+/// The same for each row of the three columns from `first` on.
 void require_field_range(const CsvTable& table, std::size_t first, Faults& faults);
 
 /// Distance of two azimuths on the circle, rad.
@@ -42,7 +54,7 @@ inline constexpr double same_azimuth = 1e-9;  ///< rad
 class Background {
  public:
   /// Its own faults are added, with their places.
-  Background(std::string_view text, std::size_t sensors, Faults& faults);
+  Background(std::string_view text, std::span<const std::string> sensors, Faults& faults);
 
   /// At an azimuth (rad): that of the row of this azimuth (to 1e-9), else interpolated linearly
   /// between the neighbours on the circle. None if there is but a row of another azimuth.

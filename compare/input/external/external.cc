@@ -26,7 +26,7 @@ using Kind = CsvColumn::Kind;
 struct Expected {
   const Cilium& cilium;
   const LoadPath& path;
-  std::size_t sensors;
+  std::span<const std::string> sensors;  ///< names
 };
 
 // ------------------------------------------------------------------------------------ centrelines
@@ -235,7 +235,7 @@ std::vector<std::vector<std::optional<Vector3>>> sorted_rows(const CsvTable& tab
                                                              Faults& faults) {
   const std::size_t steps = c.path.size();
   std::vector<std::vector<std::optional<Vector3>>> at(
-      steps + 1, std::vector<std::optional<Vector3>>(c.sensors));
+      steps + 1, std::vector<std::optional<Vector3>>(c.sensors.size()));
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const std::string& word = table.words[step_column][i];
     const auto step = index_in(word, steps);
@@ -250,8 +250,8 @@ std::vector<std::vector<std::optional<Vector3>>> sorted_rows(const CsvTable& tab
     if (!sensor) continue;
     auto& place = at[step ? *step + 1 : 0][*sensor];
     if (place)
-      faults.add(table.rows[i],
-                 fmt::format("there is a second row of step {}, sensor {}", word, *sensor));
+      faults.add(table.rows[i], fmt::format("there is a second row of step {}, sensor {}", word,
+                                            c.sensors[*sensor]));
     place = row_vector(table, first, i);
   }
   return at;
@@ -259,7 +259,7 @@ std::vector<std::vector<std::optional<Vector3>>> sorted_rows(const CsvTable& tab
 
 /// Every load step has every sensor; the undeformed cilium all of them or none.
 void check_complete(const std::vector<std::vector<std::optional<Vector3>>>& at, bool change,
-                    const CsvTable& table, Faults& faults) {
+                    const CsvTable& table, std::span<const std::string> sensors, Faults& faults) {
   const auto there = [](const std::optional<Vector3>& row) { return row.has_value(); };
   for (std::size_t step = 0; step < at.size(); ++step) {
     const bool any = std::any_of(at[step].begin(), at[step].end(), there);
@@ -270,7 +270,7 @@ void check_complete(const std::vector<std::vector<std::optional<Vector3>>>& at, 
       if (!at[step][s])
         faults.add(table.rows.back(),
                    fmt::format("there is no row of step {}, sensor {}",
-                               step == 0 ? "undeformed" : std::to_string(step - 1), s));
+                               step == 0 ? "undeformed" : std::to_string(step - 1), sensors[s]));
   }
 }
 
@@ -283,7 +283,7 @@ void subtract_background(const Background& background, const Expected& c,
     return apart(azimuth(load), first) <= same_azimuth;
   });
   for (std::size_t step = 0; step < at.size(); ++step)
-    for (std::size_t s = 0; s < c.sensors; ++s) {
+    for (std::size_t s = 0; s < c.sensors.size(); ++s) {
       if (!at[step][s]) continue;
       if (step == 0 && !one_azimuth) {
         faults.add({},
@@ -318,12 +318,12 @@ ExternalReading reading(const std::vector<std::optional<Vector3>>& rows,
 
 void read_readings(std::string_view text, const Background* background, const Expected& c,
                    ExternalModel& model, Faults& faults) {
-  const CsvTable table = readings_table(text, c.sensors, faults);
+  const CsvTable table = readings_table(text, c.sensors.size(), faults);
   if (!faults.empty()) return;
   const bool change = table.has(change_column);
   auto at = sorted_rows(table, change ? change_column : field_column, c, faults);
   if (!faults.empty()) return;
-  check_complete(at, change, table, faults);
+  check_complete(at, change, table, c.sensors, faults);
   if (background != nullptr && change)
     faults.add({}, "the change dB has no background any more: leave 'background' out");
   if (!faults.empty()) return;
@@ -351,7 +351,7 @@ void read_file(const fs::path& file, std::string& messages, const Read& read) {
 }  // namespace
 
 void read_external_files(std::vector<ExternalModel>& models, const Cilium& cilium,
-                         const LoadPath& path, std::size_t sensors) {
+                         const LoadPath& path, std::span<const std::string> sensors) {
   const Expected c{cilium, path, sensors};
   std::string messages;
   for (ExternalModel& model : models) {

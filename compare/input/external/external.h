@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,9 @@ struct ExternalModel {
 /// the curve. Of the readings B the background at the load's azimuth is taken off, that of the row
 /// of this azimuth, or interpolated linearly on the circle.
 ///
-/// Throws InputError with every fault found, a line each: `file:line:column: what is wrong`.
+/// `sensors`: their names. Throws InputError with every fault found, a line each:
+/// `file:line:column: what is wrong`.
 void read_external_files(std::vector<ExternalModel>& models, const Cilium& cilium,
-                         const LoadPath& path, std::size_t sensors);
+                         const LoadPath& path, std::span<const std::string> sensors);
 
 }  // namespace ciliaval::compare::input::external

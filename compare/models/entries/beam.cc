@@ -35,6 +35,7 @@ input::MechanicsEntry beam() {
       .refinements = {halvings("refinement", {0, 1, 2, 3, 4, 5},
                                "length of the elements, in segments"),
                       halvings("degree", {2, 3, 4, 5, 6}, "2^-degree")},
+      .takes_environment = true,
   };
 }
 

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numbers>
+
 #include "compare/input/case.h"
 #include "compare/models/entries/values.h"
 
@@ -13,16 +16,48 @@ using analytic::elastica::CiliumEnd;
 using analytic::elastica::Elastica;
 using analytic::elastica::ElasticaOptions;
 
+bool has_environment(const Load& load) {
+  return !surroundings::is_empty(load.environment());
+}
+
+/// The form `height` takes the paper's loads, without an environment.
+void check_height_form(const input::CaseCheck& check) {
+  constexpr const char* option = "models.elastica.form";
+  const LoadPath& path = check.problem.load_path;
+  const Load& load = path.front();
+  if (!load.is<ContactLoad>() && !load.is<FlowLoad>() && !load.is<ProbeLoad>())
+    check.report(option,
+                 fmt::format("the elastica's form 'height' (Eq. 1-4) takes the load types "
+                             "'contact', 'flow' and 'probe', not '{}': use the form 'arclength'",
+                             type(load)));
+  else if (std::ranges::any_of(path, has_environment))
+    check.report(option,
+                 "the elastica's form 'height' (Eq. 1-4) takes no [environment]: use the form "
+                 "'arclength'");
+}
+
+/// The elastica bends in the plane of the load, in which the environment must lie.
+void check_plane(const input::CaseCheck& check) {
+  constexpr double rounding = 1e-9;
+  constexpr double degree = std::numbers::pi / 180;
+  for (const Load& load : check.problem.load_path) {
+    const Vector3 across = Vector3::UnitZ().cross(direction(load));
+    if (surroundings::component(load.environment(), across) <= rounding) continue;
+    const auto at = std::ranges::find(check.problem.mechanics, "elastica");
+    return check.report(
+        fmt::format("models.mechanics[{}]", at - check.problem.mechanics.begin()),
+        fmt::format("the elastica bends in the plane of the load, along the azimuth {:g} deg, and "
+                    "the environment points out of it: change the azimuth, or use 'beam' or "
+                    "'solid'",
+                    azimuth(load) / degree));
+  }
+}
+
 void check(const input::CaseCheck& check) {
-  if (!check.is_asked_for || !check.load_is_right ||
-      check.problem.options.of<ElasticaOptions>().form != ElasticaOptions::Form::height)
-    return;
-  const Load& load = check.problem.load_path.front();
-  if (load.is<ContactLoad>() || load.is<FlowLoad>() || load.is<ProbeLoad>()) return;
-  check.report("models.elastica.form",
-               fmt::format("the elastica's form 'height' (Eq. 1-4) takes the load types 'contact', "
-                           "'flow' and 'probe', not '{}': use the form 'arclength'",
-                           type(load)));
+  if (!check.is_asked_for || !check.load_is_right) return;
+  check_plane(check);
+  if (check.problem.options.of<ElasticaOptions>().form == ElasticaOptions::Form::height)
+    check_height_form(check);
 }
 
 }  // namespace
@@ -44,6 +79,7 @@ input::MechanicsEntry elastica() {
                   input::option(&ElasticaOptions::tolerance, "tolerance", tolerance_range,
                                 "Relative, of position over length and of angle.")},
       .refinements = {tolerances({1e-4, 1e-6, 1e-8, 1e-10, 1e-12})},
+      .takes_environment = true,
       .check = check,
   };
 }

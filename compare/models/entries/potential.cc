@@ -146,7 +146,10 @@ input::FieldEntry potential() {
       .is_collective = true,
       .is_slow = true,
       .accuracy = 1e-6,
-      .tables = {{&plate_lower, &plate_upper, &plate_permeability}, read_plates, write_plates},
+      .tables = {{&plate_lower, &plate_upper, &plate_permeability},
+                 read_plates,
+                 write_plates,
+                 {plate_lower.name, plate_upper.name}},
   };
 }
 

@@ -179,6 +179,7 @@ input::MechanicsEntry solid() {
       .options = options(),
       .refinements = {solid_meshes()},
       .error_limit = [](const input::ModelOptions& o) { return o.of<ErrorLimit>(); },
+      .takes_environment = true,
       .has_body = true,
       .is_collective = true,
       .is_slow = true,

@@ -31,12 +31,19 @@
 namespace ciliaval::compare::output::vtk {
 namespace {
 
+/// The components of a symmetric tensor in VTK's order.
+constexpr std::array<std::pair<vtkIdType, const char*>, 6> tensor_components{
+    {{0, "XX"}, {1, "YY"}, {2, "ZZ"}, {3, "XY"}, {4, "YZ"}, {5, "XZ"}}};
+
 /// A named array that grows tuple by tuple; its unit goes to the data set's field data.
 class Column {
  public:
   Column(const char* name, int components, const char* unit) : unit_(unit) {
     array_->SetName(name);
     array_->SetNumberOfComponents(components);
+    if (components == 6)  // add_symmetric()
+      for (const auto& [index, component] : tensor_components)
+        array_->SetComponentName(index, component);
   }
   Column(const std::string& name, int components, const char* unit)
       : Column(name.c_str(), components, unit) {}

@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "compare/input/environment/environment.h"
 #include "compare/output/output_file.h"
 #include "compare/output/results.h"
 #include "compare/output/sweep.h"
@@ -28,6 +29,14 @@ vtkSmartPointer<vtkXMLWriter> writer_for(const vtkDataSet& data) {
   auto writer = vtkSmartPointer<vtkXMLWriter>::Take(vtkXMLDataObjectWriter::NewWriter(type));
   if (!writer) throw InputError("this kind of VTK data set has no writer here");
   return writer;
+}
+
+void add_vector(vtkDataSet& data, const char* name, const Vector3& vector) {
+  const vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  array->InsertNextTuple(vector.data());
+  data.GetFieldData()->AddArray(array);
 }
 
 }  // namespace
@@ -58,6 +67,16 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& 
   value->SetName("load");
   value->InsertNextValue(magnitude(load));
   data.GetFieldData()->AddArray(value);
+  const surroundings::Environment& around = load.environment();
+  if (surroundings::is_empty(around)) return;
+  add_vector(data, "gravity", around.gravity);
+  add_vector(data, "uniform_field", around.uniform_field);
+  const vtkNew<vtkDoubleArray> density;
+  density->SetName("fluid_density");
+  density->InsertNextValue(around.fluid_density);
+  data.GetFieldData()->AddArray(density);
+  add_strings(data, "magnetic_energy",
+              {std::string(input::environment::name(around.magnetic_energy))});
 }
 
 void write(vtkDataSet& data, const std::filesystem::path& file) {

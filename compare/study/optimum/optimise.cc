@@ -48,7 +48,7 @@ struct Evaluations {
   /// A design by some of the mechanics models.
   Design design(std::string name, std::vector<double> values,
                 const std::vector<std::string>& mechanics) {
-    const Progress inner = with_prefix(progress, fmt::format("{}: {}: ", study.name, name));
+    const Progress inner = of_a_piece(progress, fmt::format("{}: {}: ", study.name, name));
     Design design{std::move(name), std::move(values), {}, {}};
     for (std::size_t i = 0; i < study.pairs.size(); ++i) {
       const models::ModelPair& pair = study.pairs[i];
@@ -114,6 +114,37 @@ Trial trial_of(const Study& search, const std::vector<Limit>& constraints, doubl
   return trial;
 }
 
+/// The bounds, 25 equal steps between them, and the best design itself.
+std::vector<double> along(double best) {
+  std::vector<double> u{best};
+  constexpr int steps = 25;
+  for (int k = 0; k <= steps; ++k) u.push_back(static_cast<double>(k) / steps);
+  std::sort(u.begin(), u.end());
+  u.erase(std::unique(u.begin(), u.end()), u.end());
+  return u;
+}
+
+std::vector<Slice> slices_through(const std::vector<double>& best, Evaluations& evaluations,
+                                  const std::vector<Limit>& constraints) {
+  const Study& study = evaluations.study;
+  std::vector<Slice> slices;
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    Slice& slice = slices.emplace_back();
+    for (const double u : along(best[i])) {
+      std::vector<double> place = best;
+      place[i] = u;
+      const std::vector<double> values = from_unit(study, place);
+      const PairResult& result = evaluations.searched_at(values);
+      const double load = magnitude(study.design(values).load_path.front());
+      slice.at.push_back(values[i]);
+      slice.values.push_back(magnitude_of(evaluations.search, result, study.optimisation->goal));
+      slice.keeps.push_back(trial_of(evaluations.search, constraints, load, result).violation() <=
+                            feasibility);
+    }
+  }
+  return slices;
+}
+
 }  // namespace
 
 std::optional<double> magnitude_of(const Study& study, const PairResult& result, Output output) {
@@ -169,6 +200,8 @@ Optimum run_optimisation(const Study& study, Solutions& solutions,
     optimum.designs.push_back(evaluations.design(
         fmt::format("optimum {}", i + 1), from_unit(study, optimum.search.optima[i].u),
         i == 0 ? study.mechanics() : std::vector<std::string>{searcher}));
+  if (optimum.found())
+    optimum.slices = slices_through(optimum.search.optima.front().u, evaluations, constraints);
   return optimum;
 }
 

@@ -21,9 +21,17 @@ struct Design {
   std::vector<PairResult> pairs;  ///< for each of `models`
 };
 
+/// The goal along one parameter through the best design, the others held there.
+struct Slice {
+  std::vector<double> at;                     ///< values of the parameter, SI units, ascending
+  std::vector<std::optional<double>> values;  ///< of the goal; none where a design has none
+  std::vector<bool> keeps;                    ///< whether the design keeps the limits
+};
+
 /// What an optimisation found.
 struct Optimum {
   SearchResult search;          ///< in the unit box of the parameters' bounds
+  std::vector<Slice> slices;    ///< one of each parameter, by the pair that searched
   std::vector<Design> designs;  ///< the start, then each of `search.optima`; by all pairs the start
                                 ///< and the best, by the mechanics model that searched the others
   std::size_t evaluations = 0;  ///< distinct designs that the search has asked for

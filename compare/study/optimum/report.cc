@@ -220,6 +220,18 @@ Json json(const Study& study, const Optimum& optimum) {
          {"unit", c.is_own_load ? "" : quantity_of(c.output, study.load()).unit}});
   for (std::size_t i = 0; i < optimum.designs.size(); ++i)
     json["designs"].push_back(design_json(study, optimum, i));
+  json["slices"] = Json::array();
+  for (std::size_t i = 0; i < optimum.slices.size(); ++i) {
+    const Slice& slice = optimum.slices[i];
+    Json values = Json::array();
+    for (const std::optional<double>& value : slice.values)
+      values.push_back(value ? Json(*value) : Json(nullptr));
+    json["slices"].push_back({{"path", o.parameters[i].number.path},
+                              {"best", optimum.designs[1].values[i]},
+                              {"at", slice.at},
+                              {"values", values},
+                              {"kept", slice.keeps}});
+  }
   return json;
 }
 

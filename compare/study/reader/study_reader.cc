@@ -17,6 +17,8 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
+#include "compare/input/external/background.h"
+#include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "compare/study/reader/reading.h"
 #include "problem/error.h"
@@ -201,19 +203,29 @@ void choose_sensor(input::Section& table, input::Case& base) {
   input::Faults& faults = table.faults();
   std::size_t index = 0;
   const toml::node* node = table.find("sensor");
-  if (node != nullptr)
+  if (node != nullptr && node->is_string()) {
+    const auto names = input::sensor_names(base);
+    const auto named = std::ranges::find(names, *node->value<std::string>());
+    index = static_cast<std::size_t>(named - names.begin());
+  } else if (node != nullptr) {
     index = input::read_whole_number(*node, "sensor", sensor_range, faults).value_or(0);
+  }
   if (node == nullptr && base.sensors.size() > 1)
     faults.add(table.where(),
-               fmt::format("the case has {} sensors: 'sensor' says which one, from 0",
+               fmt::format("the case has {} sensors: 'sensor' says which one, from 0 or by name",
                            base.sensors.size()));
   if (base.sensors.empty())
     faults.add(table.where(), "the case has no [sensor], so there is no field to study");
   else if (index >= base.sensors.size())
-    faults.add(input::place(*node), fmt::format("the case has no sensor {}: they are 0 to {}",
-                                                index, base.sensors.size() - 1));
-  else
+    faults.add(input::place(*node),
+               fmt::format("the case has no sensor {}: they are {}",
+                           node->is_string() ? input::in_quotes(*node->value<std::string>())
+                                             : std::to_string(index),
+                           input::external::sensor_list(input::sensor_names(base))));
+  else {
     base.sensors = {base.sensors[index]};
+    if (!base.sensor_names.empty()) base.sensor_names = {base.sensor_names[index]};
+  }
 }
 
 /// The case that [study] names, read; throws InputError with the case file's own faults.
@@ -260,7 +272,7 @@ void read_study_table(input::Section& table, Reading& reading) {
   const bool slips = contact_height(reading.base.load_path.front()).has_value();
   study.rotation = read_companion(
       table, "rotation", quantity::angle, rotation_range, study.asks_for(Output::range) && !slips,
-      "the output 'range' of a load that has no slip-off (flow, section, dead)");
+      "the output 'range' of a load that has no slip-off (flow, section, dead, environment)");
 }
 
 /// Makes one load step of the case's: they must be the same but for what the study sets.
@@ -272,6 +284,15 @@ void reduce_to_one_step(Study& study, input::Place where, input::Faults& faults)
   if (base.load_path.front().is<SweepLoad>() && base.load_path.size() > 1) {
     faults.add(where, fmt::format("the case is a sweep of {} samples, a study's points are one: "
                                   "list one place, travel = [\"0 mm\"]",
+                                  base.load_path.size()));
+    return;
+  }
+  const auto has_another_field = [&](const Load& step) {
+    return !(step.environment() == set.load_path.front().environment());
+  };
+  if (std::ranges::any_of(set.load_path, has_another_field)) {
+    faults.add(where, fmt::format("the case lists {} fields, a study's points have one: list one "
+                                  "'uniform_field' in [environment]",
                                   base.load_path.size()));
     return;
   }
@@ -440,6 +461,17 @@ Study read_study(const fs::path& file) {
     (study.optimisation ? check_optimisation : check_study)(study, header.where(), faults);
   if (!faults.empty()) throw InputError(faults.report(file.string()));
   return std::move(reading.study);
+}
+
+std::vector<fs::path> files_of_study(const fs::path& file) {
+  const toml::table root = input::parse_toml(input::read_toml_file(file, "study"), file.string());
+  const auto name = root["study"]["case"].value<std::string>();
+  if (!name) throw InputError(fmt::format("{}: [study] names no case", file.string()));
+  const fs::path problem = (file.parent_path() / *name).lexically_normal();
+  std::vector<fs::path> files{file, problem};
+  for (fs::path& named : models::named_files(input::read_case(problem, models::known())))
+    files.push_back(std::move(named));
+  return files;
 }
 
 }  // namespace ciliaval::compare::study::reader

@@ -9,7 +9,6 @@
 
 #include "compare/output/csv_writer.h"
 #include "compare/output/provenance.h"
-#include "compare/plot/gnuplot.h"
 #include "compare/study/sweep.h"
 
 namespace ciliaval::compare::study::summary {
@@ -24,11 +23,11 @@ std::string cell(const Study& study, const PairResult& result, std::size_t outpu
 /// along the parameter if there is one alone: monotone, or its peak.
 std::string text(const StudyResult& result);
 
-/// study.csv: a comment line with the units, a header, a line for each point and pair in their
+/// study.csv: a header, a comment line with the units, a line for each point and pair in their
 /// order, SI units; what is undefined is empty.
 std::string csv(const StudyResult& result);
 
-/// The comment line and the header of a CSV file of the study; `first` is its first column.
+/// The header and the comment line of a CSV file of the study; `first` is its first column.
 void add_csv_header(output::CsvWriter& csv, const Study& study,
                     const std::vector<Parameter>& parameters, std::string_view first);
 /// A row of it.
@@ -85,15 +84,5 @@ std::string tolerance_csv(const StudyResult& result);
 /// {"numbers": [{"path", "nominal", "deviation", "unit"}], "pairs": {PAIR: {OUTPUT: {"nominal",
 /// "deviation", "slopes": […], "errors": […]}}}}, SI units.
 nlohmann::ordered_json tolerance_json(const StudyResult& result);
-
-/// A drawing of one output over the first parameter, a curve for each pair and for each
-/// combination of the others' values, of many some.
-struct StudyPlot {
-  std::string name;    ///< of the file: "dB_norm.svg"
-  std::string script;  ///< for gnuplot (compare/plot/gnuplot.h)
-  plot::Size size;
-};
-/// One for each output that has a value somewhere.
-std::vector<StudyPlot> plots(const StudyResult& result);
 
 }  // namespace ciliaval::compare::study::summary

@@ -138,9 +138,7 @@ std::vector<MechanicsStep> solve(const Cilium& cilium, const LoadPath& path,
       steps.push_back(solver.step(steps.size()));
       const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
       steps.back().seconds = time.count();
-      if (progress)
-        progress("beam: sample " + std::to_string(steps.size()) + "/" +
-                 std::to_string(path.size()));
+      report_step(progress, steps, path.size());
     }
   } catch (const SolverError& error) {
     failure = error.what();

@@ -9,6 +9,7 @@
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/height_loads.h"
+#include "problem/error.h"
 
 namespace ciliaval::fem::solid::contact {
 using namespace discretisation;
@@ -21,10 +22,13 @@ constexpr double touch_depth = 1e-7;          ///< of a node that begins to touc
 constexpr int most_corrections = 12;          ///< of the nodes' states and multipliers
 constexpr double longest_travel = 0.02;       ///< step, in L
 constexpr double feature_part = 0.5;          ///< step, in the surface's finest length
-constexpr double longest_release = 0.2;       ///< step of the holding force
-constexpr double shortest_step = 1e-4;        ///< in L, or of the holding force
-constexpr double relaxed_step = 1e-3;         ///< after a jump, in L
-constexpr double least_factor = 0.25;         ///< from a step to the next
+constexpr double first_hold = 0.01;      ///< of the holding forces, in the tip's stiffness times L
+constexpr double hold_growth = 0.25;     ///< from one to the next
+constexpr double least_height = 0.6;     ///< of a tip that is bent aside, in L
+constexpr double longest_release = 0.2;  ///< step of the holding force
+constexpr double shortest_step = 1e-4;   ///< in L, or of the holding force
+constexpr double relaxed_step = 1e-3;    ///< after a jump, in L
+constexpr double least_factor = 0.25;    ///< from a step to the next
 constexpr double largest_factor = 2;
 constexpr double balance = 1e-3;             ///< of a step's works
 constexpr double energy_noise = 1e-6;        ///< of the elastic energy
@@ -74,31 +78,49 @@ Follower::Follower(const SolidSpace& space, const ExtrudedQuadrature& quadrature
       copies_(quadrature.extent() == Extent::half ? 2 : 1),
       volume_(quadrature.area() * quadrature.height()),
       longest_(std::min(longest_travel * options.length, feature_part * surface.finest_length())),
-      step_(longest_) {}
+      state_{{}, {}, longest_} {}
 
 RigidSurface Follower::surface_at(const SweepPlace& place) const {
   return {&surface_, direction_, options_.length - place.interference, place.travel};
 }
 
-void Follower::start_open(const SweepPlace& place) {
-  now_ = {place, space_.undeformed(), {}, {}, 0, Vector3::Zero()};
-  before_.reset();
-  now_.forces.resize(nodes_.size());
-  now_.memory = remembered(nodes_, now_.forces, surface_at(place), now_.solid.displacement);
+bool Follower::is_free(const SweepPlace& place) const {
+  return smallest_gap(nodes_, surface_at(place), current().solid.displacement) >= 0;
 }
 
-bool Follower::start_held(const SweepPlace& place, SolidState guess) {
-  // The surface out of reach: no node touches.
-  SweepPlace far = place;
-  far.interference = -10 * options_.length;
-  start_open(far);
+void Follower::start(SweepPlace place) {
+  state_ = {{place, space_.undeformed(), {}, {}, 0, Vector3::Zero()}, {}, longest_};
+  ContactState& now = state_.now;
+  now.forces.resize(nodes_.size());
+  now.memory.resize(nodes_.size());
+  const auto from_tip = [this](const ContactNode& node) {
+    return (node.X - Vector3(0, 0, options_.length)).squaredNorm();
+  };
+  const ContactNode& tip = *std::ranges::min_element(nodes_, {}, from_tip);
+  const double unit = options_.tip_stiffness * options_.length;
+  double step = first_hold * unit;
   int iterations = 0;
-  auto held = attempt(far, now_, guess, {}, iterations);
-  if (!held || smallest_gap(nodes_, surface_at(place), held->solid.displacement) < 0) return false;
-  now_ = std::move(*held);
-  now_.place = place;
-  now_.memory = remembered(nodes_, now_.forces, surface_at(place), now_.solid.displacement);
-  return true;
+  while (!is_free(place)) {
+    if (tip.position(now.solid.displacement).z() < least_height * options_.length)
+      throw InputError(
+          "the surface is pressed on too far: a cilium bent to 0.6 of its length must have room "
+          "under it");
+    // The surface is out of reach.
+    SweepPlace next{-10 * options_.length, place.travel, now.place.hold + step};
+    auto held = attempt(next, now, predicted(next), {}, iterations);
+    if (!held) {
+      step /= 4;
+      if (step < shortest_step * unit)
+        throw SolverError("Newton's method does not bend the solid aside to under the surface");
+      continue;
+    }
+    state_.before = std::exchange(now, std::move(*held));
+    step = std::min(2 * step, hold_growth * now.place.hold);
+  }
+  place.hold = now.place.hold;
+  now.place = place;
+  state_.before.reset();
+  now.memory = remembered(nodes_, now.forces, surface_at(place), now.solid.displacement);
 }
 
 std::optional<ContactState> Follower::attempt(const SweepPlace& place, const ContactState& from,
@@ -143,21 +165,21 @@ std::optional<ContactState> Follower::attempt(const SweepPlace& place, const Con
 }
 
 SolidState Follower::predicted(const SweepPlace& place) const {
-  SolidState state = now_.solid;
-  if (!before_) return state;
-  const Eigen::Vector3d last(now_.place.travel - before_->place.travel,
-                             now_.place.interference - before_->place.interference,
-                             now_.place.hold - before_->place.hold);
-  const Eigen::Vector3d next(place.travel - now_.place.travel,
-                             place.interference - now_.place.interference,
-                             place.hold - now_.place.hold);
+  SolidState state = state_.now.solid;
+  if (!state_.before) return state;
+  const Eigen::Vector3d last(state_.now.place.travel - state_.before->place.travel,
+                             state_.now.place.interference - state_.before->place.interference,
+                             state_.now.place.hold - state_.before->place.hold);
+  const Eigen::Vector3d next(place.travel - state_.now.place.travel,
+                             place.interference - state_.now.place.interference,
+                             place.hold - state_.now.place.hold);
   const double factor = last.squaredNorm() > 0 ? next.dot(last) / last.squaredNorm() : 0;
   // Only straight on.
   if (!(factor > 0) || (next - factor * last).norm() > 1e-6 * next.norm()) return state;
   const double t = std::min(factor, longest_extrapolation);
-  state.displacement.add(t, now_.solid.displacement, -t, before_->solid.displacement);
+  state.displacement.add(t, state_.now.solid.displacement, -t, state_.before->solid.displacement);
   for (std::size_t e = 0; e < state.pressure.size(); ++e)
-    state.pressure[e] += t * (now_.solid.pressure[e] - before_->solid.pressure[e]);
+    state.pressure[e] += t * (state_.now.solid.pressure[e] - state_.before->solid.pressure[e]);
   return state;
 }
 
@@ -182,68 +204,69 @@ Follower::Work Follower::work(const ContactState& from, const ContactState& to) 
 }
 
 double Follower::imbalance(const ContactState& to) const {
-  if (to.place.hold != 0 || now_.place.hold != 0) return 0;
-  const auto [surface, friction] = work(now_, to);
-  return std::abs(to.energy - now_.energy - surface + friction) /
+  if (to.place.hold != 0 || state_.now.place.hold != 0) return 0;
+  const auto [surface, friction] = work(state_.now, to);
+  return std::abs(to.energy - state_.now.energy - surface + friction) /
          (balance * (std::abs(surface) + std::abs(friction)) +
-          energy_noise * std::max(to.energy, now_.energy) + std::numeric_limits<double>::min());
+          energy_noise * std::max(to.energy, state_.now.energy) +
+          std::numeric_limits<double>::min());
 }
 
 void Follower::accept(ContactState&& state, FollowerOutcome& outcome) {
-  const Work done = work(now_, state);
+  const Work done = work(state_.now, state);
   outcome.surface_work += done.surface;
   outcome.friction_work += done.friction;
-  before_ = std::move(now_);
-  now_ = std::move(state);
+  state_.before = std::move(state_.now);
+  state_.now = std::move(state);
 }
 
 FollowerOutcome Follower::go(const SweepPlace& target, const Progress& progress) {
   FollowerOutcome outcome;
-  const SweepPlace start = now_.place;
+  const SweepPlace start = state_.now.place;
   const bool releases = start.hold != target.hold;
   // Lengths of the release are parts of L.
   const double distance = releases ? options_.length : way(start, target);
   const double longest = releases ? longest_release * options_.length : longest_;
   const double shortest = shortest_step * options_.length;
-  if (releases) step_ = longest;
+  if (releases) state_.step = longest;
   double done = 0;
   while (done < distance) {
-    const double step = done + 1.01 * step_ >= distance ? distance - done : step_;
+    const double step = done + 1.01 * state_.step >= distance ? distance - done : state_.step;
     const SweepPlace place =
         done + step == distance ? target : between(start, target, (done + step) / distance);
-    auto reached = attempt(place, now_, predicted(place), {}, outcome.iterations);
+    auto reached = attempt(place, state_.now, predicted(place), {}, outcome.iterations);
     const double excess = reached ? imbalance(*reached) : 0;
     // The error of the trapezoidal rule is of the second order, relative to the work.
     const double factor =
         reached ? std::clamp(0.9 / std::sqrt(excess), least_factor, largest_factor) : least_factor;
     if (reached && excess <= 1) {
       accept(std::move(*reached), outcome);
-      if (step_ <= step || factor < 1) step_ = step * factor;
-      step_ = std::clamp(step_, shortest, longest);
+      if (state_.step <= step || factor < 1) state_.step = step * factor;
+      state_.step = std::clamp(state_.step, shortest, longest);
       done += step;
       continue;
     }
     if (step > shortest) {
-      step_ = std::max(step * factor, shortest);
+      state_.step = std::max(step * factor, shortest);
       continue;
     }
     if (!jump(place, outcome, progress)) {
       outcome.trouble = "no equilibrium was found beyond the travel " +
-                        std::to_string(1e3 * now_.place.travel) + " mm of the surface";
+                        std::to_string(1e3 * state_.now.place.travel) + " mm of the surface";
       return outcome;
     }
-    step_ = relaxed_step * options_.length;
+    state_.step = relaxed_step * options_.length;
     done += step;
   }
-  if (releases) step_ = longest_;
+  if (releases) state_.step = longest_;
   outcome.converged = true;
   return outcome;
 }
 
 bool Follower::jump(const SweepPlace& place, FollowerOutcome& outcome, const Progress& progress) {
   if (progress) progress("a jump");
-  const double energy_before = now_.energy;
-  ContactState state = now_;
+  const double energy_before = state_.now.energy;
+  ContactState state = state_.now;
   Work spent;
   if (!walk(place, state, spent, outcome.iterations) &&
       !relax(place, state, spent, outcome.iterations, progress))
@@ -256,8 +279,8 @@ bool Follower::jump(const SweepPlace& place, FollowerOutcome& outcome, const Pro
                vanishing_energy * options_.tip_stiffness * options_.length * options_.length);
   if (place.hold == 0 && lost > vanishing)
     outcome.energy_lost = outcome.energy_lost.value_or(0) + lost;
-  now_ = std::move(state);
-  before_.reset();
+  state_.now = std::move(state);
+  state_.before.reset();
   return true;
 }
 

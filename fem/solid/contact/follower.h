@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fem/solid/contact/nodal_contact.h"
@@ -28,6 +29,13 @@ struct ContactState {
   std::vector<NodeForce> forces;
   double energy = 0;                ///< elastic, J
   Vector3 force = Vector3::Zero();  ///< of the surface on the body, N
+};
+
+/// What a follower goes on from.
+struct FollowerState {
+  ContactState now;
+  std::optional<ContactState> before;  ///< for the prediction of the next one
+  double step = 0;                     ///< the next one of the surface, m
 };
 
 struct FollowerOptions {
@@ -65,20 +73,23 @@ class Follower {
            const surroundings::Surface& surface, const Vector3& direction,
            const FollowerOptions& options);
 
-  /// The straight body at a place where it does not touch.
-  void start_open(const SweepPlace& place);
-  /// The free body under the place's holding force, from a state near it. False if there is no such
-  /// equilibrium or the surface is in its way.
-  bool start_held(const SweepPlace& place, discretisation::SolidState guess);
+  /// The free body at a place: straight, if it does not touch there; else a horizontal force bends
+  /// it aside, the less the better, to where the surface is out of its way. Throws InputError if
+  /// there is no room under the surface for a tip at 0.6 of the length, SolverError if Newton's
+  /// method fails.
+  void start(SweepPlace place);
 
   /// Goes on a straight line. The state stays at the last equilibrium if it does not get there.
   FollowerOutcome go(const SweepPlace& target, const Progress& progress = {});
 
-  const ContactState& current() const { return now_; }
+  const ContactState& current() const { return state_.now; }
+  const FollowerState& state() const { return state_; }
+  void restore(FollowerState state) { state_ = std::move(state); }
   const std::vector<ContactNode>& nodes() const { return nodes_; }
   /// How deep the body penetrates the surface between its nodes, m.
   double penetration() const {
-    return penetration_between(nodes_, faces_, surface_at(now_.place), now_.solid.displacement);
+    return penetration_between(nodes_, faces_, surface_at(current().place),
+                               current().solid.displacement);
   }
   RigidSurface surface_at(const SweepPlace& place) const;
   /// Copies of the mesh in the whole body: 1, or 2 of a half.
@@ -103,6 +114,7 @@ class Follower {
   std::optional<ContactState> attempt(const SweepPlace& place, const ContactState& from,
                                       const discretisation::SolidState& start, const Brake& brake,
                                       int& iterations);
+  bool is_free(const SweepPlace& place) const;
   discretisation::SolidState predicted(const SweepPlace& place) const;
   Work work(const ContactState& from, const ContactState& to) const;
   /// Error of the balance of energy of a step to the state, over what is allowed.
@@ -130,9 +142,7 @@ class Follower {
   double copies_;
   double volume_;
   double longest_;  ///< step of the surface, m
-  double step_;     ///< the next one, m
-  ContactState now_;
-  std::optional<ContactState> before_;
+  FollowerState state_;
 };
 
 }  // namespace ciliaval::fem::solid::contact

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fem/solid/loads/dead_forces.h"
+#include "fem/solid/loads/environment_forces.h"
 #include "fem/solid/loads/probe.h"
 
 namespace ciliaval::fem::solid::equilibrium {
@@ -59,10 +60,11 @@ struct LoadPathSolver::Attempt {
 };
 
 LoadPathSolver::LoadPathSolver(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
-                               Newton& newton, const Load& first, LoadPathOptions options,
-                               InitialGuessSource initial_guess)
+                               const Cilium& cilium, Newton& newton, const Load& first,
+                               LoadPathOptions options, InitialGuessSource initial_guess)
     : space_(space),
       quadrature_(quadrature),
+      cilium_(cilium),
       newton_(newton),
       options_(options),
       initial_guess_(std::move(initial_guess)) {
@@ -70,7 +72,7 @@ LoadPathSolver::LoadPathSolver(const SolidSpace& space, const ExtrudedQuadrature
 }
 
 void LoadPathSolver::restart(const Load& load) {
-  now_ = {{with_magnitude(load, 0), space_.undeformed(), 0}, {}, {}, {}};
+  now_ = {{nothing_of(load), space_.undeformed(), 0}, {}, {}, {}};
 }
 
 Equilibrium LoadPathSolver::predicted(const Load& load) const {
@@ -116,11 +118,14 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   if (const auto probe = load.as<ProbeLoad>()) {
     UnknownForce force = probe_force(space_, quadrature_, *probe, options_.kernel_width,
                                      attempt.equilibrium.applied_force);
+    if (const auto around = acting_environment(load); !surroundings::is_empty(around))
+      force.others = environment_forces(space_, cilium_, around);
     result = newton_.solve(force, state, options_.newton, report);
     contact_force = force.amplitude;
   } else {
-    result = newton_.solve(external_forces(space_, quadrature_, load, options_.kernel_width), state,
-                           options_.newton, report);
+    result =
+        newton_.solve(external_forces(space_, quadrature_, cilium_, load, options_.kernel_width),
+                      state, options_.newton, report);
     if (const auto contact = load.as<ContactLoad>()) contact_force = contact->force;
   }
   iterations += result.iterations();
@@ -130,11 +135,19 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
     attempt.trouble = result.reason + " (relative residuals " + history(result.residuals) + ")";
     return attempt;
   }
-  attempt.equilibrium.applied_force =
-      whole_force(quadrature_, resultant(space_, result.external)).dot(direction(load));
-  attempt.applied = !contact_height(load) ||
-                    attempt.equilibrium.applied_force >= contact_force * (1 - force_shortfall);
+  attempt.equilibrium.applied_force = force_of_load(load, result.external);
+  attempt.applied =
+      contact_force == 0 || attempt.equilibrium.applied_force >=
+                                contact_force - force_shortfall * std::abs(contact_force);
   return attempt;
+}
+
+double LoadPathSolver::force_of_load(const Load& load,
+                                     const dealii::Vector<double>& external) const {
+  Vector3 force = resultant(space_, external);
+  const surroundings::Environment environment = acting_environment(load);
+  if (!surroundings::is_empty(environment)) force -= weight_of(space_, cilium_, environment);
+  return whole_force(quadrature_, force).dot(direction(load));
 }
 
 std::optional<double> LoadPathSolver::toward_slip_off(const Guess& guess, const Load& load) const {
@@ -165,15 +178,27 @@ bool LoadPathSolver::cut(Ramp& ramp, bool overshot) const {
 LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
                                         const std::function<void()>& on_equilibrium) {
   if (!same_place(now_.current.load, target)) restart(target);
-  if (!now_.ramp || magnitude(now_.ramp->target) != magnitude(target))
-    now_.ramp = Ramp{now_.current.load, target};
+  const bool changes = now_.current.load.environment() != target.environment();
+  if (!changes || target.is<EnvironmentLoad>())
+    return advance_magnitude(target, progress, on_equilibrium);
+  now_.slipped.reset();
+  const LoadPathOutcome first = advance_magnitude(
+      with_environment(now_.current.load, target.environment()), progress, on_equilibrium);
+  if (first.status != Status::converged) return first;
+  LoadPathOutcome outcome = advance_magnitude(target, progress, on_equilibrium);
+  outcome.iterations += first.iterations;
+  return outcome;
+}
+
+LoadPathOutcome LoadPathSolver::advance_magnitude(const Load& target, const Progress& progress,
+                                                  const std::function<void()>& on_equilibrium) {
+  if (!now_.ramp || now_.ramp->target != target) now_.ramp = Ramp{now_.current.load, target};
   const auto finish = [this](LoadPathOutcome outcome) {
     outcome.iterations = now_.ramp->iterations;
     now_.ramp.reset();
     return outcome;
   };
-  if (magnitude(now_.current.load) == magnitude(target))
-    return finish({Status::converged, {}, {}, {}, 0});
+  if (now_.current.load == target) return finish({Status::converged, {}, {}, {}, 0});
   if (now_.slipped && magnitude(target) >= magnitude(*now_.slipped))
     return finish(slip_off(progress, on_equilibrium));
   return finish(follow_ramp(progress, on_equilibrium));

@@ -9,12 +9,13 @@
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/equilibrium/newton.h"
 #include "fem/solid/loads/height_loads.h"
+#include "problem/cilium.h"
 #include "problem/load.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::fem::solid::equilibrium {
 
-/// Whether two loads differ in nothing but their magnitude.
+/// Whether two loads differ in nothing but their magnitude and the environment.
 bool same_place(const Load& a, const Load& b);
 
 /// The solid in equilibrium with a load.
@@ -74,14 +75,16 @@ struct LoadPathState {
 /// then from a linear extrapolation of the last two equilibria at the same place (height, section).
 /// A step that fails is cut to a quarter, and doubled after each success; a step that overshoots at
 /// once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new place it starts from the
-/// straight solid: on the way from place to place the cilium might slip off.
+/// straight solid: on the way from place to place the cilium might slip off. Where the environment
+/// changes, that comes first, with the magnitude of the last load.
 class LoadPathSolver {
  public:
-  /// Starts from the straight solid under no load of the path's type. The space, the quadrature and
-  /// the solver must outlive it.
+  /// Starts from the straight solid under no load of the path's type. The space, the quadrature,
+  /// the cilium and the solver must outlive it.
   LoadPathSolver(const discretisation::SolidSpace& space,
-                 const discretisation::ExtrudedQuadrature& quadrature, Newton& newton,
-                 const Load& first, LoadPathOptions options, InitialGuessSource initial_guess);
+                 const discretisation::ExtrudedQuadrature& quadrature, const Cilium& cilium,
+                 Newton& newton, const Load& first, LoadPathOptions options,
+                 InitialGuessSource initial_guess);
 
   /// Goes on to the next load. Unless that converges, the state stays at the last equilibrium under
   /// a load fully applied. Calls `on_equilibrium` after each equilibrium on the way: advance() goes
@@ -109,9 +112,15 @@ class LoadPathSolver {
   /// Narrows the bracket between the current load and the slipped one.
   LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
   void restart(const Load& load);
+  /// advance() to a load of the same place in the present environment, or by an EnvironmentLoad.
+  LoadPathOutcome advance_magnitude(const Load& target, const Progress& progress,
+                                    const std::function<void()>& on_equilibrium);
+  /// The force of the load alone along e, of nodal forces that have the environment's, N.
+  double force_of_load(const Load& load, const dealii::Vector<double>& external) const;
 
   const discretisation::SolidSpace& space_;
   const discretisation::ExtrudedQuadrature& quadrature_;
+  const Cilium& cilium_;
   Newton& newton_;
   LoadPathOptions options_;
   InitialGuessSource initial_guess_;

@@ -105,6 +105,7 @@ NewtonResult Newton::solve(UnknownForce& force, SolidState& state, const NewtonO
   const auto external = [&force](const auto& u, auto& forces, const auto& constraints,
                                  auto* matrix) {
     force.forces(force.amplitude)(u, forces, constraints, matrix);
+    if (force.others) force.others(u, forces, constraints, matrix);
   };
   return iterate(external, &bordered, state, options, progress);
 }

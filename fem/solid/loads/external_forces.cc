@@ -2,17 +2,14 @@
 #include "fem/solid/loads/external_forces.h"
 
 #include "fem/solid/loads/dead_forces.h"
+#include "fem/solid/loads/environment_forces.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
 
-Load acting(const Load& load, double applied_force) {
-  if (const auto probe = load.as<ProbeLoad>())
-    return ContactLoad{applied_force, probe->height, probe->azimuth};
-  return load;
-}
+namespace {
 
-SpreadLoad spread_load(const Load& load, double area, double kernel_width) {
+SpreadLoad spread_alone(const Load& load, double area, double kernel_width) {
   SpreadLoad result;
   result.direction = direction(load);
   if (const auto contact = load.as<ContactLoad>())
@@ -20,14 +17,17 @@ SpreadLoad spread_load(const Load& load, double area, double kernel_width) {
   if (const auto flow = load.as<FlowLoad>())
     result.per_height = flow_density(flow->force_per_height, area);
   if (const auto dead = load.as<DeadLoad>()) result.per_volume = dead->force_per_length / area;
-  if (!result.per_height && !load.is<DeadLoad>() && !load.is<SectionLoad>())
+  if (!result.per_height && !load.is<DeadLoad>() && !load.is<SectionLoad>() &&
+      !load.is<EnvironmentLoad>())
     refuse_type(load, "solid");
   return result;
 }
 
-ExternalForces external_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
-                               const Load& load, double kernel_width) {
-  const SpreadLoad spread = spread_load(load, quadrature.area(), kernel_width);
+}  // namespace
+
+ExternalForces load_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                           const Load& load, double kernel_width) {
+  const SpreadLoad spread = spread_alone(load, quadrature.area(), kernel_width);
   if (const auto section = load.as<SectionLoad>())
     return dead_forces(
         section_force(space, quadrature, section->force, section->arclength, spread.direction));
@@ -43,6 +43,38 @@ ExternalForces external_forces(const SolidSpace& space, const ExtrudedQuadrature
                                        dealii::SparseMatrix<double>* matrix) {
     add_height_forces(space, quadrature, *spread.per_height, spread.direction, displacement, forces,
                       constraints, matrix);
+  };
+}
+
+Load acting(const Load& load, double applied_force) {
+  if (const auto probe = load.as<ProbeLoad>())
+    return with_environment(ContactLoad{applied_force, probe->height, probe->azimuth},
+                            load.environment());
+  return load;
+}
+
+SpreadLoad spread_load(const Cilium& cilium, const Load& load, double area, double kernel_width) {
+  SpreadLoad result = spread_alone(load, area, kernel_width);
+  const surroundings::Environment environment = acting_environment(load);
+  if (surroundings::is_empty(environment)) return result;
+  for (const Segment& segment : cilium.segments) {
+    result.weight.push_back(surroundings::weight_per_volume(environment, segment));
+    result.poles.push_back(segment.magnetization * environment.uniform_field);
+  }
+  return result;
+}
+
+ExternalForces external_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+                               const Cilium& cilium, const Load& load, double kernel_width) {
+  const ExternalForces own = load_forces(space, quadrature, load, kernel_width);
+  const surroundings::Environment environment = acting_environment(load);
+  if (surroundings::is_empty(environment)) return own;
+  return [own, around = environment_forces(space, cilium, environment)](
+             const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+             const dealii::AffineConstraints<double>& constraints,
+             dealii::SparseMatrix<double>* matrix) {
+    own(displacement, forces, constraints, matrix);
+    around(displacement, forces, constraints, matrix);
   };
 }
 

@@ -10,6 +10,7 @@
 #include "fem/solid/discretisation/extruded_quadrature.h"
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/loads/height_loads.h"
+#include "problem/cilium.h"
 #include "problem/load.h"
 
 namespace ciliaval::fem::solid::loads {
@@ -26,18 +27,25 @@ struct UnknownForce {
   /// g; adds ∂g/∂u to `gradient` where that is not null.
   std::function<double(const dealii::Vector<double>& u, dealii::Vector<double>* gradient)>
       condition;
-  double amplitude = 0;  ///< F: the guess, and the result
+  double amplitude = 0;     ///< F: the guess, and the result
+  ExternalForces others{};  ///< what acts besides; empty: nothing
 };
 
-/// The load as spread over the solid; of a section load the direction e alone.
-SpreadLoad spread_load(const Load& load, double area, double kernel_width);
+/// The load as spread over the solid, of a section load the direction e alone, and the environment.
+SpreadLoad spread_load(const Cilium& cilium, const Load& load, double area, double kernel_width);
 
-/// The load's nodal forces as a function of the displacement (docs/theory/solid.md).
+/// The nodal forces of the load alone.
+ExternalForces load_forces(const discretisation::SolidSpace& space,
+                           const discretisation::ExtrudedQuadrature& quadrature, const Load& load,
+                           double kernel_width);
+
+/// The nodal forces of load and environment as a function of the displacement
+/// (docs/theory/solid.md).
 ExternalForces external_forces(const discretisation::SolidSpace& space,
                                const discretisation::ExtrudedQuadrature& quadrature,
-                               const Load& load, double kernel_width);
+                               const Cilium& cilium, const Load& load, double kernel_width);
 
-/// The contact force of a probe, N; any other load as it is.
+/// A probe as the contact that it is, with its force, N; any other load as it is.
 Load acting(const Load& load, double applied_force);
 
 }  // namespace ciliaval::fem::solid::loads

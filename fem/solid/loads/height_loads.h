@@ -9,6 +9,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "fem/solid/discretisation/extruded_quadrature.h"
 #include "fem/solid/discretisation/space.h"
@@ -29,11 +30,15 @@ HeightDensity contact_density(double force, double area, double height, double h
 /// q/A everywhere.
 HeightDensity flow_density(double force_per_height, double area);
 
-/// A load spread over the solid: b = (per_volume + g(z) F_zz) e per reference volume.
+/// A load spread over the solid: b = (per_volume + g(z) F_zz) e per reference volume, and what the
+/// environment does to each segment.
 struct SpreadLoad {
   std::optional<HeightDensity> per_height;
   double per_volume = 0;  ///< N/m³
   Vector3 direction = Vector3::UnitX();
+  std::vector<Vector3> weight{};  ///< of each segment, N/m³; empty: none
+  /// M B₀ of each segment, Pa: force per area of its end faces (law F); empty: none.
+  std::vector<Vector3> poles{};
 };
 
 /// Calls add(ζ, f) at quadrature points of the part from ≤ ζ ≤ to of an extrusion line, f the force

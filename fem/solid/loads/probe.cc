@@ -102,8 +102,8 @@ double mean_displacement(const SolidSpace& space, const ExtrudedQuadrature& quad
 UnknownForce probe_force(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                          const ProbeLoad& load, double kernel_width, double force) {
   const auto forces = [&space, &quadrature, load, kernel_width](double amplitude) {
-    return external_forces(space, quadrature, ContactLoad{amplitude, load.height, load.azimuth},
-                           kernel_width);
+    return load_forces(space, quadrature, ContactLoad{amplitude, load.height, load.azimuth},
+                       kernel_width);
   };
   const HeightDensity kernel = contact_density(1, 1, load.height, kernel_width);
   const auto condition = [&space, &quadrature, kernel, load](const dealii::Vector<double>& u,

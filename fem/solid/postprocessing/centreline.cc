@@ -11,6 +11,7 @@
 
 #include "fem/solid/discretisation/assembly.h"
 #include "problem/error.h"
+#include "problem/lagrange.h"
 
 namespace ciliaval::fem::solid::postprocessing {
 using namespace discretisation;
@@ -48,6 +49,7 @@ struct DeformedLine {
 struct Layer {
   double bottom = 0;
   double top = 0;
+  std::size_t segment = 0;
   std::vector<std::size_t> cells;   ///< indices of the elements
   std::vector<DeformedLine> lines;  ///< of all of them
 };
@@ -83,12 +85,17 @@ struct Extraction {
 
  private:
   void add_cell(Layer& layer, std::size_t index) const;
+  /// Adds weight and field of the part of a line above ζ: a magnet of constant M is turned by
+  /// M dA Δx × B₀, and pulled nowhere.
+  void add_environment(const Layer& layer, const Matrix3& x, double dA, double zeta,
+                       Wrench& wrench) const;
 };
 
 void Extraction::add_cell(Layer& layer, std::size_t index) const {
   const ExtrudedCell& cell = quadrature.cells()[index];
   layer.bottom = cell.bottom;
   layer.top = cell.top;
+  layer.segment = space.elements()[index].cell->material_id();
   layer.cells.push_back(index);
   const auto u = nodal_displacements(space.elements()[index], state.displacement);
   for (std::size_t i = 0; i < section_points; ++i) {
@@ -127,9 +134,21 @@ Station Extraction::station(const Layer& layer, double zeta) const {
                    [&, &x = x, &dA = dA](double at, double force) {
                      result.load.add(x * quadratic_basis(at), dA * force * load.direction);
                    });
+    add_environment(layer, x, dA, zeta, result.load);
   }
   if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
+}
+
+void Extraction::add_environment(const Layer& layer, const Matrix3& x, double dA, double zeta,
+                                 Wrench& wrench) const {
+  if (load.weight.empty()) return;
+  static const QuadratureRule rule = gauss_legendre(2, 0, 1);  // x is quadratic
+  for (std::size_t m = 0; m < rule.nodes.size(); ++m)
+    wrench.add(x * quadratic_basis(zeta + (1 - zeta) * rule.nodes[m]),
+               (1 - zeta) * rule.weights[m] * dA * (layer.top - layer.bottom) *
+                   load.weight[layer.segment]);
+  wrench.moment += dA * (x.col(2) - x * quadratic_basis(zeta)).cross(load.poles[layer.segment]);
 }
 
 /// Force and moment that the part above exerts on the layer: at the nodes a of its upper plane,
@@ -149,6 +168,11 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
                    [&, &x = x, &dA = dA](double at, double force) {
                      result.add(x.col(2), -dA * force * quadratic_basis(at)[2] * load.direction);
                    });
+  if (!load.weight.empty())
+    for (const auto& [x, dA, XY] : layer.lines)
+      // ∫ N₂ dζ = 1/6, ∫ dN₂/dζ dζ = 1 for the node at ζ = 1
+      result.add(x.col(2), -dA * (load.weight[layer.segment] * (layer.top - layer.bottom) / 6 +
+                                  load.poles[layer.segment]));
   if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
@@ -193,6 +217,9 @@ Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const 
     state.forces.force = top.force + station.load.force;
     state.forces.moment =
         top.moment + station.load.moment - state.position.cross(state.forces.force);
+    // The field's stress −B₀ ⊗ M is no part of n, which is that of the strain.
+    if (!extraction.load.poles.empty())
+      state.forces.force += station.area * extraction.load.poles[layer.segment];
     piece.S.push_back(zeta == 1 ? layer.top : bottom + zeta * (layer.top - bottom));
     piece.states.push_back(state);
   }

@@ -110,8 +110,9 @@ TEST(ElasticaInput, NoLoadLeavesTheCiliumStraight) {
 
 TEST(ElasticaInput, ReportsWhatItDid) {
   int lines = 0;
-  const MechanicsResult result = elastica::Elastica().solve(
-      paper_cilium(), {FlowLoad{0.1, 0}, FlowLoad{0.2, 0}}, [&](const std::string&) { ++lines; });
+  const MechanicsResult result =
+      elastica::Elastica().solve(paper_cilium(), {FlowLoad{0.1, 0}, FlowLoad{0.2, 0}},
+                                 [&](const ProgressReport&) { ++lines; });
   EXPECT_EQ(lines, 2);
   EXPECT_EQ(result.undeformed.centreline.breaks(), paper_cilium().interfaces());
   EXPECT_EQ(result.undeformed.body, nullptr);

@@ -223,7 +223,7 @@ TEST(Sweep, IsPressedOntoCorrugations) {
     const auto samples = sweep(tip_problem(paper), surface, {{0.95, 0}});
     EXPECT_EQ(samples[0].state, TipState::slip);
     EXPECT_NEAR(samples[0].contact.contact_x, 0.304, 0.06) << amplitude;
-    EXPECT_LT(samples[0].contact.energy, 0.02);
+    EXPECT_LT(samples[0].contact.energy, 0.2);
   }
 }
 

@@ -228,7 +228,7 @@ TEST(Budget, AnUnknownUncertaintyIsInconclusive) {
   world.tip_uncertainty["beam"] = std::nullopt;
   budget = world.budget({2e-3});
   EXPECT_FALSE(budget.decided());
-  EXPECT_THAT(budget::budget_text(budget), HasSubstr("?"));
+  EXPECT_THAT(budget::budget_text(budget, output::Footnotes::text), HasSubstr("?"));
 }
 
 // Oracle: d/dF c L sin(a F) = c L a cos(a F); the truncation of the five-point formula is
@@ -313,7 +313,7 @@ TEST(Budget, LinksJoinOverAStationWithoutValue) {
   EXPECT_EQ(row.links[3].to, "solid/mesh R");
   EXPECT_THAT(row.links[3].physics, AllOf(HasSubstr("Jacobian"), HasSubstr("own sections")));
   expect_no_fault(budget);
-  EXPECT_THAT(budget::budget_text(budget), HasSubstr("-> solid/mesh R"));
+  EXPECT_THAT(budget::budget_text(budget, output::Footnotes::text), HasSubstr("-> solid/mesh R"));
 }
 
 TEST(Chain, FollowsTheCase) {
@@ -401,61 +401,13 @@ TEST(BudgetReport, JsonAndCsvGiveTheNumbersBack) {
 
 // Oracle: the known lengths in mm and µT.
 TEST(BudgetReport, TheTableIsInReadableUnitsAndMarksWhatIsNotResolved) {
-  const std::string text = budget::budget_text(World{}.budget({2e-3}));
+  const std::string text = budget::budget_text(World{}.budget({2e-3}), output::Footnotes::text);
   EXPECT_THAT(text, testing::ContainsRegex("tip +x .mm. +y .mm. +z .mm. +angle .deg."));
   EXPECT_THAT(text, testing::ContainsRegex("elastica +0.79979 "));  // 20 sin 0.04
   EXPECT_THAT(text,
               testing::ContainsRegex("-> beam/line +0.799 "));  // 200 (sin 0.044 − sin 0.04)
   EXPECT_THAT(text, testing::ContainsRegex("-> solid/potential mu_r = 1 +0.000 +.- +4e-06 ~"));
   EXPECT_THAT(text, HasSubstr("one dipole at its centroid; not in the sum"));
-}
-
-TEST(Waterfall, DrawsBarsFromThePapersModelToTheBest) {
-  World world;
-  world.tip_uncertainty["solid"] = std::nullopt;
-  world.uncertainty = Vector3::Constant(1e-7);
-  const budget::Waterfall drawing = budget::waterfall(world.budget({1e-3, 2e-3}));
-  EXPECT_THAT(drawing.script, HasSubstr("paper, step 2 of 2"));
-  const std::string svg = plot::draw_svg(drawing.script, drawing.size);
-  for (const char* label : {"tip x, mm", "dB_x, ", "solid/volume wedge", "total"})
-    EXPECT_THAT(svg, HasSubstr(label));
-  EXPECT_THAT(svg, HasSubstr("rgb(170,  51, 119)"));  // inconclusive
-  EXPECT_THAT(svg, HasSubstr("rgb(170, 170, 170)"));  // below its uncertainty
-  EXPECT_EQ(budget::waterfall(budget::Budget{}).script, "");
-}
-
-// The file gives back all that is drawn and listed: written again, it is the same text.
-TEST(BudgetReport, IsReadBackFromItsJson) {
-  World world;
-  world.tip_uncertainty["solid"] = std::nullopt;
-  world.uncertainty = Vector3::Constant(1e-7);
-  const budget::Budget budget = world.budget({1e-3, 2e-3});
-  const auto json = nlohmann::ordered_json::parse(budget::budget_json(budget, {}));
-  budget::Budget again = budget::read_budget(json);
-  const std::vector<budget::WaterfallPanel> panels = budget::waterfall_panels(again);
-  ASSERT_EQ(panels.size(), 4u);
-  EXPECT_EQ(panels[0].quantity, "tip x, mm");
-  EXPECT_EQ(panels[3].quantity, "dB_z, µT");
-  EXPECT_EQ(panels[1].step, 1u);
-  // Each bar of the drawing of all panels is in one of them.
-  const std::string all = budget::waterfall(budget).script;
-  std::size_t bars = 0;
-  for (const budget::WaterfallPanel& panel : panels) {
-    std::istringstream lines(panel.drawing.script);
-    for (std::string line; std::getline(lines, line);)
-      if (line.starts_with("set object rectangle")) {
-        ++bars;
-        EXPECT_THAT(all, HasSubstr(line + "\n"));
-      }
-  }
-  EXPECT_GT(bars, 12u);
-  again.load_path = budget.load_path;
-  EXPECT_EQ(budget::budget_json(again, {}), budget::budget_json(budget, {}));
-  auto damaged = json;
-  damaged["rows"][0]["total"]["verdict"] = "perhaps";
-  EXPECT_THROW(budget::read_budget(damaged), FileError);
-  damaged["rows"][0].erase("total");
-  EXPECT_THROW(budget::read_budget(damaged), nlohmann::json::exception);
 }
 
 // The paper's cilium by the rods. Oracle of dB/dF: the derivative of the polynomial through

@@ -83,7 +83,7 @@ TEST(BadCaseSyntax, NoAdviceIsGivenWhereNoneIsKnown) {
 const BadCase keys[]{
     {"UnknownKeyInSegment", "length =", "lenght =", "10:1",
      "unknown key 'lenght' in [[cilium.segment]] (valid: name, length, young_modulus, "
-     "poisson_ratio, magnetization)",
+     "poisson_ratio, magnetization, density)",
      "; did you mean 'length'?"},
     {"StartOfAKey", "poisson_ratio", "poisson", "12:1",
      "unknown key 'poisson' in [[cilium.segment]]", "did you mean 'poisson_ratio'?"},
@@ -112,6 +112,18 @@ const BadCase keys[]{
     {"MissingHeight", "height = \"16 mm\"", "", "21:1", "needs 'height'"},
     {"SegmentIsOneTable", "[[cilium.segment]]\nname = \"base\"", "[cilium.base]\nname = \"base\"",
      "8:9", "unknown key 'base' in [cilium] (valid: diameter, segment)"},
+    {"SensorWithoutAName", "[sensor]", "[[sensor]]", "27:1", "[[sensor]] needs 'name'"},
+    {"SensorNamedByANumber", "[sensor]", "[[sensor]]\nname = \"1\"", "28:8",
+     "the sensor name '1' must be letters"},
+    {"SensorNameTwice", "[sensor]",
+     "[[sensor]]\nname = \"a\"\nposition = [\"0 m\", \"0 m\", \"1 m\"]\n[[sensor]]\nname = \"A\"",
+     "31:8", "the sensor name 'A' is already taken"},
+    {"NamedSensorsWithTwoPlaces", "[sensor]\nposition = [\"-0.1 mm\",",
+     "[[sensor]]\nname = \"a\"\nposition = [[\"0 m\", \"0 m\", \"1 m\"],", "29:13",
+     "expected a length"},
+    {"UnknownKeyOfReadings", "[sensor]", "[readings]\nunits = \"mT\"\n[sensor]", "28:1",
+     "unknown key 'units' in [readings]"},
+    {"UnitOfReadingsIsANumber", "[sensor]", "[readings]\nunit = 1\n[sensor]", "28:8", "'unit'"},
     {"TableIsAText", "[sensor]\nposition = [\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
      "[models.line]\n", "32:10", "'fields' need a place: add [sensor] with 'position'"},
 };
@@ -350,12 +362,6 @@ const BadCase probe[]{
      "the solid's contact kernel"},
 };
 
-std::string repeated(std::string_view part, int count) {
-  std::string list = "[";
-  for (int i = 0; i < count; ++i) list.append(part).append(", ");
-  return list + "]";
-}
-
 // Oracle: the rows counted by hand. Three mechanics models are 3 pairs with 5 rows a step; with
 // dipole, line and volume on each and mesh on the solid there are 10 field runs, 45 pairs with 6
 // components: at 3 steps and over the path 4 (10 + 270) = 1120 rows for each sensor, and 3·3·5
@@ -410,10 +416,6 @@ const BadCase later[]{
      "[[models.potential.plate]]\nlower = [\"0 mm\", \"0 mm\", \"0 mm\"]\nupper = [\"1 mm\", "
      "\"-1 mm\", \"1 mm\"]\nrelative_permeability = 2",
      "34:1", "a plate's 'upper' corner must lie above its 'lower' one"},
-    {"Environment", "[models.solid]\nrefinement = 1", "[environment]\ngravity = 1", "34:2",
-     "'environment' is not available in this version: gravity, buoyancy and uniform fields"},
-    {"SegmentDensity", "poisson_ratio = 0.49", "poisson_ratio = 0.49\ndensity = \"1 g/cm^3\"",
-     "13:1", "'cilium.segment.density' is not available in this version"},
     {"UnknownMaterial", "refinement = 1", "material = \"neo-hook\"", "35:12",
      "'material' cannot be 'neo-hook'", "did you mean 'neo-hooke'?"},
     {"InitialGuess", "refinement = 1", "initial_guess = \"beem\"", "35:17",

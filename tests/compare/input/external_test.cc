@@ -166,6 +166,12 @@ TEST_F(External, TakesMarksOfOtherProgramsInItsStride) {
                               "S,x,y,z,theta,kappa\n0,0,0,0,0,0\n0.003,0,0,0.003,0,0\n"
                               "0.006,0,0,0.006,0,0\n0.01,0,0,0.01,0,0\n"),
             "no fault");
+  // As the program writes them: units below the names.
+  EXPECT_EQ(centreline_faults("S,x,y,z,theta,kappa\n# units: S mm, x mm, y mm, z mm, theta deg, "
+                              "kappa 1/m\n0,0,0,0,0,0\n3,0,0,3,0,0\n6,0,0,6,0,0\n10,0,0,10,0,0\n"),
+            "no fault");
+  EXPECT_THAT(centreline_faults("S,x,y,z\n0,0,0,0\n# units: S mm, x mm, y mm, z mm\n3,0,0,3\n"),
+              HasSubstr("a.csv:1:1: the column 'S' needs the unit"));
 }
 
 // Oracle: a quarter of a circle. Without S it is the chords' length, scaled: exact for equal steps.

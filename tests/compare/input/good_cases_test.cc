@@ -79,6 +79,9 @@ void expect_same(const input::Case& a, const input::Case& b) {
   }
   EXPECT_EQ(a.stated_by, b.stated_by);
   EXPECT_EQ(a.sensors, b.sensors);
+  EXPECT_EQ(a.sensor_names, b.sensor_names);
+  for (const auto& [key, text] : input::external::reading_keys)
+    EXPECT_EQ((a.readings.*text).text, (b.readings.*text).text) << key;
   EXPECT_EQ(a.mechanics, b.mechanics);
   EXPECT_EQ(a.fields, b.fields);
   for (const auto& [model, option] : all_options())
@@ -227,6 +230,28 @@ TEST(GoodCase, SensorsMayBeAList) {
       read(replaced(good_case, "[\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]",
                     "[[\"1 mm\", \"2 mm\", \"3 mm\"], [\"0 m\", \"0 m\", \"-1 m\"]]"));
   EXPECT_THAT(c.sensors, ElementsAre(Vector3(0.001, 0.002, 0.003), Vector3(0, 0, -1)));
+}
+
+TEST(GoodCase, SensorsMayHaveNames) {
+  const std::string text =
+      replaced(good_case, "[sensor]\nposition = [\"-0.1 mm\", \"0.2 mm\", \"-1.55 mm\"]\n",
+               "[[sensor]]\nname = \"left\"\nposition = [\"1 mm\", \"2 mm\", \"3 mm\"]\n"
+               "[[sensor]]\nname = \"right\"\nposition = [\"0 m\", \"0 m\", \"-1 m\"]\n");
+  const input::Case c = read(text);
+  EXPECT_THAT(c.sensors, ElementsAre(Vector3(0.001, 0.002, 0.003), Vector3(0, 0, -1)));
+  EXPECT_THAT(input::sensor_names(c), ElementsAre("left", "right"));
+  expect_same(read(input::to_toml(c, models::known())), c);
+  EXPECT_THAT(input::sensor_names(read(std::string(good_case))), ElementsAre("0"));
+}
+
+TEST(GoodCase, SaysHowReadingsAreRead) {
+  const input::Case c = read(std::string(good_case) +
+                             "[readings]\nunit = \"mG\"\nmap = \"bx=Ch 1, by=Ch 2, bz=Ch 3\"\n"
+                             "scale = \"0.15 uT\"\nunloaded = \"0 s..1 s\"\n");
+  EXPECT_EQ(c.readings.unit.text, "mG");
+  EXPECT_THAT(c.readings.unit.where, testing::EndsWith(":37:8: [readings] unit"));
+  EXPECT_EQ(c.readings.unloaded.text, "0 s..1 s");
+  expect_same(read(input::to_toml(c, models::known())), c);
 }
 
 TEST(GoodCase, NeedsNoSensorWithoutFields) {

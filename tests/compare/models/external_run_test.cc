@@ -178,7 +178,8 @@ TEST_F(ExternalRun, AChangeAloneIsComparedAsAChange) {
     if (c.reference == "bench/readings") {
       EXPECT_EQ(c.quantity, "dB");
     }
-  EXPECT_THAT(output::table(result, comparisons), HasSubstr("bench/readings"));
+  EXPECT_THAT(output::table(result, comparisons, output::Footnotes::reference),
+              HasSubstr("bench/readings"));
   const std::string json = output::summary_json(result, comparisons, {});
   EXPECT_THAT(json, HasSubstr("\"bench/readings\""));
 }

@@ -192,7 +192,9 @@ TEST_F(ToyModel, IsReadWrittenBackAndDocumentedFromItsDeclaration) {
   const input::Case again = input::read_case(written, "again.toml", models::known());
   EXPECT_EQ(input::to_toml(again, models::known()), written);
   const std::string keys = test::key_table(models::known());
-  EXPECT_THAT(keys, HasSubstr("| `models.hinge.stiffness` | moment | from 1e-09 N m to 1 N m |"));
+  EXPECT_THAT(
+      keys,
+      HasSubstr("| `models.hinge.stiffness` | moment, `\"1 mN m\"` | from 1e-09 N m to 1 N m |"));
   EXPECT_THAT(keys, HasSubstr("`solid`, `hinge` |"));
 }
 

@@ -129,8 +129,8 @@ TEST(FieldGrid, IsSampledStepByStep) {
       [](const Deformation& d, const Vector3&) -> Vector3 { return d.centreline.at(L).position; })};
   const models::CaseResult result = models::run(c, mechanics, fields);
   std::vector<std::string> sampled;
-  const auto grid =
-      output::field_grid(result, fields, [&](const std::string& s) { sampled.push_back(s); });
+  const auto grid = output::field_grid(result, fields,
+                                       [&](const ProgressReport& s) { sampled.push_back(s.text); });
   ASSERT_TRUE(grid);
   EXPECT_TRUE(sampled.empty());
   const Vector3 tip = result.mechanics[0].result.steps[1].deformation->centreline.at(L).position;

@@ -84,14 +84,14 @@ TEST(OutputFile, IsRefusedBeforeTheWorkIfItCannotBeWritten) {
   EXPECT_THROW(check_outputs({"/proc/x.json"}, {}), FileError);
 }
 
-// Oracle: RFC 4180; OWASP, "CSV injection".
+// Oracle: RFC 4180; OWASP, "CSV injection". A comment goes below the names of the columns.
 TEST(CsvWriter, QuotesEscapesAndDefusesTexts) {
   CsvWriter csv;
   csv.comment("units: x m\nforged");
   csv.row("a", 1, -0.0, 0.1, std::optional<double>(), true);
   csv.row("say \"x, y\"", "two\nlines", "=1+1", "@SUM(A1)", "-1.5", "\x1b[2J", "\xff");
   EXPECT_EQ(csv.text(),
-            "# units: x m\\x0Aforged\na,1,0,0.1,,true\n"
+            "a,1,0,0.1,,true\n# units: x m\\x0Aforged\n"
             "\"say \"\"x, y\"\"\",\"two\nlines\",'=1+1,'@SUM(A1),-1.5,\\x1B[2J,\\xFF\n");
 }
 

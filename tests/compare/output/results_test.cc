@@ -92,6 +92,23 @@ TEST(Summary, HasTheKeysOfTheContract) {
                                "difference", "relative", "unit", "uncertainty", "verdict"}));
 }
 
+// Oracle: the contract; the environment stands beside the load only where there is one.
+TEST(Summary, StatesTheEnvironmentBesideTheLoad) {
+  models::CaseResult result = two_models();
+  surroundings::Environment around;
+  around.gravity = {0, 0, -9.81};
+  around.fluid_density = 1.2;
+  around.uniform_field = {1e-3, 0, 2e-3};
+  around.magnetic_energy = surroundings::MagneticEnergy::R;
+  result.problem.load_path[1].set_environment(around);
+  const json summary = json::parse(output::summary_json(result, {}, origin));
+  EXPECT_FALSE(summary["steps"][0].contains("environment"));
+  EXPECT_EQ(summary["steps"][1]["environment"], json({{"gravity", {0.0, 0.0, -9.81}},
+                                                      {"fluid_density", 1.2},
+                                                      {"uniform_field", {1e-3, 0.0, 2e-3}},
+                                                      {"magnetic_energy", "R"}}));
+}
+
 TEST(Summary, StatesAProbesDisplacementForceAndSlipOff) {
   input::Case c = paper_case({});
   c.load_path = {ProbeLoad{1e-3, 16e-3, 0.5}, ProbeLoad{20e-3, 16e-3, 0.5}};
@@ -206,8 +223,8 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
 TEST(CentrelineCsv, IsTheCurveAtEquidistantPointsAndBreaks) {
   const double k = 40;
   const auto rows = parse_csv(output::centreline_csv(arc(L, 3.01e-3, Vector3::UnitX(), k)));
-  EXPECT_EQ(rows[0][0].front(), '#');
-  EXPECT_EQ(rows[1], (std::vector<std::string>{"S", "x", "y", "z", "theta", "kappa"}));
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"S", "x", "y", "z", "theta", "kappa"}));
+  EXPECT_EQ(rows[1][0], "# units: S m");
   ASSERT_EQ(rows.size(), 2 + 201 + 1u);  // the joint is not one of the 201
   bool at_joint = false;
   for (std::size_t i = 2; i < rows.size(); ++i) {
@@ -221,6 +238,42 @@ TEST(CentrelineCsv, IsTheCurveAtEquidistantPointsAndBreaks) {
   }
   EXPECT_TRUE(at_joint);
   EXPECT_EQ(std::stod(rows.back()[0]), L);
+}
+
+// Oracle: by hand. At the one sensor the field is the same, bent or straight, and ΔB has twice the
+// uncertainty of B; at the other it diverges. The second step slips off.
+TEST(FieldsCsv, HasARowForEachStepSensorAndPair) {
+  input::Case c = paper_case({1e-3, 2e-3});
+  c.sensors = {Vector3(3, 0, 0), Vector3(1, 0, 0)};
+  c.sensor_names = {"left", "right"};
+  c.mechanics = {"one"};
+  c.fields = {"known", "unknown"};
+  const std::vector<models::MechanicsEntry> mechanics{mechanics_entry("one", [](const Load& load) {
+    MechanicsStep step = converged(load, arc(L, 3e-3, Vector3::UnitX(), 20), 0);
+    if (magnitude(load) < 1.5e-3) return step;
+    step.deformation.reset();
+    step.status = Status::slipped_off;
+    return step;
+  })};
+  const auto formula = [](const Deformation&, const Vector3& x) -> Vector3 {
+    if (x.x() == 3) throw InputError("B diverges");
+    return {1, -0.0, 2};
+  };
+  const std::vector<models::FieldEntry> fields{
+      field_entry("known", formula, Vector3(1e-6, 2e-6, 3e-6)), field_entry("unknown", formula)};
+  EXPECT_EQ(output::fields_csv(models::run(c, mechanics, fields)),
+            "step,force,height,azimuth,sensor,pair,B_x,B_y,B_z,dB_x,dB_y,dB_z,uncertainty_x,"
+            "uncertainty_y,uncertainty_z\n"
+            "# units: force N, height m, azimuth rad, B_x T, B_y T, B_z T, dB_x T, dB_y T, dB_z T, "
+            "uncertainty_x T, uncertainty_y T, uncertainty_z T\n"
+            "0,0.001,0.016,0,left,one/known,,,,,,,,,\n"
+            "0,0.001,0.016,0,left,one/unknown,,,,,,,,,\n"
+            "0,0.001,0.016,0,right,one/known,1,0,2,0,0,0,2e-06,4e-06,6e-06\n"
+            "0,0.001,0.016,0,right,one/unknown,1,0,2,0,0,0,,,\n"
+            "1,0.002,0.016,0,left,one/known,,,,,,,,,\n"
+            "1,0.002,0.016,0,left,one/unknown,,,,,,,,,\n"
+            "1,0.002,0.016,0,right,one/known,,,,,,,,,\n"
+            "1,0.002,0.016,0,right,one/unknown,,,,,,,,,\n");
 }
 
 TEST(ErrorsCsv, HoldsEveryComparisonWithTheSameFigures) {
@@ -239,6 +292,14 @@ TEST(ErrorsCsv, HoldsEveryComparisonWithTheSameFigures) {
     }
     EXPECT_EQ(row[0].empty(), !comparisons[i].step);
   }
+}
+
+TEST(ErrorsCsv, NamesTheSensors) {
+  models::Comparison c;
+  c.sensor = 1;
+  const std::vector<std::string> names{"left", "right"};
+  EXPECT_EQ(parse_csv(output::errors_csv({c}, names)).at(1).at(1), "right");
+  EXPECT_EQ(parse_csv(output::errors_csv({c})).at(1).at(1), "1");
 }
 
 TEST(ErrorsCsv, QuotesANoteWithACommaAndAQuote) {
@@ -262,7 +323,8 @@ TEST(WriteResults, WritesTheFilesThatTheSummaryNames) {
         ++files;
       }
   EXPECT_EQ(files, 3u);
-  EXPECT_TRUE(std::filesystem::exists(folder.path() / "errors.csv"));
+  for (const char* file : {"errors.csv", "fields.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / file)) << file;
 }
 
 TEST(WriteText, SaysWhichFileAndWhyOnAFullDisk) {

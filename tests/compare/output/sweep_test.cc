@@ -68,6 +68,18 @@ std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
   return rows;
 }
 
+TEST(SweepResults, ColumnsHaveTheSensorsNames) {
+  models::CaseResult named = result();
+  named.problem.sensor_names = {"left"};
+  const auto header = rows_of(output::sweep_csv(named)).front();
+  const auto has = [&](const std::string& part) {
+    return std::ranges::any_of(
+        header, [&](const std::string& cell) { return cell.find(part) != std::string::npos; });
+  };
+  EXPECT_TRUE(has(".dB_left_x"));
+  EXPECT_FALSE(has(".dB0_x"));
+}
+
 // Oracle: the contract (design, section 10).
 TEST(SweepResults, SummaryHasTheContactOfEachSample) {
   const json whole = summary();
@@ -140,7 +152,7 @@ TEST(SweepResults, SignalIsAsLongAsTheSweepAndStartsAtRest) {
 }
 
 TEST(SweepResults, TableFitsATerminalAndTellsTheJump) {
-  const std::string text = output::sweep_table(result());
+  const std::string text = output::sweep_table(result(), 1);
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 105U) << line;
   EXPECT_THAT(text, HasSubstr("41 samples: interference 1 mm, travel 22 mm, azimuth 30 deg"));

@@ -121,6 +121,10 @@ TEST(SolidFile, HoldsTheBodyOnItsUndeformedMesh) {
                                          sigma(0, 1), sigma(1, 2), sigma(0, 2)};
     for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(s[k], expected[k], 1e-11 * 6e3);
   }
+  vtkDataArray* stress = grid->GetPointData()->GetArray("cauchy_stress");
+  for (const auto& [k, name] : std::vector<std::pair<vtkIdType, const char*>>{
+           {0, "XX"}, {1, "YY"}, {2, "ZZ"}, {3, "XY"}, {4, "YZ"}, {5, "XZ"}})
+    EXPECT_STREQ(stress->GetComponentName(k), name);
   vtkDataArray* material = grid->GetCellData()->GetArray("MaterialIDs");
   EXPECT_EQ(material->GetTuple1(0), 0);
   EXPECT_EQ(material->GetTuple1(1), 1);
@@ -289,6 +293,20 @@ TEST(Write, SaysWhichFileAndWhyOnAFullDisk) {
   EXPECT_THROW(output::vtk::write(*output::vtk::solid_grid(BentBricks::body()),
                                   folder.path() / "none" / "a.vtu"),
                FileError);
+}
+
+TEST(FieldData, HoldsTheEnvironmentOfTheStep) {
+  const vtkNew<vtkPolyData> data;
+  Load load = ContactLoad{1e-3, 16e-3, 0};
+  output::vtk::add_provenance(*data, {}, load);
+  EXPECT_EQ(data->GetFieldData()->GetArray("uniform_field"), nullptr);
+  surroundings::Environment around;
+  around.gravity = {0, 0, -9.81};
+  around.uniform_field = {5e-3, 0, 1e-3};
+  load.set_environment(around);
+  output::vtk::add_provenance(*data, {}, load);
+  EXPECT_EQ(data->GetFieldData()->GetArray("gravity")->GetComponent(0, 2), -9.81);
+  EXPECT_EQ(data->GetFieldData()->GetArray("uniform_field")->GetComponent(0, 0), 5e-3);
 }
 
 TEST(SeriesTimes, AreTheLoadsIfTheyIncreaseElseTheSteps) {

@@ -50,7 +50,7 @@ TEST(CheckCommand, PassesOnWhatWasAcceptedAndWritesBothReports) {
   const TemporaryFolder folder;
   accept(folder.path());
   const Outcome outcome =
-      ciliaval(folder.path(), "check one.toml --junit report.xml --json report.json");
+      ciliaval(folder.path(), "check one.toml --junit report.xml --json report.json --quiet");
   EXPECT_EQ(outcome.code, 0) << outcome.out << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("Passed: 1 cases"));
   EXPECT_TRUE(nlohmann::json::parse(read_text(folder.path() / "report.json"))["passed"]);

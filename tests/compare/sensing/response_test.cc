@@ -89,6 +89,15 @@ TEST(Response, RefusesWhatItCannotServe) {
   } catch (const SolverError& error) {
     EXPECT_THAT(error.what(), HasSubstr("within the range of loads up to 0.007 N"));
   }
+  const auto refuses = [&](const Load& load) {
+    input::Case other = problem;
+    other.load_path = {load};
+    EXPECT_THROW(sensing::shapes_up_to(other, "elastica", 1e-4), InputError);
+  };
+  refuses(EnvironmentLoad{1, 0});
+  surroundings::Environment around;
+  around.uniform_field = {1e-3, 0, 0};  // a response is the same from all sides
+  refuses(with_environment(problem.load_path.front(), around));
   EXPECT_THROW(sensing::shapes_up_to(problem, "elastica", 0), InputError);
   EXPECT_THROW(sensing::shapes_up_to(problem, "elastica", std::nan("")), InputError);
   problem.options.of<fem::solid::SolidOptions>().mesh = "mine.msh";

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -86,6 +87,40 @@ TEST(Optimise, OneParametersOptimumIsThePeakOfItsScan) {
     EXPECT_NEAR(optimum.designs[1].values[0], peak.extreme_at, 1e-4) << field;
     EXPECT_NEAR(best_value(optimum, 0), peak.largest, 1e-6 * peak.largest) << field;
     EXPECT_LT(optimum.search.optima[0].residual, 1e-6);
+  }
+}
+
+// Of a smooth problem with a limit: the slice through the best design has it, none that keeps the
+// limit is better, and some break it.
+TEST(Optimise, SlicesGoThroughTheBestDesign) {
+  const TemporaryFolder folder;
+  const Study study = study_of(
+      folder.path(), volume,
+      "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"2 mN\"\n" + diameter + proportion);
+  const Optimum optimum = optimum_of(study);
+  const auto slices = json(study, optimum)["slices"];
+  ASSERT_EQ(slices.size(), 2U);
+  const double best = best_value(optimum, 0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& slice = slices[i];
+    EXPECT_EQ(slice["path"], study.optimisation->parameters[i].number.path);
+    const std::vector<double> at = slice["at"];
+    EXPECT_TRUE(std::is_sorted(at.begin(), at.end()));
+    EXPECT_DOUBLE_EQ(at.front(), i == 0 ? 1e-3 : 0.05);
+    EXPECT_DOUBLE_EQ(at.back(), i == 0 ? 5e-3 : 0.95);
+    bool has_best = false;
+    int broken = 0;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      broken += slice["kept"][k] ? 0 : 1;
+      if (slice["values"][k].is_null()) continue;
+      const double value = slice["values"][k];
+      if (at[k] == slice["best"]) has_best = std::abs(value - best) < 1e-12 * best;
+      if (slice["kept"][k]) {
+        EXPECT_LE(value, best * (1 + 1e-6)) << at[k];
+      }
+    }
+    EXPECT_TRUE(has_best);
+    EXPECT_GT(broken, 0);
   }
 }
 
@@ -292,8 +327,8 @@ TEST(Optimise, ReportsEachDesignByEachPair) {
   const Optimum optimum = optimum_of(study);
   const std::string lines = csv(study, optimum);
   EXPECT_THAT(lines,
-              testing::StartsWith("# units: cilium.diameter m, dB_norm T, range N\n"
-                                  "design,cilium.diameter,pair,status,dB_norm,range,message\n"
+              testing::StartsWith("design,cilium.diameter,pair,status,dB_norm,range,message\n"
+                                  "# units: cilium.diameter m, dB_norm T, range N\n"
                                   "start,0.003,elastica/line,converged,"));
   EXPECT_THAT(lines, HasSubstr("\noptimum 1,0.00"));
   const auto document = json(study, optimum);

@@ -146,6 +146,22 @@ TEST_F(StudyReader, AStepOfALoadPathIsChosenByWhatIsSet) {
             1u);
 }
 
+TEST_F(StudyReader, ASensorIsChosenByNameOrNumber) {
+  std::string text = test::case_text({.name = "one"}, "mechanics = [\"elastica\"]\n");
+  const std::size_t sensor = text.find("[sensor]");
+  text.replace(sensor, text.find("[models]") - sensor,
+               "[[sensor]]\nname = \"left\"\nposition = [\"1 mm\", \"0 mm\", \"-2 mm\"]\n"
+               "[[sensor]]\nname = \"right\"\nposition = [\"3 mm\", \"0 mm\", \"-2 mm\"]\n");
+  std::ofstream(folder_.path() / "one.toml") << text;
+  for (const char* chosen : {"sensor = \"right\"\n", "sensor = 1\n"}) {
+    const input::Case c = read(study_text(pairs + chosen, modulus_range)).case_at(0);
+    EXPECT_THAT(c.sensors, ElementsAre(Vector3(3e-3, 0, -2e-3))) << chosen;
+    EXPECT_THAT(c.sensor_names, ElementsAre("right")) << chosen;
+  }
+  EXPECT_THAT(faults(study_text(pairs + "sensor = \"middle\"\n", modulus_range)),
+              HasSubstr("no sensor 'middle': they are left, right"));
+}
+
 TEST_F(StudyReader, TheFingerprintHasWhatTheResultsDependOnAndNothingElse) {
   const support::Fingerprint usual = fingerprint(read(study_text(pairs, modulus_range)));
   const auto with = [&](const std::string& header, const std::string& rest) {

@@ -91,8 +91,8 @@ TEST(StudyReport, CsvHasALineForEachPointAndPairWithUnitsAndQuotes) {
       [](double d) { return d > 0.002 ? 0.1 : NAN; },
       "pairs = [\"elastica/line\", \"beam/line\"]\noutputs = [\"dB_norm\"]\n");
   EXPECT_EQ(csv(result),
-            "# units: cilium.diameter m, dB_norm T\n"
             "point,cilium.diameter,pair,status,dB_norm,message\n"
+            "# units: cilium.diameter m, dB_norm T\n"
             "0,0.003,elastica/line,converged,0.1,\n"
             "0,0.003,beam/line,converged,0.1,\n"
             "1,0.001,elastica/line,slipped_off,,\"the contact slips off: \"\"far\"\", too\"\n"
@@ -153,62 +153,6 @@ TEST(StudyReport, TheTableOfTwoParametersHasWholeValues) {
   EXPECT_EQ(rows.size(), 5u);
   for (const auto& [d, azimuths] : rows)
     EXPECT_THAT(azimuths, testing::ElementsAre("0", "10", "30", "40", "60")) << d;
-}
-
-TEST(StudyPlot, HasACurveForEachPairAndMarksWhatSlippedOff) {
-  const StudyResult result = result_of(
-      lengths, [](double x) { return x > 0.85 ? NAN : 1e-4 - 1e-4 * (x - 0.5) * (x - 0.5); },
-      "pairs = [\"elastica/line\", \"beam/volume\"]\noutputs = [\"dB_norm\"]\ntitle = \"It's\"\n");
-  const std::vector<StudyPlot> all = plots(result);
-  ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0].name, "dB_norm.svg");
-  const std::string svg = plot::draw_svg(all[0].script, all[0].size);
-  for (const char* words : {"It's", "L2/L0", "|ΔB|, µT", "elastica/line, peak at 0.5",
-                            "beam/volume, peak at 0.5", "slipped off"})
-    EXPECT_THAT(svg, HasSubstr(words));
-  EXPECT_THAT(svg, Not(HasSubstr("failed")));
-}
-
-TEST(StudyPlot, OfAProductHasACurveForEachCombinationAndOfManySome) {
-  const auto svg_of = [](int count) {
-    const auto all = plots(result_of(
-        lengths +
-            "[[parameter]]\npath = \"cilium.diameter\"\nname = \"d\"\nfrom = \"1 mm\"\nto = "
-            "\"3 mm\"\ncount = " +
-            std::to_string(count) + "\n",
-        [](double x) { return std::exp(5 * x); }));
-    return plot::draw_svg(all.at(0).script, all.at(0).size);
-  };
-  const std::string few = svg_of(3);
-  for (const char* words : {"line, d = 1 mm", "line, d = 2 mm", "line, d = 3 mm"})
-    EXPECT_THAT(few, HasSubstr(words));
-  const std::string many = svg_of(11);
-  EXPECT_THAT(many, HasSubstr("6 of the curves"));
-  EXPECT_THAT(many, HasSubstr("d = 1 mm"));
-  EXPECT_THAT(many, HasSubstr("d = 3 mm"));
-  EXPECT_THAT(many, Not(HasSubstr("d = 1.2 mm")));
-}
-
-// gnuplot 5.4 misreads two apostrophes in a row, also as the escape of one, in single quotes.
-TEST(StudyPlot, ShowsAnyNameOfAParameter) {
-  for (const std::string name : {"'d", "d'", "d''", "a'b\\n", "`d`", "@d_{1}^2", "\"d\" #1"}) {
-    StudyResult result = result_of(lengths, [](double x) { return x; });
-    result.study.parameters[0].name = name;
-    const auto all = plots(result);
-    EXPECT_THAT(plot::draw_svg(all.at(0).script, all.at(0).size), HasSubstr('>' + name + '<'))
-        << name;
-  }
-}
-
-TEST(StudyPlot, OfNothingThereIsNone) {
-  EXPECT_TRUE(plots(result_of(lengths, [](double) { return NAN; })).empty());
-  // One point, one value for all, or both signs: there is always something to draw.
-  for (const double value : {0.0, -1e-6, 3e-5}) {
-    const auto one =
-        plots(result_of("[[parameter]]\npath = \"cilium.diameter\"\nvalues = [\"3 mm\"]\n",
-                        [&](double) { return value; }));
-    EXPECT_NO_THROW(plot::draw_svg(one.at(0).script, one.at(0).size)) << value;
-  }
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ using namespace beams;
 using namespace ciliaval::fem::beam;
 using ciliaval::Quaternion;
 using ciliaval::Vector3;
+using ciliaval::surroundings::MagneticEnergy;
 using Eigen::Index;
 
 /// Sixth-order central difference: with steps of 1e-2 and derivatives of order one, 1e-12.
@@ -83,19 +84,34 @@ TEST(BeamDerivatives, StrainsAreThoseOfTheRotation) {
   EXPECT_LT((e.kappa - Vector3(W(2, 1), W(0, 2), W(1, 0))).norm(), 1e-11);
 }
 
-TEST(BeamDerivatives, ResidualIsTheGradientOfTheEnergy) {
-  const Scene s = scene();
-  const Eigen::VectorXd residual = s.system.residual(s.state, s.conservative);
+/// The loads with the field's energy by a law.
+Loads in_field(Loads loads, std::size_t elements, MagneticEnergy law) {
+  std::mt19937 engine(11);
+  for (std::size_t e = 0; e < elements; ++e) loads.magnetic_force.push_back(random_vector(engine));
+  loads.magnetic_energy = law;
+  return loads;
+}
+
+/// Of the residual to the gradient of the energy.
+double gradient_error(const Scene& s, const Loads& loads) {
+  const Eigen::VectorXd residual = s.system.residual(s.state, loads);
   const double scale = s.system.force_scale() * s.system.length_scale();
   double error = 0;
   for (Index i = 0; i < residual.size(); ++i) {
     const auto energy = [&](double step) {
-      return s.system.potential_energy(moved(s.system, s.state, i, step), s.conservative) / scale;
+      return s.system.potential_energy(moved(s.system, s.state, i, step), loads) / scale;
     };
     error = std::max(error, std::abs(derivative(energy) - residual[i]));
   }
+  return error;
+}
+
+TEST(BeamDerivatives, ResidualIsTheGradientOfTheEnergy) {
+  const Scene s = scene();
   // Measured 2e-12 on entries of order one.
-  EXPECT_LT(measured("error", error), 2e-11);
+  EXPECT_LT(measured("dead", gradient_error(s, s.conservative)), 2e-11);
+  for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
+    EXPECT_LT(measured("field", gradient_error(s, in_field(s.conservative, 3, law))), 2e-11);
 }
 
 double tangent_error(const Scene& s, const Loads& loads) {
@@ -114,6 +130,8 @@ TEST(BeamDerivatives, TangentIsTheDerivativeOfTheResidual) {
   const Scene s = scene();
   EXPECT_LT(measured("conservative", tangent_error(s, s.conservative)), 2e-11);
   EXPECT_LT(measured("flow", tangent_error(s, s.height)), 2e-11);
+  for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
+    EXPECT_LT(measured("field", tangent_error(s, in_field(s.conservative, 3, law))), 2e-11);
 }
 
 // Oracle: Eigen's dense LU of the rows and columns that no support holds. One element, whose band
@@ -192,15 +210,18 @@ TEST(BeamDerivatives, TangentIsSymmetricInEquilibrium) {
   EXPECT_LT(measured("skew", (K - K.transpose()).lpNorm<Eigen::Infinity>()), 1e-12);
 }
 
-TEST(BeamDerivatives, MovingVertexAndLoadFactor) {
+class MovingVertex : public testing::TestWithParam<MagneticEnergy> {};
+
+TEST_P(MovingVertex, AndLoadFactor) {
   // A straight beam whose vertex 1 moves between vertices 0 and 2: the columns that border the
-  // tangent in the contact and slip-off problems, for a conservative and a distributed load.
+  // tangent in the contact and slip-off problems, for a conservative and a distributed load, and a
+  // field.
   Mesh mesh = uniform_mesh(2, 3, 3, isotropic(1, 0.8, 40, 20));
   mesh.velocities = {0, 1, 0, 0};
   Scene s{System(straight_curve, mesh, {{0}}), {}, {}, {}};
   const Scene other = scene();
   s.state = other.state;
-  const Loads loads = combine(1, other.conservative, 1, other.height);
+  const Loads loads = in_field(combine(1, other.conservative, 1, other.height), 3, GetParam());
   const double L = s.system.length_scale();
   const auto shifted = [&](double step) {
     State state = s.state;
@@ -221,5 +242,8 @@ TEST(BeamDerivatives, MovingVertexAndLoadFactor) {
           (derivative(factored) - s.system.point_load_derivative(loads)).lpNorm<Eigen::Infinity>()),
       2e-12);
 }
+
+INSTANTIATE_TEST_SUITE_P(BeamDerivatives, MovingVertex,
+                         testing::Values(MagneticEnergy::F, MagneticEnergy::R));
 
 }  // namespace

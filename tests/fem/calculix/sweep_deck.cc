@@ -32,8 +32,9 @@ constexpr double plate_thickness = 3e-3;
 constexpr int plate_elements = 44;
 
 MeshNodes half_mesh(const RefereeSweep& sweep) {
-  auto options = solid::cylinder_mesh_options(sweep.refinement);
-  options.half = true;
+  solid::SolidOptions solid;
+  solid.refinement = sweep.refinement;
+  const auto options = solid::cylinder_mesh_options(solid, {SweepLoad{}});
   dealii::Triangulation<3> triangulation;
   meshes::cylinder::make_cylinder(sweep.cilium, options, triangulation);
   return meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation));

@@ -17,6 +17,7 @@ namespace ciliaval::fem::solid {
 
 /// A coarse cilium, bent by hand: no equilibrium is needed to check forces and their derivatives.
 struct BentCilium {
+  Cilium cilium{3e-3, {{"a", 3e-3, 1e5, 0.49, 0, 1000}, {"b", 5e-3, 3e5, 0.49, 75e3, 1700}}};
   dealii::Triangulation<3> triangulation;
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
   std::vector<material::Hyperelastic> materials{
@@ -32,8 +33,7 @@ struct BentCilium {
     options.rings = 1;
     options.finest_layer = options.coarsest_layer = 0.7;
     options.planes = {5e-3};
-    meshes::cylinder::make_cylinder({3e-3, {{"a", 3e-3, 1e5, 0.49, 0}, {"b", 5e-3, 3e5, 0.49, 0}}},
-                                    options, triangulation);
+    meshes::cylinder::make_cylinder(cilium, options, triangulation);
     mapping = meshes::cylinder::cylinder_mapping(triangulation);
     space = std::make_unique<discretisation::SolidSpace>(triangulation, *mapping, materials);
     quadrature = std::make_unique<discretisation::ExtrudedQuadrature>(*space);
@@ -67,7 +67,7 @@ struct BentCilium {
 
   dealii::Vector<double> forces(const Load& load, const dealii::Vector<double>& u) const {
     dealii::Vector<double> result(space->unknowns());
-    loads::external_forces(*space, *quadrature, load, 0.5e-3)(
+    loads::external_forces(*space, *quadrature, cilium, load, 0.5e-3)(
         u, result, dealii::AffineConstraints<double>(), nullptr);
     return result;
   }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,7 @@ struct Killed {};
 
 /// Progress that ends the solution at its n-th line.
 Progress killed_after(int& lines) {
-  return [&lines](const std::string&) {
+  return [&lines](const ProgressReport&) {
     if (lines-- == 0) throw Killed();
   };
 }
@@ -64,6 +65,15 @@ void expect_same(const MechanicsResult& a, const MechanicsResult& b, const std::
     EXPECT_EQ(p.tip_angle_uncertainty, q.tip_angle_uncertainty) << what;
     EXPECT_EQ(p.iterations, q.iterations) << what;
     EXPECT_EQ(p.unknowns, q.unknowns) << what;
+    ASSERT_EQ(p.contact.has_value(), q.contact.has_value()) << what;
+    if (p.contact) {
+      EXPECT_EQ(p.contact->state, q.contact->state) << what;
+      EXPECT_EQ(p.contact->normal_force, q.contact->normal_force) << what;
+      EXPECT_EQ(p.contact->point, q.contact->point) << what;
+      EXPECT_EQ(p.contact->friction_work, q.contact->friction_work) << what;
+      EXPECT_EQ(p.contact->energy_lost, q.contact->energy_lost) << what;
+      EXPECT_EQ(p.load.surface(), q.load.surface()) << what;
+    }
     ASSERT_EQ(p.deformation.has_value(), q.deformation.has_value()) << what;
     if (!p.deformation) continue;
     const Centreline& r = p.deformation->centreline;
@@ -82,7 +92,7 @@ void expect_same(const MechanicsResult& a, const MechanicsResult& b, const std::
 void stop_and_go_on(const SolidOptions& options, const LoadPath& loads, int stops) {
   int total = 0;
   const MechanicsResult whole =
-      Solid(options).solve(stub(), loads, [&total](const std::string&) { ++total; });
+      Solid(options).solve(stub(), loads, [&total](const ProgressReport&) { ++total; });
   ASSERT_GT(total, 10);
   bool went_on = false;
   for (int first = total / 4; first < total; first += total / stops) {
@@ -110,6 +120,17 @@ TEST(SolidCheckpoint, GoesOnToTheSameBits) {
 // … on the way to the slip-off and with its bracket half closed.
 TEST(SolidCheckpointSlow, GoesOnInTheSearchForTheSlipOff) {
   stop_and_go_on(coarse(), path({3e-3, 1.0}), 2);
+}
+
+// … along a sweep with its contact, its prediction and a jump.
+TEST(SolidCheckpoint, GoesOnAlongASweep) {
+  using namespace surroundings;
+  const auto surface = std::make_shared<const Surface>(
+      Surface{TrapezoidProfile{
+                  .height = 0.3e-3, .top = 4e-3, .bottom = 4e-3, .flank = 0.3e-3, .radius = 0.2e-3},
+              0.3, 0});
+  const Load start(SweepLoad{0.2e-3, 8.3e-3, 0.01, 0.4}, surface);
+  stop_and_go_on(coarse(), sweep_path(start, {9.5e-3, 13, false}), 3);
 }
 
 // What a failed step leaves can be gone on from with more iterations; it ends as it would have.

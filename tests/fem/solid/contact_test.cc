@@ -182,7 +182,7 @@ struct Pressed {
     options.tip_stiffness = young_modulus * a;
     follower = std::make_unique<Follower>(*space, *quadrature, *newton, surface, Vector3::UnitX(),
                                           options);
-    follower->start_open({-1e-6, 0, 0});
+    follower->start({-1e-6, 0, 0});
   }
 };
 

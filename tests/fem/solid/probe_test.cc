@@ -117,7 +117,7 @@ struct Bench {
   double azimuth = 0.4;
 
   NewtonResult pull(double force, SolidState& state) {
-    const ExternalForces forces = external_forces(*cilium.space, *cilium.quadrature,
+    const ExternalForces forces = external_forces(*cilium.space, *cilium.quadrature, cilium.cilium,
                                                   ContactLoad{force, height, azimuth}, width);
     NewtonResult result = newton.solve(forces, state, {.tolerance = 1e-11});
     EXPECT_TRUE(result.converged) << result.reason;

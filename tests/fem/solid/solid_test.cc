@@ -441,10 +441,15 @@ TEST(Solid, LaterLoadsGoOnFromTheLastTwoAndEndAsTheyWouldAlone) {
 
 TEST(Solid, ReportsItsProgress) {
   std::vector<std::string> lines;
+  std::vector<Status> ended;
   coarse().solve({1e-3, {{"rod", 5e-3, 1e6, 0.3, 0}}}, {DeadLoad{1e-3, 0}},
-                 [&](const std::string& line) { lines.push_back(line); });
+                 [&](const ProgressReport& report) {
+                   lines.push_back(report.text);
+                   if (report.step != nullptr) ended.push_back(report.step->status);
+                 });
   ASSERT_GE(lines.size(), 2U);
   EXPECT_NE(lines.back().find("step 1/1"), std::string::npos);
+  EXPECT_EQ(ended, std::vector{Status::converged});
 }
 
 TEST(Solid, RejectsBadInput) {

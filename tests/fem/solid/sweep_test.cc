@@ -55,7 +55,9 @@ TEST(SolidSweep, SlidesOnAFlatSurfaceAsTheElastica) {
     const SurfaceContact& contact = *step.contact;
     EXPECT_EQ(contact.state, SurfaceContact::State::slip);
     EXPECT_EQ(contact.where, SurfaceContact::Where::surface);
-    EXPECT_NEAR(contact.friction_force, 0.3 * contact.normal_force, 1e-9 * contact.normal_force);
+    // Where the rim has just come down, the nodes beside its lowest one have slid sideways, too.
+    EXPECT_NEAR(contact.friction_force, 0.3 * contact.normal_force,
+                (&step == &result.steps.front() ? 1e-5 : 1e-9) * contact.normal_force);
     EXPECT_NEAR(step.applied_force, contact.friction_force, 1e-9 * contact.normal_force);
     EXPECT_NEAR(contact.point.z(), 0.9 * L, 1e-6 * uniform.diameter);
     EXPECT_NEAR(contact.point.y(), std::tan(0.5) * contact.point.x(), 1e-12);

@@ -210,7 +210,7 @@ TEST(Lift, TakesThePapersWholeLoadInOneStep) {
     materials.push_back(Hyperelastic::neo_hooke(s.shear_modulus(), s.bulk_modulus()));
   Level with_beam(cilium, mesh, materials, {.beam_guess = true}, nullptr);
   const LoadPathOutcome guessed =
-      with_beam.advance(load, [&](const std::string& line) { lines.push_back(line); });
+      with_beam.advance(load, [&](const ProgressReport& report) { lines.push_back(report.text); });
   EXPECT_EQ(guessed.status, Status::converged) << guessed.message;
   EXPECT_LE(guessed.iterations, 8);
   for (const std::string& line : lines) EXPECT_NE(line.find("load 0.004"), std::string::npos);

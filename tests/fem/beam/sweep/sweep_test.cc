@@ -166,7 +166,7 @@ TEST(BeamSweep, AgreesWithTheElasticaOverAStep) {
     for (const auto& [interference, travel] : places)
       there.push_back({1 - interference / L, travel / L});
     const auto reference = elastica::sweep(problem, step(mu), there);
-    const double force = 3e6 * paper().second_moment() / (L * L);
+    const double force = elastica::tip_stiffness(paper()) / (L * L);
     double largest = 0;
     for (const auto& sample : reference)
       largest = std::max(largest, force * sample.contact.normal_force);

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analytic/elastica/environment/step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "problem/error.h"
+
+namespace ciliaval::analytic::elastica::environment {
+namespace {
+
+/// An environment may point out of the plane by rounding of the azimuth.
+constexpr double planar = 1e-9;
+
+PlanarForce in_plane(const Vector3& force, const Vector3& e) {
+  return {force.dot(e), force.z()};
+}
+
+/// Where the contact point of a cilium is that the environment alone bends.
+Equilibrium untouched(const Rod& rod, double height, double tolerance) {
+  const auto path = [&](double t) {
+    return std::pair(scaled(rod, t), Conditions{.height = height, .force = 0});
+  };
+  try {
+    return follow(path, {0, 0, height}, tolerance);
+  } catch (const SolverError& error) {
+    throw SolverError("the environment alone bends the cilium below the contact height: " +
+                      std::string(error.what()));
+  }
+}
+
+/// The equilibrium in which the tip has sunk to the contact height: under a force on the tip, which
+/// grows until the tip is below, and then by Newton's method.
+Equilibrium at_slip_off(const Rod& rod, double height, double tolerance) {
+  constexpr int most_doublings = 60;
+  const auto on_tip = [&](double from, double to, const Unknowns& start) {
+    const auto path = [&](double t) {
+      return std::pair(rod, Conditions{.at = 1, .force = std::lerp(from, to, t)});
+    };
+    return follow(path, start, tolerance);
+  };
+  const auto hanging = [&](double t) {
+    return std::pair(scaled(rod, t), Conditions{.at = 1, .force = 0});
+  };
+  Equilibrium above = follow(hanging, {}, tolerance);
+  double force = 0.5 / *std::ranges::max_element(rod.compliance);
+  for (int k = 0; k < most_doublings; ++k, force *= 1.5) {
+    const Equilibrium next = on_tip(above.unknowns.force, force, above.unknowns);
+    if (next.height > height) {
+      above = next;
+      continue;
+    }
+    const double part = (above.height - height) / (above.height - next.height);
+    const auto between = [&](double a, double b) { return std::lerp(a, b, part); };
+    const Unknowns guess{between(above.unknowns.tip_angle, next.unknowns.tip_angle),
+                         between(above.unknowns.force, next.unknowns.force), 1};
+    if (const auto found = solve(rod, {.height = height, .at = 1}, guess, tolerance)) return *found;
+    break;
+  }
+  throw SolverError("elastica: no slip-off force found");
+}
+
+/// Contact and probe. None if the cilium has slipped off.
+std::optional<Equilibrium> pushed(const Rod& rod, const PlanarUnits& units, double tolerance,
+                                  MechanicsStep& step) {
+  const double height = contact_height(step.load).value() / units.length;
+  const Equilibrium start = untouched(rod, height, tolerance);
+  const Equilibrium last = at_slip_off(rod, height, tolerance);
+  step.slip_off_force = units.force * last.unknowns.force;
+  const bool probes = step.load.is<ProbeLoad>();
+  if (probes) step.slip_off_displacement = units.length * last.deflection;
+  const double limit = slip_off_limit(step).value();
+  step.slip_off_uncertainty = tolerance * std::abs(limit);
+  if (magnitude(step.load) > limit) return std::nullopt;
+  const auto path = [&](double t) {
+    Conditions conditions{.height = height};
+    const double target = magnitude(step.load);
+    if (probes)
+      conditions.deflection = std::lerp(start.deflection, target / units.length, t);
+    else
+      conditions.force = t * target / units.force;
+    return std::pair(rod, conditions);
+  };
+  return follow(path, start.unknowns, tolerance);
+}
+
+/// Loads that stay on their sections, or none.
+Equilibrium pulled(const Rod& rod, const PlanarUnits& units, double tolerance, const Load& load) {
+  const auto section = load.as<SectionLoad>();
+  const double force = section ? section->force / units.force : 0;
+  const double at = section ? section->arclength / units.length : 1;
+  const auto path = [&](double t) {
+    return std::pair(scaled(rod, t), Conditions{.at = at, .force = t * force});
+  };
+  return follow(path, {0, 0, at}, tolerance);
+}
+
+/// The horizontal force of the load, N: the environment's is not counted.
+double applied_force(const Load& load, const PlanarUnits& units, const Equilibrium& equilibrium,
+                     double tip_height) {
+  if (load.is<FlowLoad>()) return magnitude(load) * tip_height;
+  if (load.is<DeadLoad>()) return magnitude(load) * units.length;
+  return units.force * equilibrium.unknowns.force;
+}
+
+}  // namespace
+
+PlanarUnits units_of(const Cilium& cilium) {
+  double stiffest = 0;
+  for (const Segment& segment : cilium.segments)
+    stiffest = std::max(stiffest, segment.young_modulus * cilium.second_moment());
+  const double L = cilium.length();
+  return {L, stiffest / (L * L)};
+}
+
+Rod rod_of(const Cilium& cilium, const Load& load) {
+  const PlanarUnits units = units_of(cilium);
+  const Vector3 e = direction(load);
+  const surroundings::Environment environment = acting_environment(load);
+  if (surroundings::component(environment, Vector3::UnitZ().cross(e)) > planar)
+    throw InputError(
+        "the elastica is planar: gravity and field must lie in the plane of the load's azimuth; "
+        "the beam and the solid take any");
+  const double B = units.force * units.length * units.length;
+  Rod rod;
+  for (const double end : cilium.interfaces()) rod.ends.push_back(end / units.length);
+  rod.ends.back() = 1;
+  const auto dead = load.as<DeadLoad>();
+  for (const Segment& segment : cilium.segments) {
+    Vector3 force = cilium.area() * surroundings::weight_per_volume(environment, segment);
+    if (dead) force += dead->force_per_length * e;
+    rod.per_length.push_back(in_plane(force * units.length / units.force, e));
+    rod.compliance.push_back(B / (segment.young_modulus * cilium.second_moment()));
+  }
+  for (const Vector3& force : surroundings::pole_forces(environment, cilium))
+    rod.at_ends.push_back(in_plane(force / units.force, e));
+  if (const auto flow = load.as<FlowLoad>())
+    rod.per_height = flow->force_per_height * units.length / units.force;
+  return rod;
+}
+
+void solve_step(const Cilium& cilium, double tolerance, MechanicsStep& step) {
+  const PlanarUnits units = units_of(cilium);
+  const Rod rod = rod_of(cilium, step.load);
+  std::optional<Equilibrium> equilibrium;
+  if (contact_height(step.load))
+    equilibrium = pushed(rod, units, tolerance, step);
+  else
+    equilibrium = pulled(rod, units, tolerance, step.load);
+  if (!equilibrium) {
+    step.status = Status::slipped_off;
+    return;
+  }
+  const PlanarShape found = shape(rod, *equilibrium, tolerance);
+  step.deformation = Deformation{
+      planar_centreline(found, units, direction(step.load), std::max(tolerance / 10, 1e-13)),
+      nullptr};
+  step.status = Status::converged;
+  if (equilibrium->unstable_modes > 0)
+    step.message = "this equilibrium is not stable: it buckles in " +
+                   std::to_string(equilibrium->unstable_modes) + " mode(s)";
+  const CentrelinePoint tip = step.deformation->centreline.at(units.length);
+  step.applied_force = applied_force(step.load, units, *equilibrium, tip.position.z());
+  if (contact_height(step.load)) step.contact_arclength = units.length * equilibrium->unknowns.at;
+  const double error = std::max(found.error, tolerance);
+  step.tip_uncertainty = units.length * error;
+  step.tip_angle_uncertainty = error * std::max(1.0, std::abs(equilibrium->unknowns.tip_angle));
+  step.applied_force_uncertainty =
+      std::max(error, std::numeric_limits<double>::epsilon()) * std::abs(step.applied_force);
+  step.unknowns = 3;
+  step.iterations = equilibrium->iterations;
+}
+
+}  // namespace ciliaval::analytic::elastica::environment

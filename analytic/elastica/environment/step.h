@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include "analytic/elastica/environment/equilibrium.h"
+#include "analytic/elastica/planar.h"
+#include "problem/cilium.h"
+#include "problem/load.h"
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::analytic::elastica::environment {
+
+/// L (m) and B/L² (N), the units of a rod.
+PlanarUnits units_of(const Cilium& cilium);
+
+/// The cilium with its environment and what its load spreads over it. Throws InputError if the
+/// environment points out of the plane of the load.
+Rod rod_of(const Cilium& cilium, const Load& load);
+
+/// Solves the step, whose load has an environment and is no sweep. Throws SolverError where
+/// the branch of equilibria that begins at the straight cilium ends.
+void solve_step(const Cilium& cilium, double tolerance, MechanicsStep& step);
+
+}  // namespace ciliaval::analytic::elastica::environment

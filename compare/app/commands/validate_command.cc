@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fmt/core.h>
+
+#include <vector>
+
+#include "compare/app/case_files.h"
+#include "compare/app/commands/commands.h"
+#include "compare/app/terminal.h"
+#include "compare/models/preview.h"
+#include "compare/sensing/bench.h"
+#include "compare/study/reader/study_reader.h"
+
+namespace ciliaval::compare::app::commands {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<fs::path> files;
+};
+
+ExitCode validate(const Options& options, const std::string&) {
+  std::vector<fs::path> files;
+  for (const fs::path& file : options.files) {
+    if (is_bench_file(file)) {
+      const sensing::Bench bench = sensing::read_bench(file);
+      print(fmt::format("{}: the test bench is valid: {} loads at {} azimuths, {} draws\n",
+                        file.string(), bench.problem.load_path.size(), bench.azimuths,
+                        bench.draws));
+      continue;
+    }
+    if (!is_study_file(file)) {
+      files.push_back(file);
+      continue;
+    }
+    const study::Study study = study::reader::read_study(file);
+    const std::string what = study.optimisation ? fmt::format("an optimum over {} numbers",
+                                                              study.optimisation->parameters.size())
+                                                : fmt::format("{} points", study.point_count());
+    print(fmt::format("{}: study \"{}\" is valid: {}, {} pairs of models\n", file.string(),
+                      study.name, what, study.pairs.size()));
+  }
+  const std::vector<input::Case> cases = read_cases(files);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    print(
+        fmt::format("{}: case \"{}\" is valid: {} load steps, {} sensors, mechanics {}, fields "
+                    "{}\n",
+                    files[i].string(), cases[i].name, cases[i].load_path.size(),
+                    cases[i].sensors.size(), cases[i].mechanics.size(), cases[i].fields.size()));
+    const models::Preview preview = models::preview(cases[i]);
+    for (const std::string& text : preview.signal) print("  " + text + "\n");
+    for (const std::string& text : preview.warnings) print("  warning: " + text + "\n");
+  }
+  return ExitCode::pass;
+}
+
+}  // namespace
+
+void add_validate(CommandLine& line) {
+  const auto options = std::make_shared<Options>();
+  line.add("validate",
+           "Read and check case files, and say what to expect of them: the signal by the paper's "
+           "elastica, and what is odd",
+           options, validate)
+      ->add_option("CASE", options->files, "Case, study and test bench files (TOML)")
+      ->required()
+      ->transform(input_file());
+}
+
+}  // namespace ciliaval::compare::app::commands

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/app/python.h"
+
+#include <fmt/core.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+#include <system_error>
+
+#include "compare/app/terminal.h"
+#include "problem/error.h"
+#include "problem/support/child_process.h"
+
+namespace ciliaval::compare::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double time_limit = 600;  // s; a report of many cases takes ten
+constexpr const char* needs =
+    "; it needs the Python package `ciliaval` and, on Debian, python3-numpy, python3-matplotlib "
+    "and "
+    "python3-jinja2 (docs/guide/python.md)";
+
+/// Where the package lies beside this program: in a build tree, in an installation, or around it,
+/// as pip installs it. Empty if it is none of these.
+fs::path package_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const char* place : {"python", CILIAVAL_INSTALLED_PYTHON, "../.."}) {
+    const fs::path folder = (program / place).lexically_normal();
+    if (!program.empty() && fs::exists(folder / "ciliaval" / "report" / "__main__.py", error))
+      return folder;
+  }
+  return {};
+}
+
+/// $CILIAVAL_PYTHON, or the interpreter that the package's compiled module is of.
+std::string interpreter() {
+  const char* stated = std::getenv("CILIAVAL_PYTHON");
+  return stated != nullptr && *stated != '\0' ? stated : CILIAVAL_PYTHON_EXECUTABLE;
+}
+
+std::vector<std::string> lines_of(const fs::path& log) {
+  std::vector<std::string> lines;
+  std::ifstream stream(log);
+  for (std::string line; std::getline(stream, line);)
+    if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+ModuleEnd run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+  const support::SignalPause pause;  // the folder is removed before a signal ends the program
+  const support::WorkFolder folder;
+  support::ChildCommand command;
+  command.program = interpreter();
+  command.arguments = {"-m", module};
+  command.arguments.insert(command.arguments.end(), arguments.begin(), arguments.end());
+  command.folder = fs::current_path();  // the arguments may be relative
+  command.log = folder.path() / "log";
+  command.time_limit = time_limit;
+  std::string path = package_folder().string();
+  if (const char* others = std::getenv("PYTHONPATH"); others != nullptr && *others != '\0')
+    path += (path.empty() ? "" : ":") + std::string(others);
+  if (!path.empty()) command.variables["PYTHONPATH"] = path;
+  const support::ChildEnd end = support::run_child(command);
+  if (end.how == support::ChildEnd::How::not_found)
+    throw FileError(fmt::format("there is no Python `{}`{}", command.program, needs));
+
+  ModuleEnd result;
+  constexpr std::string_view warning = "warning: ";
+  constexpr std::string_view failure = "error: ";
+  std::string last;
+  for (const std::string& line : lines_of(command.log)) {
+    if (line.starts_with(failure)) throw FileError(line.substr(failure.size()));
+    if (line.starts_with(warning)) result.warnings.push_back(line.substr(warning.size()));
+    last = line;
+  }
+  const bool done =
+      end.succeeded() || (end.how == support::ChildEnd::How::exited && !result.warnings.empty());
+  if (!done)
+    throw FileError(fmt::format("`{} -m {}` {}: {}{}", command.program, module, end.text(), last,
+                                last.find("No module named") != std::string::npos ? needs : ""));
+  return result;
+}
+
+void draw_figure(const fs::path& results, const fs::path& figure) {
+  const ModuleEnd end = run_python_module("ciliaval.plot", {results.string(), figure.string()});
+  for (const std::string& what : end.warnings) warn(what);
+}
+
+void draw_figure(const std::string& json, const fs::path& figure) {
+  const support::SignalPause pause;
+  const support::WorkFolder folder;
+  const fs::path file = folder.path() / "results.json";
+  std::ofstream(file) << json;
+  draw_figure(file, figure);
+}
+
+}  // namespace ciliaval::compare::app

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// Pages and figures are made by the Python package `ciliaval` (python/), which this program
+/// starts.
+namespace ciliaval::compare::app {
+
+/// How a module of the package ended that made what it was asked for.
+struct ModuleEnd {
+  std::vector<std::string> warnings;  ///< what it could not show, a line each
+};
+
+/// Runs `python3 -m MODULE ARGUMENTS…` with the package of this build, of this installation, or of
+/// PYTHONPATH. Throws FileError with the module's message if it made nothing, and with what to
+/// install if Python, the package or something that it needs is missing.
+ModuleEnd run_python_module(const std::string& module, const std::vector<std::string>& arguments);
+
+/// Draws the main figure of a JSON file of results: SVG, PDF or PNG, by the name of `figure`. A
+/// study has a figure for each output: `figure` is a folder. Throws FileError.
+void draw_figure(const std::filesystem::path& results, const std::filesystem::path& figure);
+/// The same from the text of such a file.
+void draw_figure(const std::string& json, const std::filesystem::path& figure);
+
+}  // namespace ciliaval::compare::app

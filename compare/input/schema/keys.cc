@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/schema/keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <variant>
+
+#include "compare/input/case_keys.h"
+#include "compare/input/environment/environment.h"
+#include "compare/input/sweep/signal.h"
+#include "compare/input/sweep/surface.h"
+#include "problem/load.h"
+
+namespace ciliaval::compare::input::schema {
+namespace {
+
+using Kind = Key::Kind;
+
+Key text(std::string_view table, std::string_view name, std::string_view fallback, std::string doc,
+         std::string_view example = "") {
+  return {.table = std::string(table),
+          .name = std::string(name),
+          .example = std::string(example),
+          .fallback = std::string(fallback),
+          .doc = std::move(doc)};
+}
+
+Key of_kind(Kind kind, Key key) {
+  key.kind = kind;
+  return key;
+}
+
+Key choice(std::vector<std::string_view> choices, Key key, Kind kind = Kind::choice) {
+  key.kind = kind;
+  key.choices = std::move(choices);
+  return key;
+}
+
+Key only_with(std::vector<std::string_view> values, Key key) {
+  key.with = std::move(values);
+  return key;
+}
+
+Key number(const QuantityKey& k, Kind kind = Kind::quantity) {
+  Key key = of_kind(kind, text(k.table, k.name, k.fallback, std::string(k.doc)));
+  key.quantity = k.quantity;
+  key.range = k.range;
+  return key;
+}
+
+Key of_option(std::string_view model, const Option& option) {
+  const OptionValue fallback = option.get(ModelOptions{});
+  Key key = text(fmt::format("models.{}", model), option.name,
+                 fmt::format("`{}`", to_toml(option, fallback)), std::string(option.doc));
+  key.quantity = option.quantity;
+  key.range = option.range;
+  key.choices = option.choices;
+  if (!option.choices.empty())
+    key.kind = Kind::choice;
+  else if (std::holds_alternative<std::string>(fallback))
+    key.kind = Kind::file;
+  else if (std::holds_alternative<bool>(fallback))
+    key.kind = Kind::flag;
+  else if (std::holds_alternative<unsigned int>(fallback))
+    key.kind = Kind::whole_number;
+  else if (std::holds_alternative<std::array<double, 2>>(fallback))
+    key.kind = Kind::pair;
+  else
+    key.kind = Kind::quantity;
+  return key;
+}
+
+/// "`mesh` takes `calculix` and `solid` only".
+std::string limits_of_pairs(const Models& models) {
+  std::string bodies;
+  for (const MechanicsEntry& entry : models.mechanics)
+    if (entry.has_body) bodies += fmt::format("{}`{}`", bodies.empty() ? "" : " and ", entry.id);
+  std::string text;
+  for (const FieldEntry& entry : models.fields)
+    if (entry.has_body) text += fmt::format("; `{}` takes {} only", entry.id, bodies);
+  return text;
+}
+
+/// The parameters of all load types, each once, the azimuth last.
+void add_load(std::vector<Key>& keys) {
+  std::vector<std::string_view> types;
+  for (const LoadType* type : load_types()) types.push_back(type->name);
+  keys.push_back(
+      choice(types, text("load", "type", "", "What the load is and does as the cilium bends.")));
+  keys.push_back(only_with(
+      {SweepLoad::type().name},
+      of_kind(Kind::flag, text("load", key::sweep_return, "`false`",
+                               "`sweep`: whether the surface goes back again over the same "
+                               "places."))));
+  const auto add = [&](const std::vector<LoadParameter>& parameters, std::string_view type,
+                       bool last) {
+    for (const LoadParameter& parameter : parameters) {
+      if ((parameter.key.name == "azimuth") != last) continue;
+      const auto known = std::ranges::find_if(
+          keys, [&](const Key& k) { return k.table == "load" && k.name == parameter.key.name; });
+      if (known != keys.end())
+        known->with.push_back(type);
+      else
+        keys.push_back(only_with({type}, number(parameter.key, Kind::quantities)));
+    }
+  };
+  for (const bool last : {false, true})
+    for (const LoadType* type : load_types()) {
+      add(type->parameters, type->name, last);
+      if (type->statement) add(type->statement->parameters, type->name, last);
+    }
+  keys.push_back(only_with({SweepLoad::type().name}, number(key::samples)));
+}
+
+void add_environment(std::vector<Key>& keys) {
+  keys.push_back(number(environment::gravity, Kind::point));
+  keys.push_back(number(environment::fluid_density));
+  keys.push_back(number(environment::uniform_field, Kind::points));
+  keys.push_back(choice({environment::energy_names.begin(), environment::energy_names.end()},
+                        text(environment::table_name, environment::magnetic_energy, "`\"F\"`",
+                             std::string(environment::magnetic_energy_doc))));
+}
+
+void add_surface(std::vector<Key>& keys) {
+  keys.push_back(choice(sweep::profile_names(),
+                        text("surface", "profile", "",
+                             "The surface of a `sweep`: z = L - interference - p(x - travel), x "
+                             "along the azimuth; p counts towards the cilium.")));
+  keys.push_back(only_with(
+      {"file"},
+      of_kind(Kind::file, text("surface", "path", "",
+                               "`file`: CSV with `x` and `height`, at least four rows; x counts "
+                               "along the way that the tip goes over the surface, from the place "
+                               "over the base at the start."))));
+  for (const sweep::ProfileKind& kind : sweep::profile_kinds())
+    for (const QuantityKey& k : kind.keys) keys.push_back(only_with({kind.name}, number(k)));
+  for (const QuantityKey& k : {sweep::friction, sweep::tilt}) keys.push_back(number(k));
+}
+
+void add_signal(std::vector<Key>& keys) {
+  keys.push_back(of_kind(Kind::whole_number,
+                         text("signal", "seed", "1", "Of the noise; each sensor has its own.")));
+  keys.push_back(of_kind(Kind::whole_number,
+                         text("signal", "order", "4 (the paper's)", "Of the filter, 1 to 20.")));
+  keys.push_back(choice(sweep::phase_names(),
+                        text("signal", "phase", "causal",
+                             "A filter in the logger, or one of the whole record that shifts "
+                             "nothing.")));
+  for (const QuantityKey& k : sweep::signal_keys()) keys.push_back(number(k));
+}
+
+void add_sensor_and_readings(std::vector<Key>& keys) {
+  keys.push_back(text("sensor", "name", "its number",
+                      "`[[sensor]]`, a table for each sensor with its `position`: the name in "
+                      "tables, files and headers of readings; letters, digits, `.`, `_`, `-`, not "
+                      "digits alone."));
+  keys.push_back(number(key::position, Kind::point));
+  keys.push_back(text("readings", "map", "none",
+                      "Of `ciliaval sense`, as its option `--map`: the columns of a file of "
+                      "readings (docs/guide/sensing.md).",
+                      R"("bx=Ch 1, by=Ch 2, bz=Ch 3")"));
+  keys.push_back(text("readings", "unit", "none",
+                      "As `--unit`: T, mT, uT, nT, G, mG or LSB, of columns that state none.",
+                      R"("mG")"));
+  keys.push_back(text("readings", "scale", "none",
+                      "As `--scale`: the flux density of an LSB, `\"6842 LSB/G\"`, or three for "
+                      "x, y, z.",
+                      R"("0.15 uT")"));
+  keys.push_back(text("readings", "unloaded", "none",
+                      "As `--unloaded`: the readings of the straight cilium by time, `\"rows "
+                      "1..20\"`, or `\"model\"`.",
+                      R"("0 s..1 s")"));
+}
+
+void add_models(const Models& models, std::vector<Key>& keys) {
+  keys.push_back(
+      choice(ids(models.mechanics),
+             text("models", "mechanics", "", "The mechanics models to run, at least one."),
+             Kind::choices));
+  keys.push_back(choice(ids(models.fields),
+                        text("models", "fields", "none",
+                             fmt::format("The field models to run on the deformation of each "
+                                         "mechanics model{}.",
+                                         limits_of_pairs(models))),
+                        Kind::choices));
+  models.for_each([&](const auto& entry) {
+    for (const Option& option : entry.options) keys.push_back(of_option(entry.id, option));
+    for (const QuantityKey* k : entry.tables.keys) {
+      const std::vector<std::string_view>& points = entry.tables.points;
+      const bool is_point = std::ranges::find(points, k->name) != points.end();
+      keys.push_back(number(*k, is_point ? Kind::point : Kind::quantity));
+    }
+  });
+  const auto external = [](std::string_view name, std::string_view fallback, std::string doc) {
+    return text(key::external_table, name, fallback, std::move(doc));
+  };
+  keys.push_back(external("name", "",
+                          "Name of an external model (docs/guide/referees.md), not that of a "
+                          "model; a plain file name."));
+  keys.push_back(
+      of_kind(Kind::files, external("centrelines", "none",
+                                    "CSV files with a centreline each, one for each load step, "
+                                    "beside the case file unless absolute; these or `readings`.")));
+  keys.push_back(of_kind(
+      Kind::file,
+      external("readings", "none", "CSV file with the readings of every load step and sensor.")));
+  keys.push_back(of_kind(Kind::file, external("background", "none",
+                                              "CSV file with the ambient field at each azimuth, "
+                                              "to be taken off the readings.")));
+  for (const QuantityKey& k : {key::tip_uncertainty, key::field_uncertainty})
+    keys.push_back(number(k));
+}
+
+}  // namespace
+
+std::vector<Key> all_keys(const Models& models) {
+  std::vector<Key> keys{
+      text("case", "name", "",
+           "Name of the results' folder: letters, digits, `.`, `_`, `-`, not starting with `.` or "
+           "`-`, at most 100."),
+      text("case", "title", "the name", "A line for people, at most 200 characters."),
+      text("case", "references", "none",
+           "Number and checksum of the references in the case's baseline, as `check` states "
+           "them."),
+      number(key::diameter),
+      text("cilium.segment", "name", "", "Name of the segment, different from the others'.")};
+  for (const QuantityKey& k : {key::segment_length, key::young_modulus, key::poisson_ratio,
+                               key::magnetization, key::density})
+    keys.push_back(number(k));
+  add_load(keys);
+  add_environment(keys);
+  add_surface(keys);
+  add_signal(keys);
+  add_sensor_and_readings(keys);
+  add_models(models, keys);
+  return keys;
+}
+
+}  // namespace ciliaval::compare::input::schema

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/models/preview.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "compare/models/registry.h"
+#include "compare/models/run.h"
+
+namespace ciliaval::compare::models {
+namespace {
+
+constexpr double least_slenderness = 3;  ///< L/d of a rod
+constexpr double largest_strain = 0.3;   ///< from there on rubber's own law matters
+constexpr double near_magnet = 0.1;      ///< distance of a sensor, in d
+constexpr double least_signal = 0.1e-6;  ///< T: below what Hall sensors resolve
+constexpr double largest_signal = 1;     ///< T
+
+/// What is usual of cilia and their rubbers.
+struct Usual {
+  const char* what;
+  double low;
+  double high;
+  const char* range;
+};
+constexpr Usual length{"length", 10e-6, 0.1, "10 um to 100 mm"};
+constexpr Usual modulus{"Young's modulus", 1e3, 50e6, "1 kPa to 50 MPa"};
+constexpr Usual density{"density", 100, 1e4, "100 to 10000 kg/m^3"};
+constexpr Usual magnetization{"magnetization", 1e3, 1.2e6, "1 kA/m to 1.2 MA/m"};
+
+class Viewer {
+ public:
+  explicit Viewer(const input::Case& problem) : problem_(problem) {}
+
+  Preview view() {
+    look_at_cilium();
+    look_at_sensors();
+    look_at_signal();
+    return std::move(preview_);
+  }
+
+ private:
+  void warn(std::string text) { preview_.warnings.push_back(std::move(text)); }
+
+  void look_at(const std::string& whose, double value, const char* unit, const Usual& usual) {
+    if (std::abs(value) >= usual.low && std::abs(value) <= usual.high) return;
+    warn(fmt::format("{}: a {} of {:.3g} {} is unusual ({}): is the unit right?", whose, usual.what,
+                     value, unit, usual.range));
+  }
+
+  void look_at_cilium() {
+    const Cilium& cilium = problem_.cilium;
+    look_at("cilium", cilium.length(), "m", length);
+    for (const Segment& segment : cilium.segments) {
+      const std::string whose = "segment \"" + segment.name + "\"";
+      look_at(whose, segment.young_modulus, "Pa", modulus);
+      if (segment.density != 0) look_at(whose, segment.density, "kg/m^3", density);
+      if (segment.magnetization != 0) look_at(whose, segment.magnetization, "A/m", magnetization);
+    }
+    const double slenderness = cilium.length() / cilium.diameter;
+    if (slenderness < least_slenderness)
+      warn(
+          fmt::format("the cilium is only {:.2g} diameters long: rods (`elastica`, `beam`) are off "
+                      "by much; trust the solid",
+                      slenderness));
+  }
+
+  /// Distance of a point from the straight magnet, m; 0 inside.
+  double distance_from_magnet(const Vector3& point) const {
+    const Cilium& cilium = problem_.cilium;
+    const std::vector<double> ends = cilium.interfaces();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
+      if (cilium.segments[i].magnetization == 0) continue;
+      const double along = std::max({ends[i] - point.z(), point.z() - ends[i + 1], 0.0});
+      const double across = std::max(std::hypot(point.x(), point.y()) - cilium.radius(), 0.0);
+      nearest = std::min(nearest, std::hypot(along, across));
+    }
+    return nearest;
+  }
+
+  void look_at_sensors() {
+    for (std::size_t s = 0; s < problem_.sensors.size(); ++s) {
+      const double distance = distance_from_magnet(problem_.sensors[s]);
+      if (distance == 0)
+        warn(fmt::format("sensor {} lies inside the straight magnet",
+                         input::sensor_name(problem_, s)));
+      else if (distance < near_magnet * problem_.cilium.diameter)
+        warn(
+            fmt::format("sensor {} is {:.3g} mm from the magnet: there the field depends on what "
+                        "the magnet's edge really looks like",
+                        input::sensor_name(problem_, s), 1e3 * distance));
+    }
+  }
+
+  bool is_planar() const {
+    constexpr double rounding = 1e-9;
+    return std::ranges::all_of(problem_.load_path, [](const Load& load) {
+      const Vector3 across = Vector3::UnitZ().cross(direction(load));
+      return surroundings::component(load.environment(), across) <= rounding;
+    });
+  }
+
+  void look_at_signal() {
+    // The paper's, and its magnet in closed form; out of its plane the beam.
+    const std::string mechanics = is_planar() ? "elastica" : "beam";
+    const std::string field = "volume";
+    const MechanicsRun run = run_mechanics(
+        mechanics, *entry_of(mechanics_models(), mechanics).make(problem_.options), problem_);
+    std::optional<std::size_t> largest;  // the step that bends most
+    double deflection = -1;
+    double strain = 0;
+    for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
+      const MechanicsStep& step = run.result.steps[i];
+      if (!step.deformation) continue;
+      const Centreline& centreline = step.deformation->centreline;
+      for (const double S : centreline.breaks())
+        strain = std::max(strain, problem_.cilium.radius() * centreline.at(S).bending_curvature());
+      const Vector3 tip = centreline.at(centreline.length()).position;
+      if (std::hypot(tip.x(), tip.y()) <= deflection) continue;
+      deflection = std::hypot(tip.x(), tip.y());
+      largest = i;
+    }
+    warn_of_steps(run);
+    if (!largest) return;
+    const MechanicsStep& step = run.result.steps[*largest];
+    const double angle =
+        step.deformation->centreline.at(problem_.cilium.length()).theta() * 180 / std::numbers::pi;
+    preview_.signal.push_back(
+        fmt::format("{}: the tip goes {:.3g} mm aside and turns by {:.3g} deg (step {} of {})",
+                    mechanics, 1e3 * deflection, angle, *largest + 1, run.result.steps.size()));
+    if (strain > largest_strain)
+      warn(
+          fmt::format("the rubber is strained by {:.0f} %: its own stress-strain law matters "
+                      "([models.solid] material)",
+                      100 * strain));
+    MechanicsRun alone = run;
+    alone.result.steps = {step};
+    look_at_field(alone, field);
+  }
+
+  void warn_of_steps(const MechanicsRun& run) {
+    for (const MechanicsStep& step : run.result.steps) {
+      if (step.status == Status::converged) continue;
+      warn(fmt::format("{}: {}", run.model, step.message));
+      return;  // the rest says the same
+    }
+  }
+
+  void look_at_field(const MechanicsRun& run, const std::string& field) {
+    if (problem_.sensors.empty()) return;
+    const FieldRun fields =
+        run_field(field, *entry_of(field_models(), field).make(problem_.options), run, problem_);
+    const auto& step = fields.steps.front();
+    if (!step) return;
+    if (!step->failure.empty()) warn(fmt::format("{}: {}", field, step->failure));
+    for (std::size_t s = 0; s < problem_.sensors.size(); ++s) {
+      if (!step->dB[s]) continue;
+      const double change = step->dB[s]->norm();
+      preview_.signal.push_back(fmt::format("sensor {}: |B| {:.4g} mT, |dB| {:.4g} uT",
+                                            input::sensor_name(problem_, s),
+                                            1e3 * step->B[s]->norm(), 1e6 * change));
+      if (change < least_signal || change > largest_signal)
+        warn(fmt::format("sensor {} sees a change of {:.3g} uT: {}",
+                         input::sensor_name(problem_, s), 1e6 * change,
+                         change < least_signal ? "below what Hall sensors resolve (0.1 uT)"
+                                               : "are M, the unit and the place right?"));
+    }
+  }
+
+  const input::Case& problem_;
+  Preview preview_;
+};
+
+}  // namespace
+
+Preview preview(const input::Case& problem) {
+  return Viewer(problem).view();
+}
+
+}  // namespace ciliaval::compare::models

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <filesystem>
+
+namespace ciliaval::compare::study {
+
+/// The file in the folder of a study's results that keeps what is solved.
+inline constexpr const char* store_name = "points.sqlite";
+
+/// Makes the folder of a study's results if it is not there. Throws FileError if something else
+/// lies there.
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace ciliaval::compare::study

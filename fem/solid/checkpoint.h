@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+#include <string>
+
+#include "problem/mechanics_model.h"
+
+namespace ciliaval::fem::solid {
+
+/// What rank 0 has kept, on all ranks: nothing, or entries with the one that is always there.
+/// Throws CheckpointError if it lacks that one. Collective.
+Checkpoint::Entries kept_entries(const Checkpoint& checkpoint, const std::string& always,
+                                 MPI_Comm communicator);
+
+/// Rank 0 makes entries and keeps them. Throws CheckpointError on all ranks if it cannot.
+/// Collective.
+void save_entries(const Checkpoint& checkpoint, MPI_Comm communicator,
+                  const std::function<Checkpoint::Entries()>& make);
+
+}  // namespace ciliaval::fem::solid

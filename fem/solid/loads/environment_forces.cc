@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fem/solid/loads/environment_forces.h"
+
+#include <deal.II/lac/full_matrix.h>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <memory>
+#include <vector>
+
+#include "fem/solid/loads/dead_forces.h"
+
+namespace ciliaval::fem::solid::loads {
+using namespace discretisation;
+using surroundings::Environment;
+using surroundings::MagneticEnergy;
+namespace {
+
+Matrix3 cross_matrix(const Vector3& v) {
+  return Matrix3{{0, -v[2], v[1]}, {v[2], 0, -v[0]}, {-v[1], v[0], 0}};
+}
+
+const Segment& segment_of(const SolidElement& element, const Cilium& cilium) {
+  return cilium.segments.at(element.cell->material_id());
+}
+
+/// F at a Gauss point of an element.
+Matrix3 deformation_gradient(const SolidElement& element,
+                             const Eigen::Matrix<double, element_nodes, 3>& u, int q) {
+  return Matrix3::Identity() + u.transpose() * element.gradients.middleCols<3>(Eigen::Index{3} * q);
+}
+
+/// Weight, and the field by the law F, P = −B₀ ⊗ M.
+dealii::Vector<double> dead_part(const SolidSpace& space, const Cilium& cilium,
+                                 const Environment& environment) {
+  dealii::Vector<double> forces(space.unknowns());
+  const bool has_poles = environment.magnetic_energy == MagneticEnergy::F;
+  for (const SolidElement& element : space.elements()) {
+    const Segment& segment = segment_of(element, cilium);
+    const Vector3 weight = surroundings::weight_per_volume(environment, segment);
+    const double M = has_poles ? segment.magnetization : 0;
+    Eigen::Matrix<double, element_nodes, 3> f =
+        (space.shape_values() * element.weights) * weight.transpose();
+    for (int q = 0; q < element_points; ++q)
+      f += element.weights[q] * M * element.gradients.col(Eigen::Index{3} * q + 2) *
+           environment.uniform_field.transpose();
+    for (unsigned int a = 0; a < element_nodes; ++a)
+      for (unsigned int c = 0; c < 3; ++c) forces[element.dofs[c * element_nodes + a]] += f(a, c);
+  }
+  return forces;
+}
+
+/// Adds the forces ∂e/∂F : ∂F/∂u of an element and, if asked for, minus their derivative.
+void add_turned(const SolidElement& element, const Vector3& magnetization, const Vector3& field,
+                const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+                const dealii::AffineConstraints<double>& constraints,
+                dealii::SparseMatrix<double>* matrix) {
+  const auto u = nodal_displacements(element, displacement);
+  Eigen::Matrix<double, element_nodes, 3> f = Eigen::Matrix<double, element_nodes, 3>::Zero();
+  dealii::FullMatrix<double> K(element_dofs, element_dofs);
+  for (int q = 0; q < element_points; ++q) {
+    const Eigen::Matrix<double, element_nodes, 3> dN =
+        element.gradients.middleCols<3>(Eigen::Index{3} * q);
+    const TurnedMagnet e = turned_magnet(deformation_gradient(element, u, q), magnetization, field);
+    const double w = element.weights[q];
+    f += w * dN * e.first.transpose();
+    if (matrix == nullptr) continue;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) {
+        Matrix3 T;  // over J and L
+        for (int J = 0; J < 3; ++J)
+          for (int L = 0; L < 3; ++L) T(J, L) = e.second(3 * J + i, 3 * L + k);
+        const Eigen::Matrix<double, element_nodes, element_nodes> block =
+            w * dN * T * dN.transpose();
+        for (int a = 0; a < element_nodes; ++a)
+          for (int b = 0; b < element_nodes; ++b)
+            K(static_cast<unsigned int>(i * element_nodes + a),
+              static_cast<unsigned int>(k * element_nodes + b)) -= block(a, b);
+      }
+  }
+  for (unsigned int a = 0; a < element_nodes; ++a)
+    for (unsigned int c = 0; c < 3; ++c) forces[element.dofs[c * element_nodes + a]] += f(a, c);
+  if (matrix == nullptr) return;
+  const std::vector<dealii::types::global_dof_index> dofs(element.dofs.begin(), element.dofs.end());
+  constraints.distribute_local_to_global(K, dofs, *matrix);
+}
+
+}  // namespace
+
+TurnedMagnet turned_magnet(const Matrix3& F, const Vector3& magnetization, const Vector3& field) {
+  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Matrix3 R = svd.matrixU() * svd.matrixV().transpose();
+  const Matrix3 U = svd.matrixV() * svd.singularValues().asDiagonal() * svd.matrixV().transpose();
+  const Matrix3 inverse = (U.trace() * Matrix3::Identity() - U).inverse();
+  const Vector3 b = R.transpose() * field;
+  const Vector3 y = inverse * magnetization.cross(b);
+  const Matrix3 Y = cross_matrix(y);
+  TurnedMagnet result;
+  result.energy = b.dot(magnetization);
+  result.first = R * Y;
+  for (int l = 0; l < 3; ++l)
+    for (int k = 0; k < 3; ++k) {
+      Matrix3 dF = Matrix3::Zero();
+      dF(k, l) = 1;
+      const Matrix3 H = R.transpose() * dF;
+      const Matrix3 A = H - H.transpose();
+      const Vector3 omega = inverse * Vector3(A(2, 1), A(0, 2), A(1, 0));
+      const Matrix3 Omega = cross_matrix(omega);
+      const Matrix3 dU = H - Omega * U;
+      const Vector3 dy = inverse * (-magnetization.cross(omega.cross(b)) -
+                                    (dU.trace() * Matrix3::Identity() - dU) * y);
+      const Matrix3 derivative = R * (Omega * Y + cross_matrix(dy));
+      result.second.col(3 * l + k) = derivative.reshaped();
+    }
+  return result;
+}
+
+ExternalForces environment_forces(const SolidSpace& space, const Cilium& cilium,
+                                  const Environment& environment) {
+  const ExternalForces dead = dead_forces(dead_part(space, cilium, environment));
+  const bool turns =
+      environment.magnetic_energy == MagneticEnergy::R && !environment.uniform_field.isZero(0);
+  if (!turns) return dead;
+  return [&space, &cilium, dead, field = environment.uniform_field](
+             const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+             const dealii::AffineConstraints<double>& constraints,
+             dealii::SparseMatrix<double>* matrix) {
+    dead(displacement, forces, constraints, matrix);
+    for (const SolidElement& element : space.elements()) {
+      const double M = segment_of(element, cilium).magnetization;
+      if (M != 0)
+        add_turned(element, M * Vector3::UnitZ(), field, displacement, forces, constraints, matrix);
+    }
+  };
+}
+
+Vector3 weight_of(const SolidSpace& space, const Cilium& cilium, const Environment& environment) {
+  Vector3 sum = Vector3::Zero();
+  for (const SolidElement& element : space.elements())
+    sum += element.weights.sum() *
+           surroundings::weight_per_volume(environment, segment_of(element, cilium));
+  return sum;
+}
+
+}  // namespace ciliaval::fem::solid::loads

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include "fem/solid/discretisation/space.h"
+#include "fem/solid/loads/external_forces.h"
+#include "problem/cilium.h"
+#include "problem/surroundings/environment.h"
+
+namespace ciliaval::fem::solid::loads {
+
+/// Energy e = B₀·R M of a magnet per reference volume but for its sign, R the rotation of F = R U,
+/// with its derivatives by F. With RᵀδF − δFᵀR = [a]×, δR = R [ω]× where G ω = a, G = tr(U) I − U;
+/// so ∂e/∂F = R [y]×, G y = M × RᵀB₀. docs/theory/environment.md.
+struct TurnedMagnet {
+  double energy = 0;
+  Matrix3 first;                       ///< ∂e/∂F
+  Eigen::Matrix<double, 9, 9> second;  ///< ∂²e/∂F∂F, entries of F by columns
+};
+TurnedMagnet turned_magnet(const Matrix3& F, const Vector3& magnetization, const Vector3& field);
+
+/// Nodal forces of weight and field: dead, but for the law R. The mesh's cells have the segments'
+/// numbers as material ids.
+ExternalForces environment_forces(const discretisation::SolidSpace& space, const Cilium& cilium,
+                                  const surroundings::Environment& environment);
+
+/// Resultant of the weight on the mesh, N. A uniform field has none.
+Vector3 weight_of(const discretisation::SolidSpace& space, const Cilium& cilium,
+                  const surroundings::Environment& environment);
+
+}  // namespace ciliaval::fem::solid::loads

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a page is made of. templates/page.html.j2 shows each kind."""
+
+from __future__ import annotations
+
+import base64
+import io
+from dataclasses import dataclass, field
+from typing import Union
+
+from matplotlib.figure import Figure as Drawing
+
+from ..plot.style import style
+
+
+@dataclass
+class Text:
+    """A paragraph. kind: "" or "bad"."""
+
+    text: str
+    kind: str = ""
+
+
+@dataclass
+class Items:
+    """A list of sentences."""
+
+    items: list[str]
+
+
+@dataclass
+class Cell:
+    """A cell of a table. kind: of style.css; rows: how many it spans; link: the id it leads to."""
+
+    text: str
+    kind: str = ""
+    rows: int = 1
+    link: str = ""
+
+
+@dataclass
+class Table:
+    """head: a title for each column; the first cell of a row names it."""
+
+    caption: str
+    head: list[str]
+    rows: list[list[Union[str, Cell]]] = field(default_factory=list)
+
+
+@dataclass
+class Image:
+    """A figure as a picture in the page itself, with its size in CSS pixels."""
+
+    title: str
+    caption: str
+    source: str
+    width: int
+    height: int
+
+
+@dataclass
+class Images:
+    """Figures side by side where there is room."""
+
+    images: list[Image]
+
+
+@dataclass
+class Opening:
+    """A figure with what was found, side by side where there is room."""
+
+    image: Image | None
+    findings: list[str]
+
+
+@dataclass
+class Details:
+    """Blocks that open on a click."""
+
+    title: str
+    blocks: list["Block"]
+
+
+@dataclass
+class Code:
+    """Text as it is in a file."""
+
+    title: str
+    text: str
+
+
+@dataclass
+class Heading:
+    text: str
+
+
+@dataclass
+class View:
+    """An interactive view: view.js draws `data`, a JSON object."""
+
+    title: str
+    caption: str
+    data: dict
+
+
+Block = Union[Text, Items, Table, Images, Opening, Details, Code, Heading, View]
+
+
+@dataclass
+class Section:
+    """A part of a page. id: of its heading."""
+
+    id: str
+    title: str
+    blocks: list[Block]
+
+
+def image(title: str, caption: str, drawing: Drawing) -> Image:
+    """A figure of matplotlib's as SVG."""
+    stream = io.BytesIO()
+    with style():
+        drawing.savefig(stream, format="svg", metadata={"Date": None})
+    source = base64.b64encode(stream.getvalue()).decode()
+    width, height = (round(96 * size) for size in drawing.get_size_inches())
+    return Image(title, caption, f"data:image/svg+xml;base64,{source}", width, height)

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The part of a page that shows a case."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import plot
+from ..errors import Error
+from ..plot.style import best_first
+from ..results import Result
+from ..units import in_words, number, quantity
+from . import view3d
+from .blocks import Block, Code, Details, Heading, Image, Images, Items, Opening, Table, image
+from .sentences import findings, remarks
+
+_MOST_ROWS = 120  # of a table: of a sweep's hundreds of samples some
+
+
+def case_blocks(result: Result) -> list[Block]:
+    """A sketch and five sentences, figures, an interactive view, the numbers."""
+    blocks: list[Block] = [Opening(_sketch(result), findings(result))]
+    said = list(remarks(result))
+    if said:
+        blocks += [Heading("Remarks of the models"), Items(said)]
+    blocks += [Images(_figures(result))]
+    view = view3d.view(result)
+    if view:
+        blocks.append(view)
+    if result.pairs:
+        components = [
+            image(
+                f"B at sensor {name}",
+                "The flux density itself.",
+                plot.signal(result, sensor, "B"),
+            )
+            for sensor, name in enumerate(result.sensor_names)
+        ]
+        blocks.append(Details("B itself, and the field's numbers", [Images(components), _fields(result)]))
+    blocks.append(Details("The shapes' numbers", [_shapes(result)]))
+    differences = [t for t in (_over_path(result), _agreement(result)) if t.rows]
+    if differences:
+        blocks.append(Details("Differences over the load path", list(differences)))
+    if result.folder and (result.folder / "case.toml").exists():
+        text = (result.folder / "case.toml").read_text(encoding="utf-8", errors="replace")
+        blocks.append(Details("The case with every value that was used", [Code("Case file", text)]))
+    return blocks
+
+
+def _sketch(result: Result) -> Image | None:
+    try:
+        drawing = plot.setup(result)
+    except Error:  # without its case.toml
+        return None
+    text = f"To scale, under the last load. Bending by {in_words(best_first(result.models))}"
+    fields = dict.fromkeys(pair.split("/", 1)[-1] for pair in best_first(result.pairs))
+    text += f"; field by {in_words(fields)}." if result.pairs else "; no field."
+    return image(f"The set-up of {result.name}", text, drawing)
+
+
+def _figures(result: Result) -> list[Image]:
+    drawn = [
+        image(
+            "Shapes",
+            "Centrelines of all models in the plane of the load"
+            + ("; the numbers are loads of the axis of the signals." if len(result.steps) > 1 else "."),
+            plot.shapes(result),
+        )
+    ]
+    if result.pairs:
+        for sensor, name in enumerate(result.sensor_names):
+            title = f"Signal at sensor {name}"
+            text = "Colour: bending model; line: field model; band: numerical error of the field."
+            drawn.append(image(title, text, plot.signal(result, sensor)))
+    if result.loads[0]["type"] == "sweep":
+        text = "Contact along the way; shaded: between two samples a model jumps."
+        drawn.append(image("Contact forces and tip", text, plot.sweep(result)))
+    step = _last_compared(result)
+    for name, text in [
+        ("centreline", "Largest distance of two shapes over the reference's deflection"),
+        ("dB", "Largest difference of a component of ΔB over the reference's largest |ΔB|"),
+    ]:
+        if step is not None and any(c.relative is not None for c in result.compare(quantity=name, step=step)):
+            title = {"centreline": "Differences of shapes", "dB": "Differences of signals"}[name]
+            caption = f"{text}, load step {step + 1}; the reference leaves out less, it is not the truth. "
+            caption += "Grey: below the numerical error, or that is not known."
+            drawn.append(image(title, caption, plot.pairs(result, name, step)))
+    return drawn
+
+
+def _last_compared(result: Result) -> int | None:
+    steps = [c.step for c in result.comparisons if c.step is not None]
+    return max(steps, default=None)
+
+
+def _listed(result: Result) -> list[int]:
+    rows = max(1, len(result.models))
+    most = max(2, _MOST_ROWS // rows)
+    count = len(result.steps)
+    return sorted({int(i) for i in np.linspace(0, count - 1, min(count, most)).round()})
+
+
+def _shapes(result: Result) -> Table:
+    table = Table(
+        "What each mechanics model found",
+        ["step, model", "status", "tip x, mm", "y", "z", "±, µm", "angle, °", "force, mN",
+         "unknowns", "iterations", "time, s"],
+    )  # fmt: skip
+    for i in _listed(result):
+        for model, m in result.steps[i]["mechanics"].items():
+            tip = m.get("tip") or [None] * 3
+            row = [f"{i + 1}, {model}", m["status"], *(number(t, 1e-3, 5) for t in tip)]
+            row.append(number(m.get("tip_uncertainty"), 1e-6, 2))
+            row.append(number(m.get("tip_angle"), np.pi / 180, 5))
+            row.append(number(m.get("applied_force"), 1e-3, 5))
+            row += [number(m.get(key), 1, 9) for key in ("unknowns", "iterations")]
+            table.rows.append([*row, number(m.get("seconds"), 1, 3)])
+    return table
+
+
+def _fields(result: Result) -> Table:
+    table = Table(
+        "B and its change at the sensors",
+        ["step, sensor, pair", "Bx, mT", "By", "Bz", "ΔBx, µT", "ΔBy", "ΔBz"],
+    )
+    for i in _listed(result):
+        for s, name in enumerate(result.sensor_names):
+            for pair, f in result.steps[i]["fields"].items():
+                row = [f"{i + 1}, {name}, {pair}"]
+                for key, unit in (("B", 1e-3), ("dB", 1e-6)):
+                    values = (f.get(key) or [None] * (s + 1))[s] or [None] * 3
+                    row += [number(value, unit, 6) for value in values]
+                table.rows.append(row)
+    return table
+
+
+def _over_path(result: Result) -> Table:
+    table = Table(
+        "Root mean square of a model's ΔB less its reference's over that of the reference, all steps, in %",
+        ["model", "reference", "sensor", "component", "RRMSE", "verdict"],
+    )
+    for c in result.compare(quantity="dB", step=None, statistic="rrmse"):
+        name = result.sensor_names[c.sensor or 0]
+        row = [c.model, c.reference, name, c.component or "", number(c.relative, 0.01, 3), c.verdict]
+        table.rows.append(row)
+    return table
+
+
+def _agreement(result: Result) -> Table:
+    table = Table(
+        "Agreement of the shapes w(z): R² without a fit, and the squared correlation",
+        ["step", "model", "reference", "R²", "correlation²"],
+    )
+    for c in result.summary["comparisons"]:
+        if c["statistic"] == "r2":
+            values = [number(c.get(key), 1, 7) for key in ("r2", "correlation")]
+            table.rows.append([str(c["step"] + 1), c["model"], c["reference"], *values])
+    return table
+
+
+def case_row(result: Result) -> list[str]:
+    """Of the table of all cases: models, tip and |ΔB| by the best of them at the last step."""
+    best = best_first(result.models)[0]
+    tip = result.tip(best)[-1]
+    row = [str(len(result.steps)), in_words(best_first(result.models))]
+    row.append(quantity(float(np.hypot(tip[0], tip[1])), "m") if np.isfinite(tip).all() else "no shape")
+    pairs = [p for p in best_first(result.pairs) if p.startswith(best + "/")]
+    signal = np.linalg.norm(result.dB(pairs[0])[-1, 0]) if pairs and len(result.sensors) else None
+    row.append(quantity(signal, "T") if signal is not None and np.isfinite(signal) else "–")
+    return row

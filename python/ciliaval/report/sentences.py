@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What a case has found, in five sentences made from its numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..plot.style import best_first
+from ..results import Result
+from ..units import describe_load, number, percent, quantity
+
+
+# The paper's own: elastica and dipoles along the centreline, as at the head of an error budget.
+PAPER = "elastica/line"
+
+
+def findings(result: Result) -> list[str]:
+    """Signal; range; the paper's model against the best; what the difference comes from; what may
+    be trusted. A sentence that the results do not support is left out."""
+    best = best_first(result.models)[0]
+    makers = [_signal(result, best), _range(result), _paper(result), _cause(result), _trust(result)]
+    return [sentence for sentence in makers if sentence]
+
+
+def _last(result: Result, model: str) -> int | None:
+    """The last step at which a model has a shape."""
+    known = [i for i, status in enumerate(result.status(model)) if status == "converged"]
+    return known[-1] if known else None
+
+
+def _signal(result: Result, best: str) -> str:
+    step = _last(result, best)
+    if step is None:
+        return f"The {best} has no equilibrium at any load step."
+    tip = result.tip(best)[step]
+    pairs = [p for p in best_first(result.pairs) if p.split("/", 1)[0] == best]
+    if result.loads[0]["type"] == "sweep":
+        way = result.load("travel")
+        text = f"While the surface travels {quantity(way.max() - way.min(), 'm')}, the tip stays within "
+        x = result.tip(best)[:, 0]
+        text += f"{quantity(np.nanmin(x), 'm')} and {quantity(np.nanmax(x), 'm')} ({best})"
+        if pairs:
+            norm = np.linalg.norm(result.dB(pairs[0])[:, 0], axis=1)
+            low, high = np.nanmin(norm), np.nanmax(norm)
+            text += f" and |ΔB| at the first sensor between {quantity(low, 'T')} and "
+            text += f"{quantity(high, 'T')} ({pairs[0]})"
+        return text + "."
+    deflection = float(np.hypot(tip[0], tip[1]))
+    text = f"Under {describe_load(result.loads[step], result.environments[step])}, the tip moves aside by "
+    text += f"{quantity(deflection, 'm')} ({best})"
+    if pairs:
+        changes = np.linalg.norm(result.dB(pairs[0])[step], axis=1)
+        each = [
+            f"{quantity(change, 'T')} at sensor {name}"
+            for name, change in zip(result.sensor_names, changes)
+        ]
+        text += f" and the field changes by |ΔB| = {', '.join(each)} ({pairs[0]})"
+    return text + "."
+
+
+def _range(result: Result) -> str:
+    for model in best_first(result.models):
+        limits = [s["mechanics"].get(model, {}).get("slip_off_force") for s in result.steps]
+        known = [limit for limit in limits if limit is not None]
+        if known:
+            text = f"The contact slips off the tip at {quantity(known[-1], 'N')} ({model})"
+            largest = max(float(load.get("force") or 0) for load in result.loads)
+            if largest:
+                text += f", {number(known[-1] / largest, 1, 3)} times the largest load here"
+            return text + "."
+    if result.loads[0]["type"] == "sweep":
+        jumps = {m: sum("jump" in s["mechanics"].get(m, {}) for s in result.steps) for m in result.models}
+        each = ", ".join(f"{count} by the {m}" for m, count in jumps.items())
+        return f"Jumps from one equilibrium to another along the way: {each}."
+    count = len(result.steps)
+    solved = sum(status == "converged" for m in result.models for status in result.status(m))
+    if solved == count * len(result.models):
+        return "No model reaches the end of its range in these load steps."
+    return f"{count * len(result.models) - solved} of the models' load steps have no equilibrium."
+
+
+
+
+def _paper(result: Result) -> str:
+    """The paper's model against the one that leaves out least."""
+    order = best_first(result.models)
+    step = _last(result, order[0])
+    if step is None or len(order) < 2:
+        return ""
+    parts = []
+    tips = _deflections(result, step)
+    if order[-1] in tips and order[0] in tips:
+        by = tips[order[-1]] / tips[order[0]] - 1
+        verdict = _verdict(result, step, order[-1], order[0])
+        word = "further" if by > 0 else "less"
+        parts.append(f"bends {percent(abs(by))} {word} than the {order[0]} ({verdict})")
+    signals = _signals(result, step)
+    first, last = _ends(result)
+    if first != last and signals.get(first) and last in signals:
+        by = signals[last] / signals[first] - 1
+        word = "more" if by > 0 else "less"
+        parts.append(f"with its field, {last}, reads {percent(abs(by))} {word} |ΔB| than {first}")
+    return f"The {order[-1]} {' and, '.join(parts)}." if parts else ""
+
+
+def _ends(result: Result) -> tuple[str, str]:
+    """The pair that leaves out least, and the paper's or else the one that leaves out most."""
+    pairs = best_first(result.pairs) or [""]
+    return pairs[0], PAPER if PAPER in pairs else pairs[-1]
+
+
+def _cause(result: Result) -> str:
+    """How the difference in |ΔB| divides between bending and field model."""
+    step = _last(result, best_first(result.models)[0])
+    if len(result.pairs) < 3 or step is None:
+        return ""
+    signals = _signals(result, step)
+    first, last = _ends(result)
+    between = f"{first.split('/', 1)[0]}/{last.split('/', 1)[1]}"
+    if between in (first, last) or any(p not in signals for p in (first, last, between)):
+        return ""
+    scale = signals[first]
+    bending = (signals[last] - signals[between]) / scale
+    field = (signals[between] - scale) / scale
+    return (
+        f"Of this difference in |ΔB| the bending model makes {percent(bending)} "
+        f"({last} less {between}) and the field model {percent(field)} ({between} less {first})."
+    )
+
+
+def _trust(result: Result) -> str:
+    verdicts = Counter(c.verdict.replace(" ", "_") for c in result.comparisons)
+    model = best_first(result.models)[0]
+    step = _last(result, model)
+    parts = []
+    if step is not None:
+        u = result.tip_uncertainty(model)[step]
+        tip = result.tip(model)[step]
+        size = float(np.hypot(tip[0], tip[1]))
+        if np.isnan(u):
+            parts.append(f"the numerical error of the {model} is not known")
+        elif size > 0:
+            parts.append(f"the tip of the {model} is known to {percent(u / size, 2)} of its deflection")
+    total = sum(verdicts.values())
+    if total:
+        parts.append(
+            f"of {total} differences between models {verdicts['resolved']} are larger than the "
+            f"numerical errors, {verdicts['below_uncertainty']} smaller, and for "
+            f"{verdicts['inconclusive']} the error is not known"
+        )
+    text = " and ".join(parts)
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def _deflections(result: Result, step: int) -> dict[str, float]:
+    tips = {m: result.tip(m)[step] for m in result.models}
+    return {m: float(np.hypot(t[0], t[1])) for m, t in tips.items() if np.isfinite(t).all()}
+
+
+def _signals(result: Result, step: int) -> dict[str, float]:
+    """|ΔB| at the first sensor."""
+    all_of = {p: float(np.linalg.norm(result.dB(p)[step, 0])) for p in result.pairs}
+    return {p: value for p, value in all_of.items() if np.isfinite(value) and value > 0}
+
+
+def _verdict(result: Result, step: int, model: str, reference: str) -> str:
+    found = result.compare(quantity="tip", step=step, model=model, reference=reference)
+    found = found or result.compare(quantity="centreline", step=step, model=model, reference=reference)
+    verdicts = {c.verdict.replace("_", " ") for c in found if c.relative}
+    for verdict in ("inconclusive", "resolved", "below uncertainty"):
+        if verdict in verdicts:
+            return verdict
+    return "not compared"
+
+
+def remarks(result: Result) -> Iterator[str]:
+    """What the models say beside their numbers, each once with its steps."""
+    found: dict[str, list[int]] = {}
+    for i, step in enumerate(result.steps):
+        entries: list[tuple[str, dict[str, Any]]] = [*step["mechanics"].items(), *step["fields"].items()]
+        for name, entry in entries:
+            message = entry.get("message") or ""
+            status = entry.get("status")
+            limit = entry.get("slip_off_force")
+            if status == "slipped_off" and not message and limit is not None:
+                message = f"slips off above {quantity(limit, 'N')}"
+            elif status == "failed":
+                message = f"failed: {message}"
+            if message:
+                found.setdefault(f"{name}: {message}", []).append(i + 1)
+    for text, steps in found.items():
+        shown = [str(s) for s in steps[:8]] + (["…"] if len(steps) > 8 else [])
+        yield f"load step{'s' if len(steps) > 1 else ''} {', '.join(shown)}: {text}"

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Results of the program, from its files: docs/guide/results.md. SI units."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import FileError
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One figure that separates a model from its reference; None is undefined or unknown.
+
+    step: from 0; None: over the whole load path. sensor: from 0; None: not a field.
+    difference, scale and uncertainty in `unit`; relative = difference / scale.
+    verdict: "resolved", "below_uncertainty" or "inconclusive".
+    """
+
+    step: int | None
+    sensor: int | None
+    quantity: str
+    component: str | None
+    statistic: str
+    model: str
+    reference: str
+    difference: float | None
+    relative: float | None
+    scale: float | None
+    unit: str | None
+    uncertainty: float | None
+    verdict: str
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """The difference less and plus its numerical uncertainty."""
+        if self.difference is None or self.uncertainty is None:
+            return None
+        return self.difference - self.uncertainty, self.difference + self.uncertainty
+
+
+class Result:
+    """What a case gave: load("results/fig3b"), or Case(...).run().
+
+    Arrays have one row for each load step; NaN stands where a model has no equilibrium or does not
+    know. `summary` is the whole of summary.json.
+    """
+
+    def __init__(self, summary: dict[str, Any], folder: Path | None = None):
+        for key in ("sensors", "steps"):
+            if not isinstance(summary[key], list):
+                raise TypeError(f"`{key}` is no list")
+        self.summary = summary
+        self.folder = folder
+        self.name: str = summary["case"]
+        self.title: str = summary["title"]
+        self.sensors = np.array(summary["sensors"], dtype=float).reshape(-1, 3)
+        self.sensor_names: list[str] = [str(name) for name in summary["sensor_names"]]
+        self.steps: list[dict[str, Any]] = summary["steps"]
+        self.loads: list[dict[str, Any]] = [step["load"] for step in self.steps]
+        self.environments: list[dict[str, Any]] = [step.get("environment", {}) for step in self.steps]
+        self.models: list[str] = list(dict.fromkeys(m for s in self.steps for m in s["mechanics"]))
+        self.pairs: list[str] = list(dict.fromkeys(f for s in self.steps for f in s["fields"]))
+        self.provenance: dict[str, Any] = summary["provenance"]
+
+    def load(self, parameter: str) -> np.ndarray:
+        """A parameter of the load at each step, (steps,): load("force"), N."""
+        return np.array([float(load[parameter]) for load in self.loads])
+
+    def uniform_field(self) -> np.ndarray:
+        """The field around the cilium at each step, (steps, 3), T: not a part of B."""
+        return np.array([around.get("uniform_field", [0.0] * 3) for around in self.environments])
+
+    def status(self, model: str) -> list[str]:
+        """ "converged", "slipped_off" or "failed" at each step."""
+        return [str(self._of(step, model).get("status", "failed")) for step in self.steps]
+
+    def tip(self, model: str) -> np.ndarray:
+        """(steps, 3), m."""
+        return self._mechanics(model, "tip", 3)
+
+    def tip_uncertainty(self, model: str) -> np.ndarray:
+        """Estimated numerical error of the tip's position, (steps,), m."""
+        return self._mechanics(model, "tip_uncertainty")
+
+    def tip_angle(self, model: str) -> np.ndarray:
+        """(steps,), rad."""
+        return self._mechanics(model, "tip_angle")
+
+    def applied_force(self, model: str) -> np.ndarray:
+        """(steps,), N."""
+        return self._mechanics(model, "applied_force")
+
+    def contact(self, model: str, quantity: str = "normal_force") -> np.ndarray:
+        """A number of a sweep's contact at each sample, (steps,), SI."""
+        return _numbers([self._of(s, model).get("contact", {}).get(quantity) for s in self.steps])
+
+    def B(self, pair: str) -> np.ndarray:
+        """Flux density by a pair of models, "beam/volume", (steps, sensors, 3), T."""
+        return self._field(pair, "B")
+
+    def dB(self, pair: str) -> np.ndarray:
+        """B - B(straight cilium), (steps, sensors, 3), T."""
+        return self._field(pair, "dB")
+
+    def dB_uncertainty(self, pair: str) -> np.ndarray:
+        """The field model's numerical error of dB, (steps, sensors, 3), T."""
+        return self._field(pair, "dB_uncertainty")
+
+    @property
+    def comparisons(self) -> list[Comparison]:
+        """All differences of two models."""
+        names = Comparison.__dataclass_fields__
+        return [
+            Comparison(**{name: entry.get(name) for name in names})
+            for entry in self.summary["comparisons"]
+        ]
+
+    def compare(self, **what: Any) -> list[Comparison]:
+        """Those with these attributes: compare(quantity="tip", step=0, model="elastica")."""
+        unknown = set(what) - set(Comparison.__dataclass_fields__)
+        if unknown:
+            raise TypeError(f"a comparison has no {', '.join(sorted(unknown))}")
+        return [c for c in self.comparisons if all(getattr(c, k) == v for k, v in what.items())]
+
+    def centreline(self, model: str, step: int) -> dict[str, np.ndarray]:
+        """S, x, y, z (m), theta (rad) and kappa (1/m) along a deformed centreline."""
+        name = self._of(self.steps[step], model).get("centreline")
+        if self.folder is None or name is None:
+            raise FileError(f"there is no file of {model}'s centreline at step {step}")
+        return read_table(self.folder / name)
+
+    def to_meshio(self, model: str, step: int) -> Any:
+        """The bent cilium as a meshio.Mesh with its fields, from the folder's VTK files: the body of
+        a solid, else the centreline. docs/guide/results.md names the fields. Raises FileError."""
+        from .export import to_meshio
+
+        return to_meshio(self, model, step)
+
+    def to_pyvista(self, model: str, step: int) -> Any:
+        """The same as a pyvista.DataSet. Raises ImportError without PyVista."""
+        from .export import to_pyvista
+
+        return to_pyvista(self, model, step)
+
+    def _of(self, step: dict[str, Any], model: str) -> dict[str, Any]:
+        if model not in self.models:
+            raise KeyError(f"{self.name} has no model '{model}', but {', '.join(self.models)}")
+        return step["mechanics"].get(model, {})
+
+    def _mechanics(self, model: str, quantity: str, size: int | None = None) -> np.ndarray:
+        missing = None if size is None else [None] * size
+        return _numbers([self._of(s, model).get(quantity) or missing for s in self.steps], size)
+
+    def _field(self, pair: str, quantity: str) -> np.ndarray:
+        if pair not in self.pairs:
+            raise KeyError(f"{self.name} has no pair '{pair}', but {', '.join(self.pairs)}")
+        none = [None, None, None]
+        rows = []
+        for step in self.steps:
+            values = step["fields"].get(pair, {}).get(quantity) or [none] * len(self.sensors)
+            rows.append([value or none for value in values])
+        return _numbers(rows).reshape(len(self.steps), -1, 3)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Result of {self.name}: {len(self.steps)} steps, {', '.join(self.models)}; "
+            f"{', '.join(self.pairs) or 'no fields'}>"
+        )
+
+
+class Document(dict):
+    """A result file of another command, as its JSON: a dict. `kind` is "study", "budget",
+    "converge", "sense", "claims" or "check"."""
+
+    def __init__(self, kind: str, data: dict[str, Any], file: Path | None = None):
+        super().__init__(data)
+        self.kind = kind
+        self.file = file
+
+
+# The kind of a file by a key that no other has.
+_KINDS = {
+    "comparisons": "case",
+    "points": "study",
+    "chain": "budget",
+    "studies": "converge",
+    "by_magnitude": "sense",  # a test bench
+    "samples": "sense",  # readings
+    "levels": "sense",  # of a surface
+    "claims": "claims",
+    "passed": "check",
+}
+
+
+def load(folder: str | Path) -> Result:
+    """The results of a case in the folder that `ciliaval run` has written. Raises FileError."""
+    folder = Path(folder)
+    found = read(folder / "summary.json" if folder.is_dir() else folder)
+    if not isinstance(found, Result):
+        raise FileError(f"{folder}: is the result of `{found.kind}`, not of a case")
+    return found
+
+
+def read(file: str | Path) -> Result | Document:
+    """Any JSON file of results, told by its keys. Raises FileError."""
+    file = Path(file)
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FileError(f"{file}: {error.strerror}") from error
+    except ValueError as error:
+        raise FileError(f"{file}: is damaged: {error}") from error
+    known = data if isinstance(data, dict) and "schema" in data else {}
+    key = next((key for key in _KINDS if key in known), None)
+    if key is None:
+        raise FileError(f"{file}: is no result of ciliaval")
+    if key != "passed" and not isinstance(data[key], list):
+        raise FileError(f"{file}: is damaged: `{key}` is no list")
+    kind = _KINDS[key]
+    return _result(data, file) if kind == "case" else Document(kind, data, file)
+
+
+def from_summary(text: str) -> Result:
+    """The result whose summary.json this is."""
+    return Result(json.loads(text))
+
+
+def _result(data: dict[str, Any], file: Path) -> Result:
+    try:
+        return Result(data, file.parent)
+    except (KeyError, TypeError, ValueError) as error:
+        raise FileError(f"{file}: is damaged: {error!r}") from error
+
+
+def read_table(file: str | Path) -> dict[str, np.ndarray]:
+    """The columns of one of the program's CSV files; text columns are arrays of str."""
+    try:
+        with open(file, encoding="utf-8", newline="") as stream:
+            rows = list(csv.reader(line for line in stream if not line.startswith("#")))
+    except OSError as error:
+        raise FileError(f"{file}: {error.strerror}") from error
+    if not rows or any(len(row) != len(rows[0]) for row in rows):
+        raise FileError(f"{file}: is damaged: its rows differ in length")
+    columns = {}
+    for name, *texts in zip(*rows):
+        try:
+            columns[name] = np.array([float(text) if text else np.nan for text in texts])
+        except ValueError:
+            columns[name] = np.array(texts)
+    return columns
+
+
+def _numbers(values: list[Any], size: int | None = None) -> np.ndarray:
+    """With NaN for None."""
+    array = np.array(values, dtype=object)
+    array = np.where(np.equal(array, None), np.nan, array).astype(float)
+    return array.reshape(-1, size) if size else array

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Numbers for people: mm, mN, µT. Everything else of the package is in SI units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+
+class Unit(NamedTuple):
+    """A unit that is shown: value / size is the number before `name`."""
+
+    name: str
+    size: float
+
+
+_SHOWN = {
+    "T": Unit("µT", 1e-6),
+    "N": Unit("mN", 1e-3),
+    "m": Unit("mm", 1e-3),
+    "rad": Unit("°", math.pi / 180),
+    "T/N": Unit("µT/mN", 1e-3),
+    "T/(N/m)": Unit("µT/(N/m)", 1e-6),
+    "T/m": Unit("µT/mm", 1e-3),
+    "Pa": Unit("MPa", 1e6),
+    "A/m": Unit("kA/m", 1e3),
+    "N/m": Unit("N/m", 1.0),
+    "J": Unit("µJ", 1e-6),
+}
+
+NOT_KNOWN = "–"
+
+
+def shown(si: str | None) -> Unit:
+    """The unit in which a quantity of this SI unit is shown."""
+    return _SHOWN.get(si or "", Unit(si or "", 1.0))
+
+
+def number(value: Any, unit: float = 1.0, digits: int = 4) -> str:
+    """value / unit with so many significant digits; a dash for None and NaN."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return NOT_KNOWN
+    text = f"{value / unit + 0.0:.{digits}g}"
+    if "e" in text and 1e-4 < abs(value / unit) < 1e7:  # 1.2e+03
+        text = f"{float(text):.0f}"
+    return text.replace("-", "−", 1) if text.startswith("-") else text
+
+
+def quantity(value: Any, si: str, digits: int = 4) -> str:
+    """ "83.2 µT" for 83.2e-6, "T"."""
+    unit = shown(si)
+    space = "" if unit.name == "°" else " "
+    return f"{number(value, unit.size, digits)}{space}{unit.name}".rstrip()
+
+
+def percent(fraction: Any, digits: int = 3) -> str:
+    """ "10.3 %" for 0.103."""
+    return f"{number(fraction, 0.01, digits)} %"
+
+
+def in_words(names: Iterable[str]) -> str:
+    """ "a, b and c"."""
+    *first, last = list(names) or [""]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def describe_load(load: dict[str, Any], environment: dict[str, Any] | None = None) -> str:
+    """ "contact: force 4 mN, height 16 mm, azimuth 30°": a step's load in summary.json, and what is
+    around it."""
+    from ._core import load_types
+
+    parameters = load_types().get(load["type"], {})
+    parts = []
+    for name, value in load.items():
+        if name == "type" or value is None:
+            continue
+        si = parameters[name].rsplit(", ", 1)[-1] if name in parameters else ""
+        if name == "velocity":
+            si = "m/s"
+        parts.append(f"{name.replace('_', ' ')} {quantity(value, si)}")
+    for name, unit, size in (("gravity", "m/s²", 1.0), ("uniform_field", "mT", 1e-3)):
+        vector = (environment or {}).get(name, [])
+        if any(vector):
+            components = ", ".join(number(value, size) for value in vector)
+            parts.append(f"{name.replace('_', ' ')} ({components}) {unit}")
+    return f"{load['type']}: {', '.join(parts)}"

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compare/models/registry.h"
+#include "compare/models/run.h"
+#include "compare/output/results.h"
+#include "problem/error.h"
+#include "python/core/convert.h"
+
+namespace ciliaval::python::core {
+namespace py = pybind11;
+using namespace compare;
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// One step of a bent cilium, with its companions, from which errors of fields follow.
+struct Shape {
+  input::Case problem;  ///< cilium, this step's load, the mechanics model's options
+  models::MechanicsRun run;
+
+  const MechanicsStep& step() const { return run.result.steps.front(); }
+  const Deformation& deformation() const {
+    if (!step().deformation)
+      throw SolverError(fmt::format("{} has no equilibrium with this load ({}): {}", run.model,
+                                    output::to_string(step().status), step().message));
+    return *step().deformation;
+  }
+  CentrelinePoint tip() const {
+    const Centreline& centreline = deformation().centreline;
+    return centreline.at(centreline.length());
+  }
+};
+
+/// Step i of a result alone.
+MechanicsResult step_of(const MechanicsResult& result, std::size_t i) {
+  MechanicsResult one{.undeformed = result.undeformed,
+                      .steps = {result.steps.at(i)},
+                      .companions = {},
+                      .error_parts = result.error_parts,
+                      .algebraic_error = result.algebraic_error};
+  for (const MechanicsResult& companion : result.companions)
+    one.companions.push_back(step_of(companion, i));
+  return one;
+}
+
+std::vector<Shape> bend(const Cilium& cilium, const LoadPath& path, const std::string& model,
+                        const py::object& callback, const py::kwargs& options) {
+  const input::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), model);
+  for (const Load& load : path)
+    if (!entry.takes_environment && !surroundings::is_empty(load.environment()))
+      throw InputError(fmt::format("{} takes no environment", model));
+  input::Case problem;
+  problem.cilium = cilium;
+  problem.load_path = path;
+  problem.mechanics = {model};
+  set_options(model, entry.options, options, problem.options);
+  MechanicsResult result;
+  {
+    const Progress shown = progress(callback);
+    const py::gil_scoped_release released;
+    result = entry.make(problem.options)->solve(cilium, path, shown);
+  }
+  std::vector<Shape> shapes;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    input::Case one = problem;
+    one.load_path = {path[i]};
+    shapes.push_back({std::move(one), {model, step_of(result, i)}});
+  }
+  return shapes;
+}
+
+/// Components at each point, (n, 3); NaN where there is none.
+py::object vectors(const models::AtSensors& values) {
+  std::vector<Vector3> all;
+  for (const auto& value : values) all.push_back(value.value_or(Vector3::Constant(nan)));
+  return array(all);
+}
+
+py::object with_mechanics(const models::AtSensors& own,
+                          const std::vector<std::optional<double>>& from_mechanics) {
+  std::vector<Vector3> all;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const std::optional<double> more = i < from_mechanics.size() ? from_mechanics[i] : std::nullopt;
+    all.push_back(own[i] && more ? Vector3(own[i]->array() + *more) : Vector3::Constant(nan));
+  }
+  return array(all);
+}
+
+py::dict field(const Shape& shape, const py::object& where, const std::string& model,
+               const py::kwargs& options) {
+  const input::FieldEntry& entry = models::entry_of(models::field_models(), model);
+  input::Case problem = shape.problem;
+  problem.sensors = points(where);
+  problem.fields = {model};
+  set_options(model, entry.options, options, problem.options);
+  static_cast<void>(shape.deformation());  // throws if there is none
+  models::FieldRun run;
+  {
+    const Progress shown = progress(py::none());
+    const py::gil_scoped_release released;
+    run = models::run_field(model, *entry.make(problem.options), shape.run, problem, shown);
+  }
+  if (!run.steps.front() || !run.steps.front()->any())
+    throw SolverError(run.steps.front() ? run.steps.front()->failure : "there is no field");
+  const models::FieldStep& step = *run.steps.front();
+  py::dict result;
+  result["B"] = vectors(step.B);
+  result["dB"] = vectors(step.dB);
+  result["B_uncertainty"] = with_mechanics(step.uncertainty, step.from_mechanics);
+  result["dB_uncertainty"] = with_mechanics(step.dB_uncertainty, step.dB_from_mechanics);
+  result["message"] = step.failure;
+  return result;
+}
+
+/// What a batch keeps of a design.
+struct Design {
+  bool converged = false;
+  Vector3 tip = Vector3::Constant(nan);
+  double tip_angle = nan;
+  double applied_force = nan;
+  double slip_off = nan;
+  std::vector<Vector3> B;
+  std::string message;
+};
+
+Design solve(const MechanicsModel& mechanics, const FieldModel& field, const Cilium& cilium,
+             const Load& load, const std::vector<Vector3>& where) {
+  Design design;
+  try {
+    const MechanicsResult result = mechanics.solve(cilium, {load});
+    const MechanicsStep& step = result.steps.front();
+    design.converged = step.status == Status::converged;
+    design.message = step.message;
+    design.slip_off = slip_off_limit(step).value_or(nan);
+    if (!step.deformation) return design;
+    const Centreline& centreline = step.deformation->centreline;
+    const CentrelinePoint tip = centreline.at(centreline.length());
+    design.tip = tip.position;
+    design.tip_angle = tip.theta();
+    design.applied_force = step.applied_force;
+    if (!where.empty()) design.B = field.field(cilium, *step.deformation, where).B;
+  } catch (const Error& error) {
+    design.message = error.what();
+  }
+  return design;
+}
+
+py::dict batch(const std::vector<Cilium>& cilia, const std::vector<Load>& loads,
+               const py::object& where, const std::string& model, const std::string& field_model) {
+  if (cilia.size() != loads.size())
+    throw InputError(fmt::format("there are {} cilia and {} loads: give one load for each cilium",
+                                 cilia.size(), loads.size()));
+  const input::MechanicsEntry& mechanics = models::entry_of(models::mechanics_models(), model);
+  const input::FieldEntry& field = models::entry_of(models::field_models(), field_model);
+  const std::vector<Vector3> at = where.is_none() ? std::vector<Vector3>{} : points(where);
+  std::vector<Design> designs(cilia.size());
+  {
+    const py::gil_scoped_release released;
+    const input::ModelOptions options;
+    const auto solver = mechanics.make(options);
+    const auto source = field.make(options);
+    const auto one = [&](std::size_t i) {
+      designs[i] = solve(*solver, *source, cilia[i], loads[i], at);
+    };
+    if (mechanics.is_collective || (!at.empty() && field.is_collective))
+      for (std::size_t i = 0; i < designs.size(); ++i) one(i);
+    else
+      tbb::parallel_for(std::size_t{0}, designs.size(), one);
+  }
+  const auto n = static_cast<py::ssize_t>(designs.size());
+  const auto numbers = [&](double Design::*member) {
+    std::vector<double> values(designs.size());
+    std::ranges::transform(designs, values.begin(), member);
+    return array(std::move(values), {n});
+  };
+  std::vector<Vector3> tips;
+  std::vector<double> B;
+  py::list converged;
+  py::list messages;
+  for (const Design& design : designs) {
+    tips.push_back(design.tip);
+    converged.append(design.converged);
+    messages.append(design.message);
+    for (std::size_t p = 0; p < at.size(); ++p)
+      for (int c = 0; c < 3; ++c) B.push_back(design.B.empty() ? nan : design.B[p][c]);
+  }
+  py::dict result;
+  result["converged"] =
+      py::module_::import("numpy").attr("array")(converged, py::arg("dtype") = "bool");
+  result["tip"] = array(tips);
+  result["tip_angle"] = numbers(&Design::tip_angle);
+  result["applied_force"] = numbers(&Design::applied_force);
+  result["slip_off"] = numbers(&Design::slip_off);
+  if (!at.empty()) result["B"] = array(std::move(B), {n, static_cast<py::ssize_t>(at.size()), 3});
+  result["message"] = messages;
+  return result;
+}
+
+/// One number for each material point at which a centreline is written.
+template <class Number>
+py::object along(const Shape& shape, const Number& number) {
+  const Centreline& centreline = shape.deformation().centreline;
+  std::vector<double> values;
+  for (const double S : output::output_points(centreline))
+    values.push_back(number(S, centreline.at(S)));
+  const auto n = static_cast<py::ssize_t>(values.size());
+  return array(std::move(values), {n});
+}
+
+py::object positions(const Shape& shape) {
+  const Centreline& centreline = shape.deformation().centreline;
+  std::vector<Vector3> all;
+  for (const double S : output::output_points(centreline)) all.push_back(centreline.at(S).position);
+  return array(all);
+}
+
+template <class Entries>
+py::dict described(const Entries& entries) {
+  py::dict result;
+  for (const auto& entry : entries) {
+    py::dict options;
+    for (const input::Option& option : entry.options)
+      options[py::str(std::string(option.name))] =
+          fmt::format("{} (default {})", option.doc, to_toml(option, option.get({})));
+    result[py::str(entry.id)] =
+        py::dict(py::arg("description") = entry.description, py::arg("options") = options);
+  }
+  return result;
+}
+
+}  // namespace
+
+void bind_models(py::module_& module) {
+  using ShapeClass = py::class_<Shape>;
+  ShapeClass(module, "Shape", "A bent cilium: one model's answer to one load. SI units.")
+      .def_property_readonly("model", [](const Shape& s) { return s.run.model; })
+      .def_property_readonly("cilium", [](const Shape& s) { return s.problem.cilium; })
+      .def_property_readonly("load", [](const Shape& s) { return s.step().load; })
+      .def_property_readonly(
+          "status", [](const Shape& s) { return std::string(output::to_string(s.step().status)); },
+          "'converged', 'slipped_off' (the load is larger than any equilibrium bears) or 'failed'.")
+      .def_property_readonly("message", [](const Shape& s) { return s.step().message; })
+      .def_property_readonly(
+          "tip", [](const Shape& s) { return array(s.tip().position); }, "(3,), m.")
+      .def_property_readonly(
+          "tip_angle", [](const Shape& s) { return s.tip().theta(); },
+          "Angle of the tip's section from the upright one, rad.")
+      .def_property_readonly(
+          "tip_uncertainty", [](const Shape& s) { return s.step().tip_uncertainty; },
+          "Estimate of the numerical error of the tip's position, m; None: not known.")
+      .def_property_readonly("tip_angle_uncertainty",
+                             [](const Shape& s) { return s.step().tip_angle_uncertainty; })
+      .def_property_readonly(
+          "applied_force", [](const Shape& s) { return s.step().applied_force; },
+          "Horizontal force that the model really applied, N.")
+      .def_property_readonly(
+          "slip_off", [](const Shape& s) { return slip_off_limit(s.step()); },
+          "Largest load that an equilibrium bears (a contact's force, N, a "
+          "probe's displacement, m); None: not known.")
+      .def_property_readonly("seconds", [](const Shape& s) { return s.step().seconds; })
+      .def_property_readonly(
+          "S", [](const Shape& s) { return along(s, [](double S, const auto&) { return S; }); },
+          "Arc length of material points from the base, (n,), m.")
+      .def_property_readonly("centreline", &positions, "Their positions, (n, 3), m.")
+      .def_property_readonly(
+          "theta",
+          [](const Shape& s) { return along(s, [](double, const auto& p) { return p.theta(); }); },
+          "Angle of the sections from the upright one, (n,), rad.")
+      .def_property_readonly(
+          "curvature",
+          [](const Shape& s) {
+            return along(s, [](double, const auto& p) { return p.bending_curvature(); });
+          },
+          "Bending curvature, (n,), 1/m.")
+      .def(
+          "field", &field, py::arg("points"), py::arg("model") = "volume",
+          "Field at points, (3,) or (n, 3), m, by a field model and its options: a dict of\n"
+          "B, dB = B - B(straight), B_uncertainty, dB_uncertainty, each (n, 3), T, with NaN where\n"
+          "there is none, and message. Raises InputError, SolverError.")
+      .def(
+          "B",
+          [](const Shape& s, const py::object& where, const std::string& model,
+             const py::kwargs& options) {
+            return py::object(field(s, where, model, options)["B"]);
+          },
+          py::arg("points"), py::arg("model") = "volume", "B alone: (n, 3), T.")
+      .def(
+          "dB",
+          [](const Shape& s, const py::object& where, const std::string& model,
+             const py::kwargs& options) {
+            return py::object(field(s, where, model, options)["dB"]);
+          },
+          py::arg("points"), py::arg("model") = "volume", "B - B(straight): (n, 3), T.")
+      .def("__repr__", [](const Shape& s) {
+        return s.step().deformation
+                   ? fmt::format("<Shape by {}: tip ({:.4g}, {:.4g}, {:.4g}) mm>", s.run.model,
+                                 1e3 * s.tip().position.x(), 1e3 * s.tip().position.y(),
+                                 1e3 * s.tip().position.z())
+                   : fmt::format("<Shape by {}: {}>", s.run.model,
+                                 output::to_string(s.step().status));
+      });
+
+  module.def("bend_path", &bend, py::arg("cilium"), py::arg("loads"), py::arg("model"),
+             py::arg("progress"));
+  module.def(
+      "bend_batch", &batch, py::arg("cilia"), py::arg("loads"), py::arg("points") = py::none(),
+      py::arg("model") = "elastica", py::arg("field") = "volume",
+      "Many designs at once, on all cores: a list of cilia and one load for each, and points\n"
+      "(m, 3) at which B is asked for (None: nowhere). Returns a dict of arrays: converged\n"
+      "(n,), tip (n, 3), tip_angle (n,), applied_force (n,), slip_off (n,), B (n, m, 3), with\n"
+      "NaN where there is none, and a list message. One design's failure does not stop the\n"
+      "others.");
+  module.def(
+      "models",
+      [] {
+        return py::dict(py::arg("mechanics") = described(models::mechanics_models()),
+                        py::arg("fields") = described(models::field_models()));
+      },
+      "The models: {'mechanics': {id: {'description', 'options'}}, 'fields': {...}}.");
+}
+
+}  // namespace ciliaval::python::core

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "compare/input/environment/environment.h"
+#include "problem/cilium.h"
+#include "problem/error.h"
+#include "problem/load.h"
+#include "python/core/convert.h"
+
+namespace ciliaval::python::core {
+namespace py = pybind11;
+namespace names = compare::input::environment;
+namespace {
+
+using surroundings::Environment;
+
+Load load(const std::string& type, const py::kwargs& parameters) {
+  const LoadType* found = find_load_type(type);
+  if (found == nullptr) {
+    std::string known;
+    for (const LoadType* other : load_types()) known += fmt::format(" {}", other->name);
+    throw InputError(fmt::format("there is no load type `{}`; there are:{}", type, known));
+  }
+  Load result(*found, std::vector<double>(found->parameters.size()));
+  std::string expected;
+  for (const auto& parameter : found->parameters)
+    expected += fmt::format("{}{} [{}]", expected.empty() ? "" : ", ", parameter.key.name,
+                            parameter.key.quantity.unit);
+  for (const auto& [key, value] : parameters) {
+    const auto name = key.cast<std::string>();
+    const auto at = std::ranges::find_if(
+        found->parameters, [&](const auto& parameter) { return parameter.key.name == name; });
+    if (at == found->parameters.end())
+      throw InputError(
+          fmt::format("a load of type `{}` has no `{}`; it has: {}", type, name, expected));
+    result.set_value(static_cast<std::size_t>(at - found->parameters.begin()),
+                     value.cast<double>());
+  }
+  for (const auto& parameter : found->parameters)
+    if (parameter.key.fallback.empty() &&
+        !parameters.contains(py::str(std::string(parameter.key.name))))
+      throw InputError(fmt::format("a load of type `{}` needs `{}`; it has: {}", type,
+                                   parameter.key.name, expected));
+  return result;
+}
+
+/// A vector from anything that numpy.asarray takes. Throws InputError.
+Vector3 vector(const py::object& value, const char* name) {
+  const std::vector<Vector3> found = points(value);
+  if (found.size() != 1)
+    throw InputError(fmt::format("`{}` is a vector [x, y, z], not {} of them", name, found.size()));
+  return found.front();
+}
+
+Environment environment(const py::object& gravity, double fluid_density,
+                        const py::object& uniform_field, const std::string& magnetic_energy) {
+  const auto energy = std::ranges::find(names::energy_names, magnetic_energy);
+  if (energy == names::energy_names.end())
+    throw InputError(fmt::format("`{}` is {}, not `{}`", names::magnetic_energy,
+                                 fmt::join(names::energy_names, " or "), magnetic_energy));
+  return {vector(gravity, "gravity"), fluid_density, vector(uniform_field, "uniform_field"),
+          energy == names::energy_names.begin() ? surroundings::MagneticEnergy::F
+                                                : surroundings::MagneticEnergy::R};
+}
+
+/// The loads in their environments, one for all or one for each; without loads those of nothing
+/// else.
+LoadPath surrounded(LoadPath loads, const std::vector<Environment>& environments) {
+  if (environments.empty()) throw InputError("there is neither a load nor an environment");
+  if (loads.empty()) return names::path_of(environments);
+  const std::size_t steps = loads.size();
+  if (!names::put_into(environments, loads))
+    throw InputError(
+        fmt::format("there are {} environments and {} loads: state one environment, "
+                    "or one for each load",
+                    environments.size(), steps));
+  return loads;
+}
+
+std::string text(const Vector3& vector) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", vector.x(), vector.y(), vector.z());
+}
+
+std::string text(const Environment& around) {
+  return fmt::format(
+      "Environment(gravity={}, fluid_density={:.6g}, uniform_field={}, magnetic_energy='{}')",
+      text(around.gravity), around.fluid_density, text(around.uniform_field),
+      names::name(around.magnetic_energy));
+}
+
+std::string text(const Load& load) {
+  std::string parameters;
+  for (std::size_t i = 0; i < load.values().size(); ++i)
+    parameters += fmt::format(", {}={:.6g}", load.type().parameters[i].key.name, load.values()[i]);
+  const std::string around = surroundings::is_empty(load.environment())
+                                 ? ""
+                                 : fmt::format(" in {}", text(load.environment()));
+  return fmt::format("Load('{}'{}){}", load.type().name, parameters, around);
+}
+
+std::string text(const Segment& segment) {
+  return fmt::format(
+      "Segment(length={:.6g}, young_modulus={:.6g}, poisson_ratio={:.6g}, magnetization={:.6g}, "
+      "name='{}', density={:.6g})",
+      segment.length, segment.young_modulus, segment.poisson_ratio, segment.magnetization,
+      segment.name, segment.density);
+}
+
+std::string text(const Cilium& cilium) {
+  std::string segments;
+  for (const Segment& segment : cilium.segments)
+    segments += (segments.empty() ? "" : ", ") + text(segment);
+  return fmt::format("Cilium(diameter={:.6g}, segments=[{}])", cilium.diameter, segments);
+}
+
+}  // namespace
+
+void bind_problem(py::module_& module) {
+  py::class_<Segment>(module, "Segment",
+                      "A segment of a cilium: one material.\n\n"
+                      "length in m, young_modulus in Pa, poisson_ratio, magnetization M along the\n"
+                      "axis in A/m (M = B_r / mu_0; 0: not magnetic), name for people, density in\n"
+                      "kg/m^3 (0: not known), which gravity needs.")
+      .def(py::init([](double length, double young_modulus, double poisson_ratio,
+                       double magnetization, const std::string& name, double density) {
+             return Segment{name, length, young_modulus, poisson_ratio, magnetization, density};
+           }),
+           py::arg("length"), py::arg("young_modulus"), py::arg("poisson_ratio") = 0.49,
+           py::arg("magnetization") = 0.0, py::arg("name") = "", py::arg("density") = 0.0)
+      .def_readwrite("length", &Segment::length)
+      .def_readwrite("young_modulus", &Segment::young_modulus)
+      .def_readwrite("poisson_ratio", &Segment::poisson_ratio)
+      .def_readwrite("magnetization", &Segment::magnetization)
+      .def_readwrite("name", &Segment::name)
+      .def_readwrite("density", &Segment::density)
+      .def("__repr__", [](const Segment& segment) { return text(segment); });
+
+  py::class_<Cilium>(module, "Cilium",
+                     "A straight cylinder of segments, from the base up. diameter in m.\n\n"
+                     "Raises InputError if a number is impossible.")
+      .def(py::init([](double diameter, std::vector<Segment> segments) {
+             Cilium cilium{diameter, std::move(segments)};
+             require_valid(cilium);
+             return cilium;
+           }),
+           py::arg("diameter"), py::arg("segments"))
+      .def_readonly("diameter", &Cilium::diameter)
+      .def_property_readonly("segments", [](const Cilium& cilium) { return cilium.segments; })
+      .def_property_readonly("length", &Cilium::length, "L, the sum of the lengths, m.")
+      .def("__repr__", [](const Cilium& cilium) { return text(cilium); });
+
+  py::class_<Environment>(
+      module, "Environment",
+      "What surrounds a cilium: gravity g [x, y, z] in m/s^2 (each segment needs a density),\n"
+      "fluid_density in kg/m^3 for buoyancy, uniform_field B_0 [x, y, z] in T, and by which\n"
+      "magnetic_energy the field acts: 'F', -(F M).B_0, or 'R', -(R M).B_0.")
+      .def(py::init(&environment), py::arg("gravity") = py::make_tuple(0.0, 0.0, 0.0),
+           py::arg("fluid_density") = 0.0, py::arg("uniform_field") = py::make_tuple(0.0, 0.0, 0.0),
+           py::arg("magnetic_energy") = "F")
+      .def_property_readonly("gravity", [](const Environment& of) { return array(of.gravity); })
+      .def_readonly("fluid_density", &Environment::fluid_density)
+      .def_property_readonly("uniform_field",
+                             [](const Environment& of) { return array(of.uniform_field); })
+      .def_property_readonly(
+          "magnetic_energy",
+          [](const Environment& of) { return std::string(names::name(of.magnetic_energy)); })
+      .def("__eq__", [](const Environment& a, const Environment& b) { return a == b; })
+      .def("__repr__", [](const Environment& of) { return text(of); });
+
+  py::class_<Load>(module, "Load",
+                   "A load by its type and parameters, in SI units:\n"
+                   "Load('contact', force=1e-3, height=13e-3, azimuth=0). load_types() names all.")
+      .def(py::init(&load), py::arg("type"))
+      .def_property_readonly("type", [](const Load& of) { return std::string(of.type().name); })
+      .def_property_readonly("parameters",
+                             [](const Load& of) {
+                               py::dict result;
+                               for (std::size_t i = 0; i < of.values().size(); ++i)
+                                 result[py::str(std::string(of.type().parameters[i].key.name))] =
+                                     of.values()[i];
+                               return result;
+                             })
+      .def_property_readonly("environment", &Load::environment,
+                             "What surrounds the cilium under this load, besides it.")
+      .def("__repr__", [](const Load& of) { return text(of); });
+
+  module.def("surrounded", &surrounded, py::arg("loads"), py::arg("environments"));
+
+  module.def(
+      "load_types",
+      [] {
+        py::dict result;
+        for (const LoadType* type : load_types()) {
+          py::dict parameters;
+          for (const auto& parameter : type->parameters)
+            parameters[py::str(std::string(parameter.key.name))] = fmt::format(
+                "{}{}{}", parameter.key.doc, parameter.key.quantity.unit.empty() ? "" : ", ",
+                parameter.key.quantity.unit);
+          result[py::str(std::string(type->name))] = parameters;
+        }
+        return result;
+      },
+      "The load types: a dict of name to {parameter: meaning and unit}.");
+}
+
+}  // namespace ciliaval::python::core

@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Case files with [environment]: what they say, what is refused and where, and that they are
+// written back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compare/input/case.h"
+#include "compare/models/registry.h"
+#include "compare/study/case_number.h"
+#include "tests/support/case_texts.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using surroundings::Environment;
+using surroundings::MagneticEnergy;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Counted by hand: the segments begin in the lines 5 and 11, [environment] in line 18, [models] in
+/// line 23.
+constexpr std::string_view weight_and_field = R"([case]
+name = "around"
+[cilium]
+diameter = "3 mm"
+[[cilium.segment]]
+name = "base"
+length = "3 mm"
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.49
+density = "1 g/cm^3"
+[[cilium.segment]]
+name = "magnet"
+length = "17 mm"
+young_modulus = "3 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+density = "3000 kg/m^3"
+[environment]
+gravity = ["0 m/s2", "0 m/s2", "-9.81 m/s2"]
+fluid_density = "997 kg/m^3"
+uniform_field = ["0 mT", "10 mT", "2 mT"]
+magnetic_energy = "R"
+[models]
+mechanics = ["elastica", "beam"]
+)";
+
+constexpr std::string_view one_field = R"(["0 mT", "10 mT", "2 mT"])";
+constexpr std::string_view three_fields =
+    R"([["0 mT", "0 mT", "0 mT"], ["0 mT", "0 mT", "1 mT"], ["0 mT", "-10 mT", "2 mT"]])";
+
+input::Case read(std::string_view text) {
+  return input::read_case(text, "bad.toml", models::known());
+}
+
+std::string with_load(std::string_view load, std::string_view text = weight_and_field) {
+  return replaced(text, "[models]", std::string("[load]\n").append(load).append("\n[models]"));
+}
+
+TEST(EnvironmentCase, ActsAloneWithoutALoad) {
+  const input::Case c = read(weight_and_field);
+  EXPECT_EQ(c.cilium.segments[0].density, 1000);
+  EXPECT_EQ(c.cilium.segments[1].density, 3000);
+  ASSERT_EQ(c.load_path.size(), 1U);
+  const Load& load = c.load_path.front();
+  ASSERT_TRUE(load.is<EnvironmentLoad>());
+  EXPECT_EQ(load.as<EnvironmentLoad>()->scale, 1);
+  // The elastica bends in the plane of the field.
+  EXPECT_DOUBLE_EQ(azimuth(load), std::numbers::pi / 2);
+  const Environment& around = load.environment();
+  EXPECT_EQ(around.gravity, Vector3(0, 0, -9.81));
+  EXPECT_EQ(around.fluid_density, 997);
+  EXPECT_EQ(around.uniform_field, Vector3(0, 0.01, 0.002));
+  EXPECT_EQ(around.magnetic_energy, MagneticEnergy::R);
+}
+
+TEST(EnvironmentCase, AListOfFieldsIsAPath) {
+  const input::Case c = read(replaced(weight_and_field, one_field, three_fields));
+  ASSERT_EQ(c.load_path.size(), 3U);
+  const std::vector<Vector3> fields{Vector3(0, 0, 0), Vector3(0, 0, 0.001),
+                                    Vector3(0, -0.01, 0.002)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(c.load_path[i].environment().uniform_field, fields[i]);
+    EXPECT_EQ(c.load_path[i].environment().gravity.z(), -9.81);
+    // That of the strongest field, for every step.
+    EXPECT_DOUBLE_EQ(azimuth(c.load_path[i]), -std::numbers::pi / 2);
+  }
+}
+
+TEST(EnvironmentCase, BendsInThePlaneOfGravityWithoutAHorizontalField) {
+  const auto azimuth_under = [](std::string_view gravity) {
+    return azimuth(
+        read(replaced(replaced(weight_and_field, one_field, R"(["0 mT", "0 mT", "2 mT"])"),
+                      R"(["0 m/s2", "0 m/s2", "-9.81 m/s2"])", gravity))
+            .load_path.front());
+  };
+  EXPECT_DOUBLE_EQ(azimuth_under(R"(["-1 m/s2", "-1 m/s2", "0 m/s2"])"), -0.75 * std::numbers::pi);
+  EXPECT_EQ(azimuth_under(R"(["0 m/s2", "0 m/s2", "-1 m/s2"])"), 0);
+}
+
+TEST(EnvironmentCase, SurroundsEveryStepOfALoad) {
+  const input::Case c =
+      read(with_load("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 "
+                     "mm\"\nazimuth = \"90 deg\""));
+  ASSERT_EQ(c.load_path.size(), 2U);
+  for (const Load& load : c.load_path) {
+    EXPECT_TRUE(load.is<ContactLoad>());
+    EXPECT_EQ(load.environment().uniform_field.y(), 0.01);
+  }
+}
+
+TEST(EnvironmentCase, GivesEachStepItsField) {
+  const std::string text = replaced(weight_and_field, one_field, three_fields);
+  const input::Case listed =
+      read(with_load("type = \"section\"\nforce = [\"1 mN\", \"2 mN\", \"3 mN\"]\narclength = \"20 "
+                     "mm\"\nazimuth = "
+                     "\"90 deg\"",
+                     text));
+  ASSERT_EQ(listed.load_path.size(), 3U);
+  EXPECT_EQ(magnitude(listed.load_path[2]), 3e-3);
+  EXPECT_EQ(listed.load_path[2].environment().uniform_field.y(), -0.01);
+  const input::Case single =
+      read(with_load("type = \"flow\"\nvelocity = \"0.5 m/s\"\nazimuth = \"90 deg\"", text));
+  ASSERT_EQ(single.load_path.size(), 3U);
+  EXPECT_EQ(magnitude(single.load_path[2]), magnitude(single.load_path[0]));
+  EXPECT_EQ(single.load_path[1].environment().uniform_field.z(), 0.001);
+  for (const std::vector<double>& stated : single.stated_by) EXPECT_EQ(stated.size(), 3U);
+}
+
+TEST(EnvironmentCase, ScalesMakeAPath) {
+  const input::Case c =
+      read(with_load("type = \"environment\"\nscale = [0, 0.5, 1]\nazimuth = \"90 deg\""));
+  ASSERT_EQ(c.load_path.size(), 3U);
+  EXPECT_EQ(acting_environment(c.load_path[1]).uniform_field.y(), 0.005);
+}
+
+TEST(EnvironmentCase, IsWrittenBack) {
+  const std::string contact =
+      "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"\nazimuth = "
+      "\"90 deg\"";
+  const std::string fields = replaced(weight_and_field, one_field, three_fields);
+  const std::string field_alone =
+      replaced(replaced(fields, "fluid_density = \"997 kg/m^3\"\n", ""),
+               "gravity = [\"0 m/s2\", \"0 m/s2\", \"-9.81 m/s2\"]\n", "");
+  const std::string weight_alone =
+      replaced(replaced(weight_and_field, "uniform_field = [\"0 mT\", \"10 mT\", \"2 mT\"]\n", ""),
+               "magnetic_energy = \"R\"\n", "");
+  for (const std::string& text :
+       {std::string(weight_and_field), fields, field_alone, weight_alone, with_load(contact),
+        with_load(contact, fields), with_load(contact, weight_alone),
+        with_load("type = \"flow\"\nvelocity = \"0.5 m/s\"\nazimuth = \"90 deg\"", fields),
+        replaced(weight_alone, "-9.81", "0"),
+        replaced(weight_and_field, one_field, R"(["0 mT", "0 mT", "0 mT"])"),
+        replaced(field_alone, three_fields, R"(["0 mT", "0 mT", "0 mT"])")}) {
+    ASSERT_FALSE(text.empty());
+    const input::Case first = read(text);
+    const std::string written = input::to_toml(first, models::known());
+    SCOPED_TRACE(written);
+    const input::Case second = read(written);
+    EXPECT_EQ(input::to_toml(second, models::known()), written);
+    EXPECT_EQ(second.load_path, first.load_path);
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_EQ(second.cilium.segments[i].density, first.cilium.segments[i].density);
+  }
+}
+
+TEST(EnvironmentCase, StudiesMayVaryIt) {
+  const input::Case c = read(weight_and_field);
+  const std::map<std::string, double> wanted{{"cilium.segment.magnet.density", 4000},
+                                             {"environment.fluid_density", 10},
+                                             {"environment.gravity.z", -1.6},
+                                             {"environment.uniform_field.y", 0.02},
+                                             {"load.scale", 0.5}};
+  std::vector<study::Setting> settings;
+  for (const study::CaseNumber& number : study::case_numbers(c))
+    if (const auto found = wanted.find(number.path); found != wanted.end())
+      settings.push_back({number, found->second});
+  ASSERT_EQ(settings.size(), wanted.size());
+  const input::Case other = study::with_settings(c, settings);
+  EXPECT_EQ(other.cilium.segments[1].density, 4000);
+  const Environment& around = other.load_path.front().environment();
+  EXPECT_EQ(around.fluid_density, 10);
+  EXPECT_EQ(around.gravity, Vector3(0, 0, -1.6));
+  EXPECT_EQ(around.uniform_field, Vector3(0, 0.02, 0.002));
+  EXPECT_EQ(other.load_path.front().as<EnvironmentLoad>()->scale, 0.5);
+}
+
+struct BadEnvironment {
+  const char* name;
+  std::string_view part;
+  std::string_view by;
+  const char* place;
+  std::string_view message;
+};
+
+void PrintTo(const BadEnvironment& bad, std::ostream* out) {
+  *out << bad.name;
+}
+
+class BadEnvironmentCase : public testing::TestWithParam<BadEnvironment> {};
+
+TEST_P(BadEnvironmentCase, IsRefusedWithOneLocatedMessage) {
+  const BadEnvironment& bad = GetParam();
+  const std::string text = replaced(weight_and_field, bad.part, bad.by);
+  ASSERT_FALSE(text.empty());
+  const std::string faults = faults_of(text);
+  EXPECT_EQ(lines(faults).size(), 1U) << faults;
+  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
+  EXPECT_THAT(faults, HasSubstr(bad.message));
+}
+
+const BadEnvironment bad[]{
+    {"NoDensity", "density = \"1 g/cm^3\"\n", "", "5:1", "the segment 'base' needs a 'density'"},
+    {"NegativeDensity", "1 g/cm^3", "-1 g/cm^3", "10:11", "'density' is -1000 kg/m^3"},
+    {"DensityIsNoPressure", "1 g/cm^3", "1 Pa", "10:11", "density"},
+    {"NegativeFluidDensity", "997", "-997", "20:17", "'fluid_density' is -997 kg/m^3"},
+    {"FluidWithoutGravity", "gravity = [\"0 m/s2\", \"0 m/s2\", \"-9.81 m/s2\"]\n", "", "19:17",
+     "'fluid_density' goes with 'gravity', which is missing"},
+    {"GravityWithoutUnit", "\"-9.81 m/s2\"", "-9.81", "19:32",
+     "has no unit: write an acceleration, such as \"-9.81 m/s2\""},
+    {"GravityIsNoField", "-9.81 m/s2", "-9.81 T", "19:32", "acceleration"},
+    {"GravityIsNoNumber", "[\"0 m/s2\", \"0 m/s2\", \"-9.81 m/s2\"]", "\"9.81 m/s2\"", "19:11",
+     "'gravity' must have three components along x, y and z"},
+    {"GravityHasTwo", "\"0 m/s2\", \"0 m/s2\", ", "\"0 m/s2\", ", "19:11",
+     "'gravity' must have three components"},
+    {"GravityTooLarge", "-9.81 m/s2", "-9.81 km/ms2", "19:32", "'gravity' is"},
+    {"FieldWithoutUnit", "\"10 mT\"", "0.01", "21:26",
+     "has no unit: write a flux density, such as"},
+    {"FieldIsNoMagnetization", "10 mT", "10 kA/m", "21:26", "flux density"},
+    {"FieldHasFour", "\"10 mT\", ", "\"10 mT\", \"1 mT\", ", "21:17",
+     "'uniform_field' must have three components"},
+    {"FieldTooStrong", "10 mT", "101 T", "21:26", "'uniform_field' is 101 T"},
+    {"NoFields", one_field, "[]", "21:17", "'uniform_field' lists 0 fields"},
+    {"FieldInAList", one_field, "[[\"1 mT\", \"1 mT\", \"1 mT\"], \"1 mT\"]", "21:44",
+     "'uniform_field' must have three components"},
+    {"EnergyWithoutField", "uniform_field = [\"0 mT\", \"10 mT\", \"2 mT\"]\n", "", "21:19",
+     "'magnetic_energy' goes with 'uniform_field', which is missing"},
+    {"UnknownEnergy", "\"R\"", "\"G\"", "22:19", "'magnetic_energy' cannot be 'G' (valid: F, R)"},
+    {"FieldWithoutMagnet", "magnetization = \"75 kA/m\"\n", "", "20:17",
+     "'uniform_field' needs a magnet: no [[cilium.segment]] has a 'magnetization'"},
+    {"UnknownKey", "fluid_density", "fluid_densty", "20:1", "did you mean 'fluid_density'?"},
+    {"Magnet", "[models]", "[[environment.magnet]]\n[models]", "23:15",
+     "'environment.magnet' is not available in this version: magnets beside the cilium"},
+    {"OutOfTheElasticasPlane", "[\"0 m/s2\"", "[\"1 m/s2\"", "24:14",
+     "the elastica bends in the plane of the load, along the azimuth 90 deg"},
+    {"AnotherModel", "[models]\nmechanics = [\"elastica\", \"beam\"]",
+     "[load]\ntype = \"dead\"\nforce_per_length = \"0.1 N/m\"\n[models]\nmechanics = "
+     "[\"beam\", \"calculix\"]",
+     "27:22", "calculix takes no [environment]"},
+    {"BesideASweep", "[models]",
+     "[surface]\nprofile = \"flat\"\n[load]\ntype = \"sweep\"\ninterference = \"1 mm\"\ntravel = "
+     "\"1 mm\"\nazimuth = \"90 deg\"\n[models]",
+     "18:1", "no model takes an environment beside the load type 'sweep'"},
+};
+
+std::string name_of(const testing::TestParamInfo<BadEnvironment>& info) {
+  return info.param.name;
+}
+INSTANTIATE_TEST_SUITE_P(Environment, BadEnvironmentCase, testing::ValuesIn(bad), name_of);
+
+TEST(EnvironmentCase, ListsAsManyFieldsAsTheLoadHasSteps) {
+  const std::string text = replaced(weight_and_field, one_field, three_fields);
+  EXPECT_THAT(
+      faults_of(
+          with_load("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 mm\"", text)),
+      StartsWith("bad.toml:21:17: 'uniform_field' lists 3 fields, but the load has 2 steps"));
+}
+
+TEST(EnvironmentCase, IsFoundByItsName) {
+  EXPECT_THAT(faults_of(replaced(with_load("type = \"section\"\nforce = \"1 mN\"\narclength = "
+                                           "\"20 mm\""),
+                                 "[environment]", "[enviroment]")),
+              StartsWith("bad.toml:18:2: unknown key 'enviroment' in the case file (valid: case, "
+                         "cilium, load, environment, surface, sensor, readings, signal, models); "
+                         "did you mean 'environment'?"));
+}
+
+TEST(EnvironmentCase, SaysSomething) {
+  const std::string text =
+      replaced(weight_and_field, weight_and_field.substr(weight_and_field.find("gravity")), "") +
+      "[models]\nmechanics = [\"beam\"]\n";
+  EXPECT_THAT(faults_of(text), StartsWith("bad.toml:18:1: [environment] needs 'gravity' or "
+                                          "'uniform_field'"));
+}
+
+TEST(EnvironmentCase, ListsAThousandFieldsAtMost) {
+  const auto with_fields = [](int count) {
+    return faults_of(replaced(weight_and_field, one_field,
+                              repeated(std::string(R"(["0 mT", "1 mT", "0 mT"])"), count)));
+  };
+  EXPECT_EQ(with_fields(1000), "");
+  EXPECT_THAT(with_fields(1001), StartsWith("bad.toml:21:17: 'uniform_field' lists 1001 fields"));
+}
+
+TEST(EnvironmentCase, TheLoadTypeOfItNeedsIt) {
+  const std::string text =
+      replaced(replaced(with_load("type = \"environment\"\nazimuth = \"90 deg\""),
+                        weight_and_field.substr(weight_and_field.find("[environment]"),
+                                                weight_and_field.find("[models]") -
+                                                    weight_and_field.find("[environment]")),
+                        ""),
+               "density", "density");
+  EXPECT_THAT(faults_of(text),
+              StartsWith("bad.toml:19:8: the load type 'environment' needs the table "
+                         "[environment]"));
+}
+
+TEST(EnvironmentCase, TheElasticaTellsItsPlane) {
+  EXPECT_THAT(faults_of(with_load("type = \"environment\"\nazimuth = \"60 deg\"")),
+              HasSubstr("along the azimuth 60 deg, and the environment points out of it: change "
+                        "the azimuth, or use 'beam' or 'solid'"));
+  EXPECT_EQ(faults_of(replaced(with_load("type = \"environment\"\nazimuth = \"60 deg\""),
+                               "\"elastica\", ", "")),
+            "");
+}
+
+TEST(EnvironmentCase, TheHeightFormTakesNone) {
+  EXPECT_THAT(faults_of(with_load("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
+                                  "azimuth = \"90 deg\"") +
+                        "[models.elastica]\nform = \"height\"\n"),
+              HasSubstr("bad.toml:31:8: the elastica's form 'height' (Eq. 1-4) takes no "
+                        "[environment]"));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare

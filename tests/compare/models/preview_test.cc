@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What `ciliaval validate` says of a case beyond its syntax.
+#include "compare/models/preview.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/synthetic.h"
+
+namespace ciliaval::compare::models {
+namespace {
+
+using test::paper_case;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<std::string> warnings(const input::Case& problem) {
+  return preview(problem).warnings;
+}
+
+TEST(Preview, HasNothingToWarnOfInThePapersCase) {
+  const Preview seen = preview(paper_case({0.5e-3}));
+  EXPECT_THAT(seen.warnings, IsEmpty());
+  EXPECT_THAT(seen.signal, Contains(HasSubstr("elastica: the tip goes")));
+  EXPECT_THAT(seen.signal, Contains(HasSubstr("sensor 0: |B|")));
+}
+
+TEST(Preview, WarnsOfSlipsInUnits) {
+  input::Case problem = paper_case({0.5e-3});
+  problem.cilium.segments[1].young_modulus = 0.2e9;
+  EXPECT_THAT(warnings(problem), Contains(HasSubstr("Young's modulus of 2e+08 Pa")));
+  problem = paper_case({0.5e-3});
+  problem.cilium.segments[1].magnetization = 75;
+  EXPECT_THAT(warnings(problem), Contains(HasSubstr("magnetization of 75 A/m")));
+  problem = paper_case({0.5e-3});
+  problem.cilium.segments[1].length = 2;
+  EXPECT_THAT(warnings(problem), Contains(HasSubstr("length of 2 m")));
+}
+
+TEST(Preview, WarnsOfAStubOfSensorsInTheMagnetAndOfUnseenSignals) {
+  input::Case problem = paper_case({0.5e-3});
+  problem.cilium.diameter = 8e-3;
+  EXPECT_THAT(warnings(problem), Contains(HasSubstr("diameters long")));
+  problem = paper_case({0.5e-3});
+  problem.sensors = {{0, 0, 10e-3}, {1.6e-3, 0, 10e-3}, {0, 0, -0.5}};
+  const auto all = warnings(problem);
+  EXPECT_THAT(all, Contains(HasSubstr("sensor 0 lies inside")));
+  EXPECT_THAT(all, Contains(HasSubstr("sensor 1 is 0.1 mm from the magnet")));
+  EXPECT_THAT(all, Contains(HasSubstr("sensor 2 sees a change")));
+}
+
+TEST(Preview, WarnsOfALoadThatNoEquilibriumBearsAndOfLargeStrains) {
+  const auto all = warnings(paper_case({5.5e-3, 1}));
+  EXPECT_THAT(all, Contains(HasSubstr("slips off")));
+  EXPECT_THAT(all, Contains(HasSubstr("strained by")));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare::models

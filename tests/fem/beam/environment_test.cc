@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The beam under weight and a uniform field. Oracles: boundary-value solutions of the hard-magnetic
+// and the heavy elastica (SciPy, 1e-12, two routes), and analytic::Elastica, which shares no code.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "analytic/elastica/elastica.h"
+#include "beams.h"
+#include "fem/beam/beam.h"
+#include "problem/error.h"
+
+namespace ciliaval::fem::beam {
+namespace {
+
+using surroundings::Environment;
+using surroundings::MagneticEnergy;
+constexpr double pi = std::numbers::pi;
+
+/// EI/L² = 1 N, A M L²/EI = 1 per T, ρA = 1 kg/m.
+Cilium unit_cilium() {
+  const double d = 1e-2;
+  Segment segment{"rod", 1, 64 / (pi * std::pow(d, 4)), 0.3, 4 / (pi * d * d)};
+  segment.density = 4 / (pi * d * d);
+  return {d, {segment}};
+}
+
+Cilium two_materials() {
+  Segment base{"base", 3e-3, 0.1e6, 0.49, 0};
+  base.density = 1000;
+  Segment magnet{"magnet", 17e-3, 3e6, 0.49, 75e3};
+  magnet.density = 1700;
+  return {3e-3, {base, magnet}};
+}
+
+MechanicsStep solved(const Cilium& cilium, const Load& load, const BeamOptions& options) {
+  const MechanicsStep step = Beam(options).solve(cilium, {load}).steps.at(0);
+  EXPECT_EQ(step.status, Status::converged) << type(load) << ": " << step.message;
+  return step;
+}
+
+CentrelinePoint tip(const Environment& environment, MagneticEnergy law) {
+  Environment by_law = environment;
+  by_law.magnetic_energy = law;
+  const Load load = with_environment(EnvironmentLoad{}, by_law);
+  return solved(unit_cilium(), load, {.refinement = 3, .shear_rigid = true})
+      .deformation->centreline.at(1);
+}
+
+TEST(BeamEnvironment, BendsInATransverseFieldLikeTheHardMagneticElastica) {
+  const std::vector<std::array<double, 2>> table{
+      {0.1, 0.0332953193}, {0.5, 0.1621435757}, {1, 0.3017207738},
+      {2, 0.4934574804},   {3, 0.6032534411},   {5, 0.7137915236},
+      {10, 0.8106090249},  {20, 0.8686958983},  {50, 0.9171554473}};
+  for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
+    for (const auto& [field, deflection] : table)
+      EXPECT_NEAR(tip({.uniform_field = {field, 0, 0}}, law).position.x(), deflection, 1e-9)
+          << field;
+}
+
+TEST(BeamEnvironment, BendsInAnObliqueField) {
+  struct Row {
+    double angle, field, z, x;
+  };
+  for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
+    for (const Row& row : {Row{30, 5, 0.95058749, 0.28777799}, Row{60, 10, 0.72950150, 0.63368353},
+                           Row{150, 1, 0.96497823, 0.23808830}, Row{150, 5, 0.18979559, 0.82526208},
+                           Row{150, 10, -0.14490789, 0.78255965}}) {
+      const double a = row.angle * pi / 180;
+      const auto end =
+          tip({.uniform_field = row.field * Vector3(std::sin(a), 0, std::cos(a))}, law);
+      EXPECT_NEAR(end.position.x(), row.x, 1e-8) << row.angle << ' ' << row.field;
+      EXPECT_NEAR(end.position.z(), row.z, 1e-8) << row.angle << ' ' << row.field;
+    }
+}
+
+TEST(BeamEnvironment, SagsUnderItsWeightLikeTheHeavyElastica) {
+  const std::vector<std::array<double, 4>> table{{1, 9.46042475, 0.1234714020, 0.9912463953},
+                                                 {5, 39.93543205, 0.4959050446, 0.8466571800},
+                                                 {10, 60.31200795, 0.7001997155, 0.6563537612},
+                                                 {50, 87.45932314, 0.9079171235, 0.2450147563}};
+  for (const auto& [weight, degrees, drop, reach] : table) {
+    const auto end = tip({.gravity = {0, weight, 0}}, MagneticEnergy::F);
+    EXPECT_NEAR(end.theta() * 180 / pi, degrees, 1e-7);
+    EXPECT_NEAR(end.position.y(), drop, 1e-9);
+    EXPECT_NEAR(end.position.z(), reach, 1e-9);
+  }
+}
+
+/// With every load, against another model: the elastica, which is the beam without shear.
+TEST(BeamEnvironment, IsTheElasticaWithoutShearUnderEveryLoad) {
+  const Cilium cilium = two_materials();
+  const Environment all{
+      .gravity = {3, 0, -9.81}, .fluid_density = 998, .uniform_field = {2e-3, 0, -1e-3}};
+  for (const Load& load : std::vector<Load>{
+           ContactLoad{1e-3, 16e-3, 0}, ContactLoad{4e-3, 16e-3, 0}, FlowLoad{0.3, 0},
+           SectionLoad{2e-3, 10e-3, 0}, DeadLoad{0.2, 0}, ProbeLoad{5e-3, 16e-3, 0},
+           ProbeLoad{0, 16e-3, 0}, EnvironmentLoad{1, 0}, ContactLoad{9e-3, 16e-3, 0}}) {
+    const Load with = with_environment(load, all);
+    const MechanicsStep one = analytic::elastica::Elastica().solve(cilium, {with}).steps.at(0);
+    const MechanicsStep other =
+        Beam({.refinement = 2, .shear_rigid = true}).solve(cilium, {with}).steps.at(0);
+    ASSERT_EQ(one.status, other.status) << type(load) << ": " << other.message;
+    if (one.slip_off_force && other.slip_off_force) {
+      EXPECT_NEAR(*one.slip_off_force, *other.slip_off_force, 1e-7 * *one.slip_off_force);
+    }
+    if (one.status != Status::converged) continue;
+    const auto a = one.deformation->centreline.at(20e-3);
+    const auto b = other.deformation->centreline.at(20e-3);
+    EXPECT_LT((a.position - b.position).norm(), 1e-8 * 20e-3) << type(load);
+    EXPECT_NEAR(one.applied_force, other.applied_force, 1e-8 * 1e-3) << type(load);
+    if (one.contact_arclength) {
+      EXPECT_NEAR(*one.contact_arclength, *other.contact_arclength, 1e-8 * 20e-3);
+    }
+  }
+}
+
+/// A path through contact forces and environments, out of the plane too, by steps that begin where
+/// the last one ended, is that of each step alone.
+TEST(BeamEnvironment, DoesNotDependOnTheStepsBefore) {
+  const Cilium cilium = two_materials();
+  const Environment one{.gravity = {0, 4, -9.81}, .uniform_field = {1e-3, 0, 0}};
+  const Environment other{.gravity = {0, 4, -9.81}, .uniform_field = {2e-3, 1e-3, 0}};
+  LoadPath path;
+  for (const Environment& environment : {one, other, Environment{}})
+    for (const double force : {1e-3, 2e-3})
+      path.push_back(with_environment(ContactLoad{force, 16e-3, 0.4}, environment));
+  const MechanicsResult all = Beam().solve(cilium, path);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    ASSERT_EQ(all.steps[i].status, Status::converged) << all.steps[i].message;
+    const MechanicsStep alone = solved(cilium, path[i], {});
+    EXPECT_LT((alone.deformation->centreline.at(20e-3).position -
+               all.steps[i].deformation->centreline.at(20e-3).position)
+                  .norm(),
+              1e-9 * 20e-3);
+    EXPECT_NEAR(alone.applied_force, all.steps[i].applied_force, 1e-11);
+  }
+}
+
+TEST(BeamEnvironment, RefusesWhatItCannotDo) {
+  const Cilium cilium = two_materials();
+  const MechanicsStep step =
+      Beam()
+          .solve(cilium, {with_environment(ContactLoad{1e-3, 16e-3, 0}, {.gravity = {400, 0, 0}})})
+          .steps.at(0);
+  EXPECT_EQ(step.status, Status::failed);
+  EXPECT_NE(step.message.find("environment alone"), std::string::npos) << step.message;
+}
+
+}  // namespace
+}  // namespace ciliaval::fem::beam

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The compiled part of the Python package."""
+
+import ast
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import ciliaval as cv
+import ciliaval.program
+
+SOURCE = Path(__file__).resolve().parents[2]
+SENSOR = np.array([-0.1e-3, 0.2e-3, -1.55e-3])
+
+
+def paper_cilium(base_length=3e-3):
+    """The paper's cilium, section 3.4.1."""
+    base = cv.Segment(length=base_length, young_modulus=0.1e6, poisson_ratio=0.49)
+    magnet = cv.Segment(17e-3, 3e6, 0.49, magnetization=75e3, name="magnet")
+    return cv.Cilium(diameter=3e-3, segments=[base, magnet])
+
+
+def contact(force):
+    return cv.Load("contact", force=force, height=13e-3)
+
+
+class Bend(unittest.TestCase):
+    def test_gives_the_program_s_own_numbers(self):
+        """Oracle: the program on the same case, through its file of results."""
+        text = (SOURCE / "cases/paper/fig3b.toml").read_text()
+        text = re.sub(r"mechanics = .*", 'mechanics = ["elastica", "beam"]', text)
+        text = re.sub(r"fields = .*", 'fields = ["volume"]', text)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "case.toml"
+            file.write_text(text)
+            case = cv.Case(file)
+            cv.program.call("run", file, "-o", folder)
+            summary = json.loads((Path(folder) / "fig3b" / "summary.json").read_text())
+        for model in ("elastica", "beam"):
+            shapes = cv.bend(case.cilium, case.loads, model)
+            self.assertEqual(len(shapes), len(summary["steps"]))
+            for shape, step in zip(shapes, summary["steps"]):
+                self.assertEqual(shape.tip.tolist(), step["mechanics"][model]["tip"])
+                self.assertEqual(
+                    shape.B(case.sensors).tolist(), step["fields"][f"{model}/volume"]["B"]
+                )
+
+    def test_weight_and_a_field_bend_a_slender_rod_as_linear_theory(self):
+        """Oracle: (rho - rho_f) g A L^4 / (8 E I) and M A B L^3 / (3 E I), for a small deflection."""
+        rod = cv.Cilium(0.2e-3, [cv.Segment(20e-3, 10e6, magnetization=1e3, density=1200.0)])
+        area, bending = np.pi * 1e-8, 10e6 * np.pi * 1e-16 / 4
+        weight = cv.Environment(gravity=[0, 2e-3, 0], fluid_density=1000.0)
+        field = cv.Environment(uniform_field=[0, 1e-6, 0], magnetic_energy="R")
+        shape = cv.bend(rod, environment=weight)
+        tip = 200 * 2e-3 * area * 20e-3**4 / 8 / bending
+        np.testing.assert_allclose(shape.tip[1], tip, rtol=1e-3)
+        self.assertEqual(shape.load.type, "environment")
+        self.assertEqual(shape.load.environment, weight)
+        tip = 1e3 * area * 1e-6 * 20e-3**3 / 3 / bending
+        shapes = cv.bend(rod, environment=[field, field], model="beam")
+        np.testing.assert_allclose(shapes[1].tip[1], tip, rtol=1e-3)
+        # Beside a load, of which small ones add up.
+        push = cv.Load("section", force=1e-9, arclength=20e-3, azimuth=np.pi / 2)
+        tip += 1e-9 * 20e-3**3 / 3 / bending
+        np.testing.assert_allclose(cv.bend(rod, push, environment=field).tip[1], tip, rtol=1e-3)
+
+    def test_an_environment_that_does_not_fit_is_an_error(self):
+        rod = cv.Cilium(1e-3, [cv.Segment(20e-3, 1e6, magnetization=1e4)])
+        field = cv.Environment(uniform_field=[1e-3, 0, 0])
+        with self.assertRaisesRegex(cv.InputError, "3 environments and 2 loads"):
+            cv.bend(rod, 2 * [cv.Load("dead", force_per_length=1e-3)], environment=3 * [field])
+        with self.assertRaisesRegex(cv.InputError, "F or R, not `G`"):
+            cv.Environment(magnetic_energy="G")
+        with self.assertRaisesRegex(cv.InputError, "calculix takes no environment"):
+            cv.bend(rod, environment=field, model="calculix")
+        with self.assertRaisesRegex(cv.InputError, "density"):
+            cv.bend(rod, environment=cv.Environment(gravity=[0, 0, -9.81]))
+        with self.assertRaisesRegex(cv.InputError, "neither a load nor an environment"):
+            cv.bend(rod)
+
+    def test_a_flow_bends_a_slender_rod_as_linear_theory(self):
+        """Oracle: q L^4 / (8 E I), for a load that hardly bends it."""
+        rod = cv.Cilium(1e-3, [cv.Segment(20e-3, 1e6, magnetization=1e4)])
+        q = 1e-6
+        shape = cv.bend(rod, cv.Load("flow", force_per_height=q))
+        second_moment = np.pi * 1e-3**4 / 64
+        self.assertAlmostEqual(shape.tip[0] / (q * 20e-3**4 / (8 * 1e6 * second_moment)), 1, 6)
+
+    def test_gives_arrays_of_the_shapes_it_promises(self):
+        shape = cv.bend(paper_cilium(), contact(1e-3))
+        n = len(shape.S)
+        self.assertEqual(shape.centreline.shape, (n, 3))
+        self.assertEqual(shape.theta.shape, (n,))
+        self.assertEqual(shape.curvature.shape, (n,))
+        np.testing.assert_array_equal(shape.centreline[-1], shape.tip)
+        self.assertEqual(shape.B(SENSOR).shape, (1, 3))
+        self.assertEqual(shape.dB([SENSOR, 2 * SENSOR]).shape, (2, 3))
+        self.assertEqual(shape.B([list(SENSOR)] * 5, model="line").shape, (5, 3))
+
+    def test_states_the_beam_s_uncertainty_and_that_of_its_field(self):
+        shape = cv.bend(paper_cilium(), contact(1e-3), "beam")
+        finer = cv.bend(paper_cilium(), contact(1e-3), "beam", refinement=2)
+        self.assertGreater(shape.tip_uncertainty, 0)
+        self.assertLess(np.linalg.norm(shape.tip - finer.tip), shape.tip_uncertainty)
+        field = shape.field(SENSOR)
+        self.assertTrue((field["B_uncertainty"] >= 0).all())
+
+    def test_bends_the_solid(self):
+        shape = cv.bend(paper_cilium(), contact(1e-3), "solid", refinement=0)
+        self.assertLess(abs(shape.tip[0] / 1.502e-3 - 1), 0.01)
+        self.assertEqual(shape.B(SENSOR, model="mesh").shape, (1, 3))
+
+    def test_a_load_that_slips_off_is_a_result(self):
+        shape = cv.bend(paper_cilium(), contact(1.0))
+        self.assertEqual(shape.status, "slipped_off")
+        self.assertTrue(0 < shape.slip_off < 1)
+        with self.assertRaisesRegex(cv.SolverError, "slipped_off"):
+            shape.tip  # noqa: B018
+
+
+class BadInput(unittest.TestCase):
+    def test_is_refused_with_what_there_is(self):
+        cilium = paper_cilium()
+        for wrong, text in [
+            (lambda: cv.bend(cilium, contact(1e-3), "bem"), "no model `bem`"),
+            (lambda: cv.bend(cilium, contact(1e-3), "beam", refinment=1), "has no option `refinment`"),
+            (lambda: cv.bend(cilium, contact(1e-3), "beam", refinement="two"), "not what it takes"),
+            (lambda: cv.bend(cilium, contact(1e-3), "beam", tip="round"), "none of"),
+            (lambda: cv.bend(cilium, contact(float("nan"))), "finite"),
+            (lambda: cv.Load("contct", force=1), "no load type"),
+            (lambda: cv.Load("contact", force=1), "needs `height`"),
+            (lambda: cv.Load("contact", force=1, hight=1), "has no `hight`"),
+            (lambda: cv.Cilium(-3e-3, cilium.segments), "diameter"),
+            (lambda: cv.Cilium(3e-3, [cv.Segment(1e-3, 1e6, 0.5)]), "Poisson"),
+            (lambda: cv.Case("no such file.toml"), "does not exist"),
+            (lambda: cv.bend(cilium, contact(1e-3)).B([0, 0]), "shape"),
+            (lambda: cv.bend(cilium, contact(1e-3)).B(SENSOR, model="mesh"), "body"),
+            (lambda: cv.bend_batch([cilium], []), "one load for each"),
+        ]:
+            with self.subTest(text), self.assertRaisesRegex(cv.Error, text) as caught:
+                wrong()
+            self.assertIsInstance(caught.exception, (cv.InputError, cv.SolverError))
+
+    def test_an_unknown_name_is_an_attribute_error(self):
+        with self.assertRaises(AttributeError):
+            cv.bent  # noqa: B018
+
+
+class Batch(unittest.TestCase):
+    def test_is_each_design_by_itself(self):
+        generator = np.random.default_rng(1)
+        cilia = [paper_cilium(length) for length in generator.uniform(1e-3, 6e-3, 40)]
+        loads = [contact(force) for force in generator.uniform(0.1e-3, 20e-3, 40)]
+        batch = cv.bend_batch(cilia, loads, [SENSOR])
+        self.assertTrue(0 < batch["converged"].sum() < 40)
+        for i, (cilium, load) in enumerate(zip(cilia, loads)):
+            shape = cv.bend(cilium, load)
+            self.assertEqual(batch["converged"][i], shape.status == "converged")
+            if batch["converged"][i]:
+                np.testing.assert_array_equal(batch["tip"][i], shape.tip)
+                np.testing.assert_array_equal(batch["B"][i], shape.B(SENSOR))
+            else:
+                self.assertTrue(np.isnan(batch["tip"][i]).all())
+                self.assertEqual(batch["slip_off"][i], shape.slip_off)
+
+    def test_of_none_is_empty(self):
+        self.assertEqual(cv.bend_batch([], [])["tip"].shape, (0, 3))
+
+
+class Stubs(unittest.TestCase):
+    def test_name_what_the_module_has(self):
+        tree = ast.parse((SOURCE / "python/ciliaval/_core.pyi").read_text())
+        from ciliaval import _core
+
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef):
+                self.assertTrue(callable(getattr(_core, node.name)), node.name)
+            if isinstance(node, ast.ClassDef) and not node.bases:
+                members = {m.name for m in node.body if isinstance(m, ast.FunctionDef)}
+                members |= {m.target.id for m in node.body if isinstance(m, ast.AnnAssign)}
+                public = {m for m in dir(getattr(_core, node.name)) if not m.startswith("_")}
+                self.assertEqual(public, {m for m in members if not m.startswith("_")}, node.name)
+
+
+class Process(unittest.TestCase):
+    def test_what_only_reads_results_does_not_load_the_models(self):
+        program = "import sys, ciliaval.errors, ciliaval; assert 'ciliaval._core' not in sys.modules"
+        subprocess.run([sys.executable, "-c", program], check=True)
+
+    def test_progress_is_told_and_an_exception_in_it_ends_the_solution(self):
+        lines = []
+        cv.bend(paper_cilium(), contact(1e-3), "solid", lines.append, refinement=0)
+        self.assertTrue(any("iteration" in line for line in lines))
+
+        def stop(_):
+            raise ZeroDivisionError
+
+        with self.assertRaises(ZeroDivisionError):
+            cv.bend(paper_cilium(), contact(1e-3), "solid", stop, refinement=0)
+
+    def test_ctrl_c_ends_a_solution(self):
+        program = textwrap.dedent(
+            """
+            import ciliaval as cv
+            from test_core import contact, paper_cilium
+            loads = [contact(1e-5 * (i + 1)) for i in range(200)]
+            cv.bend(paper_cilium(), loads, "solid", lambda line: print(line, flush=True))
+            """
+        )
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join([*sys.path])}
+        with subprocess.Popen(
+            [sys.executable, "-c", program],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        ) as process:
+            process.stdout.readline()
+            process.send_signal(signal.SIGINT)
+            start = time.monotonic()
+            _, errors = process.communicate(timeout=60)
+        self.assertIn("KeyboardInterrupt", errors)
+        self.assertLess(time.monotonic() - start, 30)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reading result files, and the program's commands as functions."""
+
+import json
+import re
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import ciliaval as cv
+from ciliaval import program, results
+
+SOURCE = Path(__file__).resolve().parents[2]
+
+
+def quick(name):
+    """A shipped case by the quick models."""
+    text = (SOURCE / f"cases/paper/{name}.toml").read_text()
+    text = re.sub(r"mechanics = .*", 'mechanics = ["elastica", "beam"]', text)
+    return re.sub(r"fields = .*", 'fields = ["dipole", "volume"]', text)
+
+
+class Results(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.case = cls.folder / "case.toml"
+        cls.case.write_text(quick("fig3b"))
+        cls.result = program.run(cls.case, cls.folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def test_are_arrays_by_step(self):
+        result = cv.load(self.folder / "fig3b")
+        self.assertEqual(result.models, ["elastica", "beam"])
+        self.assertEqual(result.tip("beam").shape, (4, 3))
+        self.assertEqual(result.dB("beam/volume").shape, (4, 1, 3))
+        self.assertEqual(result.dB_uncertainty("beam/dipole").shape, (4, 1, 3))
+        np.testing.assert_array_equal(result.load("force"), [1e-3, 2e-3, 3e-3, 4e-3])
+        self.assertEqual(result.status("elastica"), ["converged"] * 4)
+        line = result.centreline("beam", 3)
+        tip = [line[axis][-1] for axis in "xyz"]
+        np.testing.assert_array_equal(tip, result.tip("beam")[3])
+
+    def test_are_those_of_a_run_in_this_process(self):
+        here = cv.Case(self.case).run()
+        np.testing.assert_array_equal(here.tip("beam"), self.result.tip("beam"))
+        np.testing.assert_array_equal(here.dB("elastica/volume"), self.result.dB("elastica/volume"))
+        self.assertEqual(here.comparisons, self.result.comparisons)
+
+    def test_have_verdicts_and_intervals(self):
+        (tip,) = self.result.compare(quantity="tip", statistic="value", step=3, model="elastica")
+        deflection = np.linalg.norm(self.result.tip("elastica")[3] - self.result.tip("beam")[3])
+        self.assertAlmostEqual(tip.difference, deflection, 15)
+        self.assertEqual(tip.verdict, "resolved")
+        low, high = tip.interval
+        self.assertTrue(0 < low < tip.difference < high)
+
+    def test_name_what_there_is(self):
+        for wrong, text in [
+            (lambda: self.result.tip("solid"), "elastica, beam"),
+            (lambda: self.result.B("beam/mesh"), "beam/volume"),
+        ]:
+            with self.assertRaisesRegex(KeyError, text):
+                wrong()
+        with self.assertRaisesRegex(TypeError, "colour"):
+            self.result.compare(colour=1)
+
+    def test_of_a_load_that_slips_off_are_nan(self):
+        text = re.sub(r'force = .*', 'force = ["1 mN", "9 mN"]', quick("fig3b"))
+        file = self.folder / "off.toml"
+        file.write_text(text.replace('name = "fig3b"', 'name = "off"'))
+        result = cv.Case(file).run()
+        self.assertEqual(result.status("elastica"), ["converged", "slipped_off"])
+        self.assertTrue(np.isnan(result.tip("elastica")[1]).all())
+        self.assertTrue(np.isnan(result.dB("elastica/volume")[1]).all())
+
+    def test_of_a_sweep_have_its_contact(self):
+        text = re.sub("samples = .*", "samples = 11", quick("fig6-surface"))
+        file = self.folder / "sweep.toml"
+        file.write_text(re.sub('travel = "52 mm".*', 'travel = "5 mm"', text))
+        result = program.run(file, self.folder)
+        self.assertEqual(result.contact("beam").shape, (11,))
+        table = results.read_table(self.folder / "fig6-surface" / "sweep.csv")
+        self.assertEqual(len(table["travel"]), 11)
+        self.assertEqual(table["beam.state"].dtype.kind, "U")
+
+    def test_that_are_damaged_are_named(self):
+        good = (self.folder / "fig3b" / "summary.json").read_text()
+        file = self.folder / "bad.json"
+        for text, fault in [
+            (good[: len(good) // 2], "is damaged"),
+            ("[]", "no result"),
+            (json.dumps({"schema": 1}), "no result"),
+            (json.dumps({"schema": 1, "comparisons": []}), "is damaged"),
+        ]:
+            file.write_text(text)
+            with self.assertRaisesRegex(cv.FileError, f"bad.json.*{fault}"):
+                results.read(file)
+        with self.assertRaisesRegex(cv.FileError, "No such file"):
+            cv.load(self.folder / "nowhere")
+
+
+class Commands(unittest.TestCase):
+    def test_give_the_program_s_documents(self):
+        with tempfile.TemporaryDirectory() as folder:
+            case = Path(folder) / "case.toml"
+            case.write_text(quick("fig3b"))
+            budget = cv.budget(case)
+            self.assertEqual(budget.kind, "budget")
+            self.assertTrue(budget["rows"])
+            self.assertEqual(cv.converge(case).kind, "converge")
+            readings = Path(folder) / "readings.csv"
+            readings.write_text(
+                "sample, Bx [uT], By [uT], Bz [uT]\n"
+                "unloaded, 67.6, -97.5, 2204.9\nfirst, 140.3, -50.7, 2208.6\n"
+            )
+            sensed = cv.sense(case, readings)
+            self.assertEqual(sensed.kind, "sense")
+            self.assertEqual(len(sensed["samples"]), 1)
+
+    def test_run_a_study(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "case.toml").write_text(quick("fig3b"))
+            study = Path(folder) / "mine.study.toml"
+            study.write_text(
+                '[study]\nname = "mine"\ncase = "case.toml"\npairs = ["elastica/volume"]\n'
+                'outputs = ["dB_norm"]\n[fixed]\nload.force = "1 mN"\n[[parameter]]\n'
+                'path = "cilium.segment.base.young_modulus"\nvalues = ["0.1 MPa", "0.2 MPa"]\n'
+            )
+            document = cv.study(study)
+            self.assertEqual(document.kind, "study")
+            self.assertEqual(len(document["points"]), 2)
+
+    def test_raise_the_program_s_errors(self):
+        with self.assertRaisesRegex(cv.InputError, "no file `no such case`"):
+            cv.budget("no such case")
+
+
+if __name__ == "__main__":
+    unittest.main()
