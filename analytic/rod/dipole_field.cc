@@ -54,6 +54,18 @@ std::vector<Dipole> dipoles(const Cilium& cilium, const RodMagnet& magnet,
 
 }  // namespace
 
+std::vector<Matrix3> DipoleField::gradient(const Cilium& cilium, const Deformation& deformation,
+                                           std::span<const Vector3> points) const {
+  const RodMagnet magnet = rod_magnet(cilium, deformation);
+  const std::vector<Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
+  return sources::gradient_at(points, [&](const Vector3& x) {
+    Matrix3 sum = Matrix3::Zero();
+    for (const Dipole& dipole : sources)
+      sum += sources::dipole_gradient(dipole.moment, x - dipole.position);
+    return sum;
+  });
+}
+
 Field DipoleField::field(const Cilium& cilium, const Deformation& deformation,
                          std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);

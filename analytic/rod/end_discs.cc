@@ -42,6 +42,28 @@ sources::FieldValue field_of_end_discs(std::span<const RodEnd> ends, const Vecto
   return sum;
 }
 
+Matrix3 gradient_of_end_discs(std::span<const RodEnd> ends, const Vector3& x) {
+  require_off_the_rims(ends, x);
+  Matrix3 sum = Matrix3::Zero();
+  for (const RodEnd& end : ends) {
+    const double R = end.section.radius;
+    const Vector3& n = end.section.normal;
+    const Vector3 offset = (x - end.section.centre) / R;
+    const double zeta = offset.dot(n);
+    const Vector3 radial = offset - zeta * n;
+    const double rho = radial.norm();
+    const Vector3 e = rho > 0 ? Vector3(radial / rho) : Vector3(Vector3::Zero());
+    const sources::DiscGradient H = sources::charged_disc_gradient(rho, zeta);
+    const Matrix3 mixed = H.mixed_over_rho * n * radial.transpose();
+    const Matrix3 axial = n * n.transpose();
+    sum += vacuum_permeability * end.magnetization_jump / R *
+           (H.radial_over_rho * (Matrix3::Identity() - axial) +
+            (H.radial - H.radial_over_rho) * e * e.transpose() + H.axial * axial + mixed +
+            mixed.transpose());
+  }
+  return sum;
+}
+
 void require_off_the_rims(std::span<const RodEnd> ends, const Vector3& x) {
   for (const RodEnd& end : ends) {
     const double rounding =

@@ -14,6 +14,9 @@ namespace ciliaval::analytic::rod {
 /// radii and 4|B|/distance beyond. Throws InputError on a rim, where B diverges.
 sources::FieldValue field_of_end_discs(std::span<const RodEnd> ends, const Vector3& x);
 
+/// Its derivative ∂B_i/∂x_j (T/m). Throws InputError on a rim.
+Matrix3 gradient_of_end_discs(std::span<const RodEnd> ends, const Vector3& x);
+
 /// Throws InputError if x is on the rim of one of the sections, where B diverges.
 void require_off_the_rims(std::span<const RodEnd> ends, const Vector3& x);
 

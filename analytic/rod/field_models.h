@@ -22,6 +22,9 @@ class DipoleField : public FieldModel {
   explicit DipoleField(DipoleOptions options = {}) : options_(options) {}
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override;
+  /// ∂B_i/∂x_j (T/m) at the points, exactly the derivative of `field`.
+  std::vector<Matrix3> gradient(const Cilium& cilium, const Deformation& deformation,
+                                std::span<const Vector3> points) const;
 
  private:
   DipoleOptions options_;
@@ -40,6 +43,10 @@ class LineField : public FieldModel {
   explicit LineField(LineOptions options = {}) : options_(options) {}
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override;
+  /// ∂B_i/∂x_j (T/m) at the points: of `closed_form` and `quadrature`. Throws InputError for
+  /// `uniform`.
+  std::vector<Matrix3> gradient(const Cilium& cilium, const Deformation& deformation,
+                                std::span<const Vector3> points) const;
 
  private:
   LineOptions options_;
@@ -62,6 +69,10 @@ class VolumeField : public FieldModel {
   explicit VolumeField(VolumeOptions options = {}) : options_(options) {}
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override;
+  /// ∂B_i/∂x_j (T/m) at points outside of the magnet: of the wedge by `closed_form`. Throws
+  /// InputError for all else.
+  std::vector<Matrix3> gradient(const Cilium& cilium, const Deformation& deformation,
+                                std::span<const Vector3> points) const;
 
  private:
   VolumeOptions options_;

@@ -26,9 +26,11 @@ sources::FieldValue field_of_poles(const RodMagnet& magnet, double area, const V
   return sum;
 }
 
-/// ∫ dB over the dipoles M πR² dr (F) or M πR² d₃ dS (R) of the centreline.
-sources::FieldValue field_of_dipoles(const RodMagnet& magnet, double area,
-                                     const LineOptions& options, const Vector3& x) {
+/// ∫ kernel(m, x − r) over the dipoles m = M πR² dr (F) or M πR² d₃ dS (R) of the centreline.
+template <class Kernel>
+sources::FieldValue sum_over_dipoles(const RodMagnet& magnet, double area,
+                                     const LineOptions& options, const Vector3& x,
+                                     const Kernel& kernel) {
   const auto parts = graded_stretches(
       magnet, [&](const CentrelinePoint& point) { return (x - point.position).norm(); },
       1e-9 * magnet.centreline.length());
@@ -45,7 +47,7 @@ sources::FieldValue field_of_dipoles(const RodMagnet& magnet, double area,
       const Vector3 axis =
           options.push_forward == sources::PushForward::F ? point.derivative : point.normal();
       const double strength = part.magnetization * area * rule.weights[i] * length;
-      B += sources::dipole_field(strength * axis, x - point.position);
+      B += kernel(Vector3(strength * axis), Vector3(x - point.position));
     }
     return B;
   };
@@ -65,7 +67,31 @@ Field LineField::field(const Cilium& cilium, const Deformation& deformation,
     return sources::field_at(
         points, 4096, [&](const Vector3& x) { return field_of_poles(magnet, cilium.area(), x); });
   return sources::field_at(points, 4, [&](const Vector3& x) {
-    return field_of_dipoles(magnet, cilium.area(), options_, x);
+    return sum_over_dipoles(magnet, cilium.area(), options_, x, sources::dipole_field);
+  });
+}
+
+std::vector<Matrix3> LineField::gradient(const Cilium& cilium, const Deformation& deformation,
+                                         std::span<const Vector3> points) const {
+  if (options_.method == Method::uniform)
+    throw InputError(
+        "the gradient of the model `line` was asked by the method `uniform`: take `closed_form` "
+        "or `quadrature`");
+  const RodMagnet magnet = rod_magnet(cilium, deformation);
+  const double area = cilium.area();
+  const bool closed_form =
+      options_.method == Method::closed_form && options_.push_forward == sources::PushForward::F;
+  return sources::gradient_at(points, [&](const Vector3& x) {
+    Matrix3 sum = Matrix3::Zero();
+    if (closed_form)
+      for (const RodEnd& end : magnet.ends)
+        sum += sources::pole_gradient(area * end.magnetization_jump, x - end.section.centre);
+    else
+      for (int k = 0; k < 3; ++k)
+        sum.col(k) = sum_over_dipoles(magnet, area, options_, x, [k](const auto& m, const auto& a) {
+                       return Vector3(sources::dipole_gradient(m, a).col(k));
+                     }).B;
+    return sum;
   });
 }
 

@@ -10,6 +10,7 @@
 #include "analytic/rod/uniform_sums.h"
 #include "analytic/sources/adaptive_order.h"
 #include "analytic/sources/field_points.h"
+#include "problem/error.h"
 
 namespace ciliaval::analytic::rod {
 namespace {
@@ -56,4 +57,22 @@ Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
   });
 }
 
+std::vector<Matrix3> VolumeField::gradient(const Cilium& cilium, const Deformation& deformation,
+                                           std::span<const Vector3> points) const {
+  if (options_.slices != VolumeOptions::Slices::wedge || options_.method != Method::closed_form)
+    throw InputError(
+        "the gradient of the model `volume` has a closed form for the slices `wedge` by the method "
+        "`closed_form` only");
+  const RodMagnet magnet = rod_magnet(cilium, deformation);
+  require_body(magnet);
+  const RodInterior interior(magnet);
+  return sources::gradient_at(points, [&](const Vector3& x) {
+    if (interior.magnetization_at(x))
+      throw InputError("the gradient of the model `volume` was asked at " + sources::to_string(x) +
+                       ", inside the magnet: move the point outside");
+    return gradient_of_end_discs(magnet.ends, x);
+  });
+}
+
 }  // namespace ciliaval::analytic::rod
+

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "analytic/sources/current_loop.h"
 #include "analytic/sources/elliptic.h"
 
 namespace ciliaval::analytic::sources {
@@ -116,6 +117,12 @@ DiscField near_disc_field(double rho, double zeta) {
 DiscField charged_disc_field(double rho, double zeta) {
   const double a2 = rho * rho + zeta * zeta;
   return a2 > 9 ? far_disc_field(zeta, a2) : near_disc_field(rho, zeta);
+}
+
+DiscGradient charged_disc_gradient(double rho, double zeta) {
+  const double P = charged_disc_field(rho, zeta).radial_over_rho;
+  const LoopField loop = current_loop_field(rho, zeta);
+  return {P, loop.axial - P, -loop.axial, -loop.radial_over_rho};
 }
 
 }  // namespace ciliaval::analytic::sources

@@ -22,4 +22,16 @@ struct DiscField {
 /// the limits from its two sides. Not finite on the rim.
 DiscField charged_disc_field(double rho, double zeta);
 
+/// Derivatives of the same H, in which nothing is singular on the axis.
+struct DiscGradient {
+  double radial_over_rho;  ///< H_ρ/ρ, the derivative across the meridional plane
+  double radial;           ///< ∂H_ρ/∂ρ
+  double axial;            ///< ∂H_ζ/∂ζ
+  double mixed_over_rho;   ///< (∂H_ρ/∂ζ)/ρ = (∂H_ζ/∂ρ)/ρ
+};
+
+/// A disc that moves along its axis leaves a layer of dipoles, the field of a current loop:
+/// ∂H/∂ζ = −H(loop of unit current); ∇·H = 0 gives ∂H_ρ/∂ρ = −H_ρ/ρ − ∂H_ζ/∂ζ. Not on the disc.
+DiscGradient charged_disc_gradient(double rho, double zeta);
+
 }  // namespace ciliaval::analytic::sources

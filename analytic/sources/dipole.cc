@@ -19,4 +19,19 @@ Vector3 pole_field(double strength, const Vector3& offset) {
   return vacuum_permeability / (4 * std::numbers::pi) * strength / (a2 * std::sqrt(a2)) * offset;
 }
 
+Matrix3 dipole_gradient(const Vector3& moment, const Vector3& offset) {
+  const double a2 = offset.squaredNorm();
+  const double scale = 3 * vacuum_permeability / (4 * std::numbers::pi) / (a2 * a2 * std::sqrt(a2));
+  const Matrix3 outer = moment * offset.transpose();
+  const double product = moment.dot(offset);
+  return scale * (outer + outer.transpose() +
+                  product * (Matrix3::Identity() - 5 / a2 * offset * offset.transpose()));
+}
+
+Matrix3 pole_gradient(double strength, const Vector3& offset) {
+  const double a2 = offset.squaredNorm();
+  return vacuum_permeability / (4 * std::numbers::pi) * strength / (a2 * std::sqrt(a2)) *
+         (Matrix3::Identity() - 3 / a2 * offset * offset.transpose());
+}
+
 }  // namespace ciliaval::analytic::sources

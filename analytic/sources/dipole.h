@@ -13,4 +13,11 @@ Vector3 dipole_field(const Vector3& moment, const Vector3& offset);
 ///   B = μ₀ q a/(4π a³).  Not finite at a = 0.
 Vector3 pole_field(double strength, const Vector3& offset);
 
+/// ∂B_i/∂x_j (T/m) of the dipole:
+///   μ₀/4π · 3/a⁵ [m aᵀ + a mᵀ + (m·a)(I − 5 a aᵀ/a²)].
+Matrix3 dipole_gradient(const Vector3& moment, const Vector3& offset);
+
+/// ∂B_i/∂x_j (T/m) of the pole: μ₀ q/(4π a³) (I − 3 a aᵀ/a²).
+Matrix3 pole_gradient(double strength, const Vector3& offset);
+
 }  // namespace ciliaval::analytic::sources

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "problem/field_model.h"
 
@@ -52,6 +53,18 @@ Field field_at(std::span<const Vector3> points, std::size_t grain, const PointFi
       result.uncertainty[i] = value.uncertainty;
     }
   });
+  return result;
+}
+
+/// `gradient(x)`, a Matrix3 ∂B_i/∂x_j (T/m), at each of the points; errors as of `field_at`.
+template <class PointGradient>
+std::vector<Matrix3> gradient_at(std::span<const Vector3> points, const PointGradient& gradient) {
+  std::vector<Matrix3> result;
+  for (const Vector3& x : points) {
+    require_finite(x);
+    result.push_back(gradient(x));
+    require_finite({result.back().rowwise().sum(), Vector3::Zero()}, x);
+  }
   return result;
 }
 
