@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "analytic/rod/rod_magnet.h"
+#include "problem/solid_body.h"
+#include "problem/surroundings/magnets/magnet.h"
+
+namespace ciliaval::analytic::forces {
+
+/// A magnetic charge, A·m.
+struct PointCharge {
+  Vector3 position;  ///< m
+  double strength;
+};
+
+/// Nodes of a quadrature of a magnet's surface charge M·n dA, of the given order: Gauss–Legendre
+/// on flat faces, along radii and along a ball's axis, twice as many nodes of the trapezoidal rule
+/// around an axis.
+using Charges = std::function<std::vector<PointCharge>(std::size_t order)>;
+
+/// Of a given magnet.
+Charges charges_of(const surroundings::magnets::Magnet& magnet);
+/// Of the sections where a rod's magnetisation jumps: all that the wedge of the model `volume` has.
+Charges charges_of(const rod::RodMagnet& magnet);
+/// The poles of the model `line` at the centres of these sections.
+Charges poles_of(const rod::RodMagnet& magnet, double area);
+/// Of a solid's charged faces, where the deformation has taken them (Piola). It refers to the body.
+Charges charges_of(const SolidBody& body);
+
+}  // namespace ciliaval::analytic::forces
