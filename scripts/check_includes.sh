@@ -25,10 +25,11 @@ compare/budget: $shared analytic/rod/field_models.h analytic/body/mesh_field.h f
 compare/sensing: $shared
 compare/signal: problem
 compare/study: $shared compare/budget analytic/elastica/elastica.h
+compare/validation: $shared compare/study
 compare/claims: $shared compare/sensing compare/signal compare/study analytic/rod/field_models.h
 compare/report: $shared compare/budget compare/convergence
 compare/app: .
-python/core: problem compare/input compare/models compare/output compare/study
+python/core: problem compare/input compare/models compare/output compare/study compare/validation
 tests: ."
 git ls-files '*.h' '*.cc' | xargs awk '
   function complain(text) { print FILENAME ":" FNR ": " text; failed = 1 }

@@ -12,6 +12,7 @@
 #include "compare/app/terminal.h"
 #include "compare/models/named_files.h"
 #include "compare/models/registry.h"
+#include "compare/validation/input_number.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app {
@@ -28,6 +29,7 @@ std::vector<input::Case> read_cases(const std::vector<fs::path>& files) {
       if (is_bench_file(file))
         throw InputError(file.string() + ": is a test bench, not a case: `ciliaval sense` runs it");
       cases.push_back(input::read_case(file, models::known()));
+      validation::read_inputs(cases.back());  // throws if a number is not the case's
       for (const std::string& id : cases.back().mechanics)
         if (const auto& entry = models::entry_of(models::mechanics_models(), id); entry.remarks)
           for (const std::string& remark : entry.remarks(cases.back()))

@@ -68,10 +68,12 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   const bool cilium = is_right([&] { read_cilium(root, c); });
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   const bool load = is_right([&] { read_load(root, folder, c); });
-  read_sensor(root, c);
+  const bool sensors = is_right([&] { read_sensor(root, c); });
   read_readings(root, file, c.readings);
   c.signal = sweep::read_signal(root);
   const bool models = is_right([&] { read_models(root, known, c); });
+  const std::vector<measurement::MeasuredFile> measured =
+      measurement::read_measurements(root, file, cilium && load && sensors, c);
   change_files(known, c.options, [&](Option::File kind, std::filesystem::path& name) {
     if (kind != Option::File::program || name.has_parent_path()) put_beside(file, name);
   });
@@ -89,6 +91,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
   external::read_external_files(c.external, c.cilium, c.load_path, sensor_names(c));
+  measurement::read_measured_files(measured, c.load_path.size(), c.measured);
   return c;
 }
 

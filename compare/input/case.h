@@ -11,6 +11,7 @@
 
 #include "compare/input/external/external.h"
 #include "compare/input/external/reading_options.h"
+#include "compare/input/measurement/measurement.h"
 #include "compare/input/model_entry.h"
 #include "compare/input/sweep/signal.h"
 #include "compare/input/sweep/surface.h"
@@ -40,6 +41,7 @@ struct Case {
   std::vector<external::ExternalModel> external;  ///< what other programs and test benches gave
   external::ReadingOptions readings;              ///< how `ciliaval sense` reads a file
   ModelOptions options;
+  measurement::Statement measured;  ///< what the models are held against
 };
 
 /// Reads and checks a case file, which may name these models. Throws InputError with every fault

@@ -160,7 +160,8 @@ std::string to_toml(const Case& c, const Models& known) {
   }
   if (c.surface.surface) text += sweep::to_toml(c.surface);
   if (c.signal) text += sweep::to_toml(*c.signal);
-  return text + sensor(c) + readings(c.readings) + models(c, known);
+  return text + sensor(c) + readings(c.readings) + models(c, known) +
+         measurement::to_toml(c.measured);
 }
 
 }  // namespace ciliaval::compare::input

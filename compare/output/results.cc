@@ -217,7 +217,7 @@ std::vector<double> output_points(const Centreline& centreline) {
 
 std::string summary_json(const models::CaseResult& result,
                          const std::vector<models::Comparison>& comparisons,
-                         const Provenance& provenance) {
+                         const Provenance& provenance, std::string_view validation) {
   Json json{{"schema", 1}, {"case", result.problem.name}, {"title", result.problem.title}};
   json["provenance"] = to_json(provenance);
   json["sensors"] = Json::array();
@@ -234,6 +234,7 @@ std::string summary_json(const models::CaseResult& result,
       json["energy_balance"][run.model] = balance_json(energy_balance(run));
   json["comparisons"] = Json::array();
   for (const models::Comparison& c : comparisons) json["comparisons"].push_back(comparison_json(c));
+  if (!validation.empty()) json["validation"] = Json::parse(validation);
   unsign_zeros(json);
   return to_text(json);
 }
@@ -300,7 +301,7 @@ std::string centreline_csv(const Centreline& centreline) {
 
 void write_results(const models::CaseResult& result,
                    const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
-                   const std::filesystem::path& folder) {
+                   const std::filesystem::path& folder, std::string_view validation) {
   for (const models::MechanicsRun& run : result.mechanics)
     for (std::size_t i = 0; i < run.result.steps.size(); ++i)
       if (run.result.steps[i].deformation)
@@ -310,7 +311,7 @@ void write_results(const models::CaseResult& result,
   if (result.problem.signal) write_file(folder / "signal.csv", signal_csv(result));
   if (!result.fields.empty()) write_file(folder / "fields.csv", fields_csv(result));
   write_file(folder / "errors.csv", errors_csv(comparisons, input::sensor_names(result.problem)));
-  write_file(folder / "summary.json", summary_json(result, comparisons, provenance));
+  write_file(folder / "summary.json", summary_json(result, comparisons, provenance, validation));
 }
 
 }  // namespace ciliaval::compare::output

@@ -27,10 +27,11 @@ std::string step_file(std::string_view series, std::size_t step, std::string_vie
 std::vector<double> output_points(const Centreline& centreline);
 
 /// summary.json as text: the contract of docs/guide/results.md, SI units, every double with the
-/// digits that give it back, what is undefined or not finite as null.
+/// digits that give it back, what is undefined or not finite as null. `validation` is the JSON of
+/// compare/validation/report.h, or empty: then there is no such key.
 std::string summary_json(const models::CaseResult& result,
                          const std::vector<models::Comparison>& comparisons,
-                         const Provenance& provenance);
+                         const Provenance& provenance, std::string_view validation = {});
 
 /// errors.csv as text: a header and one line for each comparison; what is undefined is empty. The
 /// sensors have their names, or numbers where there are none.
@@ -50,6 +51,6 @@ std::string centreline_csv(const Centreline& centreline);
 /// converged steps and of a sweep sweep.csv and signal.csv into a folder.
 void write_results(const models::CaseResult& result,
                    const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
-                   const std::filesystem::path& folder);
+                   const std::filesystem::path& folder, std::string_view validation = {});
 
 }  // namespace ciliaval::compare::output

@@ -45,11 +45,81 @@ class Comparison:
         return self.difference - self.uncertainty, self.difference + self.uncertainty
 
 
+@dataclass(frozen=True)
+class ValidationPoint:
+    """A measured value beside a model's; None is not known. SI.
+
+    error = simulated - measured; u_val² = u_num² + u_input² + u_D² (ASME V&V 20).
+    verdict: "bounded": |error| > 2 u_val, the model's error is below `bound` = |error| + 2 u_val;
+    "not resolved": it hides in the uncertainties; "not known".
+    contributions: what one standard uncertainty of each input makes of `simulated`.
+    """
+
+    step: int
+    measured: float
+    u_D: float
+    simulated: float | None
+    error: float | None
+    u_num: float | None
+    u_input: float | None
+    u_val: float | None
+    bound: float | None
+    verdict: str
+    fitted: bool
+    source: str
+    contributions: tuple[float | None, ...] = ()
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class ValidationSeries:
+    """One model (or pair) and the values of one measurand.
+
+    quantity: as the case states it, "tip.deflection"; point: (X, Y) in the end section, m.
+    sensitivities_by: whose derivatives u_input is from. chi_squared: of the `assessed` points, with
+    the inputs' errors the same at all of them; rms_error: √mean error².
+    """
+
+    model: str
+    quantity: str
+    point: tuple[float, float]
+    unit: str
+    sensitivities_by: str | None
+    assessed: int
+    bounded: int
+    not_resolved: int
+    fitted: int
+    chi_squared: float | None
+    rms_error: float | None
+    points: tuple[ValidationPoint, ...]
+
+
+@dataclass(frozen=True)
+class Validation:
+    """The models against measurements: docs/guide/validation.md.
+
+    inputs: number, uncertainty, relative, unit, source of each. domain: from, to, unit, meaning by
+    name; beyond it nothing is said. remarks: for people.
+    """
+
+    series: tuple[ValidationSeries, ...]
+    inputs: tuple[dict[str, Any], ...]
+    domain: dict[str, dict[str, Any]]
+    remarks: tuple[str, ...]
+
+    def of(self, **what: Any) -> list[ValidationSeries]:
+        """Those with these attributes: of(model="beam", quantity="tip.deflection")."""
+        unknown = set(what) - set(ValidationSeries.__dataclass_fields__)
+        if unknown:
+            raise TypeError(f"a series has no {', '.join(sorted(unknown))}")
+        return [s for s in self.series if all(getattr(s, k) == v for k, v in what.items())]
+
+
 class Result:
     """What a case gave: load("results/fig3b"), or Case(...).run().
 
     Arrays have one row for each load step; NaN stands where a model has no equilibrium or does not
-    know. `summary` is the whole of summary.json.
+    know. `summary` is the whole of summary.json. `validation` is None without [[measurement]].
     """
 
     def __init__(self, summary: dict[str, Any], folder: Path | None = None):
@@ -68,6 +138,7 @@ class Result:
         self.models: list[str] = list(dict.fromkeys(m for s in self.steps for m in s["mechanics"]))
         self.pairs: list[str] = list(dict.fromkeys(f for s in self.steps for f in s["fields"]))
         self.provenance: dict[str, Any] = summary["provenance"]
+        self.validation: Validation | None = _validation(summary.get("validation"))
 
     def load(self, parameter: str) -> np.ndarray:
         """A parameter of the load at each step, (steps,): load("force"), N."""
@@ -255,6 +326,22 @@ def read_table(file: str | Path) -> dict[str, np.ndarray]:
         except ValueError:
             columns[name] = np.array(texts)
     return columns
+
+
+def _validation(data: dict[str, Any] | None) -> Validation | None:
+    if data is None:
+        return None
+    series = []
+    for entry in data["series"]:
+        points = tuple(_of_fields(ValidationPoint, p) for p in entry["points"])
+        series.append(_of_fields(ValidationSeries, {**entry, "points": points}))
+    return Validation(tuple(series), tuple(data["inputs"]), data["domain"], tuple(data["remarks"]))
+
+
+def _of_fields(kind: Any, data: dict[str, Any]) -> Any:
+    """A dataclass from what the file knows of its fields; lists become tuples."""
+    known = {key: data[key] for key in kind.__dataclass_fields__ if key in data}
+    return kind(**{key: tuple(v) if isinstance(v, list) else v for key, v in known.items()})
 
 
 def _numbers(values: list[Any], size: int | None = None) -> np.ndarray:

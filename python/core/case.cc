@@ -10,6 +10,8 @@
 #include "compare/models/run.h"
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
+#include "compare/validation/report.h"
+#include "compare/validation/validation.h"
 #include "python/core/convert.h"
 
 namespace ciliaval::python::core {
@@ -23,8 +25,11 @@ std::string summary(const input::Case& problem, const py::object& callback) {
   const py::gil_scoped_release released;
   const models::CaseResult result =
       models::run(problem, models::mechanics_models(), models::field_models(), shown);
+  const auto measured =
+      validation::validate(result, models::mechanics_models(), models::field_models(), shown);
   return output::summary_json(result, models::compare_models(result),
-                              output::provenance("ciliaval.Case.run()"));
+                              output::provenance("ciliaval.Case.run()"),
+                              measured ? validation::json(*measured) : "");
 }
 
 }  // namespace
@@ -32,7 +37,9 @@ std::string summary(const input::Case& problem, const py::object& callback) {
 void bind_case(py::module_& module) {
   py::class_<input::Case>(module, "CaseFile")
       .def(py::init([](const std::string& file) {
-             return input::read_case(std::filesystem::path(file), models::known());
+             input::Case problem = input::read_case(std::filesystem::path(file), models::known());
+             validation::read_inputs(problem);  // throws if a number is not the case's
+             return problem;
            }),
            py::arg("file"))
       .def_readonly("name", &input::Case::name)

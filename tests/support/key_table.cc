@@ -40,7 +40,11 @@ std::string value_of(const Key& key) {
     case Key::Kind::whole_number:
       return "whole number";
     case Key::Kind::pair:
-      return "two plain numbers";
+      return key.quantity.unit.empty() ? "two plain numbers"
+                                       : fmt::format("two of {} {}, `\"{}\"`", key.quantity.article,
+                                                     key.quantity.name, key.quantity.example);
+    case Key::Kind::any:
+      return fmt::format("quantity, `\"{}\"`", key.example);
     case Key::Kind::quantity:
     case Key::Kind::quantities:
     case Key::Kind::point:

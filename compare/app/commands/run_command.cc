@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@
 #include "compare/output/store/store.h"
 #include "compare/output/table.h"
 #include "compare/output/vtk/output.h"
+#include "compare/validation/report.h"
+#include "compare/validation/validation.h"
 #include "fem/parallel.h"
 
 namespace ciliaval::compare::app::commands {
@@ -115,14 +118,18 @@ ExitCode run_one(Prepared& prepared, output::Footnotes footnotes, const std::str
       problem, models::mechanics_models(), models::field_models(), progress, prepared.checkpoints);
   const std::vector<models::Comparison> comparisons = models::compare_models(result);
   const auto grid = output::field_grid(result, models::field_models(), progress);
+  const std::optional<validation::Validation> measured =
+      validation::validate(result, models::mechanics_models(), models::field_models(), progress);
   const output::Provenance origin = output::provenance(words);
   output::write_file(folder.path() / "case.toml", input::to_toml(problem, models::known()));
-  output::write_results(result, comparisons, origin, folder.path());
+  output::write_results(result, comparisons, origin, folder.path(),
+                        measured ? validation::json(*measured) : "");
   tbb::parallel_invoke([&] { output::vtk::write_vtk(result, grid, origin, folder.path() / "vtk"); },
                        [&] { write_case_report(folder.path()); });
   folder.commit();
   line.clear();
   print(output::table(result, comparisons, footnotes));
+  if (measured) print('\n' + validation::text(*measured, footnotes));
   if (prepared.store) end_store(*prepared.store, result);
   return models::all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }

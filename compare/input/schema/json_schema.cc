@@ -10,6 +10,7 @@
 
 #include "compare/input/case_keys.h"
 #include "compare/input/environment/environment.h"
+#include "compare/input/measurement/measurement.h"
 #include "compare/input/schema/keys.h"
 
 namespace ciliaval::compare::input::schema {
@@ -73,10 +74,12 @@ Json value_of(const Key& key) {
       const Json point = point_of(number_or_quantity(key));
       return {{"anyOf", {point, list_of(point)}}};
     }
+    case Key::Kind::any:
+      return {{"type", {"string", "number"}}};
     case Key::Kind::pair:
       break;
   }
-  Json pair = list_of(with_range({{"type", "number"}}, key.range));
+  Json pair = list_of(number_or_quantity(key));
   pair["minItems"] = 2;
   pair["maxItems"] = 2;
   return pair;
@@ -153,7 +156,9 @@ std::string json_schema(const Models& models) {
     if (std::ranges::find(tables, name, [](const auto& t) { return t.first; }) == tables.end())
       tables.push_back({name, {}});
   });
-  std::set<std::string> repeated{"cilium.segment", std::string(key::external_table)};
+  std::set<std::string> repeated{"cilium.segment", std::string(key::external_table),
+                                 std::string(measurement::measurement_table),
+                                 std::string(measurement::input_table)};
   models.for_each([&](const auto& entry) {
     for (const QuantityKey* k : entry.tables.keys) repeated.emplace(k->table);
   });

@@ -10,6 +10,7 @@
 
 #include "compare/input/case_keys.h"
 #include "compare/input/environment/environment.h"
+#include "compare/input/measurement/measurement.h"
 #include "compare/input/sweep/signal.h"
 #include "compare/input/sweep/surface.h"
 #include "problem/load.h"
@@ -214,6 +215,51 @@ void add_models(const Models& models, std::vector<Key>& keys) {
     keys.push_back(number(k));
 }
 
+void add_measurements(std::vector<Key>& keys) {
+  const auto measured = [&](Kind kind, std::string_view name, std::string_view fallback,
+                            std::string doc, std::string_view example = "") -> Key& {
+    keys.push_back(of_kind(
+        kind, text(measurement::measurement_table, name, fallback, std::move(doc), example)));
+    return keys.back();
+  };
+  measured(Kind::text, "quantity", "",
+           "What was measured (docs/guide/validation.md): `tip.x`, `tip.y`, `tip.z`, "
+           "`tip.deflection`, `tip.theta`, or at a sensor `B.NAME.x`, `dB.NAME.x` …",
+           R"("tip.deflection")");
+  Key& point = measured(Kind::pair, "point", "the centre",
+                        "`tip.…`: the point `[X, Y]` of the end section that was measured, from "
+                        "its centre.");
+  point.quantity = quantity::length;
+  measured(Kind::whole_number, "step", "that of the only step",
+           "Load step of `value`, counted from 0.");
+  measured(Kind::any, "value", "`file`", "The measured value.", "3.2 mm");
+  measured(Kind::file, "file", "`value`",
+           "CSV file with the values, beside the case file unless absolute: a row for each load "
+           "step, or a column `step`.");
+  measured(Kind::text, "column", "`\"value\"`", "`file`: name of the column with the values.");
+  measured(Kind::any, "scale", "a unit in the header",
+           "`file`: what a 1 is in a column without a unit.", "17.2 mm");
+  measured(Kind::any, "uncertainty", "a column of the `file`",
+           "Standard uncertainty u_D of each value: reading, datum, repeats; or a part of it, "
+           "`\"2 %\"`.",
+           "0.1 mm");
+  measured(Kind::text, "source", "", "Where the values are from.");
+  measured(Kind::flag, "fitted", "`false`",
+           "Whether parameters of the case were fitted to these values.");
+  const auto input = [&](Kind kind, std::string_view name, std::string_view fallback,
+                         std::string doc, std::string_view example = "") {
+    keys.push_back(
+        of_kind(kind, text(measurement::input_table, name, fallback, std::move(doc), example)));
+  };
+  input(Kind::text, "number", "",
+        "A number of the case, named as in a study (docs/guide/studies.md); of load and "
+        "environment at every step.",
+        R"("cilium.segment.base.young_modulus")");
+  input(Kind::any, "uncertainty", "",
+        "Its standard uncertainty, in its unit or as a part of it, `\"2 %\"`.", "0.05 MPa");
+  input(Kind::text, "source", "none", "Where it is from.");
+}
+
 }  // namespace
 
 std::vector<Key> all_keys(const Models& models) {
@@ -236,6 +282,7 @@ std::vector<Key> all_keys(const Models& models) {
   add_signal(keys);
   add_sensor_and_readings(keys);
   add_models(models, keys);
+  add_measurements(keys);
   return keys;
 }
 

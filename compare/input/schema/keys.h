@@ -25,7 +25,8 @@ struct Key {
     quantities,  ///< or a list of them
     point,       ///< three of them
     points,      ///< or a list of such
-    pair         ///< two plain numbers
+    pair,        ///< two of them
+    any          ///< a quantity of what another key says, or a percentage
   };
   std::string table;  ///< "cilium.segment"
   std::string name;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Figures, as matplotlib's: plot.signal(cv.load("results/fig3b")).savefig("a.pdf").
 
-Of a case (cv.load, Case.run): setup, shapes, signal, sweep, pairs. Of other result files
+Of a case (cv.load, Case.run): setup, shapes, signal, sweep, pairs, validation. Of other result files
 (cv.program.read): curves, tornado, optimum_slices of a study; budget; convergence; bench, readings,
 levels of `sense`. `python3 -m ciliaval.plot FILE.json OUT.pdf` draws the main figure of a file.
 
@@ -14,6 +14,7 @@ from .evidence import bench, budget, convergence, levels, readings
 from .sketch import setup
 from .study import curves, optimum_slices, tornado
 from .style import look
+from .validation import validation
 
 __all__ = [
     "bench",
@@ -30,4 +31,5 @@ __all__ = [
     "signal",
     "sweep",
     "tornado",
+    "validation",
 ]

@@ -23,7 +23,7 @@ def shapes(result: Result, step: int | None = None) -> Figure:
     """The centrelines of all models in the plane of bending: at a step, or at some of all steps."""
     count = len(result.steps)
     drawn = [range(count)[step]] if step is not None else _evenly(count)
-    load, _ = _abscissa(result)
+    load, _ = abscissa(result)
     with style():
         figure, axes = new_figure(4.5, 5)
         for model in result.models:
@@ -67,7 +67,7 @@ def signal(result: Result, sensor: int = 0, quantity_name: str = "dB") -> Figure
         raise ValueError(f'a signal is "dB" or "B", not "{quantity_name}"')
     change = quantity_name == "dB"
     symbol, unit, size = ("ΔB", "µT", 1e-6) if change else ("B", "mT", 1e-3)
-    load, label = _abscissa(result)
+    load, label = abscissa(result)
     rising = (np.diff(load) > 0).all() and load[0] > 0
     from_nothing = change and rising and _begins_straight(result)
     with style():
@@ -171,7 +171,7 @@ def pairs(result: Result, quantity_name: str = "centreline", step: int = -1) -> 
         return figure
 
 
-def _abscissa(result: Result) -> tuple[np.ndarray, str]:
+def abscissa(result: Result) -> tuple[np.ndarray, str]:
     """What changes along the path, in the unit of its label, and the label: the load's parameter, or
     the uniform field under one load."""
     from .._core import load_types
@@ -217,7 +217,7 @@ def _begins_straight(result: Result) -> bool:
     if result.loads[0]["type"] != "environment":
         return False
     return not _is_path_of_fields(result) or (
-        not has_weight and _abscissa(result)[1].startswith("uniform field")
+        not has_weight and abscissa(result)[1].startswith("uniform field")
     )
 
 

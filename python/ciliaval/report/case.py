@@ -13,6 +13,7 @@ from ..units import in_words, number, quantity
 from . import view3d
 from .blocks import Block, Code, Details, Heading, Image, Images, Items, Opening, Table, image
 from .sentences import findings, remarks
+from .validation import validation_blocks
 
 _MOST_ROWS = 120  # of a table: of a sweep's hundreds of samples some
 
@@ -24,6 +25,7 @@ def case_blocks(result: Result) -> list[Block]:
     if said:
         blocks += [Heading("Remarks of the models"), Items(said)]
     blocks += [Images(_figures(result))]
+    blocks += validation_blocks(result)
     view = view3d.view(result)
     if view:
         blocks.append(view)

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/measurement/measurement.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "compare/input/case_sections.h"
+#include "problem/support/words.h"
+
+namespace ciliaval::compare::input::measurement {
+namespace {
+
+constexpr std::size_t most_tables = most_values;  ///< a file's values are written back as tables
+constexpr std::size_t longest_text = 300;
+constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+
+Range range_of(const Measurand& measurand) {
+  if (measurand.quantity().unit == quantity::angle.unit)
+    return {-2 * std::numbers::pi, 2 * std::numbers::pi, false, "an angle is from +z"};
+  return {-100, 100, false, unit_slip};
+}
+
+QuantityKey point_key() {
+  return {measurement_table, "point", quantity::length, {-100, 100, false, unit_slip}, "", ""};
+}
+
+/// "B.left.x" taken apart: what, which sensor, which component; empty parts where there is none.
+struct Parts {
+  std::string_view what;
+  std::string_view sensor;
+  std::string_view component;
+};
+Parts parts_of(std::string_view name) {
+  const auto first = name.find('.');
+  const auto last = name.rfind('.');
+  if (first == std::string_view::npos) return {name, {}, {}};
+  return {name.substr(0, first),
+          first == last ? std::string_view{} : name.substr(first + 1, last - first - 1),
+          name.substr(last + 1)};
+}
+
+std::optional<std::size_t> axis_of(std::string_view component) {
+  const auto found = std::ranges::find(axes, component);
+  if (found == axes.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - axes.begin());
+}
+
+/// The names that a case may measure, of very many sensors those of the first.
+std::vector<std::string> valid_names(const Case& c) {
+  constexpr std::size_t most_sensors = 4;
+  std::vector<std::string> names{"tip.x", "tip.y", "tip.z", "tip.deflection", "tip.theta"};
+  for (std::size_t s = 0; s < std::min(c.sensors.size(), most_sensors); ++s)
+    for (const char* what : {"B", "dB"})
+      for (const std::string_view axis : axes)
+        names.push_back(fmt::format("{}.{}.{}", what, sensor_name(c, s), axis));
+  return names;
+}
+
+std::optional<Measurand> measurand_of(std::string_view name, const Case& c) {
+  using Kind = Measurand::Kind;
+  const Parts parts = parts_of(name);
+  Measurand result;
+  result.name = name;
+  const auto axis = axis_of(parts.component);
+  result.axis = axis.value_or(0);
+  if (parts.what == "tip" && parts.sensor.empty()) {
+    result.kind = axis                              ? Kind::position
+                  : parts.component == "deflection" ? Kind::deflection
+                                                    : Kind::angle;
+    if (axis || parts.component == "deflection" || parts.component == "theta") return result;
+  }
+  if (!axis || (parts.what != "B" && parts.what != "dB")) return std::nullopt;
+  result.kind = parts.what == "B" ? Kind::B : Kind::dB;
+  const std::vector<std::string> sensors = sensor_names(c);
+  const auto sensor = std::ranges::find(sensors, parts.sensor);
+  if (sensor == sensors.end()) return std::nullopt;
+  result.sensor = static_cast<std::size_t>(sensor - sensors.begin());
+  return result;
+}
+
+/// The measurand, or a fault.
+std::optional<Measurand> read_quantity(const toml::node& node, const Case& c, Faults& faults) {
+  const std::optional<std::string> name = read_text(node, "quantity", faults);
+  if (!name) return std::nullopt;
+  const std::optional<Measurand> measurand = measurand_of(*name, c);
+  const Parts parts = parts_of(*name);
+  if (!measurand) {
+    const std::vector<std::string> valid = valid_names(c);
+    const std::vector<std::string_view> candidates(valid.begin(), valid.end());
+    const std::string without = c.sensors.empty() && (parts.what == "B" || parts.what == "dB")
+                                    ? "; a field needs a place: add [sensor] with 'position'"
+                                    : support::did_you_mean(*name, candidates);
+    faults.add(place(node),
+               fmt::format("'quantity' cannot be {} (valid: {}{}){}", in_quotes(*name),
+                           fmt::join(valid, ", "), c.sensors.size() > 4 ? ", …" : "", without));
+  } else if (measurand->is_field() && c.fields.empty() && c.external.empty()) {
+    faults.add(place(node), fmt::format("{} needs a field model: list one in 'fields' of [models]",
+                                        in_quotes(*name)));
+    return std::nullopt;
+  }
+  return measurand;
+}
+
+/// The point [X, Y] of the end section.
+void read_point_of_end(const toml::node& node, const Case& c, bool case_is_right,
+                       Measurand& measurand, Faults& faults) {
+  using Kind = Measurand::Kind;
+  if (measurand.kind != Kind::position && measurand.kind != Kind::deflection)
+    return faults.add(place(node), "'point' goes with tip.x, tip.y, tip.z and tip.deflection");
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 2)
+    return faults.add(
+        place(node),
+        fmt::format("'point' must be the place [X, Y] in the end section, such as "
+                    "[\"0.4 mm\", \"0 mm\"]; found {}",
+                    list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
+  const QuantityKey key = point_key();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto value = read_value((*list)[i], key.name, key.quantity, key.range, faults);
+    if (!value) return;
+    measurand.point.at(i) = *value;
+  }
+  constexpr double rounding = 1 + 1e-9;
+  const double distance = std::hypot(measurand.point[0], measurand.point[1]);
+  if (case_is_right && distance > rounding * c.cilium.radius())
+    faults.add(place(node), fmt::format("'point' lies {:g} m from the centreline, outside the end "
+                                        "section, which reaches to {:g} m",
+                                        distance, c.cilium.radius()));
+}
+
+/// A standard uncertainty: absolute, or relative as a percentage.
+struct Uncertainty {
+  std::optional<double> absolute;
+  std::optional<double> relative;
+};
+Uncertainty read_uncertainty(const toml::node& node, const Measurand& measurand, Faults& faults) {
+  constexpr std::string_view name = "uncertainty";
+  constexpr std::string_view reason =
+      "it is the standard uncertainty u_D of the value, and nothing is measured without one";
+  if (const auto* text = node.as_string();
+      text != nullptr && support::trimmed(text->get()).ends_with('%')) {
+    const auto percent =
+        read_value(node, name, quantity::percentage, {0, 1000, true, reason}, faults);
+    return {std::nullopt, percent ? std::optional(*percent / 100) : std::nullopt};
+  }
+  return {read_value(node, name, measurand.quantity(), {0, 100, true, reason}, faults),
+          std::nullopt};
+}
+
+std::optional<bool> read_flag(const toml::node& node, std::string_view name, Faults& faults) {
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  faults.add(place(node),
+             fmt::format("'{}' must be true or false, found {}", name, describe(node)));
+  return std::nullopt;
+}
+
+void refuse_with(Section& table, std::string_view other,
+                 std::initializer_list<std::string_view> keys) {
+  for (const std::string_view key : keys)
+    if (const toml::node* node = table.find(key))
+      table.faults().add(place(*node), fmt::format("'{}' goes with '{}'", key, other));
+}
+
+/// The step of a single value: required unless there is only one.
+std::size_t read_step(Section& table, const Case& c, bool case_is_right) {
+  const bool is_single = case_is_right && c.load_path.size() == 1;
+  const toml::node* node = is_single ? table.find("step") : table.require("step");
+  if (node == nullptr) return 0;
+  const auto last = static_cast<double>(case_is_right ? c.load_path.size() - 1 : 100000);
+  return read_whole_number(*node, "step", {0, last, false, "the load steps are counted from 0"},
+                           table.faults())
+      .value_or(0);
+}
+
+void read_file(Section& table, const std::filesystem::path& folder, const Uncertainty& uncertainty,
+               Measurement all, const Case& c, std::vector<MeasuredFile>& files) {
+  Faults& faults = table.faults();
+  MeasuredFile result;
+  result.at = c.measured.measurements.size();
+  result.all = std::move(all);
+  result.uncertainty = uncertainty.absolute;
+  result.relative_uncertainty = uncertainty.relative;
+  if (const auto name = read_line(*table.find("file"), "file", longest_text, faults))
+    result.path = std::filesystem::absolute(folder / *name).lexically_normal();
+  if (const toml::node* node = table.find("column"))
+    result.column = read_line(*node, "column", longest_text, faults).value_or("");
+  if (const toml::node* node = table.find("scale"))
+    result.scale = read_value(*node, "scale", result.all.measurand.quantity(),
+                              range_of(result.all.measurand), faults);
+  files.push_back(std::move(result));
+}
+
+void read_measurement(Section& table, const std::filesystem::path& folder, bool case_is_right,
+                      Case& c, std::vector<MeasuredFile>& files) {
+  Faults& faults = table.faults();
+  Measurement result;
+  const toml::node* name = table.require("quantity");
+  for (const char* key : {"point", "value", "file", "step", "column", "scale"}) table.find(key);
+  const toml::node* uncertainty = table.find("uncertainty");
+  if (const toml::node* node = table.require("source"))
+    result.source = read_line(*node, "source", longest_text, faults).value_or("");
+  if (const toml::node* node = table.find("fitted"))
+    result.fitted = read_flag(*node, "fitted", faults).value_or(false);
+  const auto measurand = name == nullptr ? std::nullopt : read_quantity(*name, c, faults);
+  if (!measurand) return;  // what the values are is not known
+  result.measurand = *measurand;
+  if (const toml::node* node = table.find("point"))
+    read_point_of_end(*node, c, case_is_right, result.measurand, faults);
+  const Uncertainty u = uncertainty == nullptr
+                            ? Uncertainty{}
+                            : read_uncertainty(*uncertainty, result.measurand, faults);
+  const toml::node* value = table.find("value");
+  const toml::node* file = table.find("file");
+  if ((value == nullptr) == (file == nullptr))
+    return faults.add(table.where(),
+                      fmt::format("{} needs either 'value' or 'file'", table.name()));
+  if (file != nullptr) {
+    refuse_with(table, "value", {"step"});
+    return read_file(table, folder, u, result, c, files);
+  }
+  refuse_with(table, "file", {"column", "scale"});
+  table.require("uncertainty");
+  result.step = read_step(table, c, case_is_right);
+  const auto measured =
+      read_value(*value, "value", measurand->quantity(), range_of(*measurand), faults);
+  result.value = measured.value_or(0);
+  result.uncertainty = u.absolute.value_or(u.relative.value_or(0) * std::abs(result.value));
+  if (measured && u.relative && result.uncertainty == 0)
+    faults.add(place(*uncertainty),
+               "'uncertainty': a part of zero is zero: state it in the unit of the value");
+  c.measured.measurements.push_back(std::move(result));
+}
+
+void read_input(Section& table, std::string_view file, std::vector<InputUncertainty>& inputs) {
+  Faults& faults = table.faults();
+  InputUncertainty result;
+  const auto at = [&](const toml::node& node, std::string_view key) {
+    return fmt::format("{}:{}:{}: {} {}", file, place(node).line, place(node).column, table.name(),
+                       key);
+  };
+  if (const toml::node* node = table.require("number")) {
+    result.number = read_line(*node, "number", longest_text, faults).value_or("");
+    result.number_place = at(*node, "number");
+  }
+  if (const toml::node* node = table.require("uncertainty")) {
+    result.uncertainty_place = at(*node, "uncertainty");
+    result.is_plain = node->is_number();
+    if (node->is_number())
+      result.uncertainty = format_number(node->value<double>().value_or(0));
+    else
+      result.uncertainty = read_line(*node, "uncertainty", longest_text, faults).value_or("");
+  }
+  if (const toml::node* node = table.find("source"))
+    result.source = read_line(*node, "source", longest_text, faults).value_or("");
+  inputs.push_back(std::move(result));
+}
+
+std::string quantity_text(double value, const Quantity& quantity) {
+  return fmt::format("\"{}\"", format_quantity(value, quantity));
+}
+
+std::string to_toml(const Measurement& m) {
+  const Measurand& what = m.measurand;
+  const Quantity& quantity = what.quantity();
+  std::string text =
+      fmt::format("\n[[{}]]\nquantity = {}\n", measurement_table, toml_text(what.name));
+  if (what.point != std::array<double, 2>{})
+    text += fmt::format("point = [{}, {}]\n", quantity_text(what.point[0], quantity),
+                        quantity_text(what.point[1], quantity));
+  return text + fmt::format("step = {}\nvalue = {}\nuncertainty = {}\nsource = {}\nfitted = {}\n",
+                            m.step, quantity_text(m.value, quantity),
+                            quantity_text(m.uncertainty, quantity), toml_text(m.source), m.fitted);
+}
+
+std::string to_toml(const InputUncertainty& input) {
+  std::string text =
+      fmt::format("\n[[{}]]\nnumber = {}\nuncertainty = {}\n", input_table, toml_text(input.number),
+                  input.is_plain ? input.uncertainty : toml_text(input.uncertainty));
+  if (!input.source.empty()) text += fmt::format("source = {}\n", toml_text(input.source));
+  return text;
+}
+
+}  // namespace
+
+const Quantity& Measurand::quantity() const {
+  if (kind == Kind::angle) return ciliaval::quantity::angle;
+  return is_field() ? ciliaval::quantity::flux_density : ciliaval::quantity::length;
+}
+
+std::vector<MeasuredFile> read_measurements(Section& root, std::string_view file,
+                                            bool case_is_right, Case& c) {
+  std::vector<MeasuredFile> files;
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  root.tables(measurement_table, 0, most_tables,
+              [&](Section& table) { read_measurement(table, folder, case_is_right, c, files); });
+  root.tables(input_table, 0, most_tables,
+              [&](Section& table) { read_input(table, file, c.measured.inputs); });
+  if (!c.measured.inputs.empty() && !root.table()->contains(measurement_table))
+    root.faults().add(place(*root.find(input_table)),
+                      fmt::format("[[{}]] goes with [[{}]]: there is nothing measured", input_table,
+                                  measurement_table));
+  return files;
+}
+
+std::string to_toml(const Statement& statement) {
+  std::string text;
+  for (const Measurement& m : statement.measurements) text += to_toml(m);
+  for (const InputUncertainty& input : statement.inputs) text += to_toml(input);
+  return text;
+}
+
+}  // namespace ciliaval::compare::input::measurement

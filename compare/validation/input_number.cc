@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/validation/input_number.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "compare/input/case_sections.h"
+#include "compare/input/units.h"
+#include "problem/error.h"
+#include "problem/support/words.h"
+
+namespace ciliaval::compare::validation {
+namespace {
+
+using input::measurement::InputUncertainty;
+using study::CaseNumber;
+
+/// Calls f with the case of each load step alone.
+template <class F>
+void for_each_step(const input::Case& c, const F& f) {
+  input::Case one = c;
+  one.external.clear();
+  for (std::size_t step = 0; step < c.load_path.size(); ++step) {
+    one.load_path = {c.load_path[step]};
+    for (std::size_t p = 0; p < c.stated_by.size(); ++p) one.stated_by[p] = {c.stated_by[p][step]};
+    f(one, step);
+  }
+}
+
+/// Whether the number is one of each step, not of the whole case.
+bool is_of_steps(const CaseNumber& number) {
+  return number.path.starts_with("load.") || number.path.starts_with("environment.");
+}
+
+/// The numbers of the case; of load and environment those of any single step, so that what tells
+/// the steps apart is among them.
+std::vector<CaseNumber> numbers_of(const input::Case& c) {
+  std::vector<CaseNumber> all = study::case_numbers(c);
+  for_each_step(c, [&](const input::Case& one, std::size_t step) {
+    if (step > 0 && c.load_path[step].environment() == c.load_path[step - 1].environment()) return;
+    for (CaseNumber& number : study::case_numbers(one))
+      if (is_of_steps(number) &&
+          std::ranges::find(all, number.path, &CaseNumber::path) == all.end())
+        all.push_back(std::move(number));
+  });
+  return all;
+}
+
+/// The number's values that are shifted: one, or that of each step.
+std::vector<double> values_of(const input::Case& c, const Input& input) {
+  if (!input.at_each_step) return {input.number.get(c)};
+  std::vector<double> values;
+  for_each_step(
+      c, [&](const input::Case& one, std::size_t) { values.push_back(input.number.get(one)); });
+  return values;
+}
+
+double deviation(const Input& input, double value) {
+  return input.is_relative ? input.uncertainty * std::abs(value) : input.uncertainty;
+}
+
+/// Sets Input::uncertainty. Throws InputError.
+void read_uncertainty(const InputUncertainty& stated, Input& input) {
+  const Quantity& quantity = input.number.quantity;
+  const bool is_percent = !stated.is_plain && support::trimmed(stated.uncertainty).ends_with('%');
+  if (is_percent && quantity.unit != quantity::percentage.unit) {
+    input.is_relative = true;
+    input.uncertainty = input::parse_quantity(stated.uncertainty, quantity::percentage) / 100;
+  } else if (stated.is_plain != quantity.unit.empty()) {
+    throw InputError(fmt::format(
+        "'{}' is {} {}: write {}, or a part of it, \"2 %\"", input.number.path, quantity.article,
+        quantity.name,
+        quantity.unit.empty()
+            ? "a number without quotes"
+            : fmt::format("the uncertainty with its unit, as in \"{}\"", quantity.example)));
+  } else {
+    input.uncertainty = stated.is_plain ? std::stod(stated.uncertainty)
+                                        : input::parse_quantity(stated.uncertainty, quantity);
+  }
+  if (!(input.uncertainty > 0))
+    throw InputError(
+        fmt::format("the standard uncertainty must be more than zero, not {:g}; leave "
+                    "out what is known exactly",
+                    input.uncertainty));
+}
+
+/// Sets Input::step so that the shifted values lie in the number's range. Throws InputError.
+void choose_step(const input::Case& c, Input& input) {
+  constexpr double least = 1e-6;
+  const std::vector<double> values = values_of(c, input);
+  if (input.is_relative && std::ranges::all_of(values, [](double v) { return v == 0; }))
+    throw InputError("a part of zero is zero: state the uncertainty in the number's unit");
+  const auto fits = [&](double value) {
+    const double shift = input.step * deviation(input, value);
+    return shift == 0 || (input.number.range.contains(value - shift) &&
+                          input.number.range.contains(value + shift));
+  };
+  while (!std::ranges::all_of(values, fits)) {
+    input.step /= 2;
+    if (input.step < least)
+      throw InputError(fmt::format(
+          "'{}' stands at the end of its range, {}: it cannot be shifted "
+          "to both sides; state its uncertainty as a part of it, or leave "
+          "it out",
+          input.number.path, input::describe(input.number.range, input.number.quantity)));
+  }
+}
+
+/// The number that is meant. Throws InputError.
+CaseNumber number_of(const InputUncertainty& stated, const std::vector<CaseNumber>& known) {
+  const auto found = std::ranges::find(known, stated.number, &CaseNumber::path);
+  if (found != known.end() && !stated.number.starts_with("models.")) return *found;
+  std::string names;
+  std::vector<std::string_view> candidates;
+  for (const CaseNumber& number : known) {
+    if (number.path.starts_with("models.")) continue;
+    names += (names.empty() ? "" : ", ") + number.path;
+    candidates.emplace_back(number.path);
+  }
+  if (found != known.end())
+    throw InputError(
+        fmt::format("'{}' is an option of a model, not an input of the case (valid: "
+                    "{})",
+                    stated.number, names));
+  throw InputError(fmt::format("the case has no number {} (valid: {}){}",
+                               input::in_quotes(stated.number), names,
+                               support::did_you_mean(stated.number, candidates)));
+}
+
+}  // namespace
+
+std::vector<Input> read_inputs(const input::Case& c) {
+  if (c.measured.inputs.empty()) return {};
+  const std::vector<CaseNumber> known = numbers_of(c);
+  std::vector<Input> inputs;
+  std::string faults;
+  const auto refuse = [&](const std::string& place, const std::string& fault) {
+    faults += fmt::format("{}{}: {}", faults.empty() ? "" : "\n", place, fault);
+  };
+  for (const InputUncertainty& stated : c.measured.inputs) {
+    const std::string* place = &stated.number_place;
+    try {
+      Input input{number_of(stated, known), 0, false, false, stated.source};
+      for (const Input& other : inputs)
+        if (other.number.sets == input.number.sets)
+          throw InputError(
+              fmt::format("'{}' is set by '{}' already", input.number.path, other.number.path));
+      place = &stated.uncertainty_place;
+      input.at_each_step = is_of_steps(input.number);
+      read_uncertainty(stated, input);
+      choose_step(c, input);
+      inputs.push_back(std::move(input));
+    } catch (const InputError& fault) {
+      refuse(*place, fault.what());
+    }
+  }
+  if (!faults.empty()) throw InputError(faults);
+  return inputs;
+}
+
+input::Case shifted(const input::Case& c, const Input& input, double deviations) {
+  input::Case result = c;
+  result.external.clear();
+  const auto shift = [&](input::Case& x) {
+    const double value = input.number.get(x);
+    input.number.set(x, value + deviations * deviation(input, value));
+    input::set_stated_magnitudes(x);
+  };
+  if (!input.at_each_step) {
+    shift(result);
+    // What is loaded at a segment's end stays there.
+    const std::vector<double> old_ends = c.cilium.interfaces();
+    const std::vector<double> ends = result.cilium.interfaces();
+    for (std::size_t i = 0; i < result.load_path.size(); ++i)
+      for (std::size_t p = 0; p < result.load_path[i].values().size(); ++p) {
+        if (result.load_path[i].type().parameters[p].site != LoadParameter::Site::arclength)
+          continue;
+        const auto end = std::ranges::find(old_ends, c.load_path[i].values()[p]);
+        if (end != old_ends.end())
+          result.load_path[i].set_value(p, ends[static_cast<std::size_t>(end - old_ends.begin())]);
+      }
+    return result;
+  }
+  for_each_step(c, [&](input::Case& one, std::size_t step) {
+    shift(one);
+    result.load_path[step] = one.load_path.front();
+    for (std::size_t p = 0; p < one.stated_by.size(); ++p)
+      result.stated_by[p][step] = one.stated_by[p].front();
+  });
+  return result;
+}
+
+}  // namespace ciliaval::compare::validation

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Case files with [[measurement]]: what they say, what is refused and where, and that they are
+// written back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+#include <string_view>
+
+#include "compare/input/case.h"
+#include "compare/models/registry.h"
+#include "problem/error.h"
+#include "tests/support/case_texts.h"
+#include "tests/support/temporary_folder.h"
+
+namespace ciliaval::compare {
+namespace {
+
+using input::measurement::Measurand;
+using input::measurement::Measurement;
+using testing::HasSubstr;
+using testing::StartsWith;
+using Kind = Measurand::Kind;
+
+/// The good case and a table, which begins in line 36.
+std::string with(std::string_view measurement) {
+  return std::string(good_case).append(measurement);
+}
+
+constexpr std::string_view tip = R"toml([[measurement]]
+quantity = "tip.deflection"
+point = ["1 mm", "-0.5 mm"]
+step = 2
+value = "3.5 mm"
+uncertainty = "0.1 mm"
+source = "photograph"
+fitted = true
+)toml";
+
+input::Case read(const std::string& text) {
+  return input::read_case(text, "bad.toml", models::known());
+}
+
+TEST(MeasurementCase, StatesAValueOfTheTip) {
+  const input::Case c = read(with(tip));
+  ASSERT_EQ(c.measured.measurements.size(), 1U);
+  const Measurement& m = c.measured.measurements[0];
+  EXPECT_EQ(m.measurand.kind, Kind::deflection);
+  EXPECT_EQ(m.measurand.point[0], 1e-3);
+  EXPECT_EQ(m.measurand.point[1], -0.5e-3);
+  EXPECT_EQ(m.step, 2U);
+  EXPECT_EQ(m.value, 3.5e-3);
+  EXPECT_EQ(m.uncertainty, 1e-4);
+  EXPECT_EQ(m.source, "photograph");
+  EXPECT_TRUE(m.fitted);
+}
+
+TEST(MeasurementCase, MayBeAnyCoordinateAngleOrField) {
+  const auto of = [](std::string_view quantity, std::string_view value,
+                     std::string_view uncertainty) {
+    std::string text(good_case);
+    text = replaced(text, "[sensor]\n", "[[sensor]]\nname = \"a.b\"\n");
+    const auto c = read(text.append("[[measurement]]\nquantity = \"")
+                            .append(quantity)
+                            .append("\"\nstep = 0\nvalue = \"")
+                            .append(value)
+                            .append("\"\nuncertainty = \"")
+                            .append(uncertainty)
+                            .append("\"\nsource = \"s\"\n"));
+    return c.measured.measurements.at(0);
+  };
+  EXPECT_EQ(of("tip.z", "19 mm", "1 mm").measurand.axis, 2U);
+  const Measurement angle = of("tip.theta", "90 deg", "2 %");
+  EXPECT_EQ(angle.measurand.kind, Kind::angle);
+  EXPECT_DOUBLE_EQ(angle.uncertainty, 0.01 * std::numbers::pi);
+  EXPECT_FALSE(angle.fitted);
+  const Measurement field = of("dB.a.b.y", "-20 uT", "5 %");
+  EXPECT_EQ(field.measurand.kind, Kind::dB);
+  EXPECT_EQ(field.measurand.axis, 1U);
+  EXPECT_EQ(field.measurand.sensor, 0U);
+  EXPECT_DOUBLE_EQ(field.uncertainty, 1e-6);
+  EXPECT_EQ(of("B.a.b.z", "1 mT", "1 uT").measurand.kind, Kind::B);
+}
+
+TEST(MeasurementCase, IsWrittenBack) {
+  const std::string text =
+      with(tip) +
+      "[[input_uncertainty]]\nnumber = \"cilium.diameter\"\nuncertainty = \"1 %\"\nsource = "
+      "\"caliper\"\n[[input_uncertainty]]\nnumber = \"cilium.segment.base.poisson_ratio\"\n"
+      "uncertainty = 0.005\n";
+  const std::string written = input::to_toml(read(text), models::known());
+  const input::Case again = read(written);
+  EXPECT_EQ(input::to_toml(again, models::known()), written);
+  EXPECT_EQ(again.measured.measurements[0].measurand,
+            read(text).measured.measurements[0].measurand);
+  EXPECT_EQ(again.measured.measurements[0].value, 3.5e-3);
+  ASSERT_EQ(again.measured.inputs.size(), 2U);
+  EXPECT_EQ(again.measured.inputs[0].uncertainty, "1 %");
+  EXPECT_EQ(again.measured.inputs[0].source, "caliper");
+  EXPECT_TRUE(again.measured.inputs[1].is_plain);
+}
+
+struct BadMeasurement {
+  const char* name;
+  std::string_view part;
+  std::string_view by;
+  const char* place;
+  std::string_view message;
+};
+
+void PrintTo(const BadMeasurement& bad, std::ostream* out) {
+  *out << bad.name;
+}
+
+class BadMeasurementCase : public testing::TestWithParam<BadMeasurement> {};
+
+TEST_P(BadMeasurementCase, IsRefusedWithOneLocatedMessage) {
+  const BadMeasurement& bad = GetParam();
+  const std::string text = replaced(with(tip), bad.part, bad.by);
+  ASSERT_FALSE(text.empty());
+  const std::string faults = faults_of(text);
+  EXPECT_EQ(lines(faults).size(), 1U) << faults;
+  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
+  EXPECT_THAT(faults, HasSubstr(bad.message));
+}
+
+const BadMeasurement bad[]{
+    {"UnknownQuantity", "\"tip.deflection\"", "\"tip.deflexion\"", "37:12",
+     "'quantity' cannot be 'tip.deflexion' (valid: tip.x, tip.y, tip.z, tip.deflection, tip.theta, "
+     "B.0.x"},
+    {"UnknownComponent", "\"tip.deflection\"", "\"tip\"", "37:12", "'quantity' cannot be 'tip'"},
+    {"UnknownSensor", "\"tip.deflection\"\npoint = [\"1 mm\", \"-0.5 mm\"]", "\"dB.1.x\"", "37:12",
+     "did you mean 'dB.0.x'?"},
+    {"QuantityIsNoText", "\"tip.deflection\"", "3", "37:12", "'quantity' must be a text"},
+    {"NoQuantity", "quantity = \"tip.deflection\"\n", "", "36:1",
+     "[[measurement]] needs "
+     "'quantity'"},
+    {"ValueWithoutUnit", "\"3.5 mm\"", "3.5", "40:9", "has no unit"},
+    {"ValueOfAnotherKind", "\"3.5 mm\"", "\"3.5 mT\"", "40:9", "'value'"},
+    {"UncertaintyWithoutUnit", "\"0.1 mm\"", "0.1", "41:15", "has no unit"},
+    {"NegativeUncertainty", "\"0.1 mm\"", "\"-0.1 mm\"", "41:15", "'uncertainty' is -0.0001 m"},
+    {"NoUncertainty", "uncertainty = \"0.1 mm\"\n", "", "36:1",
+     "[[measurement]] needs 'uncertainty'"},
+    {"ZeroUncertainty", "\"0.1 mm\"", "\"0 mm\"", "41:15", "nothing is measured without one"},
+    {"NegativePercentage", "\"0.1 mm\"", "\"-2 %\"", "41:15", "'uncertainty' is -2 %"},
+    {"PartOfZero", "value = \"3.5 mm\"\nuncertainty = \"0.1 mm\"",
+     "value = \"0 mm\"\nuncertainty = \"2 %\"", "41:15", "a part of zero is zero"},
+    {"StepOutOfRange", "step = 2", "step = 3", "39:8", "'step' is 3, but must be from 0 to 2"},
+    {"NegativeStep", "step = 2", "step = -1", "39:8", "'step' is -1"},
+    {"NoStep", "step = 2\n", "", "36:1", "[[measurement]] needs 'step'"},
+    {"NoSource", "source = \"photograph\"\n", "", "36:1", "[[measurement]] needs 'source'"},
+    {"FittedIsNoFlag", "fitted = true", "fitted = \"yes\"", "43:10", "must be true or false"},
+    {"PointOutside", "\"1 mm\"", "\"1.5 mm\"", "38:9", "outside the end section"},
+    {"PointHasThree", "\"-0.5 mm\"]", "\"-0.5 mm\", \"0 mm\"]", "38:9",
+     "'point' must be the place [X, Y]"},
+    {"PointWithoutUnit", "\"-0.5 mm\"]", "0]", "38:18", "has no unit"},
+    {"PointOfAnAngle", "\"tip.deflection\"", "\"tip.theta\"", "38:9", "'point' goes with tip.x"},
+    {"NeitherValueNorFile", "step = 2\nvalue = \"3.5 mm\"\n", "", "36:1",
+     "needs either 'value' or 'file'"},
+    {"ValueAndFile", "value =", "file = \"a.csv\"\nvalue =", "36:1",
+     "needs either 'value' or 'file'"},
+    {"ScaleOfAValue", "value =", "scale = \"1 mm\"\nvalue =", "40:9", "'scale' goes with 'file'"},
+    {"StepOfAFile", "value = \"3.5 mm\"", "file = \"a.csv\"", "39:8", "'step' goes with 'value'"},
+    {"UnknownKey", "fitted", "fited", "43:1", "did you mean 'fitted'?"},
+    {"NoTable", "[[measurement]]", "[measurement]", "36:2",
+     "expected 0 to 2000 tables [[measurement]]"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, BadMeasurementCase, testing::ValuesIn(bad),
+                         [](const testing::TestParamInfo<BadMeasurement>& info) {
+                           return info.param.name;
+                         });
+
+TEST(BadMeasurement, OfAFieldNeedsAFieldModel) {
+  const std::string text = replaced(
+      replaced(with(tip), "\"tip.deflection\"\npoint = [\"1 mm\", \"-0.5 mm\"]", "\"dB.0.x\""),
+      "fields = [\"dipole\", \"line\", \"volume\", \"mesh\"]", "");
+  EXPECT_THAT(faults_of(text), StartsWith("bad.toml:37:12: 'dB.0.x' needs a field model"));
+}
+
+TEST(BadInputUncertainty, HasNothingToGoWith) {
+  const std::string faults = faults_of(
+      with("[[input_uncertainty]]\nnumber = \"cilium.diameter\"\nuncertainty = \"1 %\"\n"));
+  EXPECT_THAT(faults, StartsWith("bad.toml:36:"));
+  EXPECT_THAT(faults, HasSubstr("[[input_uncertainty]] goes with [[measurement]]"));
+  EXPECT_THAT(faults_of(with(tip) + "[[input_uncertainty]]\nuncertainty = \"1 %\"\n"),
+              StartsWith("bad.toml:44:1: [[input_uncertainty]] needs 'number'"));
+  EXPECT_THAT(faults_of(with(tip) + "[[input_uncertainty]]\nnumber = \"cilium.diameter\"\n"),
+              StartsWith("bad.toml:44:1: [[input_uncertainty]] needs 'uncertainty'"));
+}
+
+class MeasuredFiles : public testing::Test {
+ protected:
+  input::Case read(const std::string& csv, const std::string& keys) const {
+    folder_.write("a.csv", csv);
+    const std::string text = with(tip) + "[[measurement]]\nquantity = \"tip.x\"\nsource = \"b\"\n" +
+                             keys + with(tip).substr(good_case.size());
+    return input::read_case(text, (folder_.path() / "case.toml").string(), models::known());
+  }
+  std::string faults(const std::string& csv,
+                     const std::string& keys = "file = \"a.csv\"\nuncertainty = \"1 mm\"\n") const {
+    try {
+      read(csv, keys);
+    } catch (const InputError& error) {
+      std::string text = error.what();
+      const std::string prefix = folder_.path().string() + "/";
+      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
+        text.erase(at, prefix.size());
+      return text;
+    }
+    return "no fault";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(MeasuredFiles, GiveAValueForEachStepInTheirPlace) {
+  const input::Case c =
+      read("value [mm],other\n1,x\n2,y\n4,z\n", "file = \"a.csv\"\nuncertainty = \"0.1 mm\"\n");
+  ASSERT_EQ(c.measured.measurements.size(), 5U);  // between the two tables with a value
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Measurement& m = c.measured.measurements[i + 1];
+    EXPECT_EQ(m.measurand.name, "tip.x");
+    EXPECT_EQ(m.step, i);
+    EXPECT_DOUBLE_EQ(m.value, (i == 2 ? 4e-3 : i == 1 ? 2e-3 : 1e-3));
+    EXPECT_EQ(m.uncertainty, 1e-4);
+    EXPECT_EQ(m.source, "b");
+  }
+  EXPECT_EQ(c.measured.files.size(), 1U);
+  const std::string written = input::to_toml(c, models::known());
+  EXPECT_EQ(
+      input::to_toml(input::read_case(written, "again.toml", models::known()), models::known()),
+      written);
+}
+
+TEST_F(MeasuredFiles, MayHaveAScaleUncertaintiesAndSteps) {
+  const input::Case c = read("# by eye\nstep,w,uncertainty\n2,0.5,0.01\n0,-0.1,0.02\n",
+                             "file = \"a.csv\"\ncolumn = \"w\"\nscale = \"20 mm\"\n");
+  ASSERT_EQ(c.measured.measurements.size(), 4U);
+  EXPECT_EQ(c.measured.measurements[1].step, 2U);
+  EXPECT_DOUBLE_EQ(c.measured.measurements[1].value, 10e-3);
+  EXPECT_DOUBLE_EQ(c.measured.measurements[1].uncertainty, 0.2e-3);
+  EXPECT_EQ(c.measured.measurements[2].step, 0U);
+  EXPECT_DOUBLE_EQ(c.measured.measurements[2].value, -2e-3);
+}
+
+TEST_F(MeasuredFiles, AreRefusedWithTheirPlace) {
+  EXPECT_THAT(faults("", "file = \"b.csv\"\nuncertainty = \"1 mm\"\n"),
+              StartsWith("b.csv:1:1: there is no such file"));
+  EXPECT_THAT(faults("value [mm]\n1\n2\n"),
+              StartsWith("a.csv:3:1: the file has 2 rows and the case 3 load steps"));
+  EXPECT_THAT(faults("w [mm]\n1\n2\n3\n"), StartsWith("a.csv:1:1: there is no column 'value'"));
+  EXPECT_THAT(faults("value\n1\n2\n3\n"),
+              StartsWith("a.csv:1:1: the column 'value' needs the unit"));
+  EXPECT_THAT(faults("value [mT]\n1\n2\n3\n"), StartsWith("a.csv:1:1: the column 'value'"));
+  EXPECT_THAT(faults("value [mm]\n1\nx\n3\n"), StartsWith("a.csv:3:1: 'x' is not a number"));
+  EXPECT_THAT(faults("value [mm],step\n1,0\n2,3\n"),
+              StartsWith("a.csv:3:1: the step 3 is none of the case's load steps, 0 to 2"));
+  EXPECT_THAT(faults("value [mm],step\n1,0\n2,0\n"),
+              StartsWith("a.csv:3:1: there is a second row of step 0"));
+  EXPECT_THAT(faults("value [mm],step\n1,0.5\n"), StartsWith("a.csv:2:1: the step 0.5"));
+  EXPECT_THAT(faults("value [mm]\n1\n2\n3\n", "file = \"a.csv\"\n"),
+              StartsWith("a.csv:1:1: the values have no uncertainty"));
+  EXPECT_THAT(faults("value [mm],uncertainty [mm]\n1,1\n2,1\n3,1\n"),
+              StartsWith("a.csv:1:12: the column 'uncertainty' contradicts"));
+  EXPECT_THAT(faults("value [mm],uncertainty [mm]\n1,1\n2,-1\n3,1\n", "file = \"a.csv\"\n"),
+              StartsWith("a.csv:3:1: the uncertainty is -0.001 m, but must be more than zero"));
+  EXPECT_THAT(faults("value [mm]\n0\n2\n3\n", "file = \"a.csv\"\nuncertainty = \"2 %\"\n"),
+              StartsWith("a.csv:2:1: the uncertainty is 0 m"));
+  EXPECT_THAT(faults("value [mm]\n1\n2\n3\n",
+                     "file = \"a.csv\"\nscale = \"20 mm\"\nuncertainty = \"1 mm\"\n"),
+              StartsWith("a.csv:1:1: the column 'value' has no unit"));
+}
+
+}  // namespace
+}  // namespace ciliaval::compare
