@@ -157,6 +157,10 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
     require_valid(load, cilium);
     if (has_environment(load) && has_height_form(options_))
       throw InputError("elastica: the height form takes no environment");
+    if (!load.environment().magnets.empty())
+      throw InputError(
+          "the elastica takes no magnets beside the cilium: it is integrated from the tip, whose "
+          "place it does not know before; use the beam");
     if (has_environment(load)) environment::rod_of(cilium, load);  // refuses what is not planar
     if (has_environment(load) && load.is<SweepLoad>())
       throw InputError("the elastica takes a sweep without an environment only");

@@ -90,8 +90,17 @@ MechanicsStep solve_step(const Cilium& cilium, const Load& load, PathSolver& pat
     const System& system = solver.beam().system;
     step.unknowns = system.n_unknowns();
     const Vector3 reaction = system.reaction(system.residual(solver.state(), solver.applied()), 0);
-    step.applied_force = -reaction.dot(direction(load)) - environment_force(cilium, load);
+    step.applied_force =
+        -reaction.dot(direction(load)) - environment_force(cilium, load) -
+        system.force_of_magnets(solver.state(), solver.applied()).dot(direction(load));
     step.deformation = Deformation{centreline(system, solver.state()), nullptr};
+    if (const auto touched = surroundings::touched_magnet(acting_environment(load), cilium,
+                                                          step.deformation->centreline)) {
+      step.status = Status::failed;
+      step.message = "the bent cilium touches the magnet '" + *touched +
+                     "', whose contact is not modelled: move the magnet away";
+      step.deformation.reset();
+    }
     return step;
   };
   return contact_height(load) ? finished(contact) : finished(path);

@@ -90,7 +90,10 @@ Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam
     result.force_per_length.push_back(
         cilium.area() * surroundings::weight_per_volume(environment, cilium.segments[segment]));
     result.magnetic_force.push_back(surroundings::pole_force(environment, cilium, segment));
+    if (!environment.magnets.empty())
+      result.magnetic_charge.push_back(cilium.segments[segment].magnetization * cilium.area());
   }
+  result.magnets = environment.magnets;
   return result;
 }
 

@@ -62,6 +62,61 @@ StressPower turned_magnet(const Interpolation& x, const Vector3& c) {
   return stress_power(x.p, c, strain(x.p, x.s, c), Vector3::UnitZ(), Vector3::Zero());
 }
 
+/// −M A B(r)·d₃ of the magnets at a Gauss point, with its derivatives by r and p.
+struct MagnetPower {
+  StressPower by_p{};  ///< value, p and pp
+  Vector3 r = Vector3::Zero();
+  Matrix3 rr = Matrix3::Zero();
+  Matrix34 rp = Matrix34::Zero();
+};
+
+/// Whether the element has a part of the energy in the magnets' field.
+bool feels_magnets(const ElementData& data) {
+  return !data.magnets.empty() && data.magnetic_charge != 0 &&
+         data.magnetic_energy == surroundings::MagneticEnergy::R;
+}
+
+/// Zero by the law F.
+MagnetPower magnet_power(const ElementData& data, const Interpolation& x) {
+  MagnetPower power;
+  if (!feels_magnets(data)) return power;
+  surroundings::magnets::FieldJet jet;
+  for (const auto& magnet : data.magnets) jet += surroundings::magnets::jet(magnet, x.r);
+  jet = -data.magnetic_charge * jet;
+  power.by_p = turned_magnet(x, jet.B);
+  const Vector3 d3 = power.by_p.t;
+  power.r = jet.gradient.transpose() * d3;
+  for (int k = 0; k < 3; ++k) {
+    power.rr.row(k) = d3.transpose() * jet.second[static_cast<std::size_t>(k)];
+    power.rp.row(k) = turned_magnet(x, jet.gradient.col(k)).p.transpose();
+  }
+  return power;
+}
+
+/// Adds h times it to the power f of the section forces, and what depends on r to the residual and
+/// tangent of the element.
+void add_magnet_power(const ReferenceElement& reference, const ElementData& data, std::size_t g,
+                      const Interpolation& x, const std::vector<Matrix43>& E, StressPower& f,
+                      Eigen::VectorXd& residual, Eigen::MatrixXd* tangent) {
+  if (!feels_magnets(data)) return;
+  const MagnetPower power = magnet_power(data, x);
+  const double w = reference.weights[g] * data.length;
+  f.p += data.length * power.by_p.p;
+  f.pp += data.length * power.by_p.pp;
+  for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
+    const double Na = w * reference.N(g, a);
+    residual.segment<3>(node_row(a)) += Na * power.r;
+    if (tangent == nullptr) continue;
+    for (std::size_t b = 0; b < reference.n_nodes(); ++b) {
+      const double N = Na * reference.N(g, b);
+      const Matrix3 coupling = N * power.rp * E[b];
+      tangent->block<3, 3>(node_row(a), node_row(b)) += N * power.rr;
+      tangent->block<3, 3>(node_row(a), node_row(b) + 3) += coupling;
+      tangent->block<3, 3>(node_row(b) + 3, node_row(a)) += coupling.transpose();
+    }
+  }
+}
+
 /// Takes c·∂r/∂ξ or h c·d₃ off the power f of the section forces, per unit of ξ.
 void add_magnetic_energy(const ElementData& data, const Interpolation& x, StressPower& f) {
   if (data.magnetic_force.isZero(0)) return;
@@ -147,6 +202,7 @@ double element_energy(const ReferenceElement& reference, const ElementData& data
                                  0.5 * m.dot(data.section.moment_compliance.cwiseProduct(m));
     StressPower magnetic{};
     add_magnetic_energy(data, x, magnetic);
+    magnetic.value += data.length * magnet_power(data, x).by_p.value;
     energy += reference.weights[g] *
               (magnetic.value + n.dot(e.gamma - data.gamma0[g]) + m.dot(e.kappa - data.kappa0[g]) -
                data.length * (complementary + data.force_per_length.dot(x.r)));
@@ -169,6 +225,7 @@ void element_residual(const ReferenceElement& reference, const ElementData& data
     const Strain e = strain(x.p, x.s, x.t);
     StressPower f = stress_power(x.p, x.t, e, state.force[g], state.moment[g]);
     add_magnetic_energy(data, x, f);
+    add_magnet_power(reference, data, g, x, E, f, residual, tangent);
     add_residual(reference, data, g, x, e, f, state.force[g], state.moment[g], residual, gradient);
     if (tangent != nullptr) add_tangent(reference, data, g, e, f, E, *tangent);
   }
@@ -188,11 +245,13 @@ Eigen::VectorXd element_length_derivative(const ReferenceElement& reference,
     const double w = reference.weights[g];
     const Interpolation x(reference, state.position, state.rotation, g);
     const bool turns = data.magnetic_energy == surroundings::MagneticEnergy::R;
-    const Vector4 by_p = turns ? turned_magnet(x, data.magnetic_force).p : Vector4(Vector4::Zero());
+    const MagnetPower magnets = magnet_power(data, x);
+    Vector4 by_p = magnets.by_p.p;
+    if (turns) by_p -= turned_magnet(x, data.magnetic_force).p;
     for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
       const double wN = w * reference.N(g, a);
-      derivative.segment<3>(node_row(a)) -= wN * data.force_per_length;
-      derivative.segment<3>(node_row(a) + 3) -=
+      derivative.segment<3>(node_row(a)) += wN * (magnets.r - data.force_per_length);
+      derivative.segment<3>(node_row(a) + 3) +=
           wN * spin_derivative(state.rotation[a]).transpose() * by_p;
     }
     const Index row = point_row(reference, g);

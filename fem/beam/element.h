@@ -43,6 +43,10 @@ struct ElementData {
   /// c = M A B₀, N: energy −∫ c·∂r/∂S dS by the law F, −∫ c·d₃ dS by the law R.
   Vector3 magnetic_force = Vector3::Zero();
   surroundings::MagneticEnergy magnetic_energy = surroundings::MagneticEnergy::F;
+  /// M A, A·m, and the magnets beside the beam, whose energy by the law R, −∫ M A B(r)·d₃ dS, the
+  /// element has; by the law F it is that of poles (System).
+  double magnetic_charge = 0;
+  std::span<const surroundings::magnets::Magnet> magnets{};
 };
 
 /// Views of an element's part of the state.
@@ -59,7 +63,7 @@ void set_reference_strains(const ReferenceElement& reference, std::span<const Ve
 
 /// Hellinger–Reissner energy of the element less the work of its dead load,
 ///   Π = Σ_g w_g [n·(γ − hΓ₀) + m·(κ − hK₀) − ½h (n·C_n n + m·C_m m) − h q·r − c·a],   J,
-/// with a = ∂r/∂ξ (law F) or h d₃ (law R).
+/// with a = ∂r/∂ξ (law F) or h d₃ (law R), to which B(r) of magnets adds −h M A B·d₃.
 /// force_per_height has no potential and is left out.
 double element_energy(const ReferenceElement& reference, const ElementData& data,
                       const ElementState& state);

@@ -160,7 +160,14 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
   double last_increment = INFINITY;
   const double increment_tolerance = options.increment_tolerance.value_or(options.tolerance);
   for (unsigned int iteration = 0; iteration <= options.max_iterations; ++iteration) {
-    const Eigen::VectorXd residual = system.residual(trial, loads);
+    Eigen::VectorXd residual;
+    try {
+      residual = system.residual(trial, loads);
+    } catch (const SolverError& error) {  // inside a magnet
+      report.residuals.push_back(INFINITY);
+      report.reason = error.what();
+      return report;
+    }
     // The level's floor decides only about an unloaded beam, whose residual is rounding error.
     const double level = std::max(load_level(system, trial), 1e-8);
     const Norms r = norms(system, trial, residual);

@@ -84,7 +84,9 @@ Loads combine(double a, const Loads& x, double b, const Loads& y) {
     add(factor, loads->force_per_length, sum.force_per_length);
     add(factor, loads->magnetic_force, sum.magnetic_force);
     if (!loads->magnetic_force.empty()) sum.magnetic_energy = loads->magnetic_energy;
+    if (!loads->magnetic_charge.empty()) sum.magnetic_charge = loads->magnetic_charge;
   }
+  sum.magnets = surroundings::magnets::superposed(a, x.magnets, b, y.magnets);
   return sum;
 }
 
@@ -158,6 +160,8 @@ ElementData System::element_data(const State& state, const Loads& loads,
   if (!loads.force_per_length.empty()) data.force_per_length = loads.force_per_length.at(element);
   if (!loads.magnetic_force.empty()) data.magnetic_force = loads.magnetic_force.at(element);
   data.magnetic_energy = loads.magnetic_energy;
+  if (!loads.magnetic_charge.empty()) data.magnetic_charge = loads.magnetic_charge.at(element);
+  data.magnets = loads.magnets;
   std::vector<Vector3> position;
   std::vector<Quaternion> rotation;
   for (std::size_t a = 0; a < reference_.n_nodes(); ++a) {
@@ -198,6 +202,37 @@ double System::potential_energy(const State& state, const Loads& loads) const {
   return energy;
 }
 
+template <class Visit>
+void System::for_each_pole(const Loads& loads, const Visit& visit) const {
+  if (loads.magnets.empty() || loads.magnetic_charge.empty() ||
+      loads.magnetic_energy != surroundings::MagneticEnergy::F)
+    return;
+  double below = 0;
+  for (std::size_t e = 0; e <= mesh_.n_elements(); ++e) {
+    const double above = e < mesh_.n_elements() ? loads.magnetic_charge[e] : 0;
+    if (below != above) visit(e, below - above);
+    below = above;
+  }
+}
+
+void System::add_poles(const State& state, const Loads& loads, Eigen::VectorXd& residual) const {
+  for_each_pole(loads, [&](std::size_t vertex, double charge) {
+    const std::size_t node = vertex_node(vertex);
+    residual.segment<3>(static_cast<Index>(node_unknown(node, 0))) -=
+        charge / force_scale_ * surroundings::magnets::jet(loads.magnets, state.position[node]).B;
+  });
+}
+
+Vector3 System::force_of_magnets(const State& state, const Loads& loads) const {
+  Loads without = loads;
+  without.magnets.clear();
+  const Eigen::VectorXd difference = residual(state, without) - residual(state, loads);
+  Vector3 force = Vector3::Zero();
+  for (std::size_t j = 0; j < state.position.size(); ++j)
+    force += force_scale_ * difference.segment<3>(static_cast<Index>(node_unknown(j, 0)));
+  return force;
+}
+
 void System::add_point_loads(const Loads& loads, double factor, Eigen::VectorXd& residual) const {
   for (const PointLoad& load : loads.points) {
     const auto row = static_cast<Index>(node_unknown(vertex_node(load.vertex), 0));
@@ -217,6 +252,7 @@ Eigen::VectorXd System::residual(const State& state, const Loads& loads) const {
       residual[static_cast<Index>(element_unknown(e, i))] += scales[i] * local[i];
   }
   add_point_loads(loads, state.load_factor, residual);
+  add_poles(state, loads, residual);
   return residual;
 }
 
@@ -233,6 +269,15 @@ void System::for_each_stiffness(const State& state, const Loads& loads, const Vi
         visit(element_unknown(e, i), element_unknown(e, j),
               scales[i] * local(i, j) * scales[j] / (force_scale_ * length_scale_));
   }
+  for_each_pole(loads, [&](std::size_t vertex, double charge) {
+    const std::size_t node = vertex_node(vertex);
+    const Matrix3 K = -charge * length_scale_ / force_scale_ *
+                      surroundings::magnets::jet(loads.magnets, state.position[node]).gradient;
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t i = 0; i < 3; ++i)
+        visit(node_unknown(node, i), node_unknown(node, j),
+              K(static_cast<Index>(i), static_cast<Index>(j)));
+  });
 }
 
 Eigen::MatrixXd System::tangent(const State& state, const Loads& loads) const {

@@ -61,10 +61,12 @@ struct Loads {
   Vector3 force_per_height = Vector3::Zero();  ///< per unit of current height z, N/m
   std::vector<Vector3> magnetic_force;         ///< c of each element (ElementData), N; empty: none
   surroundings::MagneticEnergy magnetic_energy = surroundings::MagneticEnergy::F;
+  std::vector<double> magnetic_charge;                 ///< M A of each element, A·m; empty: none
+  std::vector<surroundings::magnets::Magnet> magnets;  ///< beside the beam
   std::vector<PrescribedDisplacement> displacements;
 };
 
-/// a·x + b·y in every load.
+/// a·x + b·y in every load; of magnets in their fields.
 Loads combine(double a, const Loads& x, double b, const Loads& y);
 
 /// State of the beam. Node e·p + a is node a of element e; Gauss point e·p + g its point g.
@@ -99,7 +101,8 @@ class System {
   /// hK₀ and h of an element at the state's shift: for the total material curvature K + K₀.
   ElementData element_data(const State& state, const Loads& loads, std::size_t element) const;
 
-  /// Π(state) less the work of the dead loads, J; force_per_height has no potential.
+  /// Π(state) less the work of the dead loads, J; force_per_height has no potential, and that of
+  /// magnets by the law F is left out.
   double potential_energy(const State& state, const Loads& loads) const;
   /// Dimensionless residual; the rows of supports hold the reactions (+ on the beam).
   Eigen::VectorXd residual(const State& state, const Loads& loads) const;
@@ -107,6 +110,8 @@ class System {
   Eigen::MatrixXd tangent(const State& state, const Loads& loads) const;
   /// ∂(residual)/∂(s/L) at fixed nodal state.
   Eigen::VectorXd shift_derivative(const State& state, const Loads& loads) const;
+  /// Force of the magnets on the beam, N.
+  Vector3 force_of_magnets(const State& state, const Loads& loads) const;
   /// Derivative of the residual by a factor on the point loads.
   Eigen::VectorXd point_load_derivative(const Loads& loads) const;
 
@@ -144,6 +149,10 @@ class System {
   /// visit(i, j, value) for each entry of the elements' dimensionless tangents.
   template <class Visit>
   void for_each_stiffness(const State& state, const Loads& loads, const Visit& visit) const;
+  /// visit(vertex, q) for the magnetic poles of the law F, q in A·m, if there are magnets.
+  template <class Visit>
+  void for_each_pole(const Loads& loads, const Visit& visit) const;
+  void add_poles(const State& state, const Loads& loads, Eigen::VectorXd& residual) const;
   void add_point_loads(const Loads& loads, double factor, Eigen::VectorXd& residual) const;
   Eigen::VectorXd element_scales() const;
 

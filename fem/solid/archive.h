@@ -34,10 +34,17 @@ void serialize(Archive& archive, std::optional<T>& value, unsigned int /*version
 }
 
 template <class Archive>
+void serialize(Archive& archive, ciliaval::surroundings::magnets::Magnet& magnet,
+               unsigned int /*version*/) {
+  auto& [name, shape, position, rotation, diameter, length, edges, magnetization] = magnet;
+  archive& name& shape& position& rotation.coeffs() & diameter& length& edges& magnetization;
+}
+
+template <class Archive>
 void serialize(Archive& archive, ciliaval::surroundings::Environment& environment,
                unsigned int /*version*/) {
-  auto& [gravity, fluid_density, field, energy] = environment;
-  archive& gravity& fluid_density& field& energy;
+  auto& [gravity, fluid_density, field, energy, magnets] = environment;
+  archive& gravity& fluid_density& field& energy& magnets;
 }
 
 template <class Archive>

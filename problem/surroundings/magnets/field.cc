@@ -213,4 +213,10 @@ FieldJet jet(const Magnet& magnet, const Vector3& x) {
   return jet;
 }
 
+FieldJet jet(const std::vector<Magnet>& magnets, const Vector3& x) {
+  FieldJet sum;
+  for (const Magnet& magnet : magnets) sum += jet(magnet, x);
+  return sum;
+}
+
 }  // namespace ciliaval::surroundings::magnets

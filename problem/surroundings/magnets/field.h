@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "problem/surroundings/magnets/magnet.h"
 #include "problem/types.h"
@@ -33,5 +34,8 @@ FieldJet dipole_jet(const Vector3& moment, const Vector3& offset);
 /// magnet's size and distance are alike; far from a flat cylinder that times distance over length.
 /// Throws SolverError if x is not outside the magnet.
 FieldJet jet(const Magnet& magnet, const Vector3& x);
+
+/// The sum of the magnets' fields.
+FieldJet jet(const std::vector<Magnet>& magnets, const Vector3& x);
 
 }  // namespace ciliaval::surroundings::magnets

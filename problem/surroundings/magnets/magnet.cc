@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "problem/error.h"
 
@@ -33,6 +34,24 @@ Vector3 nearest_in_own_axes(const Magnet& magnet, const Vector3& x) {
       return x.cwiseMax(-magnet.edges / 2).cwiseMin(magnet.edges / 2);
   }
   return x;
+}
+
+/// Distance from the convex body whose nearest point to x is nearest(x), by projections on the two
+/// in turn, which converge to the nearest pair (Cheney & Goldstein, Proc. AMS 10, 1959).
+template <class Nearest>
+double distance_from_convex(const Magnet& magnet, double size, const Nearest& nearest) {
+  Vector3 x = magnet.position;
+  double gap = 0;
+  double previous = -1;
+  for (int i = 0; i < 100'000; ++i) {
+    const Vector3 y = nearest(x);
+    x = nearest_point(magnet, y);
+    gap = (x - y).norm();
+    if (gap < 1e-9 * size) return 0;
+    if (std::abs(gap - previous) < 1e-12 * gap) break;
+    previous = gap;
+  }
+  return gap;
 }
 
 }  // namespace
@@ -88,17 +107,51 @@ double distance(const Magnet& magnet, const Vector3& x) {
 }
 
 double distance_from_upright_cylinder(const Magnet& magnet, double cylinder_radius, double height) {
-  Vector3 x = magnet.position;
-  double previous = -1;
-  for (int i = 0; i < 100'000; ++i) {  // Cheney & Goldstein 1959: converges to the nearest pair
-    const Vector3 y = nearest_in_cylinder(cylinder_radius, 0, height, x);
-    x = nearest_point(magnet, y);
-    const double gap = (x - y).norm();
-    if (gap < 1e-9 * cylinder_radius) return 0;
-    if (std::abs(gap - previous) < 1e-12 * gap) return gap;
-    previous = gap;
-  }
-  return previous;
+  return distance_from_convex(magnet, cylinder_radius, [&](const Vector3& x) {
+    return nearest_in_cylinder(cylinder_radius, 0, height, x);
+  });
+}
+
+double distance_from_disc(const Magnet& magnet, const Vector3& centre, const Vector3& normal,
+                          double disc_radius) {
+  return distance_from_convex(magnet, disc_radius, [&](const Vector3& x) -> Vector3 {
+    const Vector3 offset = x - centre;
+    const Vector3 radial = offset - offset.dot(normal) * normal;
+    const double rho = radial.norm();
+    return centre + (rho > disc_radius ? disc_radius / rho : 1) * radial;
+  });
+}
+
+double asymmetry(const Magnet& magnet, const Vector3& n) {
+  const auto along = [&n](const Vector3& v) {
+    return v.isZero(0) ? 0.0 : std::abs(v.dot(n)) / v.norm();
+  };
+  double largest = std::max(along(moment(magnet)), along(magnet.position));
+  if (magnet.shape != Shape::cuboid) return largest;
+  const Vector3 own = (magnet.rotation.conjugate() * n).cwiseAbs();
+  Eigen::Index axis = 0;
+  own.maxCoeff(&axis);
+  const Vector3 rest = own - own[axis] * Vector3::Unit(axis);
+  return std::max(largest, rest.norm());
+}
+
+std::vector<Magnet> superposed(double a, const std::vector<Magnet>& x, double b,
+                               const std::vector<Magnet>& y) {
+  std::vector<Magnet> sum;
+  const auto append = [&](double factor, Magnet magnet) {
+    if (factor == 0 || magnet.magnetization.isZero(0)) return;
+    magnet.magnetization *= factor;
+    for (Magnet& there : sum) {
+      const Vector3 other = std::exchange(there.magnetization, magnet.magnetization);
+      const bool is_same = there == magnet;
+      there.magnetization = is_same ? Vector3(other + magnet.magnetization) : other;
+      if (is_same) return;
+    }
+    sum.push_back(std::move(magnet));
+  };
+  for (const Magnet& magnet : x) append(a, magnet);
+  for (const Magnet& magnet : y) append(b, magnet);
+  return sum;
 }
 
 void require_valid(const Magnet& magnet) {

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "problem/types.h"
 
@@ -40,6 +41,20 @@ double distance(const Magnet& magnet, const Vector3& x);
 /// Distance (m) of the body from the upright cylinder on z = 0 of the given radius and height, the
 /// straight cilium, by projections on the two in turn; 0 if they touch.
 double distance_from_upright_cylinder(const Magnet& magnet, double cylinder_radius, double height);
+
+/// Distance (m) of the body from a disc, a section of the bent cilium; 0 if they touch.
+double distance_from_disc(const Magnet& magnet, const Vector3& centre, const Vector3& normal,
+                          double disc_radius);
+
+/// How far the magnet is from being its own image in the plane through the origin across n (a unit
+/// vector): the largest of the moment's and the position's component along n, and of a cuboid the
+/// sine between n and the nearest of its axes.
+double asymmetry(const Magnet& magnet, const Vector3& n);
+
+/// a·x + b·y in the fields: each magnet with its magnetisation by the factor, one that is in both
+/// once, one without magnetisation not at all.
+std::vector<Magnet> superposed(double a, const std::vector<Magnet>& x, double b,
+                               const std::vector<Magnet>& y);
 
 /// Throws InputError if a number is not finite, a size is not positive, the rotation is not of unit
 /// length or a cylinder is magnetised across its axis, whose field has no closed form here.
