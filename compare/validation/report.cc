@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
@@ -29,6 +30,23 @@ constexpr const char* legend =
     "(1) E^T V^-1 E, V = diag(u_num^2 + u_D^2) + C C^T: an input's error is the same\n"
     "    at all values. In brackets what it is without any error of the model.\n";
 
+/// The text in lines of at most 78 bytes, broken at blanks; the second and later ones are indented.
+std::string wrapped(const std::string& text, std::string_view indent) {
+  constexpr std::size_t width = 78;  // two may stand before the first line
+  std::string result;
+  std::string line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      result += line + '\n';
+      line = std::string(indent) + word;
+    } else {
+      line += (line.empty() ? "" : " ") + word;
+    }
+  }
+  return result + line + '\n';
+}
+
 std::string title(const Series& series) {
   const auto& measurand = series.measurand();
   std::string result = measurand.name;
@@ -40,7 +58,7 @@ std::string title(const Series& series) {
   for (const Point& point : series.points)
     if (std::ranges::find(seen, point.measured.source) == seen.end())
       seen.push_back(point.measured.source);
-  for (const std::string& source : seen) sources += fmt::format("  {}\n", source);
+  for (const std::string& source : seen) sources += wrapped("from " + source, "    ");
   return fmt::format("\nMeasured: {}, {} value{}\n{}", result, series.points.size(),
                      series.points.size() == 1 ? "" : "s", sources);
 }
@@ -78,7 +96,7 @@ std::string series_text(const Series& series) {
                     cell(a ? std::optional(2 * a->u_val) : std::nullopt, "{:.2g}"),
                     verdict_cell(point, unit)});
     if (!point.note.empty())
-      notes += fmt::format("  step {}: {}\n", point.measured.step + 1, point.note);
+      notes += wrapped(fmt::format("step {}: {}", point.measured.step + 1, point.note), "    ");
   }
   std::string text = "\n" + series.model;
   if (!series.sensitivities_by.empty() && series.sensitivities_by != series.model)
@@ -118,8 +136,10 @@ std::string inputs_text(const std::vector<Input>& inputs) {
     const std::string u = input.is_relative ? fmt::format("{:.3g} %", 100 * input.uncertainty)
                                             : fmt::format("{:.3g}{}{}", input.uncertainty,
                                                           unit.empty() ? "" : " ", unit);
-    text += fmt::format("  {} +- {}{}\n", input.number.path, u,
-                        input.source.empty() ? "" : fmt::format(" ({})", input.source));
+    text +=
+        "  " + wrapped(fmt::format("{} +- {}{}", input.number.path, u,
+                                   input.source.empty() ? "" : fmt::format(" ({})", input.source)),
+                       "    ");
   }
   return text.empty() ? text : "Inputs and their standard uncertainties:\n" + text;
 }
@@ -169,7 +189,7 @@ Json series_json(const Series& series) {
 
 std::string text(const Validation& validation, output::Footnotes which) {
   std::string text = domain_text(validation.domain) + inputs_text(validation.inputs);
-  for (const std::string& remark : validation.remarks) text += fmt::format("Remark: {}\n", remark);
+  for (const std::string& remark : validation.remarks) text += wrapped("Remark: " + remark, "    ");
   const Series* last = nullptr;
   for (const Series& series : validation.series) {
     if (last == nullptr || !(last->measurand() == series.measurand())) text += title(series);

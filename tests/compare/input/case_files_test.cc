@@ -43,9 +43,9 @@ TEST(BadCaseFiles, AllFaultsAreReportedInTheOrderOfTheFile) {
       testing::ElementsAre(
           StartsWith("1:1: the table [load] is missing"), StartsWith("2:8: the case name"),
           StartsWith("6:12: 'diameter': the number 3 has no unit"),
-          StartsWith(
-              "21:2: unknown key 'laod' in the case file (valid: case, cilium, load, "
-              "environment, surface, sensor, readings, signal, models); did you mean 'load'?"),
+          StartsWith("21:2: unknown key 'laod' in the case file (valid: case, cilium, load, "
+                     "environment, surface, sensor, readings, signal, models, measurement, "
+                     "input_uncertainty); did you mean 'load'?"),
           StartsWith("32:29: 'fields' cannot be 'volum'"),
           StartsWith("32:38: 'fields' cannot be 'mash'"),
           StartsWith("35:14: 'refinement' must be a whole number")));

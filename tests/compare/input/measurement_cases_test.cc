@@ -155,7 +155,6 @@ const BadMeasurement bad[]{
     {"PointHasThree", "\"-0.5 mm\"]", "\"-0.5 mm\", \"0 mm\"]", "38:9",
      "'point' must be the place [X, Y]"},
     {"PointWithoutUnit", "\"-0.5 mm\"]", "0]", "38:18", "has no unit"},
-    {"PointOfAnAngle", "\"tip.deflection\"", "\"tip.theta\"", "38:9", "'point' goes with tip.x"},
     {"NeitherValueNorFile", "step = 2\nvalue = \"3.5 mm\"\n", "", "36:1",
      "needs either 'value' or 'file'"},
     {"ValueAndFile", "value =", "file = \"a.csv\"\nvalue =", "36:1",
@@ -163,14 +162,21 @@ const BadMeasurement bad[]{
     {"ScaleOfAValue", "value =", "scale = \"1 mm\"\nvalue =", "40:9", "'scale' goes with 'file'"},
     {"StepOfAFile", "value = \"3.5 mm\"", "file = \"a.csv\"", "39:8", "'step' goes with 'value'"},
     {"UnknownKey", "fitted", "fited", "43:1", "did you mean 'fitted'?"},
-    {"NoTable", "[[measurement]]", "[measurement]", "36:2",
-     "expected 0 to 2000 tables [[measurement]]"},
+    {"NoTable", "[[measurement]]", "[measurement]", "36:1",
+     "expected 0 to 2000 tables [[measurement]], found a table"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, BadMeasurementCase, testing::ValuesIn(bad),
                          [](const testing::TestParamInfo<BadMeasurement>& info) {
                            return info.param.name;
                          });
+
+TEST(BadMeasurement, OfAnAngleHasNoPoint) {
+  std::string text = replaced(with(tip), "\"tip.deflection\"", "\"tip.theta\"");
+  text = replaced(replaced(text, "3.5 mm", "3 deg"), "0.1 mm\"\nsource", "1 deg\"\nsource");
+  EXPECT_THAT(faults_of(text), StartsWith("bad.toml:38:9: 'point' goes with tip.x"));
+  EXPECT_EQ(lines(faults_of(text)).size(), 1U);
+}
 
 TEST(BadMeasurement, OfAFieldNeedsAFieldModel) {
   const std::string text = replaced(
