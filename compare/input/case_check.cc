@@ -76,7 +76,7 @@ bool has_magnet(const Cilium& cilium) {
                              [](const Segment& s) { return s.magnetization != 0; });
 }
 
-/// Weight needs densities, and a field a magnet.
+/// Weight needs densities, a field a magnet, and magnets a place beside the cilium.
 void check_environment(const Case& c, const Report& report) {
   const auto has_weight = [](const surroundings::Environment& e) { return !e.gravity.isZero(0); };
   const auto has_field = [](const auto& e) { return !e.uniform_field.isZero(0); };
@@ -88,6 +88,18 @@ void check_environment(const Case& c, const Report& report) {
   if (any_environment(c.load_path, has_field) && !has_magnet(c.cilium))
     report("environment.uniform_field",
            "'uniform_field' needs a magnet: no [[cilium.segment]] has a 'magnetization'");
+  const auto& magnets = c.load_path.front().environment().magnets;
+  if (!magnets.empty() && !has_magnet(c.cilium))
+    report("environment.magnet[0]",
+           "[[environment.magnet]] needs a magnet: no [[cilium.segment]] has a 'magnetization'");
+  for (std::size_t i = 0; i < magnets.size(); ++i)
+    if (any_environment(c.load_path, [&](const surroundings::Environment& e) {
+          return surroundings::magnets::distance_from_upright_cylinder(
+                     e.magnets[i], c.cilium.radius(), c.cilium.length()) == 0;
+        }))
+      report(fmt::format("environment.magnet[{}].position", i),
+             fmt::format("the magnet {} touches the straight cilium: move it away",
+                         in_quotes(magnets[i].name)));
   if (has_environment(c.load_path) && c.load_path.front().is<SweepLoad>())
     report("environment", fmt::format("no model takes an environment beside the load type '{}': "
                                       "leave out one of the two",

@@ -247,10 +247,18 @@ void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
     for (std::vector<double>& stated : c.stated_by)
       stated.resize(c.load_path.size(), stated.front());
   } else {
-    faults.add(place(*root.table()->at_path("environment.uniform_field").node()),
-               fmt::format("'uniform_field' lists {} fields, but the load has {} steps: list one "
-                           "field, or one for each step",
-                           around.size(), c.load_path.size()));
+    const toml::node* field = root.table()->at_path("environment.uniform_field").node();
+    const auto list = field == nullptr ? nullptr : field->as_array();
+    if (list != nullptr && list->size() == around.size() && list->front().is_array())
+      faults.add(place(*field),
+                 fmt::format("'uniform_field' lists {} fields, but the load has {} steps: list one "
+                             "field, or one for each step",
+                             around.size(), c.load_path.size()));
+    else
+      faults.add(place(*root.table()->at_path("environment.magnet").node()),
+                 fmt::format("a magnet's 'position' lists {} points, but the load has {} steps: "
+                             "list one point, or one for each step",
+                             around.size(), c.load_path.size()));
   }
 }
 

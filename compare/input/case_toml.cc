@@ -27,12 +27,6 @@ std::string valid(const Texts& texts) {
   return fmt::format(" (valid: {})", fmt::join(texts, ", "));
 }
 
-/// What a later version will read under this dotted name; empty: nothing.
-std::string_view later(std::string_view name) {
-  if (name == "environment.magnet") return "magnets beside the cilium";
-  return {};
-}
-
 /// The number as the file states it.
 std::optional<double> number(const toml::node& node) {
   if (const auto* integer = node.as_integer()) return static_cast<double>(integer->get());
@@ -170,13 +164,6 @@ void Section::finish() const {
   std::vector<std::string> missing = missing_;
   for (const auto& [key, node] : *table_) {
     if (std::find(valid_.begin(), valid_.end(), key.str()) != valid_.end()) continue;
-    const std::string full =
-        path_.empty() ? std::string(key.str()) : fmt::format("{}.{}", path_, key.str());
-    if (const std::string_view doc = later(full); !doc.empty()) {
-      faults_->add(place(key),
-                   fmt::format("{} is not available in this version: {}", in_quotes(full), doc));
-      continue;
-    }
     std::erase(missing, support::nearest(key.str(), candidates));
     faults_->add(place(key),
                  fmt::format("unknown key {} in {}{}{}", in_quotes(key.str()), name_, valid(valid_),

@@ -71,7 +71,7 @@ class Section {
   /// `fewest` and at most `most` tables is a fault.
   void tables(std::string_view key, std::size_t fewest, std::size_t most,
               const std::function<void(Section&)>& f);
-  /// Adds a fault for each key that was not asked for (unknown, or of a later version) and for each
+  /// Adds a fault for each key that was not asked for (unknown) and for each
   /// that is missing, unless an unknown one looks like it.
   void finish() const;
 

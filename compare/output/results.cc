@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compare/input/environment/environment.h"
+#include "compare/models/magnet_forces.h"
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
@@ -49,11 +50,28 @@ Json load_json(const Load& load) {
   return json;
 }
 
+Json magnet_json(const surroundings::magnets::Magnet& magnet) {
+  using surroundings::magnets::Shape;
+  const Quaternion& q = magnet.rotation;
+  Json json{{"name", magnet.name},
+            {"shape", surroundings::magnets::name(magnet.shape)},
+            {"position", vector(magnet.position)},
+            {"rotation", {q.w(), q.x(), q.y(), q.z()}},
+            {"magnetization", vector(magnet.magnetization)}};
+  if (magnet.shape == Shape::cuboid) json["edges"] = vector(magnet.edges);
+  if (magnet.shape != Shape::cuboid) json["diameter"] = magnet.diameter;
+  if (magnet.shape == Shape::cylinder) json["length"] = magnet.length;
+  return json;
+}
+
 Json environment_json(const surroundings::Environment& environment) {
-  return {{"gravity", vector(environment.gravity)},
-          {"fluid_density", environment.fluid_density},
-          {"uniform_field", vector(environment.uniform_field)},
-          {"magnetic_energy", input::environment::name(environment.magnetic_energy)}};
+  Json json{{"gravity", vector(environment.gravity)},
+            {"fluid_density", environment.fluid_density},
+            {"uniform_field", vector(environment.uniform_field)},
+            {"magnetic_energy", input::environment::name(environment.magnetic_energy)}};
+  for (const surroundings::magnets::Magnet& magnet : environment.magnets)
+    json["magnets"].push_back(magnet_json(magnet));
+  return json;
 }
 
 Json contact_json(const SurfaceContact& contact) {
@@ -125,8 +143,14 @@ Json step_json(const models::CaseResult& result, std::size_t index) {
   const surroundings::Environment& environment = result.problem.load_path[index].environment();
   if (!surroundings::is_empty(environment)) json["environment"] = environment_json(environment);
   json["mechanics"] = Json::object();
-  for (const models::MechanicsRun& run : result.mechanics)
+  for (const models::MechanicsRun& run : result.mechanics) {
     json["mechanics"][run.model] = mechanics_json(run, index);
+    for (const models::MagnetForce& magnet :
+         models::forces_on_magnets(result.problem.cilium, run.result.steps[index]))
+      json["forces_on_magnets"][run.model].push_back({{"name", magnet.name},
+                                                      {"force", vector(magnet.force)},
+                                                      {"torque", vector(magnet.torque)}});
+  }
   json["fields"] = Json::object();
   for (const models::FieldRun& run : result.fields)
     if (run.steps[index]) json["fields"][run.name()] = field_json(*run.steps[index]);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "compare/models/magnet_forces.h"
 #include "compare/output/results.h"
 #include "compare/output/sweep.h"
 #include "compare/output/text_table.h"
@@ -151,6 +152,22 @@ std::string failures(const models::CaseResult& result, std::size_t step) {
     if (run.steps[step] && !run.steps[step]->failure.empty())
       text += fmt::format("  {}: {}\n", run.name(), run.steps[step]->failure);
   return text;
+}
+
+/// Force and torque on the magnets beside the cilium, by each mechanics model.
+std::string magnets_table(const models::CaseResult& result, std::size_t step) {
+  TextRows rows{{"magnet", "by", "Fx mN", "Fy mN", "Fz mN", "Tx uN m", "Ty uN m", "Tz uN m"}};
+  for (const models::MechanicsRun& run : result.mechanics)
+    for (const models::MagnetForce& magnet :
+         models::forces_on_magnets(result.problem.cilium, run.result.steps[step])) {
+      std::vector<std::string> row{magnet.name, run.model};
+      for (const double f : magnet.force) row.push_back(number_cell(f, 1e-3, "{:.4g}"));
+      for (const double t : magnet.torque) row.push_back(number_cell(t, 1e-6, "{:.4g}"));
+      rows.push_back(std::move(row));
+    }
+  if (rows.size() == 1) return {};
+  return "\nForce of the cilium on each magnet and torque about the magnet's centre\n" +
+         text_table(rows, "<<>");
 }
 
 /// Every pair against the most detailed one that has a field at any step.
@@ -316,6 +333,7 @@ std::string table(const models::CaseResult& result,
       text += fmt::format("\nStep {} of {}: {}\n", step + 1, problem.load_path.size(),
                           describe(problem.load_path[step]));
       text += mechanics_table(result, step);
+      text += magnets_table(result, step);
       const std::string errors = mechanics_errors(result, comparisons, step);
       if (!errors.empty()) legend = mechanics_legend;
       text += errors;

@@ -105,11 +105,12 @@ void require_load_to_sense(const LoadPath& path) {
   for (const Load& load : path) {
     if (load.environment() != path.front().environment())
       throw InputError("a load is found in one environment: list one 'uniform_field'");
-    if (surroundings::component(load.environment(), Vector3::UnitX()) > vertical ||
+    if (!load.environment().magnets.empty() ||
+        surroundings::component(load.environment(), Vector3::UnitX()) > vertical ||
         surroundings::component(load.environment(), Vector3::UnitY()) > vertical)
       throw InputError(
           "a load is found by a response that is the same from all sides: an [environment] beside "
-          "it points along z");
+          "it points along z and has no magnets");
   }
 }
 

@@ -104,7 +104,7 @@ class Level {
   Deformation deformation(const discretisation::SolidState& state, const loads::SpreadLoad& load,
                           double azimuth) const;
 
-  const Cilium& cilium_;
+  Cilium cilium_;
   LevelOptions options_;
   Level* coarser_ = nullptr;
   dealii::Triangulation<3> triangulation_;

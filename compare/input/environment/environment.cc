@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "compare/input/case_sections.h"
+#include "compare/input/environment/magnet.h"
 
 namespace ciliaval::compare::input::environment {
 namespace {
@@ -36,7 +37,8 @@ std::vector<Vector3> read_fields(const toml::node& node, Faults& faults) {
 }
 
 /// What is there without what it goes with.
-void check_companions(Section& table, const toml::node* pull, const toml::node* field) {
+void check_companions(Section& table, const toml::node* pull, const toml::node* field,
+                      const toml::node* magnets) {
   const auto needs = [&](std::string_view key, const toml::node* companion,
                          std::string_view companion_key) {
     const toml::node* node = table.find(key);
@@ -45,10 +47,10 @@ void check_companions(Section& table, const toml::node* pull, const toml::node* 
                          fmt::format("'{}' goes with '{}', which is missing", key, companion_key));
   };
   needs(fluid_density.name, pull, gravity.name);
-  needs(magnetic_energy, field, uniform_field.name);
-  if (pull == nullptr && field == nullptr)
-    table.faults().add(table.where(), fmt::format("[{}] needs '{}' or '{}'", table_name,
-                                                  gravity.name, uniform_field.name));
+  needs(magnetic_energy, field != nullptr ? field : magnets, uniform_field.name);
+  if (pull == nullptr && field == nullptr && magnets == nullptr)
+    table.faults().add(table.where(), fmt::format("[{}] needs '{}', '{}' or [[{}]]", table_name,
+                                                  gravity.name, uniform_field.name, magnet_table));
 }
 
 std::string vector_text(const Vector3& v, const Quantity& quantity) {
@@ -64,7 +66,7 @@ std::vector<Environment> read_environment(Section& root) {
   Faults& faults = table.faults();
   const toml::node* pull = table.find(gravity.name);
   const toml::node* field = table.find(uniform_field.name);
-  check_companions(table, pull, field);
+  check_companions(table, pull, field, table.find("magnet"));
   Environment all;
   if (pull != nullptr) all.gravity = read_point(*pull, gravity, faults).value_or(Vector3::Zero());
   all.fluid_density = table.value(fluid_density).value_or(0);
@@ -72,12 +74,17 @@ std::vector<Environment> read_environment(Section& root) {
     if (const auto name = read_choice(*node, magnetic_energy, energy_names, faults))
       all.magnetic_energy = *name == energy_names[0] ? surroundings::MagneticEnergy::F
                                                      : surroundings::MagneticEnergy::R;
+  const auto magnets = read_magnets(table);
   table.finish();
-  if (field == nullptr) return {all};
-  std::vector<Environment> result;
-  for (const Vector3& one : read_fields(*field, faults)) {
-    result.push_back(all);
-    result.back().uniform_field = one;
+  std::vector<Vector3> fields(1, Vector3::Zero());
+  if (field != nullptr) fields = read_fields(*field, faults);
+  if (fields.size() > 1 && magnets.size() > 1 && fields.size() != magnets.size())
+    faults.add(place(*field), fmt::format("'{}' lists {} fields, but a magnet's position {} points",
+                                          uniform_field.name, fields.size(), magnets.size()));
+  std::vector<Environment> result(std::max(fields.size(), magnets.size()), all);
+  for (std::size_t i = 0; i < result.size() && !fields.empty(); ++i) {
+    result[i].uniform_field = fields[std::min(i, fields.size() - 1)];
+    if (!magnets.empty()) result[i].magnets = magnets[std::min(i, magnets.size() - 1)];
   }
   return result;
 }
@@ -95,8 +102,14 @@ LoadPath path_of(const std::vector<Environment>& environments) {
   const auto horizontal = [](const Vector3& v) { return v.head<2>().norm(); };
   const auto& strongest = *std::ranges::max_element(
       environments, {}, [&](const Environment& e) { return horizontal(e.uniform_field); });
-  const Vector3& across =
-      horizontal(strongest.uniform_field) > 0 ? strongest.uniform_field : strongest.gravity;
+  std::vector<Vector3> candidates{strongest.uniform_field, strongest.gravity};
+  for (const surroundings::magnets::Magnet& magnet : strongest.magnets) {
+    candidates.push_back(magnet.position);
+    candidates.push_back(surroundings::magnets::moment(magnet));
+  }
+  const auto first =
+      std::ranges::find_if(candidates, [&](const Vector3& v) { return horizontal(v) > 0; });
+  const Vector3 across = first == candidates.end() ? Vector3(Vector3::Zero()) : *first;
   const double azimuth = horizontal(across) > 0 ? std::atan2(across.y(), across.x()) : 0;
   LoadPath path{EnvironmentLoad{1, azimuth}};
   put_into(environments, path);
@@ -118,15 +131,17 @@ std::string to_toml(const LoadPath& path) {
   const bool varies = std::ranges::any_of(path, [&](const Load& load) {
     return load.environment().uniform_field != first.uniform_field;
   });
+  const std::string magnets = magnets_to_toml(path);
   const bool has_field = varies || !first.uniform_field.isZero(0) ||
                          first.magnetic_energy != surroundings::MagneticEnergy::F;
-  if (has_gravity && !has_field) return text;
+  if ((has_gravity || !magnets.empty()) && !has_field) return text + magnets;
   std::vector<std::string> fields;
   for (const Load& load : path)
     fields.push_back(vector_text(load.environment().uniform_field, uniform_field.quantity));
   text += varies ? fmt::format("{} = [{}]\n", uniform_field.name, fmt::join(fields, ", "))
                  : fmt::format("{} = {}\n", uniform_field.name, fields.front());
-  return text + fmt::format("{} = \"{}\"\n", magnetic_energy, name(first.magnetic_energy));
+  return text + fmt::format("{} = \"{}\"\n", magnetic_energy, name(first.magnetic_energy)) +
+         magnets;
 }
 
 }  // namespace ciliaval::compare::input::environment

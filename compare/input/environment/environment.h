@@ -48,18 +48,20 @@ constexpr std::string_view name(surroundings::MagneticEnergy energy) {
   return energy_names[energy == surroundings::MagneticEnergy::R];
 }
 inline constexpr std::string_view magnetic_energy_doc =
-    "Energy of the magnet in `uniform_field`: the magnetisation carried along by the deformation, "
+    "Energy of the cilium's magnet in the fields: the magnetisation carried along by the "
+    "deformation, "
     "-(F M).B_0, or turned by its rotation, -(R M).B_0.";
 
-/// Reads the table: an environment for each field that it lists, or one; none without the table.
+/// Reads the table: an environment for each field or magnet's position that it lists, or one; none
+/// without the table.
 std::vector<surroundings::Environment> read_environment(Section& root);
 
 /// Gives the loads their environments: one to all, or one to each. A single load becomes a path.
 /// False if their numbers do not fit.
 bool put_into(const std::vector<surroundings::Environment>& environments, LoadPath& path);
 
-/// A path for a case without a load: bent in the vertical plane of the strongest field, or of
-/// gravity.
+/// A path for a case without a load: bent in the vertical plane of the strongest field, of gravity,
+/// or of the first magnet.
 LoadPath path_of(const std::vector<surroundings::Environment>& environments);
 
 /// The table as TOML; empty without an environment.

@@ -10,6 +10,7 @@
 
 #include "compare/input/case_keys.h"
 #include "compare/input/environment/environment.h"
+#include "compare/input/environment/magnet.h"
 #include "compare/input/measurement/measurement.h"
 #include "compare/input/schema/keys.h"
 
@@ -158,7 +159,8 @@ std::string json_schema(const Models& models) {
   });
   std::set<std::string> repeated{"cilium.segment", std::string(key::external_table),
                                  std::string(measurement::measurement_table),
-                                 std::string(measurement::input_table)};
+                                 std::string(measurement::input_table),
+                                 std::string(environment::magnet_table)};
   models.for_each([&](const auto& entry) {
     for (const QuantityKey* k : entry.tables.keys) repeated.emplace(k->table);
   });

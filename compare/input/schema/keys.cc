@@ -10,6 +10,7 @@
 
 #include "compare/input/case_keys.h"
 #include "compare/input/environment/environment.h"
+#include "compare/input/environment/magnet.h"
 #include "compare/input/measurement/measurement.h"
 #include "compare/input/sweep/signal.h"
 #include "compare/input/sweep/surface.h"
@@ -123,6 +124,20 @@ void add_environment(std::vector<Key>& keys) {
   keys.push_back(choice({environment::energy_names.begin(), environment::energy_names.end()},
                         text(environment::table_name, environment::magnetic_energy, "`\"F\"`",
                              std::string(environment::magnetic_energy_doc))));
+  using namespace environment;
+  keys.push_back(text(magnet_table, "name", "", "Name of the magnet, different from the others'."));
+  keys.push_back(choice({"ball", "cylinder", "cuboid"},
+                        text(magnet_table, "shape", "",
+                             "Shape of a magnet at rest beside the cilium, which it pulls and "
+                             "turns. Sensors read the cilium's field without it.")));
+  keys.push_back(number(magnet_position, Kind::points));
+  keys.push_back(number(magnet_axis, Kind::point));
+  keys.push_back(number(magnet_rotation, Kind::quantities));
+  keys.push_back(only_with({"ball", "cylinder"}, number(magnet_diameter)));
+  keys.push_back(only_with({"cylinder"}, number(magnet_length)));
+  keys.push_back(only_with({"cuboid"}, number(magnet_edges, Kind::point)));
+  keys.push_back(number(magnet_magnetization, Kind::quantities));
+  keys.push_back(number(magnet_remanence));
 }
 
 void add_surface(std::vector<Key>& keys) {

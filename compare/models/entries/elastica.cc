@@ -53,8 +53,17 @@ void check_plane(const input::CaseCheck& check) {
   }
 }
 
+/// It is integrated from the tip, whose place it does not know: a field that depends on the place
+/// does not fit.
+void refuse_magnets(const input::CaseCheck& check) {
+  const auto at = std::ranges::find(check.problem.mechanics, "elastica");
+  check.report(fmt::format("models.mechanics[{}]", at - check.problem.mechanics.begin()),
+               "the elastica takes no [[environment.magnet]]: use 'beam' or 'solid'");
+}
+
 void check(const input::CaseCheck& check) {
   if (!check.is_asked_for || !check.load_is_right) return;
+  if (!check.problem.load_path.front().environment().magnets.empty()) return refuse_magnets(check);
   check_plane(check);
   if (check.problem.options.of<ElasticaOptions>().form == ElasticaOptions::Form::height)
     check_height_form(check);

@@ -135,18 +135,20 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
     attempt.trouble = result.reason + " (relative residuals " + history(result.residuals) + ")";
     return attempt;
   }
-  attempt.equilibrium.applied_force = force_of_load(load, result.external);
+  attempt.equilibrium.applied_force = force_of_load(load, result.external, state.displacement);
   attempt.applied =
       contact_force == 0 || attempt.equilibrium.applied_force >=
                                 contact_force - force_shortfall * std::abs(contact_force);
   return attempt;
 }
 
-double LoadPathSolver::force_of_load(const Load& load,
-                                     const dealii::Vector<double>& external) const {
+double LoadPathSolver::force_of_load(const Load& load, const dealii::Vector<double>& external,
+                                     const dealii::Vector<double>& displacement) const {
   Vector3 force = resultant(space_, external);
   const surroundings::Environment environment = acting_environment(load);
-  if (!surroundings::is_empty(environment)) force -= weight_of(space_, cilium_, environment);
+  if (!surroundings::is_empty(environment))
+    force -= weight_of(space_, cilium_, environment) +
+             force_of_magnets(space_, cilium_, environment, displacement);
   return whole_force(quadrature_, force).dot(direction(load));
 }
 

@@ -166,7 +166,11 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
     result.overshot = !internal && iteration == 1;
     if (!internal) return fail("det F is not positive at a quadrature point");
     result.external.reinit(space_.unknowns());
-    external(state.displacement, result.external, constraints_, nullptr);
+    try {
+      external(state.displacement, result.external, constraints_, nullptr);
+    } catch (const SolverError& error) {  // inside a magnet
+      return fail(error.what());
+    }
     const double norm = relative_residual(*internal, result.external, constraints_, options,
                                           residual, result.reactions);
     result.residuals.push_back(norm);

@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <memory>
+#include <functional>
 #include <vector>
 
 #include "fem/solid/loads/dead_forces.h"
@@ -14,6 +14,7 @@ namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
 using surroundings::Environment;
 using surroundings::MagneticEnergy;
+using surroundings::magnets::FieldJet;
 namespace {
 
 Matrix3 cross_matrix(const Vector3& v) {
@@ -50,9 +51,14 @@ dealii::Vector<double> dead_part(const SolidSpace& space, const Cilium& cilium,
   return forces;
 }
 
-/// Adds the forces ∂e/∂F : ∂F/∂u of an element and, if asked for, minus their derivative.
-void add_turned(const SolidElement& element, const Vector3& magnetization, const Vector3& field,
-                const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+/// B₀ and its derivatives at a point x.
+using Field = std::function<FieldJet(const Vector3& x)>;
+
+/// Adds the forces ∂(work)/∂u of an element's magnet in a field and, if asked for, minus their
+/// derivative.
+void add_magnet(const SolidSpace& space, const SolidElement& element, double magnetization,
+                const Field& field, MagneticEnergy law, const dealii::Vector<double>& displacement,
+                dealii::Vector<double>& forces,
                 const dealii::AffineConstraints<double>& constraints,
                 dealii::SparseMatrix<double>* matrix) {
   const auto u = nodal_displacements(element, displacement);
@@ -61,17 +67,25 @@ void add_turned(const SolidElement& element, const Vector3& magnetization, const
   for (int q = 0; q < element_points; ++q) {
     const Eigen::Matrix<double, element_nodes, 3> dN =
         element.gradients.middleCols<3>(Eigen::Index{3} * q);
-    const TurnedMagnet e = turned_magnet(deformation_gradient(element, u, q), magnetization, field);
+    const Eigen::Matrix<double, element_nodes, 1> N = space.shape_values().col(q);
+    const Vector3 x = (element.nodes + u).transpose() * N;
+    const MagnetInField e = magnet_in_field(deformation_gradient(element, u, q),
+                                            magnetization * Vector3::UnitZ(), field(x), law);
     const double w = element.weights[q];
-    f += w * dN * e.first.transpose();
+    f += w * (dN * e.by_F.transpose() + N * e.by_x.transpose());
     if (matrix == nullptr) continue;
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) {
         Matrix3 T;  // over J and L
         for (int J = 0; J < 3; ++J)
-          for (int L = 0; L < 3; ++L) T(J, L) = e.second(3 * J + i, 3 * L + k);
+          for (int L = 0; L < 3; ++L) T(J, L) = e.FF(3 * J + i, 3 * L + k);
+        const Eigen::Matrix<double, element_nodes, 1> left =
+            dN * e.Fx[static_cast<std::size_t>(k)].row(i).transpose();
+        const Eigen::Matrix<double, element_nodes, 1> right =
+            dN * e.Fx[static_cast<std::size_t>(i)].row(k).transpose();
         const Eigen::Matrix<double, element_nodes, element_nodes> block =
-            w * dN * T * dN.transpose();
+            w * (dN * T * dN.transpose() + left * N.transpose() + N * right.transpose() +
+                 e.xx(i, k) * N * N.transpose());
         for (int a = 0; a < element_nodes; ++a)
           for (int b = 0; b < element_nodes; ++b)
             K(static_cast<unsigned int>(i * element_nodes + a),
@@ -83,6 +97,16 @@ void add_turned(const SolidElement& element, const Vector3& magnetization, const
   if (matrix == nullptr) return;
   const std::vector<dealii::types::global_dof_index> dofs(element.dofs.begin(), element.dofs.end());
   constraints.distribute_local_to_global(K, dofs, *matrix);
+}
+
+/// The field that acts on a deformed magnet other than by dead forces: that of the magnets and, by
+/// the law R, the uniform one.
+Field live_field(const Environment& environment) {
+  return [environment](const Vector3& x) {
+    FieldJet jet = surroundings::field_of_magnets(environment, x);
+    if (environment.magnetic_energy == MagneticEnergy::R) jet.B += environment.uniform_field;
+    return jet;
+  };
 }
 
 }  // namespace
@@ -98,6 +122,10 @@ TurnedMagnet turned_magnet(const Matrix3& F, const Vector3& magnetization, const
   TurnedMagnet result;
   result.energy = b.dot(magnetization);
   result.first = R * Y;
+  result.direction = R * magnetization;
+  for (int k = 0; k < 3; ++k)
+    result.by_field[static_cast<std::size_t>(k)] =
+        R * cross_matrix(inverse * magnetization.cross(Vector3(R.row(k).transpose())));
   for (int l = 0; l < 3; ++l)
     for (int k = 0; k < 3; ++k) {
       Matrix3 dF = Matrix3::Zero();
@@ -115,23 +143,65 @@ TurnedMagnet turned_magnet(const Matrix3& F, const Vector3& magnetization, const
   return result;
 }
 
+MagnetInField magnet_in_field(const Matrix3& F, const Vector3& magnetization, const FieldJet& field,
+                              MagneticEnergy law) {
+  MagnetInField result;
+  Vector3 m;
+  if (law == MagneticEnergy::F) {
+    m = F * magnetization;
+    result.by_F = field.B * magnetization.transpose();
+    result.FF.setZero();
+    for (int k = 0; k < 3; ++k)
+      result.Fx[static_cast<std::size_t>(k)] = field.gradient.col(k) * magnetization.transpose();
+  } else {
+    const TurnedMagnet turned = turned_magnet(F, magnetization, field.B);
+    m = turned.direction;
+    result.by_F = turned.first;
+    result.FF = turned.second;
+    for (int k = 0; k < 3; ++k) {
+      Matrix3& Fx = result.Fx[static_cast<std::size_t>(k)];
+      Fx.setZero();
+      for (int j = 0; j < 3; ++j)
+        Fx += field.gradient(j, k) * turned.by_field[static_cast<std::size_t>(j)];
+    }
+  }
+  result.work = m.dot(field.B);
+  result.by_x = field.gradient.transpose() * m;
+  for (int k = 0; k < 3; ++k)
+    result.xx.row(k) = m.transpose() * field.second[static_cast<std::size_t>(k)];
+  return result;
+}
+
 ExternalForces environment_forces(const SolidSpace& space, const Cilium& cilium,
                                   const Environment& environment) {
   const ExternalForces dead = dead_forces(dead_part(space, cilium, environment));
   const bool turns =
       environment.magnetic_energy == MagneticEnergy::R && !environment.uniform_field.isZero(0);
-  if (!turns) return dead;
-  return [&space, &cilium, dead, field = environment.uniform_field](
-             const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-             const dealii::AffineConstraints<double>& constraints,
-             dealii::SparseMatrix<double>* matrix) {
-    dead(displacement, forces, constraints, matrix);
-    for (const SolidElement& element : space.elements()) {
-      const double M = segment_of(element, cilium).magnetization;
-      if (M != 0)
-        add_turned(element, M * Vector3::UnitZ(), field, displacement, forces, constraints, matrix);
-    }
-  };
+  if (!turns && environment.magnets.empty()) return dead;
+  return
+      [&space, &cilium, dead, field = live_field(environment), law = environment.magnetic_energy](
+          const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+          const dealii::AffineConstraints<double>& constraints,
+          dealii::SparseMatrix<double>* matrix) {
+        dead(displacement, forces, constraints, matrix);
+        for (const SolidElement& element : space.elements()) {
+          const double M = segment_of(element, cilium).magnetization;
+          if (M != 0)
+            add_magnet(space, element, M, field, law, displacement, forces, constraints, matrix);
+        }
+      };
+}
+
+Vector3 force_of_magnets(const SolidSpace& space, const Cilium& cilium,
+                         const Environment& environment,
+                         const dealii::Vector<double>& displacement) {
+  if (environment.magnets.empty()) return Vector3::Zero();
+  Environment magnets;
+  magnets.magnets = environment.magnets;
+  magnets.magnetic_energy = environment.magnetic_energy;
+  dealii::Vector<double> forces(space.unknowns());
+  environment_forces(space, cilium, magnets)(displacement, forces, {}, nullptr);
+  return resultant(space, forces);
 }
 
 Vector3 weight_of(const SolidSpace& space, const Cilium& cilium, const Environment& environment) {

@@ -60,7 +60,9 @@ SpreadLoad spread_load(const Cilium& cilium, const Load& load, double area, doub
   for (const Segment& segment : cilium.segments) {
     result.weight.push_back(surroundings::weight_per_volume(environment, segment));
     result.poles.push_back(segment.magnetization * environment.uniform_field);
+    result.magnetization.push_back(segment.magnetization);
   }
+  result.magnets = environment.magnets;
   return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "problem/error.h"
 #include "problem/lagrange.h"
+#include "problem/surroundings/magnets/field.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
@@ -133,6 +134,13 @@ HeightDensity contact_density(double force, double area, double height, double h
 
 HeightDensity flow_density(double force_per_height, double area) {
   return {[=](double) { return force_per_height / area; }, [](double) { return 0.0; }, {}};
+}
+
+Vector3 SpreadLoad::pole(std::size_t segment, const Vector3& x) const {
+  Vector3 result = poles[segment];
+  if (!magnets.empty() && magnetization[segment] != 0)
+    result += magnetization[segment] * surroundings::magnets::jet(magnets, x).B;
+  return result;
 }
 
 void integrate_load(const SpreadLoad& load, const Eigen::Vector3d& z, double length, double from,

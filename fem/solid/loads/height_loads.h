@@ -13,6 +13,7 @@
 
 #include "fem/solid/discretisation/extruded_quadrature.h"
 #include "fem/solid/discretisation/space.h"
+#include "problem/surroundings/magnets/magnet.h"
 
 namespace ciliaval::fem::solid::loads {
 
@@ -39,6 +40,12 @@ struct SpreadLoad {
   std::vector<Vector3> weight{};  ///< of each segment, N/m³; empty: none
   /// M B₀ of each segment, Pa: force per area of its end faces (law F); empty: none.
   std::vector<Vector3> poles{};
+  /// What adds M B(x) to it: M of each segment, A/m, and the magnets beside the cilium.
+  std::vector<double> magnetization{};
+  std::vector<surroundings::magnets::Magnet> magnets{};
+
+  /// Force per area of a segment's end face at x, Pa.
+  Vector3 pole(std::size_t segment, const Vector3& x) const;
 };
 
 /// Calls add(ζ, f) at quadrature points of the part from ≤ ζ ≤ to of an extrusion line, f the force

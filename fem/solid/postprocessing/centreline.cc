@@ -61,6 +61,7 @@ struct Station {
   Vector3 x = Vector3::Zero();                                           ///< ∫ x dA
   Eigen::Matrix<double, 3, 2> xX = Eigen::Matrix<double, 3, 2>::Zero();  ///< ∫ x (X, Y) dA
   Wrench load;
+  Wrench poles;  ///< ∫ M B₀ dA, the field's stress (law F)
   /// Adds the image in the plane y = 0.
   void add_mirror_image() {
     area *= 2;
@@ -68,6 +69,7 @@ struct Station {
     x = Vector3(2 * x.x(), 0, 2 * x.z());
     xX = 2 * Eigen::Matrix<double, 3, 2>{{xX(0, 0), 0}, {0, xX(1, 1)}, {xX(2, 0), 0}};
     load.add_mirror_image();
+    poles.add_mirror_image();
   }
 };
 
@@ -85,8 +87,8 @@ struct Extraction {
 
  private:
   void add_cell(Layer& layer, std::size_t index) const;
-  /// Adds weight and field of the part of a line above ζ: a magnet of constant M is turned by
-  /// M dA Δx × B₀, and pulled nowhere.
+  /// Adds weight and field of the part of a line above ζ: a magnet of constant M is pulled by
+  /// M dA B₀ at its upper end and by −M dA B₀ at its lower one (law F).
   void add_environment(const Layer& layer, const Matrix3& x, double dA, double zeta,
                        Wrench& wrench) const;
 };
@@ -135,6 +137,7 @@ Station Extraction::station(const Layer& layer, double zeta) const {
                      result.load.add(x * quadratic_basis(at), dA * force * load.direction);
                    });
     add_environment(layer, x, dA, zeta, result.load);
+    if (!load.poles.empty()) result.poles.add(here, dA * load.pole(layer.segment, here));
   }
   if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
@@ -148,7 +151,10 @@ void Extraction::add_environment(const Layer& layer, const Matrix3& x, double dA
     wrench.add(x * quadratic_basis(zeta + (1 - zeta) * rule.nodes[m]),
                (1 - zeta) * rule.weights[m] * dA * (layer.top - layer.bottom) *
                    load.weight[layer.segment]);
-  wrench.moment += dA * (x.col(2) - x * quadratic_basis(zeta)).cross(load.poles[layer.segment]);
+  const Vector3 low = x * quadratic_basis(zeta);
+  const Vector3 high = x.col(2);
+  wrench.add(high, dA * load.pole(layer.segment, high));
+  wrench.add(low, -dA * load.pole(layer.segment, low));
 }
 
 /// Force and moment that the part above exerts on the layer: at the nodes a of its upper plane,
@@ -172,7 +178,7 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
     for (const auto& [x, dA, XY] : layer.lines)
       // ∫ N₂ dζ = 1/6, ∫ dN₂/dζ dζ = 1 for the node at ζ = 1
       result.add(x.col(2), -dA * (load.weight[layer.segment] * (layer.top - layer.bottom) / 6 +
-                                  load.poles[layer.segment]));
+                                  load.pole(layer.segment, x.col(2))));
   if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
@@ -214,12 +220,10 @@ Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const 
     SectionState state;
     state.position = station.x / station.area;
     state.rotation = section_rotation(station.xX - state.position * station.XY.transpose());
-    state.forces.force = top.force + station.load.force;
-    state.forces.moment =
-        top.moment + station.load.moment - state.position.cross(state.forces.force);
     // The field's stress −B₀ ⊗ M is no part of n, which is that of the strain.
-    if (!extraction.load.poles.empty())
-      state.forces.force += station.area * extraction.load.poles[layer.segment];
+    state.forces.force = top.force + station.load.force + station.poles.force;
+    state.forces.moment = top.moment + station.load.moment + station.poles.moment -
+                          state.position.cross(state.forces.force);
     piece.S.push_back(zeta == 1 ? layer.top : bottom + zeta * (layer.top - bottom));
     piece.states.push_back(state);
   }

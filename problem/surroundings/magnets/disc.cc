@@ -69,7 +69,7 @@ FieldJet disc_jet(double radius, const Vector3& x) {
   const double Y = x[1] / radius;
   const double zeta = x[2] / radius;
   const double q = X * X + Y * Y;
-  const auto variables = boost::math::differentiation::make_ftuple<double, 2, 2>(q, zeta);
+  const auto variables = boost::math::differentiation::make_ftuple<double, 2, 1>(q, zeta);
   const auto P = radial_over_rho(std::get<0>(variables) + 0 * std::get<1>(variables),
                                  std::get<1>(variables) + 0 * std::get<0>(variables));
   const double P0 = P.derivative(0, 0);
@@ -77,7 +77,7 @@ FieldJet disc_jet(double radius, const Vector3& x) {
   const double Pz = P.derivative(0, 1);
   const double Pqq = P.derivative(2, 0);
   const double Pqz = P.derivative(1, 1);
-  const double Pzz = P.derivative(0, 2);
+  const double Pzz = -4 * (q * Pqq + 2 * Pq);  // ∇·H = 0 and ∇×H = 0
 
   FieldJet jet;
   jet.B = {X * P0, Y * P0, axial(std::sqrt(q), zeta)};

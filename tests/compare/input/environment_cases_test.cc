@@ -246,8 +246,6 @@ const BadEnvironment bad[]{
     {"FieldWithoutMagnet", "magnetization = \"75 kA/m\"\n", "", "20:17",
      "'uniform_field' needs a magnet: no [[cilium.segment]] has a 'magnetization'"},
     {"UnknownKey", "fluid_density", "fluid_densty", "20:1", "did you mean 'fluid_density'?"},
-    {"Magnet", "[models]", "[[environment.magnet]]\n[models]", "23:15",
-     "'environment.magnet' is not available in this version: magnets beside the cilium"},
     {"OutOfTheElasticasPlane", "[\"0 m/s2\"", "[\"1 m/s2\"", "24:14",
      "the elastica bends in the plane of the load, along the azimuth 90 deg"},
     {"AnotherModel", "[models]\nmechanics = [\"elastica\", \"beam\"]",
@@ -286,8 +284,8 @@ TEST(EnvironmentCase, SaysSomething) {
   const std::string text =
       replaced(weight_and_field, weight_and_field.substr(weight_and_field.find("gravity")), "") +
       "[models]\nmechanics = [\"beam\"]\n";
-  EXPECT_THAT(faults_of(text), StartsWith("bad.toml:18:1: [environment] needs 'gravity' or "
-                                          "'uniform_field'"));
+  EXPECT_THAT(faults_of(text), StartsWith("bad.toml:18:1: [environment] needs 'gravity', "
+                                          "'uniform_field' or [[environment.magnet]]"));
 }
 
 TEST(EnvironmentCase, ListsAThousandFieldsAtMost) {

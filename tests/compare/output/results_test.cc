@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/output/results.h"
 #include "compare/output/output_file.h"
+#include "compare/output/table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "analytic/forces/wrench.h"
 #include "problem/error.h"
 #include "tests/support/synthetic.h"
 
@@ -107,6 +109,58 @@ TEST(Summary, StatesTheEnvironmentBesideTheLoad) {
                                                       {"fluid_density", 1.2},
                                                       {"uniform_field", {1e-3, 0.0, 2e-3}},
                                                       {"magnetic_energy", "R"}}));
+}
+
+// Oracle: the field of the cilium's end sections on the charges of the magnet; the program states
+// the reaction to the force on the cilium.
+TEST(Summary, StatesForceAndTorqueOnEachMagnet) {
+  input::Case c = paper_case({});
+  surroundings::Environment around;
+  around.magnets.push_back({"ball",
+                            surroundings::magnets::Shape::ball,
+                            {0.01, 0, 0.025},
+                            Quaternion::Identity(),
+                            4e-3,
+                            0,
+                            Vector3::Zero(),
+                            {1e5, 0, 5e5}});
+  around.magnets.push_back({"brick",
+                            surroundings::magnets::Shape::cuboid,
+                            {0, 0.01, 0.01},
+                            Quaternion(0.8, 0, 0.6, 0),
+                            0,
+                            0,
+                            {3e-3, 4e-3, 5e-3},
+                            {0, 0, 5e5}});
+  c.load_path = {with_environment(ContactLoad{1e-3, 16e-3, 0}, around)};
+  c.mechanics = {"rod"};
+  const Centreline line = arc(L, 3e-3, Vector3::UnitX(), 20);
+  const std::vector<models::MechanicsEntry> mechanics{
+      mechanics_entry("rod", [&](const Load& load) { return converged(load, line); })};
+  const models::CaseResult result = models::run(c, mechanics, {});
+  const json step = json::parse(output::summary_json(result, {}, origin))["steps"][0];
+  const json& brick = step["environment"]["magnets"][1];
+  EXPECT_EQ(brick, json({{"name", "brick"},
+                         {"shape", "cuboid"},
+                         {"position", {0.0, 0.01, 0.01}},
+                         {"rotation", {0.8, 0.0, 0.6, 0.0}},
+                         {"edges", {3e-3, 4e-3, 5e-3}},
+                         {"magnetization", {0.0, 0.0, 5e5}}}));
+  EXPECT_EQ(step["environment"]["magnets"][0]["diameter"], 4e-3);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const json& stated = step["forces_on_magnets"]["rod"][i];
+    EXPECT_EQ(stated["name"], around.magnets[i].name);
+    const auto exact =
+        analytic::forces::wrench_on_magnet(c.cilium, Deformation{line, nullptr}, around.magnets[i]);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const auto component = static_cast<std::size_t>(k);
+      EXPECT_NEAR(stated["force"][component], exact.force[k], 1e-9 * exact.force.norm());
+      EXPECT_NEAR(stated["torque"][component], exact.torque[k], 1e-9 * exact.torque.norm());
+    }
+  }
+  const std::string table = output::table(result, {}, output::Footnotes::text);
+  EXPECT_THAT(table, testing::HasSubstr("Force of the cilium on each magnet"));
+  EXPECT_THAT(table, testing::HasSubstr("brick"));
 }
 
 TEST(Summary, StatesAProbesDisplacementForceAndSlipOff) {
