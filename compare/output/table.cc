@@ -161,8 +161,13 @@ std::string magnets_table(const models::CaseResult& result, std::size_t step) {
     for (const models::MagnetForce& magnet :
          models::forces_on_magnets(result.problem.cilium, run.result.steps[step])) {
       std::vector<std::string> row{magnet.name, run.model};
-      for (const double f : magnet.force) row.push_back(number_cell(f, 1e-3, "{:.4g}"));
-      for (const double t : magnet.torque) row.push_back(number_cell(t, 1e-6, "{:.4g}"));
+      const auto add = [&row](const Vector3& v, double unit) {  // without what is but rounding
+        for (const double component : v)
+          row.push_back(
+              number_cell(std::abs(component) < 1e-9 * v.norm() ? 0 : component, unit, "{:.4g}"));
+      };
+      add(magnet.force, 1e-3);
+      add(magnet.torque, 1e-6);
       rows.push_back(std::move(row));
     }
   if (rows.size() == 1) return {};
@@ -292,6 +297,10 @@ std::string describe(const Load& load) {
   const Vector3 field = 1e3 * load.environment().uniform_field;
   if (!field.isZero(0))
     text += fmt::format(", field ({:g}, {:g}, {:g}) mT", field.x(), field.y(), field.z());
+  for (const surroundings::magnets::Magnet& magnet : load.environment().magnets) {
+    const Vector3 at = 1e3 * magnet.position;
+    text += fmt::format(", {} at ({:g}, {:g}, {:g}) mm", magnet.name, at.x(), at.y(), at.z());
+  }
   return text;
 }
 

@@ -9,6 +9,7 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/environment/environment.h"
+#include "compare/input/environment/magnet.h"
 #include "compare/models/registry.h"
 
 namespace ciliaval::compare::study {
@@ -153,6 +154,37 @@ void append_environment(const input::Case& c, std::vector<CaseNumber>& all) {
     append(input::environment::uniform_field, &Environment::uniform_field);
 }
 
+/// Sizes and magnetisation of the magnets beside the cilium, and the places that do not tell the
+/// steps apart.
+void append_magnets(const input::Case& c, std::vector<CaseNumber>& all) {
+  using namespace input::environment;
+  using surroundings::magnets::Magnet;
+  using surroundings::magnets::Shape;
+  const auto& magnets = c.load_path.front().environment().magnets;
+  for (std::size_t i = 0; i < magnets.size(); ++i) {
+    const std::string path = fmt::format("{}.{}", magnet_table, magnets[i].name);
+    const auto append = [&](const std::string& name, const QuantityKey& k,
+                            const std::function<double&(Magnet&)>& number) {
+      all.push_back(
+          around(fmt::format("{}.{}", path, name), k,
+                 [=](surroundings::Environment& e) -> double& { return number(e.magnets.at(i)); }));
+    };
+    const bool stays = std::ranges::all_of(c.load_path, [&](const Load& load) {
+      return load.environment().magnets.at(i).position == magnets[i].position;
+    });
+    for (const auto& [name, axis] : {std::pair("x", 0), std::pair("y", 1), std::pair("z", 2)})
+      if (stays)
+        append(fmt::format("position.{}", name), magnet_position,
+               [a = axis](Magnet& m) -> double& { return m.position[a]; });
+    if (magnets[i].shape != Shape::cuboid)
+      append("diameter", magnet_diameter, [](Magnet& m) -> double& { return m.diameter; });
+    if (magnets[i].shape == Shape::cylinder)
+      append("length", magnet_length, [](Magnet& m) -> double& { return m.length; });
+    append("magnetization", magnet_magnetization,
+           [](Magnet& m) -> double& { return m.magnetization.z(); });
+  }
+}
+
 void append_options(const input::Case& c, std::vector<CaseNumber>& all) {
   models::known().for_each([&](const auto& entry) {
     for (const input::Option& option : entry.options) {
@@ -173,6 +205,7 @@ std::vector<CaseNumber> case_numbers(const input::Case& c) {
   append_cilium(c, all);
   append_load(c, all);
   append_environment(c, all);
+  append_magnets(c, all);
   append_surface(c, all);
   if (!c.sensors.empty())
     for (const auto& [name, axis] : {std::pair("x", 0), std::pair("y", 1), std::pair("z", 2)})

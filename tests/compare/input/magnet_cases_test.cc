@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
+#include "compare/study/case_number.h"
 #include "tests/support/case_texts.h"
 
 namespace ciliaval::compare {
@@ -120,6 +122,30 @@ TEST(MagnetCase, IsWrittenBack) {
     const input::Case second = read(written);
     EXPECT_EQ(input::to_toml(second, models::known()), written);
     EXPECT_EQ(second.load_path, first.load_path);
+  }
+}
+
+TEST(MagnetCase, StudiesMayVaryIt) {
+  const input::Case c = read(replaced(beside, one_place, two_places));
+  const std::map<std::string, double> wanted{{"environment.magnet.ball.diameter", 5e-3},
+                                             {"environment.magnet.disc.position.y", -0.03},
+                                             {"environment.magnet.disc.length", 2e-3},
+                                             {"environment.magnet.brick.magnetization", 3e5}};
+  std::vector<study::Setting> settings;
+  for (const study::CaseNumber& number : study::case_numbers(c)) {
+    EXPECT_NE(number.path, "environment.magnet.ball.position.x");  // it tells the steps apart
+    if (const auto found = wanted.find(number.path); found != wanted.end())
+      settings.push_back({number, found->second});
+  }
+  ASSERT_EQ(settings.size(), wanted.size());
+  const input::Case other = study::with_settings(c, settings);
+  ASSERT_EQ(other.load_path.size(), 2U);
+  for (const Load& load : other.load_path) {
+    const std::vector<Magnet>& magnets = load.environment().magnets;
+    EXPECT_EQ(magnets[0].diameter, 5e-3);
+    EXPECT_EQ(magnets[1].position, Vector3(0, -0.03, 0.01));
+    EXPECT_EQ(magnets[1].length, 2e-3);
+    EXPECT_EQ(magnets[2].magnetization, Vector3(0, 0, 3e5));
   }
 }
 

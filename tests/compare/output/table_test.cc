@@ -210,6 +210,12 @@ TEST(Table, TellsTheFieldAroundALoad) {
   around.uniform_field = {5e-3, 0, -1e-4};
   load.set_environment(around);
   EXPECT_THAT(output::describe(load), testing::EndsWith("azimuth 0 deg, field (5, 0, -0.1) mT"));
+  around.magnets.emplace_back();
+  around.magnets.back().name = "ball";
+  around.magnets.back().position = {0.02, 0, -5e-3};
+  load.set_environment(around);
+  EXPECT_THAT(output::describe(load),
+              testing::EndsWith("field (5, 0, -0.1) mT, ball at (20, 0, -5) mm"));
 }
 
 // At sensor 0 the field of the straight cilium diverges: B stands, ΔB is a dash.
