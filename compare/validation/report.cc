@@ -58,7 +58,7 @@ std::string title(const Series& series) {
   for (const Point& point : series.points)
     if (std::ranges::find(seen, point.measured.source) == seen.end())
       seen.push_back(point.measured.source);
-  for (const std::string& source : seen) sources += wrapped("from " + source, "    ");
+  for (const std::string& source : seen) sources += "  " + wrapped("from " + source, "    ");
   return fmt::format("\nMeasured: {}, {} value{}\n{}", result, series.points.size(),
                      series.points.size() == 1 ? "" : "s", sources);
 }
@@ -77,6 +77,25 @@ std::string verdict_cell(const Point& point, const ShownUnit& unit) {
   return fmt::format("below {:.3g} {}", point.assessment->bound / unit.size, unit.name);
 }
 
+/// Each note once, with its steps.
+std::string notes_of(const Series& series) {
+  std::vector<std::pair<std::string, std::string>> steps_of;
+  for (const Point& point : series.points) {
+    if (point.note.empty()) continue;
+    const std::string step = std::to_string(point.measured.step + 1);
+    const auto known =
+        std::ranges::find(steps_of, point.note, [](const auto& entry) { return entry.first; });
+    if (known == steps_of.end())
+      steps_of.emplace_back(point.note, "step " + step);
+    else
+      known->second += ", " + step;
+  }
+  std::string text;
+  for (const auto& [note, steps] : steps_of)
+    text += "  " + wrapped(fmt::format("{}: {}", steps, note), "    ");
+  return text;
+}
+
 std::string series_text(const Series& series) {
   const ShownUnit unit = output::shown_unit(series.measurand().quantity().unit);
   const std::string plain = fmt::format("{{:.{}f}}", digits_for(series, unit.size));
@@ -85,7 +104,6 @@ std::string series_text(const Series& series) {
   };
   output::TextRows rows{{"step", fmt::format("D ({})", unit.name), "S", "E", "u_num", "u_in", "u_D",
                          "2 u_val", "model error"}};
-  std::string notes;
   for (const Point& point : series.points) {
     const auto& a = point.assessment;
     rows.push_back({fmt::format("{}{}", point.measured.step + 1, point.measured.fitted ? "f" : ""),
@@ -95,13 +113,11 @@ std::string series_text(const Series& series) {
                     cell(point.measured.uncertainty, "{:.2g}"),
                     cell(a ? std::optional(2 * a->u_val) : std::nullopt, "{:.2g}"),
                     verdict_cell(point, unit)});
-    if (!point.note.empty())
-      notes += wrapped(fmt::format("step {}: {}", point.measured.step + 1, point.note), "    ");
   }
   std::string text = "\n" + series.model;
   if (!series.sensitivities_by.empty() && series.sensitivities_by != series.model)
     text += fmt::format(" (u_in by {})", series.sensitivities_by);
-  text += fmt::format("\n{}{}", output::text_table(rows, ">>>>>>>><"), notes);
+  text += fmt::format("\n{}{}", output::text_table(rows, ">>>>>>>><"), notes_of(series));
   const std::size_t n = series.assessed;
   if (series.rms_error)
     text += fmt::format("  r.m.s. of E {:.3g} {}; chi^2 (1) {} over {} value{} ({} +- {:.1f})\n",
@@ -118,7 +134,8 @@ std::string series_text(const Series& series) {
 std::string domain_text(const std::vector<Extent>& domain) {
   std::string text = "Against measurements (ASME V&V 20). It holds in this domain alone:\n";
   for (const Extent& extent : domain) {
-    const ShownUnit unit = output::shown_unit(extent.unit);
+    const ShownUnit unit =
+        extent.unit == "T" ? ShownUnit{"mT", 1e-3} : output::shown_unit(extent.unit);
     const std::string range =
         extent.from == extent.to
             ? fmt::format("{:.4g}", extent.from / unit.size)
