@@ -46,7 +46,8 @@ def validation(result: Result, which: int = 0) -> Figure:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
         first = of[order[0]]
         x = load[[p.step for p in first.points]]
-        width = (np.ptp(load) or 1.0) / 60
+        gaps = np.diff(np.unique(x))
+        width = min([(np.ptp(load) or 1.0) / 60, *gaps / (len(order) + 1)])
         for i, model in enumerate(reversed(order)):
             looks = {**look(model), "linestyle": dashes(model, order)}
             _curve(upper, of[model], load, unit.size, model, looks)
@@ -62,7 +63,7 @@ def validation(result: Result, which: int = 0) -> Figure:
             linewidth=1, capsize=3, label="measured", zorder=5,
         )  # fmt: skip
         lower.axhline(0, color="black", linewidth=0.8)
-        upper.set(title=describe(quantity, point), ylabel=unit.name)
+        upper.set(title=describe(quantity, point), ylabel=f"in {unit.name}")
         lower.set(xlabel=label, ylabel=f"E ± 2 u_val in {unit.name}")
         legend(figure, upper, ["measured", *order])
         return figure
