@@ -60,15 +60,21 @@ Set set_potential(double relative_permeability, bool plates) {
   };
 }
 
-/// The mechanics, with dipoles along the centreline.
-std::vector<Stage> mechanics_stages() {
+/// The mechanics, with dipoles along the centreline; beside magnets without the elastica, which
+/// takes none.
+std::vector<Stage> mechanics_stages(const input::Case& problem) {
   const Set line = set(&analytic::rod::LineOptions::push_forward, PushForward::F);
-  return {
+  std::vector<Stage> stages{
       {"elastica", "line", "", line, ""},
       {"beam", "line", "", line, "shear and extension of the rod"},
       {"solid", "line", "", line,
        "three dimensions: bonded ends, near-incompressibility, a contact of some width"},
   };
+  if (!problem.load_path.front().environment().magnets.empty()) {
+    stages.erase(stages.begin());
+    stages.front().physics.clear();
+  }
+  return stages;
 }
 
 /// The fields on the best mechanics.
@@ -108,7 +114,7 @@ std::string Chain::physics(std::size_t from, std::size_t to) const {
 }
 
 Chain make_chain(const input::Case& problem, const std::vector<std::string>& without) {
-  const std::vector<Stage> mechanics = mechanics_stages();
+  const std::vector<Stage> mechanics = mechanics_stages(problem);
   const std::string paper = mechanics.front().mechanics;
   const Stage beside{paper, "dipole", "", [](input::ModelOptions&) {},
                      "the whole magnet as one dipole at its centroid"};

@@ -98,16 +98,18 @@ class Viewer {
     }
   }
 
+  /// Whether the elastica takes the environment.
   bool is_planar() const {
     constexpr double rounding = 1e-9;
     return std::ranges::all_of(problem_.load_path, [](const Load& load) {
       const Vector3 across = Vector3::UnitZ().cross(direction(load));
-      return surroundings::component(load.environment(), across) <= rounding;
+      return load.environment().magnets.empty() &&
+             surroundings::component(load.environment(), across) <= rounding;
     });
   }
 
   void look_at_signal() {
-    // The paper's, and its magnet in closed form; out of its plane the beam.
+    // The paper's, and its magnet in closed form; out of its plane and beside magnets the beam.
     const std::string mechanics = is_planar() ? "elastica" : "beam";
     const std::string field = "volume";
     const MechanicsRun run = run_mechanics(

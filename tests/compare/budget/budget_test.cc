@@ -338,6 +338,18 @@ TEST(Chain, FollowsTheCase) {
               ElementsAre("elastica/line"));
 }
 
+TEST(Chain, BeginsWithTheBeamBesideMagnets) {
+  input::Case problem = test::paper_case({1e-3});
+  surroundings::Environment around;
+  around.magnets.emplace_back();
+  problem.load_path.front().set_environment(around);
+  const budget::Chain chain = budget::make_chain(problem, {});
+  EXPECT_EQ(chain.mechanics, (std::vector<std::string>{"beam", "solid"}));
+  EXPECT_EQ(chain.stages.front().name(), "beam/line");
+  EXPECT_EQ(chain.stages.front().physics, "");
+  EXPECT_EQ(chain.beside->name(), "beam/dipole");
+}
+
 TEST(Chain, RefusesWhatItDoesNotKnow) {
   const input::Case problem = test::paper_case({1e-3});
   const auto message = [&](const std::string& word) {

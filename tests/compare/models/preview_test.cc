@@ -28,6 +28,23 @@ TEST(Preview, HasNothingToWarnOfInThePapersCase) {
   EXPECT_THAT(seen.signal, Contains(HasSubstr("sensor 0: |B|")));
 }
 
+TEST(Preview, TakesTheBeamBesideMagnets) {
+  input::Case problem = paper_case({0.5e-3});
+  surroundings::Environment around;
+  around.magnets.push_back({"ball",
+                            surroundings::magnets::Shape::ball,
+                            {0.05, 0, 0.02},
+                            Quaternion::Identity(),
+                            4e-3,
+                            0,
+                            Vector3::Zero(),
+                            {0, 0, 5e5}});
+  problem.load_path.front().set_environment(around);
+  const Preview seen = preview(problem);
+  EXPECT_THAT(seen.warnings, IsEmpty());
+  EXPECT_THAT(seen.signal, Contains(HasSubstr("beam: the tip goes")));
+}
+
 TEST(Preview, WarnsOfSlipsInUnits) {
   input::Case problem = paper_case({0.5e-3});
   problem.cilium.segments[1].young_modulus = 0.2e9;
