@@ -11,12 +11,17 @@
 namespace ciliaval::compare::validation {
 namespace {
 
-/// E I of the softest segment in the plane of the load, N·m²; none where the section has no side
-/// along it.
-std::optional<double> softest_stiffness(const input::Case& c) {
+/// The section in the plane of the load.
+struct BendingPlane {
+  double stiffness = 0;  ///< E I of the softest segment, N·m²
+  double extent = 0;     ///< m
+};
+/// None of a rectangle without a side along the plane.
+std::optional<BendingPlane> bending_plane(const input::Case& c) {
+  const double phi = azimuth(c.load_path.front());
+  const double E = std::ranges::min(c.cilium.segments, {}, &Segment::young_modulus).young_modulus;
   try {
-    const double I = c.cilium.second_moment(azimuth(c.load_path.front()));
-    return I * std::ranges::min(c.cilium.segments, {}, &Segment::young_modulus).young_modulus;
+    return BendingPlane{E * c.cilium.second_moment(phi), c.cilium.extent(phi)};
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -51,13 +56,13 @@ std::vector<Extent> domain_of(const input::Case& c) {
   };
   const double length = c.cilium.length();
   const Load& first = c.load_path.front();
-  const std::optional<double> EI = softest_stiffness(c);
+  const std::optional<BendingPlane> plane = bending_plane(c);
   const auto& key = first.type().parameters.front().key;
   if (!first.is<EnvironmentLoad>()) {
     const auto loads = along_path([](const Load& load) { return magnitude(load); });
     add("load", fmt::format("{}, {}", type(first), key.name), std::string(magnitude_unit(first)),
         loads);
-    if (const auto number = EI ? load_number(first, length, *EI) : std::nullopt)
+    if (const auto number = plane ? load_number(first, length, plane->stiffness) : std::nullopt)
       add("load_number", number->meaning, "",
           along_path([&](const Load& load) { return number->factor * magnitude(load); }));
   }
@@ -68,12 +73,15 @@ std::vector<Extent> domain_of(const input::Case& c) {
     for (const Segment& s : c.cilium.segments)
       moment += std::abs(s.magnetization) * c.cilium.area() * s.length;
     add("field", "|B|", "T", field);
-    if (EI)
+    if (plane)
       add("field_number", "M A L B L/(E I)", "", along_path([&](const Load& load) {
-            return moment * acting_environment(load).uniform_field.norm() * length / *EI;
+            return moment * acting_environment(load).uniform_field.norm() * length /
+                   plane->stiffness;
           }));
   }
-  add("slenderness", "L over the section's smallest extent", "", {length / c.cilium.thickness()});
+  if (plane)
+    add("slenderness", "L over the section's extent along the azimuth", "",
+        {length / plane->extent});
   std::vector<double> ratios;
   for (const Segment& s : c.cilium.segments) ratios.push_back(s.poisson_ratio);
   add("poisson_ratio", "nu", "", ratios);

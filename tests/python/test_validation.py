@@ -4,11 +4,17 @@
 import json
 import re
 import tempfile
+import tomllib
 import unittest
 import warnings
 from pathlib import Path
 
 import numpy as np
+
+try:
+    import jsonschema
+except ImportError:
+    jsonschema = None
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import ciliaval as cv
@@ -78,6 +84,14 @@ class Validation(unittest.TestCase):
         self.assertEqual(validation.domain["slenderness"]["from"], 20 / 3)
         with self.assertRaises(TypeError):
             validation.of(modell="beam")
+
+    @unittest.skipUnless(jsonschema, "needs python3-jsonschema")
+    def test_is_known_to_the_schema_of_case_files(self):
+        validator = jsonschema.Draft7Validator(json.loads(program.call("schema")))
+        for text in ((self.folder / "a.toml").read_text(), (self.folder / "fig3b" / "case.toml").read_text()):
+            validator.validate(tomllib.loads(text))
+        wrong = MEASURED.replace("quantity =", "quantiti =", 1)
+        self.assertTrue(list(validator.iter_errors(tomllib.loads(quick("fig3b") + wrong))))
 
     def test_is_that_of_a_run_in_this_process(self):
         self.assertEqual(cv.Case(self.folder / "a.toml").run().validation.series, self.result.validation.series)

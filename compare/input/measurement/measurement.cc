@@ -106,6 +106,17 @@ std::optional<Measurand> read_quantity(const toml::node& node, const Case& c, Fa
   return measurand;
 }
 
+/// Whether the section, without a tube's hole, holds the point, to rounding.
+bool is_in_section(const std::array<double, 2>& point, const Cilium& cilium) {
+  constexpr double rounding = 1 + 1e-9;
+  const auto [x, y] = point;
+  if (!cilium.is_rectangular()) return std::hypot(x, y) <= rounding * cilium.radius();
+  const double c = std::cos(cilium.section.orientation);
+  const double s = std::sin(cilium.section.orientation);
+  return std::abs(c * x + s * y) <= rounding * cilium.section.width / 2 &&
+         std::abs(c * y - s * x) <= rounding * cilium.section.height / 2;
+}
+
 /// The point [X, Y] of the end section.
 void read_point_of_end(const toml::node& node, const Case& c, bool case_is_right,
                        Measurand& measurand, Faults& faults) {
@@ -125,12 +136,8 @@ void read_point_of_end(const toml::node& node, const Case& c, bool case_is_right
     if (!value) return;
     measurand.point.at(i) = *value;
   }
-  constexpr double rounding = 1 + 1e-9;
-  const double distance = std::hypot(measurand.point[0], measurand.point[1]);
-  if (case_is_right && distance > rounding * c.cilium.radius())
-    faults.add(place(node), fmt::format("'point' lies {:g} m from the centreline, outside the end "
-                                        "section, which reaches to {:g} m",
-                                        distance, c.cilium.radius()));
+  if (case_is_right && !is_in_section(measurand.point, c.cilium))
+    faults.add(place(node), "'point' lies outside the end section");
 }
 
 /// A standard uncertainty: absolute, or relative as a percentage.

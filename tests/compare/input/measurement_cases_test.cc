@@ -171,6 +171,18 @@ INSTANTIATE_TEST_SUITE_P(All, BadMeasurementCase, testing::ValuesIn(bad),
                            return info.param.name;
                          });
 
+TEST(MeasurementCase, HasItsPointInTheRectangle) {
+  std::string text = replaced(
+      with(tip), "diameter = \"3 mm\"",
+      "section = {shape = \"rectangle\", width = \"4 mm\", height = \"2 mm\", orientation = \"90 "
+      "deg\"}");
+  text = replaced(text, "azimuth = \"30 deg\"", "azimuth = \"90 deg\"");
+  EXPECT_EQ(faults_of(text), "");  // (1, -0.5) mm: turned, the sides reach to 1 mm and 2 mm
+  EXPECT_EQ(faults_of(replaced(text, "\"-0.5 mm\"", "\"-2 mm\"")), "");
+  const std::string beside = faults_of(replaced(text, "\"1 mm\"", "\"1.1 mm\""));
+  EXPECT_THAT(beside, StartsWith("bad.toml:38:9: 'point' lies outside the end section"));
+}
+
 TEST(BadMeasurement, OfAnAngleHasNoPoint) {
   std::string text = replaced(with(tip), "\"tip.deflection\"", "\"tip.theta\"");
   text = replaced(replaced(text, "3.5 mm", "3 deg"), "0.1 mm\"\nsource", "1 deg\"\nsource");
