@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -23,16 +24,39 @@ struct Segment {
   double bulk_modulus() const { return young_modulus / (3 * (1 - 2 * poisson_ratio)); }
 };
 
-/// A straight circular cylinder that stands on z = 0, clamped there, axis +z; segments from base to
-/// tip.
-struct Cilium {
-  double diameter = 0;  ///< d, m
-  std::vector<Segment> segments;
+/// The shape of the section, the same from base to tip.
+struct CrossSection {
+  enum class Shape { circle, rectangle, tube };
+  Shape shape = Shape::circle;
+  double width = 0;           ///< rectangle: along its first axis, m
+  double height = 0;          ///< rectangle: along its second axis, m
+  double inner_diameter = 0;  ///< tube, m
+  double orientation = 0;     ///< rectangle: angle of the first axis from +x about z, rad
 
-  double radius() const { return diameter / 2; }
-  double area() const;           ///< A = πd²/4, m²
-  double second_moment() const;  ///< I = πd⁴/64, m⁴
-  double length() const;         ///< L, the sum of the segments' lengths, m
+  bool operator==(const CrossSection& other) const = default;
+};
+
+/// A straight prism that stands on z = 0, clamped there, axis +z through the centres of its
+/// sections; segments from base to tip.
+struct Cilium {
+  double diameter = 0;  ///< d of a circle, outer one of a tube, m; a rectangle has none
+  std::vector<Segment> segments;
+  CrossSection section{};
+
+  bool is_rectangular() const { return section.shape == CrossSection::Shape::rectangle; }
+  /// The smallest extent across the axis, m: the scale of all that is local.
+  double thickness() const;
+  /// Of the smallest circle around the section, m.
+  double radius() const;
+  double area() const;  ///< A, m²
+  /// (∫Y² dA, ∫X² dA) about the section's own first and second axis, m⁴.
+  std::array<double, 2> second_moments() const;
+  /// I of bending in the vertical plane of an azimuth (rad), m⁴. Throws InputError if a rectangle
+  /// has no side along it: it would leave the plane.
+  double second_moment(double azimuth = 0) const;
+  /// Extent along the direction of an azimuth (rad), m, which must be as for second_moment().
+  double extent(double azimuth) const;
+  double length() const;  ///< L, the sum of the segments' lengths, m
 
   /// Arc lengths 0 = S₀ < S₁ < … < S_N = L of the segments' ends, m.
   std::vector<double> interfaces() const;
@@ -41,8 +65,11 @@ struct Cilium {
   std::size_t segment_at(double S) const;
 };
 
-/// Throws InputError if a length or modulus is not finite and positive, or −1 < ν < 0.5 does not
-/// hold.
+/// The same turned by the angle (rad) about the z axis.
+Cilium turned(Cilium cilium, double angle);
+
+/// Throws InputError if a length or modulus is not finite and positive, −1 < ν < 0.5 does not hold,
+/// or the section is none.
 void require_valid(const Cilium& cilium);
 
 }  // namespace ciliaval

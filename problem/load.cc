@@ -40,6 +40,9 @@ constexpr LoadParameter azimuth_parameter =
 
 /// q = ½ρv²C_d d (paper, Eq. 11), N/m, of v, ρ and C_d.
 double drag_per_height(std::span<const double> values, const Cilium& cilium) {
+  if (cilium.is_rectangular())
+    throw InputError(
+        "the drag of a rectangle is not known from a velocity: state force_per_height");
   const double velocity = values[0];
   return values[1] * velocity * velocity * values[2] * cilium.diameter / 2;
 }
@@ -53,6 +56,8 @@ std::vector<const LoadType*>& all_types() {
 
 void require_valid(const SweepLoad& sweep, const Load& load, const Cilium& cilium) {
   if (!load.surface()) throw InputError("a sweep needs a surface");
+  if (cilium.section.shape != CrossSection::Shape::circle)
+    throw InputError("a sweep is of a cilium of circular section only");
   surroundings::require_valid(*load.surface());
   if (!std::isfinite(sweep.travel)) throw InputError("the travel must be finite");
   if (!(std::isfinite(sweep.interference) && sweep.interference < cilium.length()))
@@ -285,6 +290,7 @@ void refuse_type(const Load& load, std::string_view model) {
 
 void require_valid(const Load& load, const Cilium& cilium) {
   if (!std::isfinite(azimuth(load))) throw InputError("the azimuth must be finite");
+  cilium.extent(azimuth(load));  // throws where a rectangle would leave the plane
   surroundings::require_valid(load.environment(), cilium);
   if (const auto sweep = load.as<SweepLoad>()) return require_valid(*sweep, load, cilium);
   if (!std::isfinite(magnitude(load)) || magnitude(load) < 0)

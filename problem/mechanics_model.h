@@ -101,6 +101,12 @@ struct ProgressReport {
       : text(std::move(line)), done(parts_done), parts(all_parts) {}
 };
 
+/// The remark on an equilibrium whose energy decreases in so many ways.
+inline std::string not_stable(int modes) {
+  return "this equilibrium is not stable: it buckles in " + std::to_string(modes) +
+         (modes == 1 ? " mode" : " modes");
+}
+
 /// Called with reports while a long solution goes on.
 using Progress = std::function<void(const ProgressReport&)>;
 

@@ -45,7 +45,8 @@ double probe_tolerance(const ElasticaOptions& options) {
 }
 
 SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options) {
-  PlanarProblem problem = planar_problem(cilium, ContactLoad{1, contact_height(load).value(), 0});
+  PlanarProblem problem =
+      planar_problem(cilium, ContactLoad{1, contact_height(load).value(), azimuth(load)});
   const double of_one_newton = problem.load;
   problem.load = has_height_form(options) ? slip_off_height(problem)
                                           : slip_off_arclength(problem, options.tolerance);

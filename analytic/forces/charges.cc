@@ -90,18 +90,25 @@ Charges charges_of(const Magnet& magnet) {
 Charges charges_of(const rod::RodMagnet& magnet) {
   return [ends = magnet.ends](std::size_t order) {
     std::vector<PointCharge> charges;
-    for (const rod::RodEnd& end : ends)
+    for (const rod::RodEnd& end : ends) {
+      if (end.rectangle) {
+        const auto& [axes, half] = *end.rectangle;
+        append_rectangle(end.section.centre, half[0] * axes.col(0), half[1] * axes.col(1),
+                         end.magnetization_jump, order, charges);
+        continue;
+      }
       append_disc(end.section.centre, axes_about(end.section.normal), end.section.radius,
                   end.magnetization_jump, order, charges);
+    }
     return charges;
   };
 }
 
-Charges poles_of(const rod::RodMagnet& magnet, double area) {
-  return [ends = magnet.ends, area](std::size_t) {
+Charges poles_of(const rod::RodMagnet& magnet) {
+  return [ends = magnet.ends](std::size_t) {
     std::vector<PointCharge> charges;
     for (const rod::RodEnd& end : ends)
-      charges.push_back({end.section.centre, area * end.magnetization_jump});
+      charges.push_back({end.section.centre, rod::pole_strength(end)});
     return charges;
   };
 }

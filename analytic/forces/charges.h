@@ -27,7 +27,7 @@ Charges charges_of(const surroundings::magnets::Magnet& magnet);
 /// Of the sections where a rod's magnetisation jumps: all that the wedge of the model `volume` has.
 Charges charges_of(const rod::RodMagnet& magnet);
 /// The poles of the model `line` at the centres of these sections.
-Charges poles_of(const rod::RodMagnet& magnet, double area);
+Charges poles_of(const rod::RodMagnet& magnet);
 /// Of a solid's charged faces, where the deformation has taken them (Piola). It refers to the body.
 Charges charges_of(const SolidBody& body);
 

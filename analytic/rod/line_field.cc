@@ -12,16 +12,15 @@
 namespace ciliaval::analytic::rod {
 namespace {
 
-/// B of a pole q = πR²(M below − M above) at each end of the magnet.
-sources::FieldValue field_of_poles(const RodMagnet& magnet, double area, const Vector3& x) {
+/// B of a pole q = A (M below − M above) at each end of the magnet.
+sources::FieldValue field_of_poles(const RodMagnet& magnet, const Vector3& x) {
   sources::FieldValue sum;
   for (const RodEnd& end : magnet.ends) {
     const Vector3& pole = end.section.centre;
     if ((x - pole).norm() <= sources::rounding_of_offset(x, pole))
       throw InputError("the field of the model `line` diverges at its pole " +
                        sources::to_string(x) + ": move the point, or take the model `volume`");
-    sum += sources::with_rounding(sources::pole_field(area * end.magnetization_jump, x - pole), x,
-                                  pole);
+    sum += sources::with_rounding(sources::pole_field(pole_strength(end), x - pole), x, pole);
   }
   return sum;
 }
@@ -64,8 +63,8 @@ Field LineField::field(const Cilium& cilium, const Deformation& deformation,
   const bool closed_form =
       options_.method == Method::closed_form && options_.push_forward == sources::PushForward::F;
   if (closed_form)
-    return sources::field_at(
-        points, 4096, [&](const Vector3& x) { return field_of_poles(magnet, cilium.area(), x); });
+    return sources::field_at(points, 4096,
+                             [&](const Vector3& x) { return field_of_poles(magnet, x); });
   return sources::field_at(points, 4, [&](const Vector3& x) {
     return sum_over_dipoles(magnet, cilium.area(), options_, x, sources::dipole_field);
   });
@@ -85,7 +84,7 @@ std::vector<Matrix3> LineField::gradient(const Cilium& cilium, const Deformation
     Matrix3 sum = Matrix3::Zero();
     if (closed_form)
       for (const RodEnd& end : magnet.ends)
-        sum += sources::pole_gradient(area * end.magnetization_jump, x - end.section.centre);
+        sum += sources::pole_gradient(pole_strength(end), x - end.section.centre);
     else
       for (int k = 0; k < 3; ++k)
         sum.col(k) = sum_over_dipoles(magnet, area, options_, x, [k](const auto& m, const auto& a) {

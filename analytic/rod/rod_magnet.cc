@@ -5,6 +5,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "problem/error.h"
 
@@ -23,8 +24,30 @@ void append_stretches(RodMagnet& magnet, std::size_t segment, double begin, doub
   }
 }
 
-sources::Circle section_at(const RodMagnet& magnet, const RodStretch& stretch, double S) {
-  return section(magnet, at(magnet, stretch, S));
+/// Axes of a rectangle's sides and d₃.
+Eigen::Matrix3d axes_of(const CrossSection& shape, const CentrelinePoint& point) {
+  return point.rotation * Eigen::AngleAxisd(shape.orientation, Vector3::UnitZ()).toRotationMatrix();
+}
+
+RodEnd end_at(const RodMagnet& magnet, const RodStretch& stretch, double S, double jump) {
+  const CentrelinePoint point = at(magnet, stretch, S);
+  RodEnd end{section(magnet, point), jump};
+  if (magnet.shape.shape == CrossSection::Shape::rectangle)
+    end.rectangle = {axes_of(magnet.shape, point),
+                     {magnet.shape.width / 2, magnet.shape.height / 2}};
+  return end;
+}
+
+/// The holes of a tube.
+void append_holes(RodMagnet& magnet) {
+  if (magnet.shape.shape != CrossSection::Shape::tube) return;
+  const std::size_t count = magnet.ends.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    RodEnd hole = magnet.ends[i];
+    hole.section.radius = magnet.shape.inner_diameter / 2;
+    hole.magnetization_jump *= -1;
+    magnet.ends.push_back(hole);
+  }
 }
 
 /// Ends with a jump. An interface's section is taken from the segment below.
@@ -36,16 +59,16 @@ void append_ends(RodMagnet& magnet) {
       const bool touches = below != nullptr && below->segment + 1 == stretch.segment;
       const double M_below = touches ? below->magnetization : 0;
       if (below != nullptr && !touches)
-        magnet.ends.push_back({section_at(magnet, *below, below->end), below->magnetization});
+        magnet.ends.push_back(end_at(magnet, *below, below->end, below->magnetization));
       if (M_below != stretch.magnetization)
-        magnet.ends.push_back({touches ? section_at(magnet, *below, below->end)
-                                       : section_at(magnet, stretch, stretch.begin),
-                               M_below - stretch.magnetization});
+        magnet.ends.push_back(
+            touches ? end_at(magnet, *below, below->end, M_below - stretch.magnetization)
+                    : end_at(magnet, stretch, stretch.begin, M_below - stretch.magnetization));
     }
     below = &stretch;
   }
   if (below != nullptr)
-    magnet.ends.push_back({section_at(magnet, *below, below->end), below->magnetization});
+    magnet.ends.push_back(end_at(magnet, *below, below->end, below->magnetization));
 }
 
 /// Calls `visit(point)` at the nodes of the stretch and at its ends.
@@ -56,6 +79,27 @@ void for_each_node(const RodMagnet& magnet, const RodStretch& stretch, Visit vis
   for (std::size_t i = 0; i < S.size(); ++i)
     if (S[i] > stretch.begin && S[i] < stretch.end) visit(magnet.centreline.node(stretch.piece, i));
   visit(at(magnet, stretch, stretch.end));
+}
+
+/// Whether the section at the point has x, which lies in its plane.
+bool is_in_section(const RodMagnet& magnet, const CentrelinePoint& point, const Vector3& x) {
+  const CrossSection& shape = magnet.shape;
+  const double distance = (x - point.position).norm();
+  if (shape.shape != CrossSection::Shape::rectangle)
+    return distance < magnet.radius && !(distance < shape.inner_diameter / 2);
+  const Vector3 local = axes_of(shape, point).transpose() * (x - point.position);
+  return std::abs(local.x()) < shape.width / 2 && std::abs(local.y()) < shape.height / 2;
+}
+
+/// The most by which bending shortens ∂x/∂S·d₃ anywhere on the section.
+double largest_shortening(const RodMagnet& magnet, const CentrelinePoint& point) {
+  const Vector3 d3 = point.normal();
+  const CrossSection& shape = magnet.shape;
+  if (shape.shape != CrossSection::Shape::rectangle)
+    return magnet.radius * point.curvature.cross(d3).norm();
+  const Eigen::Matrix3d axes = axes_of(shape, point);
+  return shape.width / 2 * std::abs(point.curvature.cross(axes.col(0)).dot(d3)) +
+         shape.height / 2 * std::abs(point.curvature.cross(axes.col(1)).dot(d3));
 }
 
 /// Appends the parts of a stretch that are no longer than their distance; false if one would be
@@ -83,7 +127,8 @@ bool append_graded(const RodMagnet& magnet, const RodStretch& stretch,
 
 RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
   if (cilium.segments.empty()) throw InputError("the field of a cilium without segments was asked");
-  RodMagnet magnet{cilium.radius(), deformation.centreline};
+  RodMagnet magnet{.radius = cilium.radius(), .centreline = deformation.centreline};
+  magnet.shape = cilium.section;
   const std::vector<double> interfaces = cilium.interfaces();
   if (!(std::abs(magnet.centreline.length() - interfaces.back()) <= 1e-9 * interfaces.back()))
     throw InputError(
@@ -95,7 +140,14 @@ RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
     append_stretches(magnet, i, interfaces[i], interfaces[i + 1], M);
   }
   append_ends(magnet);
+  append_holes(magnet);
   return magnet;
+}
+
+double pole_strength(const RodEnd& end) {
+  const double area = end.rectangle ? 4 * end.rectangle->half[0] * end.rectangle->half[1]
+                                    : std::numbers::pi * end.section.radius * end.section.radius;
+  return area * end.magnetization_jump;
 }
 
 CentrelinePoint at(const RodMagnet& magnet, const RodStretch& stretch, double S) {
@@ -123,8 +175,7 @@ void require_body(const RodMagnet& magnet) {
   for (const RodStretch& stretch : magnet.stretches)
     for_each_node(magnet, stretch, [&](const CentrelinePoint& point) {
       const Vector3 d3 = point.normal();
-      const double smallest_jacobian =
-          d3.dot(point.derivative) - magnet.radius * point.curvature.cross(d3).norm();
+      const double smallest_jacobian = d3.dot(point.derivative) - largest_shortening(magnet, point);
       if (!(smallest_jacobian > 0))
         throw SolverError(
             "the magnet is bent more sharply than its radius, so that its sections "
@@ -199,7 +250,7 @@ std::optional<Vector3> RodInterior::magnetization_between(const Sample& low, con
     S = (bracket.first + bracket.second) / 2;
   }
   const CentrelinePoint point = at(magnet_, stretch, S);
-  if (!((x - point.position).norm() < magnet_.radius)) return std::nullopt;
+  if (!is_in_section(magnet_, point, x)) return std::nullopt;
   const Vector3 carried = stretch_vector(point, x);
   return stretch.magnetization / point.normal().dot(carried) * carried;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <mutex>
@@ -23,20 +24,28 @@ struct RodStretch {
   double magnetization = 0;  ///< M, A/m
 };
 
+/// The sides of a rectangular section.
+struct RodRectangle {
+  Eigen::Matrix3d axes;          ///< columns: along the first and second side, and d₃
+  std::array<double, 2> half{};  ///< of the sides, m
+};
+
 /// A section where the magnetisation changes: an end of the magnet or an interface between two of
-/// its segments.
+/// its segments. A tube has two for each, the hole's with the opposite charge.
 struct RodEnd {
-  sources::Circle section;    ///< centred on the centreline, normal d₃
+  sources::Circle section;    ///< centred on the centreline, normal d₃; around a rectangle
   double magnetization_jump;  ///< M below − M above, A/m; the reference charge on the section
+  std::optional<RodRectangle> rectangle{};
 };
 
 /// The magnetic segments of a bent rod, as the field models of rods read them. It refers to the
 /// deformation's centreline.
 struct RodMagnet {
-  double radius = 0;  ///< m
+  double radius = 0;  ///< of the circle around the section, m
   const Centreline& centreline;
   std::vector<RodStretch> stretches{};  ///< from base to tip
   std::vector<RodEnd> ends{};           ///< with a jump
+  CrossSection shape{};
 };
 
 /// Throws InputError if the cilium has no segments, or is not as long as the centreline.
@@ -44,6 +53,9 @@ RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation);
 
 /// The state at S on a stretch, by the interpolation of the stretch's own piece.
 CentrelinePoint at(const RodMagnet& magnet, const RodStretch& stretch, double S);
+
+/// The charge of an end as a whole, its magnetisation's jump times its area, A·m.
+double pole_strength(const RodEnd& end);
 
 /// The section at S as a circle.
 sources::Circle section(const RodMagnet& magnet, const CentrelinePoint& point);

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "analytic/rod/end_discs.h"
+#include "analytic/rod/end_rectangles.h"
 #include "analytic/rod/field_models.h"
 #include "analytic/rod/loop_stack.h"
 #include "analytic/rod/rod_magnet.h"
@@ -17,16 +18,18 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// B = μ₀ Σ σ H(disc) + μ₀ m of the wedge's reference charge on the end sections.
+/// B = μ₀ Σ σ H(disc or rectangle) + μ₀ m of the wedge's reference charge on the end sections.
 Field field_of_discs(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
   const RodInterior interior(magnet);
+  const bool is_rectangular = magnet.shape.shape == CrossSection::Shape::rectangle;
   return sources::field_at(points, 256, [&](const Vector3& x) {
-    sources::FieldValue sum = field_of_end_discs(magnet.ends, x);
+    sources::FieldValue sum = is_rectangular ? field_of_end_rectangles(magnet.ends, x)
+                                             : field_of_end_discs(magnet.ends, x);
     if (const auto m = interior.magnetization_at(x)) {
       const Vector3 inside = vacuum_permeability * *m;
       sum += {inside, Vector3::Constant(40 * epsilon * inside.norm())};
     }
-    sources::require_tolerance(sum, {tolerance, 0, "field of the charged discs", x});
+    sources::require_tolerance(sum, {tolerance, 0, "field of the charged end faces", x});
     return sum;
   });
 }
@@ -45,6 +48,11 @@ Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
                          std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   const bool is_wedge = options_.slices == VolumeOptions::Slices::wedge;
+  if (cilium.section.shape != CrossSection::Shape::circle &&
+      !(is_wedge && options_.method == Method::closed_form))
+    throw InputError(
+        "the model `volume` takes a rectangle or a tube by the slices `wedge` and the method "
+        "`closed_form` only");
   if (is_wedge) require_body(magnet);
   if (options_.method == Method::closed_form)
     return is_wedge ? field_of_discs(magnet, options_.tolerance, points)
@@ -63,6 +71,8 @@ std::vector<Matrix3> VolumeField::gradient(const Cilium& cilium, const Deformati
     throw InputError(
         "the gradient of the model `volume` has a closed form for the slices `wedge` by the method "
         "`closed_form` only");
+  if (cilium.is_rectangular())
+    throw InputError("the gradient of the model `volume` has no closed form for a rectangle yet");
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   require_body(magnet);
   const RodInterior interior(magnet);
@@ -75,4 +85,3 @@ std::vector<Matrix3> VolumeField::gradient(const Cilium& cilium, const Deformati
 }
 
 }  // namespace ciliaval::analytic::rod
-

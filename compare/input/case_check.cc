@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "compare/input/case_sections.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -147,6 +148,26 @@ void check_signal(const Case& c, const Report& report) {
                        seconds, seconds * c.signal->sampling_rate, longest_record));
 }
 
+/// What goes with a rectangle or a tube.
+void check_section(const Case& c, const Report& report) {
+  if (c.cilium.section.shape == CrossSection::Shape::circle) return;
+  const Load& first = c.load_path.front();
+  if (first.is<SweepLoad>())
+    return report("load.type",
+                  "a sweep is of a cilium of circular section: leave out [cilium.section]");
+  if (!c.cilium.is_rectangular()) return;
+  for (std::size_t i = 0; i < c.load_path.size(); ++i) {
+    const std::string path = i == 0 ? "load.azimuth" : fmt::format("load.azimuth[{}]", i);
+    try {
+      c.cilium.extent(azimuth(c.load_path[i]));
+    } catch (const InputError& fault) {
+      return report(path, fault.what());
+    }
+    if (azimuth(c.load_path[i]) != azimuth(first))
+      return report(path, "a rectangular cilium takes a path of one azimuth");
+  }
+}
+
 /// The loads that the models take, and what they find with their own options.
 void check_models(const Case& c, const Models& known, const RightTables& right,
                   const Report& report) {
@@ -169,6 +190,12 @@ void check_models(const Case& c, const Models& known, const RightTables& right,
           path_of_id("mechanics", c.mechanics, entry.id),
           fmt::format("{0} takes no [environment]: leave out '{0}', or the environment", entry.id));
     }
+    if (is_asked_for && right.cilium && !entry.takes_sections &&
+        c.cilium.section.shape != CrossSection::Shape::circle)
+      report(path_of_id(is_mechanics ? "mechanics" : "fields",
+                        is_mechanics ? c.mechanics : c.fields, entry.id),
+             fmt::format("{0} takes circular sections only: leave out '{0}', or [cilium.section]",
+                         entry.id));
     if (entry.check) entry.check({c, is_asked_for, right.cilium, right.load, report});
   });
 }
@@ -239,11 +266,12 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
            fmt::format("the segments are {:g} m long together; more than {:g} m is taken for a "
                        "slip in the unit",
                        c.cilium.length(), longest_cilium));
-  else if (right.cilium && c.cilium.length() > most_slender * c.cilium.diameter)
-    report("cilium.diameter",
+  else if (right.cilium && c.cilium.length() > most_slender * c.cilium.thickness())
+    report(c.cilium.is_rectangular() ? "cilium.section" : "cilium.diameter",
            fmt::format("the cilium is {:g} diameters long; more than {:g} is taken for a slip "
                        "in the unit",
-                       c.cilium.length() / c.cilium.diameter, most_slender));
+                       c.cilium.length() / c.cilium.thickness(), most_slender));
+  if (right.cilium && right.load) check_section(c, report);
   if (right.cilium && right.load) check_load(c, report);
   if (right.cilium && right.load) check_environment(c, report);
   if (right.load) check_profile(c, report);

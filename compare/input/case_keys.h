@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,8 +17,35 @@ std::string describe(const Range& range, const Quantity& quantity);
 
 namespace key {
 inline constexpr QuantityKey diameter{
-    "cilium",     "diameter", quantity::length,
-    length_range, "",         "Diameter d of the circular section, the same all along."};
+    "cilium",
+    "diameter",
+    quantity::length,
+    length_range,
+    "none of a rectangle",
+    "Diameter d of the section, the same all along; of a tube the outer one."};
+inline constexpr std::string_view section_table = "cilium.section";
+inline constexpr std::string_view section_shape = "shape";
+inline constexpr std::array<std::string_view, 3> section_shapes{"circle", "rectangle", "tube"};
+inline constexpr QuantityKey section_width{
+    section_table, "width", quantity::length,
+    length_range,  "",      "`rectangle`: its first side, along x unless it is turned."};
+inline constexpr QuantityKey section_height{
+    section_table, "height", quantity::length,
+    length_range,  "",       "`rectangle`: its second side, along y unless it is turned."};
+inline constexpr QuantityKey section_orientation{
+    section_table,
+    "orientation",
+    quantity::angle,
+    {-12.6, 12.6, false, "more than two turns is taken for a slip in the unit"},
+    "0 deg",
+    "`rectangle`: turn of the first side from +x towards +y. The load's azimuth lies along a "
+    "side."};
+inline constexpr QuantityKey section_inner_diameter{section_table,
+                                                    "inner_diameter",
+                                                    quantity::length,
+                                                    length_range,
+                                                    "",
+                                                    "`tube`: diameter of the hole."};
 inline constexpr QuantityKey segment_length{
     "cilium.segment", "length", quantity::length,
     length_range,     "",       "Length along the straight axis."};

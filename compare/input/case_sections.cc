@@ -127,6 +127,42 @@ void read_options(Section& models, const Models& known, ModelOptions& options) {
   });
 }
 
+/// Diameter, and [cilium.section] where it is not the full circle.
+void read_cross_section(Section& cilium, Cilium& result) {
+  using Shape = CrossSection::Shape;
+  Faults& faults = cilium.faults();
+  CrossSection& section = result.section;
+  Section table = cilium.section("section");
+  if (table.exists()) {
+    if (const toml::node* node = table.require(key::section_shape))
+      if (const auto shape = read_choice(*node, key::section_shape, key::section_shapes, faults))
+        section.shape = static_cast<Shape>(std::ranges::find(key::section_shapes, *shape) -
+                                           key::section_shapes.begin());
+    if (section.shape == Shape::rectangle) {
+      section.width = table.value(key::section_width).value_or(0);
+      section.height = table.value(key::section_height).value_or(0);
+      section.orientation = table.value(key::section_orientation).value_or(0);
+    }
+    if (section.shape == Shape::tube)
+      section.inner_diameter = table.value(key::section_inner_diameter).value_or(0);
+    table.finish();
+  }
+  const toml::node* diameter = section.shape == Shape::rectangle
+                                   ? cilium.find(key::diameter.name)
+                                   : cilium.require(key::diameter.name);
+  if (section.shape == Shape::rectangle) {
+    if (diameter != nullptr)
+      faults.add(place(*diameter), "a rectangle has 'width' and 'height' in place of 'diameter'");
+    return;
+  }
+  result.diameter = cilium.value(key::diameter).value_or(0);
+  if (const toml::node* hole = table.find(key::section_inner_diameter.name);
+      hole != nullptr && diameter != nullptr && result.diameter > 0 &&
+      section.inner_diameter >= result.diameter)
+    faults.add(place(*hole), fmt::format("the hole of a tube is narrower than its 'diameter', {}",
+                                         format_quantity(result.diameter, quantity::length)));
+}
+
 /// [[sensor]]: the sensors by name.
 void read_named_sensors(Section& root, Case& c) {
   root.tables("sensor", 1, most_sensors, [&](Section& table) {
@@ -232,7 +268,7 @@ void read_header(Section& root, Case& c) {
 
 void read_cilium(Section& root, Case& c) {
   Section table = require_section(root, "cilium");
-  c.cilium.diameter = table.value(key::diameter).value_or(0);
+  read_cross_section(table, c.cilium);
   read_segments(table, c.cilium.segments);
   table.finish();
 }

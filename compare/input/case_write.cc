@@ -76,7 +76,20 @@ std::string parameters(const Case& c) {
 }
 
 std::string cilium(const Case& c) {
-  std::string text = "\n[cilium]\n" + line(key::diameter, c.cilium.diameter);
+  using Shape = CrossSection::Shape;
+  const CrossSection& section = c.cilium.section;
+  std::string text = "\n[cilium]\n";
+  if (section.shape != Shape::rectangle) text += line(key::diameter, c.cilium.diameter);
+  if (section.shape != Shape::circle) {
+    text += fmt::format(
+        "\n[{}]\n{} = {}\n", key::section_table, key::section_shape,
+        toml_text(std::string(key::section_shapes.at(static_cast<std::size_t>(section.shape)))));
+    if (section.shape == Shape::tube)
+      text += line(key::section_inner_diameter, section.inner_diameter);
+    else
+      text += line(key::section_width, section.width) + line(key::section_height, section.height) +
+              line(key::section_orientation, section.orientation);
+  }
   for (const Segment& s : c.cilium.segments) {
     text += fmt::format("\n[[cilium.segment]]\nname = {}\n", toml_text(s.name));
     text += line(key::segment_length, s.length) + line(key::young_modulus, s.young_modulus) +

@@ -62,7 +62,7 @@ class Viewer {
       if (segment.density != 0) look_at(whose, segment.density, "kg/m^3", density);
       if (segment.magnetization != 0) look_at(whose, segment.magnetization, "A/m", magnetization);
     }
-    const double slenderness = cilium.length() / cilium.diameter;
+    const double slenderness = cilium.length() / cilium.thickness();
     if (slenderness < least_slenderness)
       warn(
           fmt::format("the cilium is only {:.2g} diameters long: rods (`elastica`, `beam`) are off "
@@ -90,7 +90,7 @@ class Viewer {
       if (distance == 0)
         warn(fmt::format("sensor {} lies inside the straight magnet",
                          input::sensor_name(problem_, s)));
-      else if (distance < near_magnet * problem_.cilium.diameter)
+      else if (distance < near_magnet * problem_.cilium.thickness())
         warn(
             fmt::format("sensor {} is {:.3g} mm from the magnet: there the field depends on what "
                         "the magnet's edge really looks like",
@@ -117,12 +117,13 @@ class Viewer {
     std::optional<std::size_t> largest;  // the step that bends most
     double deflection = -1;
     double strain = 0;
+    const double half_thickness = problem_.cilium.extent(azimuth(problem_.load_path.front())) / 2;
     for (std::size_t i = 0; i < run.result.steps.size(); ++i) {
       const MechanicsStep& step = run.result.steps[i];
       if (!step.deformation) continue;
       const Centreline& centreline = step.deformation->centreline;
       for (const double S : centreline.breaks())
-        strain = std::max(strain, problem_.cilium.radius() * centreline.at(S).bending_curvature());
+        strain = std::max(strain, half_thickness * centreline.at(S).bending_curvature());
       const Vector3 tip = centreline.at(centreline.length()).position;
       if (std::hypot(tip.x(), tip.y()) <= deflection) continue;
       deflection = std::hypot(tip.x(), tip.y());

@@ -42,7 +42,7 @@ void lay_out(FieldGrid& grid, const models::CaseResult& result, const models::Me
   const Eigen::AlignedBox3d cilium = box;
   for (const Vector3& sensor : result.problem.sensors)
     if (cilium.exteriorDistance(sensor) <= reach) box.extend(sensor);
-  const Vector3 margin = Vector3::Constant(2 * result.problem.cilium.diameter);
+  const Vector3 margin = Vector3::Constant(4 * result.problem.cilium.radius());
   grid.origin = box.min() - margin;
   const Vector3 size = box.max() + margin - grid.origin;
   for (Eigen::Index i = 0; i < 3; ++i)

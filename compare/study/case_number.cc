@@ -59,10 +59,21 @@ void append_segments(const input::Case& c, std::vector<CaseNumber>& all) {
 
 void append_cilium(const input::Case& c, std::vector<CaseNumber>& all) {
   static constexpr Range ratio_range{0.1, 1e4, false, "a cilium is longer than it is thick"};
-  all.push_back(plain(
-      "cilium.diameter", input::key::diameter,
-      [](const input::Case& x) { return x.cilium.diameter; },
-      [](input::Case& x, double v) { x.cilium.diameter = v; }));
+  if (c.cilium.is_rectangular()) {
+    const auto side = [&](const QuantityKey& k, double CrossSection::*member) {
+      all.push_back(plain(
+          fmt::format("{}.{}", k.table, k.name), k,
+          [=](const input::Case& x) { return x.cilium.section.*member; },
+          [=](input::Case& x, double v) { x.cilium.section.*member = v; }));
+    };
+    side(input::key::section_width, &CrossSection::width);
+    side(input::key::section_height, &CrossSection::height);
+  } else {
+    all.push_back(plain(
+        "cilium.diameter", input::key::diameter,
+        [](const input::Case& x) { return x.cilium.diameter; },
+        [](input::Case& x, double v) { x.cilium.diameter = v; }));
+  }
   append_segments(c, all);
   all.push_back({"cilium.length", quantity::length, length_range,
                  "The total length, the segments in proportion.", false, Order::total_length,
@@ -71,6 +82,7 @@ void append_cilium(const input::Case& c, std::vector<CaseNumber>& all) {
                    const double total = x.cilium.length();
                    for (Segment& s : x.cilium.segments) s.length *= v / total;
                  }});
+  if (c.cilium.is_rectangular()) return;
   all.push_back({"cilium.aspect_ratio", quantity::number, ratio_range,
                  "The total length over the diameter, by the diameter.", false, Order::aspect_ratio,
                  "cilium.diameter",

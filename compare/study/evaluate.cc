@@ -32,7 +32,7 @@ double soft_magnitude(const Cilium& cilium, const Load& load) {
   for (const Segment& s : cilium.segments)
     E = E == 0 ? s.young_modulus : std::min(E, s.young_modulus);
   const double L = cilium.length();
-  const double force = E * cilium.second_moment() / (L * L);
+  const double force = E * cilium.second_moment(azimuth(load)) / (L * L);
   return load.is<SectionLoad>() ? force : force / L;
 }
 

@@ -10,6 +10,7 @@
 #include "fem/beam/cilium_beam.h"
 #include "fem/beam/contact.h"
 #include "fem/beam/newton.h"
+#include "fem/beam/stability/stability.h"
 #include "fem/beam/sweep/sweep.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
@@ -42,19 +43,22 @@ class PathSolver {
     }
     const Loads from = applied_;
     const Loads to = loads(cilium_, load, *beam_);
-    const PathReport report = advance(beam_->system, state_, from, to,
-                                      {options_.tolerance,
-                                       options_.max_iterations,
-                                       options_.max_cutbacks,
-                                       {},
-                                       largest_turn(load)},
-                                      {}, progress);
+    const auto unstable_modes = [this](const State& state, const Loads& at) {
+      return stability::unstable_modes(beam_->system, state, at);
+    };
+    NewtonOptions newton{options_.tolerance, options_.max_iterations, options_.max_cutbacks};
+    newton.largest_turn = largest_turn(load);
+    const bool may_buckle = newton.largest_turn && !load.is<FlowLoad>();  // which has no potential
+    if (may_buckle) newton.unstable_modes = unstable_modes;
+    const PathReport report = advance(beam_->system, state_, from, to, newton, {}, progress);
     applied_ = report.converged ? to : combine(1 - report.reached, from, report.reached, to);
     MechanicsStep step;
     step.load = load;
     step.status = report.converged ? Status::converged : Status::failed;
     step.message = report.message;
     step.iterations = report.iterations;
+    if (may_buckle && report.converged)
+      if (const int modes = unstable_modes(state_, to); modes > 0) step.message = not_stable(modes);
     return step;
   }
 
@@ -139,6 +143,22 @@ bool is_sweep(const LoadPath& path) {
   return !path.empty() && path.front().is<SweepLoad>();
 }
 
+/// The azimuth in whose frame the path is solved, that the sides of a rectangle are along the axes.
+double frame_azimuth(const Cilium& cilium, const LoadPath& path) {
+  if (!cilium.is_rectangular()) return 0;
+  return path.empty() ? cilium.section.orientation : azimuth(path.front());
+}
+
+void turn(MechanicsResult& result, const LoadPath& path, double angle) {
+  result.undeformed = turned(result.undeformed, angle);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    MechanicsStep& step = result.steps[i];
+    step.load = path[i];
+    if (step.deformation) step.deformation = turned(*step.deformation, angle);
+  }
+  for (MechanicsResult& companion : result.companions) turn(companion, path, angle);
+}
+
 MechanicsResult solve_all(const Cilium& cilium, const LoadPath& path, const BeamOptions& options,
                           const Progress& progress) {
   MechanicsResult result;
@@ -159,6 +179,13 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
     ciliaval::require_valid(load, cilium);
     if (load.is<SweepLoad>() && !surroundings::is_empty(load.environment()))
       throw InputError("the beam takes a sweep without an environment only");
+  }
+  if (const double angle = frame_azimuth(cilium, path); angle != 0) {
+    LoadPath in_frame;
+    for (const Load& load : path) in_frame.push_back(turned(load, -angle));
+    MechanicsResult result = solve(turned(cilium, -angle), in_frame, progress);
+    turn(result, path, angle);
+    return result;
   }
   MechanicsResult result = solve_all(cilium, path, options_, progress);
   if (options_.error_estimate) {

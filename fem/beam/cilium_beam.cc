@@ -2,6 +2,7 @@
 #include "fem/beam/cilium_beam.h"
 
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -10,9 +11,24 @@
 namespace ciliaval::fem::beam {
 namespace {
 
+/// Of a rectangle with its sides along x and y (Beam::solve() turns it so).
+SectionStiffness stiffness(const Cilium& cilium, const Segment& s) {
+  const double quarter = std::numbers::pi / 2;
+  switch (cilium.section.shape) {
+    case CrossSection::Shape::rectangle:
+      return rectangular_section(cilium.extent(0), cilium.extent(quarter), s.young_modulus,
+                                 s.poisson_ratio);
+    case CrossSection::Shape::tube:
+      return tube_section(cilium.diameter, cilium.section.inner_diameter, s.young_modulus,
+                          s.poisson_ratio);
+    default:
+      return circular_section(cilium.diameter, s.young_modulus, s.poisson_ratio);
+  }
+}
+
 Section segment_section(const Cilium& cilium, std::size_t segment, const BeamOptions& options) {
   const Segment& s = cilium.segments[segment];
-  const Section law = section(circular_section(cilium.diameter, s.young_modulus, s.poisson_ratio));
+  const Section law = section(stiffness(cilium, s));
   return options.shear_rigid ? rigid_in_shear(law) : law;
 }
 

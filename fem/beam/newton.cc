@@ -227,15 +227,28 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
   PathReport report;
   double step = 1;
   unsigned int halvings = 0;
+  int allowed = options.unstable_modes ? options.unstable_modes(state, from) : 0;
   for (int increments = 1; report.reached < 1; ++increments) {
     const double aim = std::min(1.0, report.reached + step);
-    const State before = options.largest_turn ? state : State{};
-    report.last = newton(system, state, combine(1 - aim, from, aim, to), options, conditions);
+    const bool is_judged = options.largest_turn || options.unstable_modes;
+    const State before = is_judged ? state : State{};
+    const Loads loads = combine(1 - aim, from, aim, to);
+    report.last = newton(system, state, loads, options, conditions);
     if (options.largest_turn && report.last.converged &&
         turn_between(before, state) > *options.largest_turn) {
       state = before;
       report.last.converged = false;
       report.last.reason = "a section turned too far in one increment";
+    }
+    if (options.unstable_modes && report.last.converged) {
+      const int modes = options.unstable_modes(state, loads);
+      if (modes > allowed && halvings < options.max_cutbacks) {
+        state = before;
+        report.last.converged = false;
+        report.last.reason = "the equilibrium is less stable";
+      } else {
+        allowed = std::max(allowed, modes);
+      }
     }
     report.iterations += static_cast<int>(report.last.increments.size());
     if (progress) progress(aim, report.last);

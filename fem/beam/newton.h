@@ -20,6 +20,10 @@ struct NewtonOptions {
   /// Of a section in one increment of a path, rad: where equilibria are several, as in a field, a
   /// long increment may end at another one than the path leads to.
   std::optional<double> largest_turn = {};
+  /// Ways in which the energy decreases at an equilibrium of a path, if it is asked for: an
+  /// increment that ends with more than it started from may have leapt over a bifurcation, and is
+  /// halved. After max_cutbacks halvings the path itself leads there.
+  std::function<int(const State&, const Loads&)> unstable_modes = {};
 };
 /// largest_turn under an environment.
 inline constexpr double turn_in_environment = 0.5;

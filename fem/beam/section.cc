@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/beam/section.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,6 +30,39 @@ SectionStiffness circular_section(double diameter, double young_modulus, double 
           .GJ = 2 * G * I,
           .EI1 = young_modulus * I,
           .EI2 = young_modulus * I};
+}
+
+SectionStiffness tube_section(double diameter, double inner_diameter, double young_modulus,
+                              double poisson_ratio) {
+  const double nu = poisson_ratio;
+  SectionStiffness outer = circular_section(diameter, young_modulus, nu);
+  const SectionStiffness inner = circular_section(inner_diameter, young_modulus, nu);
+  outer.EA -= inner.EA;
+  outer.GJ -= inner.GJ;
+  outer.EI1 -= inner.EI1;
+  outer.EI2 -= inner.EI2;
+  const double m2 = std::pow(inner_diameter / diameter, 2);
+  const double square = std::pow(1 + m2, 2);
+  const double k = 6 * (1 + nu) * square / ((7 + 6 * nu) * square + (20 + 12 * nu) * m2);
+  outer.kGA1 = outer.kGA2 = k * outer.EA / (2 * (1 + nu));
+  return outer;
+}
+
+SectionStiffness rectangular_section(double a, double b, double young_modulus,
+                                     double poisson_ratio) {
+  const double G = young_modulus / (2 * (1 + poisson_ratio));
+  const double kGA = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio) * G * a * b;
+  const auto [s, l] = std::minmax(a, b);
+  constexpr double pi = std::numbers::pi;
+  double sum = 0;
+  for (int n = 399; n > 0; n -= 2) sum += std::tanh(n * pi * l / (2 * s)) / std::pow(n, 5);
+  const double J = l * std::pow(s, 3) * (1.0 / 3 - 64 / std::pow(pi, 5) * s / l * sum);
+  return {.EA = young_modulus * a * b,
+          .kGA1 = kGA,
+          .kGA2 = kGA,
+          .GJ = G * J,
+          .EI1 = young_modulus * a * std::pow(b, 3) / 12,
+          .EI2 = young_modulus * std::pow(a, 3) * b / 12};
 }
 
 Section rigid_in_shear(const Section& section) {

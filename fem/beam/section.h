@@ -33,6 +33,19 @@ double cowper_circle(double poisson_ratio);
 /// EA = Eπd²/4, EI = Eπd⁴/64, GJ = Gπd⁴/32, kGA with Cowper's k, G = E/(2(1+ν)).
 SectionStiffness circular_section(double diameter, double young_modulus, double poisson_ratio);
 
+/// Tube of outer and inner diameter, as circular_section() but for Cowper's k of the hollow circle,
+/// m = inner/outer: k = 6(1+ν)(1+m²)²/((7+6ν)(1+m²)² + (20+12ν)m²) (Cowper 1966, Eq. 35).
+SectionStiffness tube_section(double diameter, double inner_diameter, double young_modulus,
+                              double poisson_ratio);
+
+/// Rectangle with the sides a along d₁ and b along d₂: EA = Eab, EI₁ = Eab³/12, EI₂ = Ea³b/12, kGA
+/// with Cowper's k = 10(1+ν)/(12+11ν), and with s ≤ l the sides Saint-Venant's
+///   GJ = G l s³ [1/3 − (64/π⁵)(s/l) Σ_{n odd} tanh(nπl/2s)/n⁵]
+/// (Timoshenko & Goodier, Theory of Elasticity, §109). Anticlastic bending is free: a plate much
+/// wider than its thickness is stiffer, up to 1/(1−ν²).
+SectionStiffness rectangular_section(double a, double b, double young_modulus,
+                                     double poisson_ratio);
+
 /// The same section without shear and extension: C_n = 0, Kirchhoff's inextensible rod.
 Section rigid_in_shear(const Section& section);
 

@@ -65,7 +65,8 @@ class CalculixMesh {
     for (const Load& load : path)
       if (const auto section = load.as<SectionLoad>()) mesh.planes.push_back(section->arclength);
     finest_layer_ = mesh.finest_layer;
-    meshes::cylinder::make_cylinder(cilium, mesh, triangulation_);
+    meshes::cylinder::make_cylinder(turned(cilium, path.empty() ? 0 : -azimuth(path.front())), mesh,
+                                    triangulation_);
     mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
     nodes_ = meshes::mesh_nodes(triangulation_, *mapping_);
     space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials(cilium));
@@ -288,6 +289,8 @@ void require_valid(const Cilium& cilium, const LoadPath& path) {
   ciliaval::require_valid(cilium);
   for (const Load& load : path) {
     ciliaval::require_valid(load, cilium);
+    if (cilium.is_rectangular() && azimuth(load) != azimuth(path.front()))
+      throw InputError("CalculiX takes a path of one azimuth only, if the section is a rectangle");
     if (!load.is<SectionLoad>() && !load.is<DeadLoad>())
       throw InputError("CalculiX takes the loads 'section' and 'dead', not '" +
                        std::string(type(load)) +

@@ -43,6 +43,8 @@ std::array<Magnet::Block, 2> halves(const Magnet::Block& block, Eigen::Index coo
 
 Magnet::Magnet(const Cilium& cilium, const Deformation& deformation, MagnetPushForward push_forward)
     : push_forward_(push_forward), radius_(cilium.radius()), centreline_(deformation.centreline) {
+  if (!deformation.body && cilium.section.shape != CrossSection::Shape::circle)
+    throw InputError("the potential takes a rod of circular section only");
   if (deformation.body) {
     *this = Magnet(deformation.body, push_forward);
     return;

@@ -41,7 +41,7 @@ struct EquilibriumPair {
 class Level {
  public:
   /// `coarser` gives the initial guesses; without it, the beam gives them if options.beam_guess.
-  /// Cilium and coarser level must outlive the level.
+  /// The coarser level must outlive the level.
   Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
         std::span<const material::Hyperelastic> materials, const LevelOptions& options,
         Level* coarser);

@@ -98,10 +98,14 @@ double least_force(const Cilium& cilium) {
 
 void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOptions& options) {
   ciliaval::require_valid(cilium);
+  if (!options.mesh.empty() && cilium.section.shape != CrossSection::Shape::circle)
+    throw InputError("the solid takes a user's mesh of a circular section only");
   for (const Load& load : path) {
     ciliaval::require_valid(load, cilium);
     if (load.is<SweepLoad>() && !surroundings::is_empty(load.environment()))
       throw InputError("the solid takes a sweep without an environment only");
+    if (cilium.is_rectangular() && azimuth(load) != azimuth(path.front()))
+      throw InputError("the solid takes a path of one azimuth only, if the section is a rectangle");
     if (type(load) != type(path.front()))
       throw InputError("a load path cannot change from one load type to another");
     const std::optional<double> height = contact_height(load);
@@ -152,8 +156,10 @@ LevelOptions make_level_options(const Cilium& cilium, const SolidOptions& option
 
 /// The meshes from the coarsest to the refinement asked for and that of the section's error; a
 /// user's mesh alone.
-Levels make_levels(const Cilium& cilium, const LoadPath& path, const SolidOptions& options,
+Levels make_levels(const Cilium& given, const LoadPath& path, const SolidOptions& options,
                    MPI_Comm communicator) {
+  const bool in_load_frame = options.mesh.empty() && !path.empty();  // as PathRun solves it
+  const Cilium cilium = turned(given, in_load_frame ? -azimuth(path.front()) : 0);
   const LevelOptions level_options = make_level_options(cilium, options, communicator);
   Levels levels;
   if (!options.mesh.empty()) {

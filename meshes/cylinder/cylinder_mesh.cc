@@ -135,6 +135,62 @@ void make_section(double radius, const CylinderMeshOptions& options, Triangulati
   section.create_triangulation(vertices, cells, {});
 }
 
+/// The section of a tube, or its upper half: cells as around the square of the full circle.
+void make_ring(double outer, double inner, const CylinderMeshOptions& options,
+               Triangulation<2>& section) {
+  const unsigned int around = (options.half ? 2 : 4) * options.square_cells;
+  const unsigned int layers = options.rings + 1;
+  const double turn = options.half ? std::numbers::pi : 2 * std::numbers::pi;
+  const unsigned int lines = options.half ? around + 1 : around;
+  std::vector<Point<2>> vertices;
+  for (unsigned int ring = 0; ring <= layers; ++ring) {
+    for (unsigned int k = 0; k < lines; ++k) {
+      const double phi = turn * k / around;
+      const double r = inner + (outer - inner) * ring / layers;
+      vertices.emplace_back(r * std::cos(phi), r * std::sin(phi));
+    }
+  }
+  std::vector<dealii::CellData<2>> cells(static_cast<std::size_t>(around) * layers);
+  for (unsigned int ring = 0; ring < layers; ++ring) {
+    for (unsigned int k = 0; k < around; ++k) {
+      const unsigned int next = (k + 1) % lines;
+      cells[ring * around + k].vertices = {ring * lines + k, (ring + 1) * lines + k,
+                                           ring * lines + next, (ring + 1) * lines + next};
+    }
+  }
+  section.create_triangulation(vertices, cells, {});
+}
+
+/// The section of a rectangle with the sides a along X and b along Y, or its upper half. A longer
+/// side has more cells by those of the rings: both edges, where it is clamped, are to be resolved.
+void make_rectangle(double a, double b, const CylinderMeshOptions& options,
+                    Triangulation<2>& section) {
+  const auto cells = [&](double side) {
+    const double longer = std::clamp(side / std::min(a, b) - 1, 0.0, 1.0);
+    return options.square_cells + 2 * static_cast<unsigned int>(std::round(options.rings * longer));
+  };
+  const unsigned int across = options.half ? cells(b) / 2 : cells(b);
+  dealii::GridGenerator::subdivided_hyper_rectangle(section, {cells(a), across},
+                                                    Point<2>(-a / 2, options.half ? 0 : -b / 2),
+                                                    Point<2>(a / 2, b / 2));
+}
+
+/// The section in the frame of the mesh.
+void make_section(const Cilium& cilium, const CylinderMeshOptions& options,
+                  Triangulation<2>& section) {
+  const double half_inner = cilium.section.inner_diameter / 2;
+  switch (cilium.section.shape) {
+    case CrossSection::Shape::rectangle:
+      return make_rectangle(cilium.extent(0), cilium.extent(std::numbers::pi / 2), options,
+                            section);
+    case CrossSection::Shape::tube:
+      return make_ring(node_radius(cilium.radius(), options), node_radius(half_inner, options),
+                       options, section);
+    default:
+      make_section(node_radius(cilium.radius(), options), options, section);
+  }
+}
+
 /// Planes strictly between a and b by equal steps of ∫ dS/size(S); appends them and b.
 template <typename Size>
 void append_layers(double a, double b, const Size& size, std::vector<double>& planes) {
@@ -171,7 +227,7 @@ std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions
   // At a free tip there is nothing to resolve.
   const std::vector<double> graded(interfaces.begin(),
                                    interfaces.end() - (options.fine_tip ? 0 : 1));
-  const double d = cilium.diameter;
+  const double d = cilium.thickness();
   const auto size = [&](double S) {
     double distance = cilium.length();
     for (const double plane : graded) distance = std::min(distance, std::abs(S - plane));
@@ -188,10 +244,10 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
                    Triangulation<3>& triangulation) {
   const std::vector<double> planes = layer_planes(cilium, options);
   Triangulation<2> section;
-  make_section(node_radius(cilium.radius(), options), options, section);
+  make_section(cilium, options, section);
   dealii::GridGenerator::extrude_triangulation(section, planes, triangulation);
 
-  const double tolerance = 1e-9 * cilium.diameter;
+  const double tolerance = 1e-9 * cilium.thickness();
   for (const auto& cell : triangulation.active_cell_iterators()) {
     cell->set_material_id(
         static_cast<dealii::types::material_id>(cilium.segment_at(cell->center()[2])));
@@ -205,7 +261,7 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
         face->set_boundary_id(symmetry_id);
       } else {
         face->set_boundary_id(mantle_id);
-        face->set_all_manifold_ids(mantle_manifold);
+        if (!cilium.is_rectangular()) face->set_all_manifold_ids(mantle_manifold);
       }
     }
   }

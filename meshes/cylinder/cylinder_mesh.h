@@ -12,8 +12,8 @@
 
 namespace ciliaval::meshes::cylinder {
 
-/// How finely the cylinder is meshed. Lengths are in diameters, so that one set of options suits
-/// every cilium.
+/// How finely the cylinder is meshed. Lengths are in diameters (of a rectangle its shorter side, of
+/// a tube its wall), so that one set of options suits every cilium.
 struct CylinderMeshOptions {
   unsigned int square_cells = 4;  ///< n: cells along a side of the section's inner square; the
                                   ///< section has n² + 4nm cells; n even
@@ -37,12 +37,13 @@ struct CylinderMeshOptions {
 /// lies outside [0, L].
 std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions& options);
 
-/// The straight cylinder of the cilium: an o-grid (inner square and rings) extruded through
-/// layer_planes(). Material ids are the segments' indices, boundary ids as above. The mesh lines
-/// along the third local coordinate ζ run from base to tip and are straight: X and Y are constant
-/// on them. The mantle is a cylinder, all other edges are straight. The triangulation must be
-/// empty and must stay at its place in memory, for its manifolds point to it. Throws InputError if
-/// the cilium or the options are not valid.
+/// The straight cylinder of the cilium: an o-grid (inner square and rings), the rings of a tube or
+/// the grid of a rectangle, whose sides must lie along X and Y, extruded through layer_planes().
+/// Material ids are the segments' indices, boundary ids as above. The mesh lines along the third
+/// local coordinate ζ run from base to tip and are straight: X and Y are constant on them. The
+/// mantle is a cylinder, all other edges are straight. The triangulation must be empty and must
+/// stay at its place in memory, for its manifolds point to it. Throws InputError if the cilium or
+/// the options are not valid.
 void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
                    dealii::Triangulation<3>& triangulation);
 

@@ -4,7 +4,10 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compare/input/environment/environment.h"
@@ -116,7 +119,23 @@ std::string text(const Cilium& cilium) {
   std::string segments;
   for (const Segment& segment : cilium.segments)
     segments += (segments.empty() ? "" : ", ") + text(segment);
-  return fmt::format("Cilium(diameter={:.6g}, segments=[{}])", cilium.diameter, segments);
+  const CrossSection& section = cilium.section;
+  switch (section.shape) {
+    case CrossSection::Shape::rectangle:
+      return fmt::format(
+          "Cilium.rectangle(width={:.6g}, height={:.6g}, segments=[{}], orientation={:.6g})",
+          section.width, section.height, segments, section.orientation);
+    case CrossSection::Shape::tube:
+      return fmt::format("Cilium.tube(diameter={:.6g}, inner_diameter={:.6g}, segments=[{}])",
+                         cilium.diameter, section.inner_diameter, segments);
+    default:
+      return fmt::format("Cilium(diameter={:.6g}, segments=[{}])", cilium.diameter, segments);
+  }
+}
+
+Cilium valid(Cilium cilium) {
+  require_valid(cilium);
+  return cilium;
 }
 
 }  // namespace
@@ -142,15 +161,49 @@ void bind_problem(py::module_& module) {
       .def("__repr__", [](const Segment& segment) { return text(segment); });
 
   py::class_<Cilium>(module, "Cilium",
-                     "A straight cylinder of segments, from the base up. diameter in m.\n\n"
+                     "A straight cylinder of segments, from the base up. diameter in m.\n"
+                     "Cilium.rectangle and Cilium.tube have other sections.\n\n"
                      "Raises InputError if a number is impossible.")
       .def(py::init([](double diameter, std::vector<Segment> segments) {
-             Cilium cilium{diameter, std::move(segments)};
-             require_valid(cilium);
-             return cilium;
+             return valid({diameter, std::move(segments)});
            }),
            py::arg("diameter"), py::arg("segments"))
-      .def_readonly("diameter", &Cilium::diameter)
+      .def_static(
+          "rectangle",
+          [](double width, double height, std::vector<Segment> segments, double orientation) {
+            return valid({0,
+                          std::move(segments),
+                          {.shape = CrossSection::Shape::rectangle,
+                           .width = width,
+                           .height = height,
+                           .orientation = orientation}});
+          },
+          "Of rectangular section: width along x and height along y, m, turned by orientation, "
+          "rad.",
+          py::arg("width"), py::arg("height"), py::arg("segments"), py::arg("orientation") = 0.0)
+      .def_static(
+          "tube",
+          [](double diameter, double inner_diameter, std::vector<Segment> segments) {
+            return valid({diameter,
+                          std::move(segments),
+                          {.shape = CrossSection::Shape::tube, .inner_diameter = inner_diameter}});
+          },
+          "A tube: outer and inner diameter, m.", py::arg("diameter"), py::arg("inner_diameter"),
+          py::arg("segments"))
+      .def_readonly("diameter", &Cilium::diameter,
+                    "Of the section, of a tube the outer one, m; 0 of a rectangle.")
+      .def_property_readonly(
+          "sides",
+          [](const Cilium& cilium) -> std::optional<std::array<double, 2>> {
+            if (!cilium.is_rectangular()) return std::nullopt;
+            return std::array{cilium.section.width, cilium.section.height};
+          },
+          "Width and height of a rectangle, m; None of another section.")
+      .def_property_readonly(
+          "orientation", [](const Cilium& cilium) { return cilium.section.orientation; },
+          "Turn of a rectangle about z, rad.")
+      .def("extent", &Cilium::extent, "Extent across the axis along an azimuth, m.",
+           py::arg("azimuth") = 0.0)
       .def_property_readonly("segments", [](const Cilium& cilium) { return cilium.segments; })
       .def_property_readonly("length", &Cilium::length, "L, the sum of the lengths, m.")
       .def("__repr__", [](const Cilium& cilium) { return text(cilium); });

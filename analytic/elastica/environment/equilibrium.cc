@@ -18,7 +18,11 @@ namespace {
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_iterations = 12;
 constexpr double smallest_step = 1e-7;  ///< of a path
-constexpr double largest_turn = 0.6;    ///< of the tip in a step of a path, rad
+/// A step that ends at an equilibrium with more unstable modes than it started from may have leapt
+/// over a bifurcation to a branch that the path does not lead to. It is halved, down to this: then
+/// the path itself goes there.
+constexpr double smallest_leap = 1e-3;
+constexpr double largest_turn = 0.6;  ///< of the tip in a step of a path, rad
 
 /// Accuracy of the series.
 struct Accuracy {
@@ -198,6 +202,7 @@ Equilibrium follow(const Path& path, const Unknowns& start, double tolerance) {
   if (!now) throw SolverError("elastica: no equilibrium to start from");
   double t = 0;
   double step = 1;
+  int allowed = now->unstable_modes;
   while (t < 1) {
     const double next = std::min(1.0, t + step);
     Unknowns guess = now->unknowns;
@@ -210,7 +215,11 @@ Equilibrium follow(const Path& path, const Unknowns& start, double tolerance) {
     }
     const std::optional<Equilibrium> found = at(next, guess);
     if (found) iterations += found->iterations;
-    if (found && std::abs(found->unknowns.tip_angle - now->unknowns.tip_angle) <= largest_turn) {
+    const bool is_near =
+        found && std::abs(found->unknowns.tip_angle - now->unknowns.tip_angle) <= largest_turn;
+    const bool leaves = is_near && found->unstable_modes > allowed && next - t > smallest_leap;
+    if (is_near && !leaves) {
+      allowed = std::max(allowed, found->unstable_modes);
       last = std::exchange(now, found);
       last_t = std::exchange(t, next);
       step *= 2;

@@ -108,16 +108,16 @@ double applied_force(const Load& load, const PlanarUnits& units, const Equilibri
 
 }  // namespace
 
-PlanarUnits units_of(const Cilium& cilium) {
+PlanarUnits units_of(const Cilium& cilium, double azimuth) {
   double stiffest = 0;
   for (const Segment& segment : cilium.segments)
-    stiffest = std::max(stiffest, segment.young_modulus * cilium.second_moment());
+    stiffest = std::max(stiffest, segment.young_modulus * cilium.second_moment(azimuth));
   const double L = cilium.length();
   return {L, stiffest / (L * L)};
 }
 
 Rod rod_of(const Cilium& cilium, const Load& load) {
-  const PlanarUnits units = units_of(cilium);
+  const PlanarUnits units = units_of(cilium, azimuth(load));
   const Vector3 e = direction(load);
   const surroundings::Environment environment = acting_environment(load);
   if (surroundings::component(environment, Vector3::UnitZ().cross(e)) > planar)
@@ -133,7 +133,7 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
     Vector3 force = cilium.area() * surroundings::weight_per_volume(environment, segment);
     if (dead) force += dead->force_per_length * e;
     rod.per_length.push_back(in_plane(force * units.length / units.force, e));
-    rod.compliance.push_back(B / (segment.young_modulus * cilium.second_moment()));
+    rod.compliance.push_back(B / (segment.young_modulus * cilium.second_moment(azimuth(load))));
   }
   for (const Vector3& force : surroundings::pole_forces(environment, cilium))
     rod.at_ends.push_back(in_plane(force / units.force, e));
@@ -143,7 +143,7 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
 }
 
 void solve_step(const Cilium& cilium, double tolerance, MechanicsStep& step) {
-  const PlanarUnits units = units_of(cilium);
+  const PlanarUnits units = units_of(cilium, azimuth(step.load));
   const Rod rod = rod_of(cilium, step.load);
   std::optional<Equilibrium> equilibrium;
   if (contact_height(step.load))
@@ -159,9 +159,7 @@ void solve_step(const Cilium& cilium, double tolerance, MechanicsStep& step) {
       planar_centreline(found, units, direction(step.load), std::max(tolerance / 10, 1e-13)),
       nullptr};
   step.status = Status::converged;
-  if (equilibrium->unstable_modes > 0)
-    step.message = "this equilibrium is not stable: it buckles in " +
-                   std::to_string(equilibrium->unstable_modes) + " mode(s)";
+  if (equilibrium->unstable_modes > 0) step.message = not_stable(equilibrium->unstable_modes);
   const CentrelinePoint tip = step.deformation->centreline.at(units.length);
   step.applied_force = applied_force(step.load, units, *equilibrium, tip.position.z());
   if (contact_height(step.load)) step.contact_arclength = units.length * equilibrium->unknowns.at;

@@ -10,7 +10,7 @@
 namespace ciliaval::analytic::elastica::environment {
 
 /// L (m) and B/L² (N), the units of a rod.
-PlanarUnits units_of(const Cilium& cilium);
+PlanarUnits units_of(const Cilium& cilium, double azimuth = 0);
 
 /// The cilium with its environment and what its load spreads over it. Throws InputError if the
 /// environment points out of the plane of the load.

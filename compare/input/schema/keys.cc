@@ -287,6 +287,13 @@ std::vector<Key> all_keys(const Models& models) {
            "Number and checksum of the references in the case's baseline, as `check` states "
            "them."),
       number(key::diameter),
+      choice({key::section_shapes.begin(), key::section_shapes.end()},
+             text(key::section_table, key::section_shape, "",
+                  "Shape of the section, if it is not the full circle of `diameter`.")),
+      only_with({"rectangle"}, number(key::section_width)),
+      only_with({"rectangle"}, number(key::section_height)),
+      only_with({"rectangle"}, number(key::section_orientation)),
+      only_with({"tube"}, number(key::section_inner_diameter)),
       text("cilium.segment", "name", "", "Name of the segment, different from the others'.")};
   for (const QuantityKey& k : {key::segment_length, key::young_modulus, key::poisson_ratio,
                                key::magnetization, key::density})

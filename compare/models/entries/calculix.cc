@@ -45,6 +45,7 @@ input::MechanicsEntry calculix() {
                       "stay, one subfolder for each run. Empty: they are removed.")},
       .refinements = {meshes()},
       .loads = {&SectionLoad::type(), &DeadLoad::type()},
+      .takes_sections = true,
       .has_body = true,
       .is_collective = true,
       .is_slow = true,

@@ -11,6 +11,7 @@ input::FieldEntry dipole() {
       .make = input::make<analytic::rod::DipoleField, DipoleOptions>,
       .options = {input::choice(&DipoleOptions::push_forward, "push_forward", push_forwards(),
                                 rod_push_forward)},
+      .takes_sections = true,
   };
 }
 

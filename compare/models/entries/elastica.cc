@@ -89,6 +89,7 @@ input::MechanicsEntry elastica() {
                                 "Relative, of position over length and of angle.")},
       .refinements = {tolerances({1e-4, 1e-6, 1e-8, 1e-10, 1e-12})},
       .takes_environment = true,
+      .takes_sections = true,
       .check = check,
   };
 }

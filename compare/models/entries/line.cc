@@ -39,6 +39,7 @@ input::FieldEntry line() {
                                 "Relative to the field, of the quadrature."),
                   elements},
       .refinements = {sums, integrals},
+      .takes_sections = true,
   };
 }
 

@@ -16,6 +16,7 @@ input::FieldEntry mesh() {
                   input::option(&MeshOptions::tolerance, "tolerance", tolerance_range,
                                 "Relative to the field.")},
       .refinements = {tolerances({1e-2, 1e-4, 1e-6, 1e-8})},
+      .takes_sections = true,
       .has_body = true,
       .accuracy = 1e-8,
   };

@@ -180,6 +180,7 @@ input::MechanicsEntry solid() {
       .refinements = {solid_meshes()},
       .error_limit = [](const input::ModelOptions& o) { return o.of<ErrorLimit>(); },
       .takes_environment = true,
+      .takes_sections = true,
       .has_body = true,
       .is_collective = true,
       .is_slow = true,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/input/case.h"
 #include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {
@@ -12,6 +13,18 @@ bool is_integrated(const input::ModelOptions& all) {
   const auto& o = all.of<VolumeOptions>();
   return o.method == Method::quadrature ||
          (o.method == Method::closed_form && o.slices == VolumeOptions::Slices::stacked);
+}
+
+/// A rectangle and a tube have the closed form of their charged end faces alone.
+void check(const input::CaseCheck& to) {
+  const auto& o = to.problem.options.of<VolumeOptions>();
+  if (!to.is_asked_for || !to.cilium_is_right ||
+      to.problem.cilium.section.shape == CrossSection::Shape::circle)
+    return;
+  if (o.method != Method::closed_form)
+    to.report("models.volume.method", "a rectangle or a tube has the method \"closed_form\" only");
+  else if (o.slices != VolumeOptions::Slices::wedge)
+    to.report("models.volume.slices", "a rectangle or a tube has the slices \"wedge\" only");
 }
 
 }  // namespace
@@ -44,6 +57,8 @@ input::FieldEntry volume() {
                                 "Relative to the field."),
                   elements},
       .refinements = {sums, integrals},
+      .takes_sections = true,
+      .check = check,
   };
 }
 

@@ -303,7 +303,7 @@ vtkSmartPointer<vtkPolyData> rod_polyline(const Cilium& cilium, const Centreline
     const CentrelinePoint p = centreline.at(S);
     line->InsertCellPoint(points->InsertNextPoint(p.position.data()));
     arclength.add(S);
-    radius.add(cilium.radius());
+    radius.add(cilium.is_rectangular() ? cilium.thickness() / 2 : cilium.radius());
     displacement.add(Vector3(p.position - S * Vector3::UnitZ()));
     d1.add(Vector3(p.rotation * Vector3::UnitX()));
     d2.add(Vector3(p.rotation * Vector3::UnitY()));
@@ -366,7 +366,7 @@ vtkSmartPointer<vtkPolyData> surface_mesh(const Load& load, const Cilium& cilium
   const auto sweep = load.as<SweepLoad>().value();
   const surroundings::Surface& surface = *load.surface();
   const Vector3 e = direction(load);
-  const Vector3 across = cilium.diameter * 1.5 * Vector3::UnitZ().cross(e);
+  const Vector3 across = cilium.radius() * 3 * Vector3::UnitZ().cross(e);
   const double length = cilium.length();
   double first = -length;
   double last = 1.5 * length;

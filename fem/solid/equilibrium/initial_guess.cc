@@ -177,7 +177,7 @@ SolidState rod_guess(const Centreline& rod, const Cilium& cilium, const SolidSpa
   const auto section = [&](double Z) -> const RodSection& {
     return sections.try_emplace(Z, rod, Z).first->second;
   };
-  const double fade = cilium.radius() / 2;
+  const double fade = cilium.thickness() / 4;
   const auto displacement = [&](const Vector3& X, std::size_t) -> Vector3 {
     if (X.z() <= 0) return Vector3::Zero();
     // At an interface the nodes take the upper segment's curvature, on both sides of it.

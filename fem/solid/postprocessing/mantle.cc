@@ -49,7 +49,7 @@ MantleCompression mantle_compression(const SolidSpace& space, const Cilium& cili
   for (const auto& cell : space.dof_handler().active_cell_iterators()) {
     const double bottom = interfaces.at(cell->material_id());
     const double top = interfaces.at(cell->material_id() + 1);
-    const double margin = std::min(rim * cilium.diameter, rim_of_short * (top - bottom));
+    const double margin = std::min(rim * cilium.thickness(), rim_of_short * (top - bottom));
     for (const unsigned int f : cell->face_indices()) {
       if (!cell->at_boundary(f) || cell->face(f)->boundary_id() != meshes::mantle_id) continue;
       face_values.reinit(cell, f);

@@ -53,7 +53,7 @@ def setup(case: Result | Any) -> Figure:
 def _draw_side(
     axes: Axes, cilium: Any, load: Any, sensors: np.ndarray, names: list[str], azimuth: float
 ) -> None:
-    d, length = 1e3 * cilium.diameter, 1e3 * cilium.length
+    d, length = 1e3 * cilium.extent(azimuth), 1e3 * cilium.length
     z = 0.0
     for i, segment in enumerate(cilium.segments):
         h = 1e3 * segment.length
@@ -85,9 +85,9 @@ def _draw_side(
         axes.plot(x, at[2], "s", color="k", markersize=5)
         text = f"sensor {name}: {number(at[2])} mm"
         axes.annotate(text, (x, at[2]), (8, -9), textcoords="offset points", fontsize=7)
-    _draw_load(axes, cilium, load)
+    _draw_load(axes, cilium, load, d)
     _draw_environment(axes, load, along, length)
-    axes.annotate(f"d = {number(d)} mm", (0, length), (0, 6), textcoords="offset points",
+    axes.annotate(f"{'b' if cilium.sides else 'd'} = {number(d)} mm", (0, length), (0, 6), textcoords="offset points",
                   ha="center", fontsize=7)
     deepest = min([0.0, *(1e3 * sensors[:, 2])]) if len(sensors) else 0.0
     axes.set(xlabel="along the load in mm", ylabel="z in mm")
@@ -95,8 +95,8 @@ def _draw_side(
     axes.set_ylim(min(-0.12 * length, 1.6 * deepest - 0.05 * length), 1.15 * length)
 
 
-def _draw_load(axes: Axes, cilium: Any, load: Any) -> None:
-    d, length = 1e3 * cilium.diameter, 1e3 * cilium.length
+def _draw_load(axes: Axes, cilium: Any, load: Any, d: float) -> None:
+    length = 1e3 * cilium.length
     p = load.parameters
 
     def arrow(x: float, z: float, size: float) -> None:
@@ -168,8 +168,15 @@ def _draw_bent(axes: Axes, result: Result, azimuth: float) -> None:
 def _draw_above(
     axes: Axes, cilium: Any, load: Any, sensors: np.ndarray, names: list[str], azimuth: float
 ) -> None:
-    d = 1e3 * cilium.diameter
-    axes.add_patch(Circle((0, 0), d / 2, facecolor=SEGMENTS[0], edgecolor="0.3", linewidth=0.8))
+    look = {"facecolor": SEGMENTS[0], "edgecolor": "0.3", "linewidth": 0.8}
+    if cilium.sides:
+        width, height = 1e3 * np.array(cilium.sides)
+        d = max(width, height)
+        at = {"angle": np.degrees(cilium.orientation), "rotation_point": "center"}
+        axes.add_patch(Rectangle((-width / 2, -height / 2), width, height, **at, **look))
+    else:
+        d = 1e3 * cilium.diameter
+        axes.add_patch(Circle((0, 0), d / 2, **look))
     radii = np.hypot(*(1e3 * sensors[:, :2]).T) if len(sensors) else np.zeros(1)
     reach = max(1.1 * d, 1.3 * radii.max())
     tip = 0.95 * reach * np.array([np.cos(azimuth), np.sin(azimuth)])

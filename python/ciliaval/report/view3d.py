@@ -51,8 +51,10 @@ def view(result: Result) -> View | None:
     pictures = {i: _picture(read_grid(grids[i]), result.loads[i]) for i in steps if i in grids}
     values = np.concatenate([p["values"][np.isfinite(p["values"])] for p in pictures.values()] or [[]])
     scale = [float(values.min()), float(values.max())] if values.size else None
+    azimuth = result.loads[steps[0]].get("azimuth", 0.0)
     data = {
-        "diameter": cilium.diameter,
+        "extents": [cilium.extent(azimuth), cilium.extent(azimuth + np.pi / 2)],  # along the load, across
+        "is_rectangle": cilium.sides is not None,
         "segments": [
             {"length": s.length, "name": s.name, "magnetic": s.magnetization != 0,
              "colour": SEGMENTS[i % len(SEGMENTS)]}

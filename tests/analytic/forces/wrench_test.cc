@@ -117,17 +117,22 @@ TEST(Wrench, IsThatOfTwoDipolesFarAway) {
 // Oracle: Newton. The two ways integrate different fields over different magnets.
 // Measured 1.2e-14; margin 10.
 TEST(Wrench, OnTheMagnetIsTheReactionToThatOnTheBentCilium) {
-  const Cilium cilium = paper_cilium();
-  const Deformation deformation = sampled(cilium, contorted());
+  using Section = CrossSection::Shape;
   double error = 0;
-  for (const Shape shape : shapes) {
-    const Magnet m = magnet(shape);
-    const Wrench here = wrench_on_cilium(cilium, deformation, {m});
-    const Wrench there = wrench_on_magnet(cilium, deformation, m);
-    error = std::max(error, (here.force + there.force).norm() / here.force.norm());
-    const Vector3 about_the_base = there.torque + m.position.cross(there.force);
-    error = std::max(error, (here.torque + about_the_base).norm() / here.torque.norm());
-  }
+  for (const CrossSection& section :
+       {CrossSection{}, CrossSection{.shape = Section::tube, .inner_diameter = 1e-3},
+        CrossSection{.shape = Section::rectangle, .width = 2e-3, .height = 1e-3}})
+    for (const Shape shape : shapes) {
+      Cilium cilium = paper_cilium();
+      cilium.section = section;
+      const Deformation deformation = sampled(cilium, contorted());
+      const Magnet m = magnet(shape);
+      const Wrench here = wrench_on_cilium(cilium, deformation, {m});
+      const Wrench there = wrench_on_magnet(cilium, deformation, m);
+      error = std::max(error, (here.force + there.force).norm() / here.force.norm());
+      const Vector3 about_the_base = there.torque + m.position.cross(there.force);
+      error = std::max(error, (here.torque + about_the_base).norm() / here.torque.norm());
+    }
   record("Newton's third law between cilium and magnet, relative", error);
   EXPECT_LT(error, 1.5e-13);
 }
@@ -235,7 +240,7 @@ TEST(Wrench, OnABallIsThatOnItsDipole) {
                               ball.position));
   // And the reaction on the line's poles.
   const Wrench poles = wrench(
-      poles_of(rod::rod_magnet(cilium, deformation), cilium.area()),
+      poles_of(rod::rod_magnet(cilium, deformation)),
       [&](std::span<const Vector3> x) {
         std::vector<Vector3> B;
         for (const Vector3& point : x) B.push_back(jet(ball, point).B);

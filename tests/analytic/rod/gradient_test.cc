@@ -98,15 +98,26 @@ TEST(RodGradient, OfTheStraightMagnetIsThatOfTheCylinder) {
   EXPECT_LT(error, 5e-13);
 }
 
-// A pole moved along the segment is a dipole: the line's closed form and its quadrature are one.
+// A pole moved along the segment is a dipole: the line's closed form and its quadrature are one,
+// whatever the section. A tube has two charged discs at each end.
 TEST(RodGradient, OfTheLinesPolesIsThatOfItsDipoles) {
-  const Cilium cilium = paper_cilium();
-  const Deformation deformation = sampled(cilium, contorted());
-  const rod::LineField quadrature({sources::PushForward::F, rod::Method::quadrature, 1e-12});
-  const auto a = rod::LineField().gradient(cilium, deformation, points);
-  const auto b = quadrature.gradient(cilium, deformation, points);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    EXPECT_LT((a[i] - b[i]).norm(), 1e-11 * a[i].norm());
+  using Shape = CrossSection::Shape;
+  for (const CrossSection& section :
+       {CrossSection{}, CrossSection{.shape = Shape::tube, .inner_diameter = 1e-3},
+        CrossSection{.shape = Shape::rectangle, .width = 2e-3, .height = 1e-3}}) {
+    Cilium cilium = paper_cilium();
+    cilium.section = section;
+    const Deformation deformation = sampled(cilium, contorted());
+    const rod::LineField quadrature({sources::PushForward::F, rod::Method::quadrature, 1e-12});
+    const auto a = rod::LineField().gradient(cilium, deformation, points);
+    const auto b = quadrature.gradient(cilium, deformation, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_LT((a[i] - b[i]).norm(), 1e-11 * b[i].norm());
+      const Vector3 B = oracle::flux_density(quadrature, cilium, deformation, points[i]);
+      EXPECT_LT((oracle::flux_density(rod::LineField(), cilium, deformation, points[i]) - B).norm(),
+                1e-11 * B.norm());
+    }
+  }
 }
 
 TEST(RodGradient, IsRefusedWhereThereIsNone) {

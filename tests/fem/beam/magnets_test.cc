@@ -214,7 +214,7 @@ TEST(BeamMagnets, TheBaseBearsTheForceOnThePoles) {
       solved(with_environment(EnvironmentLoad{1, 0}, environment), {.refinement = 2});
   const analytic::rod::RodMagnet rod = analytic::rod::rod_magnet(cilium(), *step.deformation);
   const analytic::forces::Wrench wrench = analytic::forces::wrench(
-      analytic::forces::poles_of(rod, cilium().area()),
+      analytic::forces::poles_of(rod),
       [&](std::span<const Vector3> points) {
         std::vector<Vector3> B;
         for (const Vector3& x : points) B.push_back(jet(environment.magnets, x).B);

@@ -70,6 +70,28 @@ TEST(CylinderMesh, HasTheVolumeAndSecondMomentOfTheCylinder) {
   }
 }
 
+// Oracle: hand formulas. Of half of a section volume and ∫x² dV are half.
+TEST(CylinderMesh, HasTheVolumeAndSecondMomentOfARectangleAndATube) {
+  Cilium plate = stub_and_magnet();
+  plate.diameter = 0;
+  plate.section = {.shape = CrossSection::Shape::rectangle, .width = 4e-3, .height = 1e-3};
+  Cilium tube = stub_and_magnet();
+  tube.section = {.shape = CrossSection::Shape::tube, .inner_diameter = 0.4 * tube.diameter};
+  for (const Cilium& cilium : {plate, turned(plate, std::acos(-1.0) / 2), tube}) {
+    for (const bool half : {false, true}) {
+      CylinderMeshOptions options;
+      options.half = half;
+      const Geometry mesh = geometry(cilium, options, 2);
+      const double part = half ? 0.5 : 1;
+      const double L = cilium.length();
+      EXPECT_NEAR(mesh.volume / (part * cilium.area() * L), 1, 1e-12);
+      EXPECT_NEAR(mesh.second_moment / (part * cilium.second_moment() * L), 1, 1e-6);
+    }
+  }
+  dealii::Triangulation<3> triangulation;
+  EXPECT_THROW(make_cylinder(turned(plate, 0.1), {}, triangulation), InputError);
+}
+
 // Oracle: the sector of the parabola through three points of an arc of half-angle β, in closed form
 // sin β (1 + (1 − cos β)/3), against β.
 TEST(BaseSection, IsThatOfTheMeshedCircle) {

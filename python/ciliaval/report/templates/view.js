@@ -18,7 +18,7 @@
   }
 
   // The surface of the segment between the arc lengths from and to.
-  function tube(step, diameter, from, to) {
+  function tube(step, from, to) {
     const c = Math.cos(step.azimuth), s = Math.sin(step.azimuth);
     const rows = [];
     const at = (S) => {
@@ -34,7 +34,9 @@
     for (const { p, theta } of rows)
       for (let j = 0; j < around; ++j) {
         const a = (2 * Math.PI * j) / around;
-        const u = (diameter / 2) * Math.cos(a), v = (diameter / 2) * Math.sin(a);
+        // Of a rectangle the point of the outline in the direction a.
+        const m = data.is_rectangle ? Math.max(Math.abs(Math.cos(a)), Math.abs(Math.sin(a))) : 1;
+        const u = (data.extents[0] / 2) * Math.cos(a) / m, v = (data.extents[1] / 2) * Math.sin(a) / m;
         // In the section: u along the rotated direction of the load, v across.
         const n = [c * Math.cos(theta), s * Math.cos(theta), -Math.sin(theta)];
         positions.push(p[0] + u * n[0] - v * s, p[1] + u * n[1] + v * c, p[2] + u * n[2]);
@@ -113,7 +115,7 @@
       new THREE.MeshLambertMaterial({ color: 0xd5d9df, side: THREE.DoubleSide, transparent: true, opacity: 0.5 }));
     scene.add(base);
     for (const p of data.sensors) {
-      const size = 0.35 * data.diameter;
+      const size = 0.35 * data.extents[0];
       const box_of = new THREE.Mesh(new THREE.BoxGeometry(size, size, size / 2), new THREE.MeshLambertMaterial({ color: 0x111111 }));
       box_of.position.set(...p);
       scene.add(box_of);
@@ -139,7 +141,7 @@
       const step = data.steps[i];
       let S = 0;
       for (const segment of data.segments) {
-        drawn.push(new THREE.Mesh(tube(step, data.diameter, S, S + segment.length), new THREE.MeshLambertMaterial({ color: segment.colour, side: THREE.DoubleSide })));
+        drawn.push(new THREE.Mesh(tube(step, S, S + segment.length), new THREE.MeshLambertMaterial({ color: segment.colour, side: THREE.DoubleSide })));
         S += segment.length;
       }
       if (step.plane) drawn.push(plane(step, data.pixels));
