@@ -161,7 +161,8 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
     stiffest = std::max(stiffest, segment.young_modulus);
   for (const Segment& segment : cilium.segments)
     problem.compliance.push_back(stiffest / segment.young_modulus);
-  problem.load = units.force * units.length * units.length / (stiffest * cilium.second_moment(azimuth(load)));
+  problem.load =
+      units.force * units.length * units.length / (stiffest * cilium.second_moment(azimuth(load)));
   const double softest = *std::max_element(problem.compliance.begin(), problem.compliance.end());
   if (!std::isfinite(problem.load * softest))
     throw InputError(

@@ -13,6 +13,7 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/environment/environment.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -175,7 +176,10 @@ std::function<void(Case&)> read_steps(Section& table, const LoadType& type, Path
       statement.push_back(reader.read(parameter));
   const std::optional<SweepWay> way =
       &type == &SweepLoad::type() ? read_way(table, reader) : std::nullopt;
-  return [=, &type, &reader](Case& c) {
+  Faults& faults = table.faults();
+  const toml::node* first =
+      stated ? table.find(type.statement->parameters.front().key.name) : nullptr;
+  return [=, &type, &reader, &faults](Case& c) {
     for (std::size_t i = 0; i < reader.steps(); ++i) {
       std::vector<double> of_step;
       of_step.reserve(values.size());
@@ -188,7 +192,11 @@ std::function<void(Case&)> read_steps(Section& table, const LoadType& type, Path
       c.stated_by.emplace_back();
       for (std::size_t i = 0; i < c.load_path.size(); ++i) c.stated_by.back().push_back(v.at(i));
     }
-    set_stated_magnitudes(c);
+    try {
+      set_stated_magnitudes(c);
+    } catch (const InputError& fault) {  // what such a cilium does not take
+      faults.add(place(*first), fault.what());
+    }
   };
 }
 

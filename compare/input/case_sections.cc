@@ -134,10 +134,20 @@ void read_cross_section(Section& cilium, Cilium& result) {
   CrossSection& section = result.section;
   Section table = cilium.section("section");
   if (table.exists()) {
-    if (const toml::node* node = table.require(key::section_shape))
-      if (const auto shape = read_choice(*node, key::section_shape, key::section_shapes, faults))
-        section.shape = static_cast<Shape>(std::ranges::find(key::section_shapes, *shape) -
-                                           key::section_shapes.begin());
+    const toml::node* node = table.require(key::section_shape);
+    const auto shape = node != nullptr
+                           ? read_choice(*node, key::section_shape, key::section_shapes, faults)
+                           : std::nullopt;
+    if (!shape) {  // the other keys are right or wrong by it
+      for (const QuantityKey& k : {key::section_width, key::section_height,
+                                   key::section_orientation, key::section_inner_diameter})
+        table.find(k.name);
+      table.finish();
+      cilium.find(key::diameter.name);
+      return;
+    }
+    section.shape = static_cast<Shape>(std::ranges::find(key::section_shapes, *shape) -
+                                       key::section_shapes.begin());
     if (section.shape == Shape::rectangle) {
       section.width = table.value(key::section_width).value_or(0);
       section.height = table.value(key::section_height).value_or(0);

@@ -111,7 +111,7 @@ const BadCase keys[]{
      "[load] of type 'contact' needs 'force'"},
     {"MissingHeight", "height = \"16 mm\"", "", "21:1", "needs 'height'"},
     {"SegmentIsOneTable", "[[cilium.segment]]\nname = \"base\"", "[cilium.base]\nname = \"base\"",
-     "8:9", "unknown key 'base' in [cilium] (valid: diameter, segment)"},
+     "8:9", "unknown key 'base' in [cilium] (valid: section, diameter, segment)"},
     {"SensorWithoutAName", "[sensor]", "[[sensor]]", "27:1", "[[sensor]] needs 'name'"},
     {"SensorNamedByANumber", "[sensor]", "[[sensor]]\nname = \"1\"", "28:8",
      "the sensor name '1' must be letters"},

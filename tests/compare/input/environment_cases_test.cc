@@ -276,7 +276,8 @@ TEST(EnvironmentCase, IsFoundByItsName) {
                                            "\"20 mm\""),
                                  "[environment]", "[enviroment]")),
               StartsWith("bad.toml:18:2: unknown key 'enviroment' in the case file (valid: case, "
-                         "cilium, load, environment, surface, sensor, readings, signal, models); "
+                         "cilium, load, environment, surface, sensor, readings, signal, models, "
+                         "measurement, input_uncertainty); "
                          "did you mean 'environment'?"));
 }
 
