@@ -9,7 +9,8 @@ if [ "${1:-}" = --help ] || [ "${1:-}" = -h ]; then
   cat <<'END'
 usage: ./run.sh [CASE.toml …]
 
-Without arguments: the cases, parameter studies and test benches of cases/paper/, the paper's claims, the
+Without arguments: the cases, parameter studies and test benches of cases/paper/, the measured cases of
+cases/validation/, the paper's claims, the
 error budget and the convergence of fig3b, ParaView's pictures. Results in results/, all on one page in
 results/report.html. With case files: these alone, and the page. The exit code is that of the
 first step that failed; the others are run all the same.
@@ -63,7 +64,7 @@ mkdir -p results
 if [ $# -gt 0 ]; then
   step run "$@" -o results
 else
-  for file in "$paper"/*.toml; do
+  for file in "$paper"/*.toml cases/validation/*.toml; do
     case $file in
       *.study.toml | *.sense.toml) ;; # studies and benches are no cases
       *) set -- "$@" "$file" ;;

@@ -55,6 +55,20 @@ models::MechanicsRun steps_of(const models::MechanicsRun& run,
   return {run.model, steps_of(run.result, places)};
 }
 
+/// The loads in what is around them at a stage.
+LoadPath loads_of(const Stage& stage, LoadPath loads) {
+  using surroundings::MagneticEnergy;
+  for (Load& load : loads) {
+    surroundings::Environment around = load.environment();
+    if (stage.around == Around::nothing) around = {};
+    if (stage.around == Around::other_law)
+      around.magnetic_energy =
+          around.magnetic_energy == MagneticEnergy::F ? MagneticEnergy::R : MagneticEnergy::F;
+    load.set_environment(around);
+  }
+  return loads;
+}
+
 StageFields compute_fields(const Stage& stage, const input::Case& problem,
                            std::span<const models::FieldEntry> entries, const Computed& computed,
                            const Progress& progress) {
@@ -62,7 +76,7 @@ StageFields compute_fields(const Stage& stage, const input::Case& problem,
   stage.set(options);
   const models::FieldEntry& entry = models::entry_of(entries, stage.field);
   const models::MechanicsRun& mechanics =
-      (stage.sensitivity ? computed.around : computed.alone).at(stage.mechanics);
+      (stage.sensitivity ? computed.around : computed.alone).at(stage.mechanics_name());
   StageFields result{&stage, &mechanics, &computed.path, {}};
   if (!mechanics.result.undeformed.centreline.pieces().empty() &&
       (!entry.has_body || mechanics.result.undeformed.body))
@@ -76,15 +90,16 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
              const Progress& progress, Computed& computed) {
   computed.path =
       surround(problem.load_path, chain.stages.front().sensitivity && !problem.sensors.empty());
-  input::Case surrounded = problem;
-  surrounded.load_path = computed.path.loads;
-  for (const std::string& id : chain.mechanics) {
+  for (const Stage& stage : chain.mechanics) {
+    input::Case surrounded = problem;
+    surrounded.load_path = loads_of(stage, computed.path.loads);
+    const models::MechanicsEntry& entry = models::entry_of(mechanics, stage.mechanics);
     const models::MechanicsRun& run =
         computed.around
-            .emplace(id, models::run_mechanics(models::entry_of(mechanics, id), surrounded, fields,
-                                               progress))
+            .emplace(stage.mechanics_name(),
+                     models::run_mechanics(entry, surrounded, fields, progress))
             .first->second;
-    computed.alone.emplace(id, steps_of(run, computed.path.step));
+    computed.alone.emplace(stage.mechanics_name(), steps_of(run, computed.path.step));
   }
   if (problem.sensors.empty()) return;
   for (const Stage& stage : chain.stages)
@@ -139,10 +154,14 @@ void add_row(BudgetRow row, const Numbers& numbers, const Chain& chain,
 void add_mechanics(const Chain& chain, const Computed& computed, std::size_t step,
                    std::vector<BudgetRow>& rows) {
   std::vector<const models::MechanicsRun*> runs;
-  for (const std::string& id : chain.mechanics) runs.push_back(&computed.alone.at(id));
+  std::vector<std::string> names;
+  for (const Stage& stage : chain.mechanics) {
+    names.push_back(stage.mechanics_name());
+    runs.push_back(&computed.alone.at(names.back()));
+  }
   const auto add = [&](const char* quantity, const std::string& component, const char* unit,
                        const auto& value, const auto& uncertainty) {
-    Numbers numbers{chain.mechanics, {}, {}};
+    Numbers numbers{names, {}, {}};
     for (const models::MechanicsRun* run : runs) {
       const Centreline& centreline = run->result.steps[step].deformation->centreline;
       numbers.values.emplace_back(value(centreline.at(centreline.length())));
@@ -190,7 +209,8 @@ void add_fields(const Chain& chain, const Computed& computed, std::size_t step, 
     const auto va = a.value(step, sensor, change);
     const auto vb = b.value(step, sensor, change);
     if (!va || !vb) return std::nullopt;
-    return models::combined_uncertainty(*va, *vb, a.stage->mechanics == b.stage->mechanics);
+    return models::combined_uncertainty(*va, *vb,
+                                        a.stage->mechanics_name() == b.stage->mechanics_name());
   };
   for (const bool change : {false, true})
     add(
@@ -235,7 +255,8 @@ std::string_view outcome(Status status) {
 /// Whether all mechanics models bear a step; says which do not.
 bool borne(const Computed& computed, const Chain& chain, std::size_t step, Budget& budget) {
   bool all = true;
-  for (const std::string& id : chain.mechanics) {
+  for (const Stage& stage : chain.mechanics) {
+    const std::string id = stage.mechanics_name();
     const MechanicsStep& result = computed.alone.at(id).result.steps[step];
     if (result.status == Status::converged) continue;
     all = false;
@@ -255,8 +276,9 @@ void remark_neighbours(const Computed& computed, const Chain& chain, std::size_t
       budget.remarks.push_back(fmt::format("step {}: no dB/dF at a load of zero", step + 1));
     return;
   }
-  for (const std::string& id : chain.mechanics)
+  for (const Stage& stage : chain.mechanics)
     for (const std::size_t place : *computed.path.around[step]) {
+      const std::string id = stage.mechanics_name();
       const MechanicsStep& result = computed.around.at(id).result.steps[place];
       if (result.status == Status::converged) continue;
       budget.failed = budget.failed || result.status == Status::failed;

@@ -14,6 +14,13 @@
 
 namespace ciliaval::compare::budget {
 
+/// What a stage changes in its case.
+enum class Around {
+  all,       ///< the environment as the case states it
+  nothing,   ///< no environment, as in the paper
+  other_law  ///< the magnetic energy by the law that the case does not state
+};
+
 /// A pair of models on the way from the paper's to the best one.
 struct Stage {
   std::string mechanics;  ///< id
@@ -22,25 +29,29 @@ struct Stage {
   std::function<void(input::ModelOptions&)> set;  ///< makes the variant
   std::string physics;      ///< the assumption that changes from the stage before
   bool sensitivity = true;  ///< whether dB/dF is computed here
+  Around around = Around::all;
 
+  /// The id with what is around it: "elastica alone", "solid, R".
+  std::string mechanics_name() const;
   std::string field_name() const { return variant.empty() ? field : field + ' ' + variant; }
-  std::string name() const { return mechanics + '/' + field_name(); }
+  std::string name() const { return mechanics_name() + '/' + field_name(); }
 };
 
 /// The stages; from one to the next a single assumption changes.
 struct Chain {
-  std::vector<Stage> stages;           ///< elastica/line, the paper's, first
-  std::optional<Stage> beside;         ///< elastica/dipole: a model of its own, not on the way
-  std::vector<std::string> mechanics;  ///< ids, in the order in which they come
-  std::vector<std::string> not_run;    ///< stages that are left out, each with the model it lacks
+  std::vector<Stage> stages;         ///< elastica/line, the paper's, first
+  std::optional<Stage> beside;       ///< elastica/dipole: a model of its own, not on the way
+  std::vector<Stage> mechanics;      ///< those of the mechanics models, in their order
+  std::vector<std::string> not_run;  ///< stages that are left out, each with the model it lacks
 
   /// The assumptions that change from one stage to a later one.
   std::string physics(std::size_t from, std::size_t to) const;
 };
 
-/// elastica/line → beam/line → solid/line → solid/volume stacked → solid/volume wedge → solid/mesh
-/// R → solid/mesh F → solid/potential mu_r = 1 → the same with the case's μ_r, if it is another →
-/// with the case's plates, if it has any. The options are the case's but for those named; line and
+/// elastica alone/line, if the case has an environment → elastica/line → beam/line → solid/line, in
+/// a field by both magnetic energies → solid/volume stacked → solid/volume wedge → solid/mesh R →
+/// solid/mesh F → solid/potential mu_r = 1 → the same with the case's μ_r, if it is another → with
+/// the case's plates, if it has any. The options are the case's but for those named; line and
 /// potential push forward by F. `without` names models to leave out: beam, solid (its fields then
 /// go with the beam, and mesh with it is left out), volume, mesh, potential, dipole; "sensitivity"
 /// leaves out dB/dF. Throws InputError if one is not one of these.

@@ -60,19 +60,49 @@ Set set_potential(double relative_permeability, bool plates) {
   };
 }
 
-/// The mechanics, with dipoles along the centreline; beside magnets without the elastica, which
-/// takes none.
+/// The mechanics, with dipoles along the centreline. What is around the cilium, which the paper
+/// leaves out, comes at the elastica or, where it does not take it, at the beam.
 std::vector<Stage> mechanics_stages(const input::Case& problem) {
   const Set line = set(&analytic::rod::LineOptions::push_forward, PushForward::F);
-  std::vector<Stage> stages{
-      {"elastica", "line", "", line, ""},
-      {"beam", "line", "", line, "shear and extension of the rod"},
-      {"solid", "line", "", line,
-       "three dimensions: bonded ends, near-incompressibility, a contact of some width"},
+  const std::string_view around = "weight, fluid and fields around the cilium";
+  const Stage elastica{"elastica", "line", "", line, ""};
+  const Stage beam{"beam", "line", "", line, "shear and extension of the rod"};
+  const Stage solid{
+      "solid", "line", "", line,
+      "three dimensions: bonded ends, near-incompressibility, a contact of some width"};
+  const auto with = [](Stage stage, Around what, std::string_view physics) {
+    stage.around = what;
+    if (!physics.empty()) stage.physics = physics;
+    return stage;
   };
-  if (!problem.load_path.front().environment().magnets.empty()) {
-    stages.erase(stages.begin());
-    stages.front().physics.clear();
+  bool is_empty = true;
+  bool has_field = false;
+  bool is_for_the_beam = false;  // magnets, or out of the plane of the load
+  for (const Load& load : problem.load_path) {
+    const surroundings::Environment& environment = load.environment();
+    is_empty = is_empty && surroundings::is_empty(environment);
+    const bool has_magnets = !environment.magnets.empty();
+    const Vector3 across = Vector3::UnitZ().cross(direction(load));
+    is_for_the_beam =
+        is_for_the_beam || has_magnets || surroundings::component(environment, across) > 1e-9;
+    has_field = has_field || has_magnets || !environment.uniform_field.isZero();
+  }
+  if (is_empty) return {elastica, beam, solid};
+  std::vector<Stage> stages{with(elastica, Around::nothing, "")};
+  if (is_for_the_beam)
+    stages.push_back(with(beam, Around::nothing, ""));
+  else
+    stages.push_back(with(elastica, Around::all, around));
+  stages.push_back(is_for_the_beam ? with(beam, Around::all, around) : beam);
+  if (has_field) {
+    const bool is_F =
+        problem.load_path.front().environment().magnetic_energy == surroundings::MagneticEnergy::F;
+    stages.push_back(with(solid, Around::other_law, ""));
+    stages.push_back(with(solid, Around::all,
+                          is_F ? "the magnetic energy by F, in place of R"
+                               : "the magnetic energy by R, in place of F"));
+  } else {
+    stages.push_back(solid);
   }
   return stages;
 }
@@ -107,6 +137,17 @@ std::vector<Stage> field_stages(const input::Case& problem, const std::string& m
 
 }  // namespace
 
+std::string Stage::mechanics_name() const {
+  switch (around) {
+    case Around::nothing:
+      return mechanics + " alone";
+    case Around::other_law:
+      return mechanics + " by the other law";
+    default:
+      return mechanics;
+  }
+}
+
 std::string Chain::physics(std::size_t from, std::size_t to) const {
   std::vector<std::string> words;
   for (std::size_t i = from + 1; i <= to; ++i) words.push_back(stages[i].physics);
@@ -116,8 +157,9 @@ std::string Chain::physics(std::size_t from, std::size_t to) const {
 Chain make_chain(const input::Case& problem, const std::vector<std::string>& without) {
   const std::vector<Stage> mechanics = mechanics_stages(problem);
   const std::string paper = mechanics.front().mechanics;
-  const Stage beside{paper, "dipole", "", [](input::ModelOptions&) {},
-                     "the whole magnet as one dipole at its centroid"};
+  Stage beside{paper, "dipole", "", [](input::ModelOptions&) {},
+               "the whole magnet as one dipole at its centroid"};
+  beside.around = mechanics.front().around;
   std::vector<Stage> all = mechanics;
   for (const Stage& stage : field_stages(problem, paper)) all.push_back(stage);
   all.push_back(beside);
@@ -134,9 +176,9 @@ Chain make_chain(const input::Case& problem, const std::vector<std::string>& wit
   };
   for (const Stage& stage : mechanics) {
     add(stage, is_left_out(stage.mechanics) ? stage.mechanics : "");
-    if (!is_left_out(stage.mechanics)) chain.mechanics.push_back(stage.mechanics);
+    if (!is_left_out(stage.mechanics)) chain.mechanics.push_back(stage);
   }
-  const std::string best = chain.mechanics.back();
+  const std::string best = chain.mechanics.back().mechanics;
   for (const Stage& stage : field_stages(problem, best))
     add(stage, is_left_out(stage.field)                   ? stage.field
                : stage.field == "mesh" && best != "solid" ? "solid"

@@ -124,11 +124,7 @@ std::string chain_text(const Budget& budget) {
   output::TextRows rows;
   for (const Stage& stage : budget.chain.stages)
     if (&stage == &budget.chain.stages.front())
-      rows.push_back(
-          {stage.name(),
-           stage.mechanics == "elastica"
-               ? "the paper's model: elastica, dipoles along the centreline"
-               : "dipoles along the centreline; the elastica takes no magnets beside it"});
+      rows.push_back({stage.name(), "the paper's model: elastica, dipoles along the centreline"});
     else
       rows.push_back({"-> " + stage.name(), stage.physics});
   if (budget.chain.beside)

@@ -72,7 +72,9 @@ void add_step(const std::string& prefix, const models::MechanicsRun& run, const 
             axes[axis] == "z" ? L : largest.deflection,
             places[i] == "tip" ? step.tip_uncertainty : std::nullopt);
     add("tip_angle", "rad", centreline.at(L).theta(), 1, largest.angle);
-    add("applied_force", "N", step.applied_force, largest.force, largest.force);
+    // Of an environment alone it is nothing but rounding.
+    if (!step.load.is<EnvironmentLoad>())
+      add("applied_force", "N", step.applied_force, largest.force, largest.force);
     add("contact_arclength", "m", step.contact_arclength, L, L);
     add("tip_uncertainty", "m", step.tip_uncertainty, L, L);
   }

@@ -25,15 +25,15 @@ places = {  # where the ground is, seen from the cilium
 
 
 def response(environment):
-    """Deflection of the tip along the load, m, and signal, T, both against no load."""
+    """Deflection of the tip along the load, m, and signal, T, both against no load; signal of no load."""
     bent = cv.bend(cilium, load, environment=environment)
     free = cv.bend(cilium, environment=environment) if environment else None
     tip = bent.tip @ e - (free.tip @ e if free else 0)
-    signal = bent.dB(sensor)[0] - (free.dB(sensor)[0] if free else 0)
-    return tip, np.linalg.norm(signal)
+    rest = free.dB(sensor)[0] if free else np.zeros(3)
+    return tip, np.linalg.norm(bent.dB(sensor)[0] - rest), np.linalg.norm(rest)
 
 
-tip0, signal0 = response(None)
+tip0, signal0, _ = response(None)
 print(f"paper's model: tip {1e3 * tip0:.4f} mm, signal {1e6 * signal0:.3f} uT")
 kinds = ("weight in air", "weight in water", "earth's field", "all, in air")
 changes = {kind: [] for kind in kinds}
@@ -46,19 +46,20 @@ for place, down in places.items():
         cv.Environment(uniform_field=earth),
         cv.Environment(gravity=g * down, uniform_field=earth),
     )):
-        tip, signal = response(environment)
+        tip, signal, rest = response(environment)
         changes[kind].append((100 * (tip / tip0 - 1), 100 * (signal / signal0 - 1)))
-        print(f"{place + ', ' + kind:34} tip {changes[kind][-1][0]:+6.2f} %, signal {changes[kind][-1][1]:+6.2f} %")
+        print(f"{place + ', ' + kind:34} tip {changes[kind][-1][0]:+6.2f} %, signal {changes[kind][-1][1]:+6.2f} %, "
+              f"at rest {100 * rest / signal0:5.2f} % of it")
 
 figure, axes = plt.subplots(1, 2, figsize=(8, 3.4), layout="constrained", sharey=True)
 rows = np.arange(len(places))
 for n, (kind, values) in enumerate(changes.items()):
     for panel, column in zip(axes, np.transpose(values)):
-        panel.barh(rows + 0.2 * (1.5 - n), column, height=0.18, label=kind)
+        panel.barh(rows + 0.2 * (n - 1.5), column, height=0.18, label=kind)
 for panel, title in zip(axes, ("deflection of the tip", "signal |B(load) − B(no load)|")):
     panel.set(title=title, xlabel="change in %", yticks=rows, yticklabels=list(places))
     panel.axvline(0, color="0.3", linewidth=0.8)
     panel.grid(axis="x", alpha=0.3)
 axes[0].invert_yaxis()
-axes[1].legend(fontsize=8)
+axes[1].legend(loc="lower right", fontsize=8)
 figure.savefig("surroundings.png", dpi=100)

@@ -12,7 +12,7 @@ from .errors import Error, FileError, InputError, SolverError
 # models load deal.II, which what only reads results need not wait for.
 _HOMES = {
     **dict.fromkeys(
-        ["Cilium", "Environment", "Load", "Segment", "Shape", "bend_batch", "load_types", "models", "__version__"],
+        ["Cilium", "Environment", "Load", "Magnet", "Segment", "Shape", "bend_batch", "load_types", "models", "__version__"],
         "._core",
     ),
     **dict.fromkeys(["Case", "bend"], ".model"),

@@ -47,6 +47,40 @@ class Cilium:
     @property
     def length(self) -> float: ...
 
+class Magnet:
+    @staticmethod
+    def ball(
+        position: npt.ArrayLike,
+        diameter: float,
+        magnetization: npt.ArrayLike,
+        axis: npt.ArrayLike = (0.0, 0.0, 1.0),
+        name: str = "magnet",
+    ) -> Magnet: ...
+    @staticmethod
+    def cylinder(
+        position: npt.ArrayLike,
+        diameter: float,
+        length: float,
+        magnetization: npt.ArrayLike,
+        axis: npt.ArrayLike = (0.0, 0.0, 1.0),
+        name: str = "magnet",
+    ) -> Magnet: ...
+    @staticmethod
+    def cuboid(
+        position: npt.ArrayLike,
+        edges: npt.ArrayLike,
+        magnetization: npt.ArrayLike,
+        axis: npt.ArrayLike = (0.0, 0.0, 1.0),
+        name: str = "magnet",
+    ) -> Magnet: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def position(self) -> Array: ...
+    @property
+    def moment(self) -> Array: ...
+    def B(self, points: npt.ArrayLike) -> Array: ...
+
 class Environment:
     def __init__(
         self,
@@ -54,7 +88,10 @@ class Environment:
         fluid_density: float = 0.0,
         uniform_field: npt.ArrayLike = (0.0, 0.0, 0.0),
         magnetic_energy: str = "F",
+        magnets: Sequence[Magnet] = (),
     ) -> None: ...
+    @property
+    def magnets(self) -> list[Magnet]: ...
     @property
     def gravity(self) -> Array: ...
     @property
@@ -103,6 +140,8 @@ class Shape:
     def applied_force(self) -> float: ...
     @property
     def slip_off(self) -> float | None: ...
+    @property
+    def magnet_forces(self) -> dict[str, dict[str, Array]]: ...
     @property
     def seconds(self) -> float: ...
     @property

@@ -137,4 +137,11 @@ void bind_array(py::module_& module) {
   });
 }
 
+Vector3 vector(const py::object& value, const char* name) {
+  const std::vector<Vector3> found = points(value);
+  if (found.size() != 1)
+    throw InputError(fmt::format("`{}` is a vector [x, y, z], not {} of them", name, found.size()));
+  return found.front();
+}
+
 }  // namespace ciliaval::python::core

@@ -22,6 +22,8 @@ pybind11::object array(const std::vector<Vector3>& vectors);
 
 /// Points from anything that numpy.asarray takes: (3,) or (n, 3). Throws InputError.
 std::vector<Vector3> points(const pybind11::object& values);
+/// A vector from anything that numpy.asarray takes. Throws InputError with the name.
+Vector3 vector(const pybind11::object& value, const char* name);
 
 /// Sets the options that are named, as a case file would state them in SI units. Throws InputError
 /// that names what the model has.
@@ -33,6 +35,7 @@ void set_options(const std::string& model, const std::vector<compare::input::Opt
 Progress progress(const pybind11::object& callback);
 
 void bind_array(pybind11::module_& module);
+void bind_magnets(pybind11::module_& module);
 void bind_problem(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
 void bind_case(pybind11::module_& module);

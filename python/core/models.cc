@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "compare/models/magnet_forces.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/results.h"
@@ -269,6 +270,17 @@ void bind_models(py::module_& module) {
           "slip_off", [](const Shape& s) { return slip_off_limit(s.step()); },
           "Largest load that an equilibrium bears (a contact's force, N, a "
           "probe's displacement, m); None: not known.")
+      .def_property_readonly(
+          "magnet_forces",
+          [](const Shape& s) {
+            py::dict result;
+            for (const auto& one : models::forces_on_magnets(s.problem.cilium, s.step()))
+              result[py::str(one.name)] = py::dict(py::arg("force") = array(one.force),
+                                                   py::arg("torque") = array(one.torque));
+            return result;
+          },
+          "Of each magnet of the environment, by its name: force (3,), N, and torque about its\n"
+          "centre (3,), N m, that the cilium exerts on it.")
       .def_property_readonly("seconds", [](const Shape& s) { return s.step().seconds; })
       .def_property_readonly(
           "S", [](const Shape& s) { return along(s, [](double S, const auto&) { return S; }); },

@@ -53,23 +53,20 @@ Load load(const std::string& type, const py::kwargs& parameters) {
   return result;
 }
 
-/// A vector from anything that numpy.asarray takes. Throws InputError.
-Vector3 vector(const py::object& value, const char* name) {
-  const std::vector<Vector3> found = points(value);
-  if (found.size() != 1)
-    throw InputError(fmt::format("`{}` is a vector [x, y, z], not {} of them", name, found.size()));
-  return found.front();
-}
-
 Environment environment(const py::object& gravity, double fluid_density,
-                        const py::object& uniform_field, const std::string& magnetic_energy) {
+                        const py::object& uniform_field, const std::string& magnetic_energy,
+                        const std::vector<surroundings::magnets::Magnet>& magnets) {
   const auto energy = std::ranges::find(names::energy_names, magnetic_energy);
   if (energy == names::energy_names.end())
     throw InputError(fmt::format("`{}` is {}, not `{}`", names::magnetic_energy,
                                  fmt::join(names::energy_names, " or "), magnetic_energy));
-  return {vector(gravity, "gravity"), fluid_density, vector(uniform_field, "uniform_field"),
-          energy == names::energy_names.begin() ? surroundings::MagneticEnergy::F
-                                                : surroundings::MagneticEnergy::R};
+  return {.gravity = vector(gravity, "gravity"),
+          .fluid_density = fluid_density,
+          .uniform_field = vector(uniform_field, "uniform_field"),
+          .magnetic_energy = energy == names::energy_names.begin()
+                                 ? surroundings::MagneticEnergy::F
+                                 : surroundings::MagneticEnergy::R,
+          .magnets = magnets};
 }
 
 /// The loads in their environments, one for all or one for each; without loads those of nothing
@@ -141,6 +138,7 @@ Cilium valid(Cilium cilium) {
 }  // namespace
 
 void bind_problem(py::module_& module) {
+  bind_magnets(module);
   py::class_<Segment>(module, "Segment",
                       "A segment of a cilium: one material.\n\n"
                       "length in m, young_modulus in Pa, poisson_ratio, magnetization M along the\n"
@@ -211,11 +209,13 @@ void bind_problem(py::module_& module) {
   py::class_<Environment>(
       module, "Environment",
       "What surrounds a cilium: gravity g [x, y, z] in m/s^2 (each segment needs a density),\n"
-      "fluid_density in kg/m^3 for buoyancy, uniform_field B_0 [x, y, z] in T, and by which\n"
-      "magnetic_energy the field acts: 'F', -(F M).B_0, or 'R', -(R M).B_0.")
+      "fluid_density in kg/m^3 for buoyancy, uniform_field B_0 [x, y, z] in T, by which\n"
+      "magnetic_energy the field acts: 'F', -(F M).B_0, or 'R', -(R M).B_0, and magnets beside it.")
       .def(py::init(&environment), py::arg("gravity") = py::make_tuple(0.0, 0.0, 0.0),
            py::arg("fluid_density") = 0.0, py::arg("uniform_field") = py::make_tuple(0.0, 0.0, 0.0),
-           py::arg("magnetic_energy") = "F")
+           py::arg("magnetic_energy") = "F",
+           py::arg("magnets") = std::vector<surroundings::magnets::Magnet>{})
+      .def_readonly("magnets", &Environment::magnets)
       .def_property_readonly("gravity", [](const Environment& of) { return array(of.gravity); })
       .def_readonly("fluid_density", &Environment::fluid_density)
       .def_property_readonly("uniform_field",

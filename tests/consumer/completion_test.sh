@@ -17,4 +17,4 @@ expect --fresh "$2" run --fr
 expect --load "$2" new --lo
 expect schema "$2" sch
 expect --quiet "$2" run --qu
-expect fig3b.toml "$2" run fig3b
+expect fig3d.toml "$2" run fig3d

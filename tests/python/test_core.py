@@ -88,6 +88,42 @@ class Bend(unittest.TestCase):
         with self.assertRaisesRegex(cv.InputError, "neither a load nor an environment"):
             cv.bend(rod)
 
+    def test_a_section_of_another_shape_bends_by_its_second_moment(self):
+        """Oracle: F L^3/(3 E I) with I = b h^3/12, and pi (d^4 - d_i^4)/64."""
+        rod = [cv.Segment(length=0.1, young_modulus=1e6, magnetization=1e3)]
+        plate = cv.Cilium.rectangle(2e-3, 1e-3, rod, orientation=0.4)
+        tube = cv.Cilium.tube(2e-3, 1e-3, rod)
+        self.assertEqual(list(plate.sides), [2e-3, 1e-3])
+        self.assertIsNone(tube.sides)
+        self.assertEqual(plate.extent(0.4 + np.pi / 2), 1e-3)
+        for cilium, azimuth, moment in (
+            (plate, 0.4, 1e-3 * 2e-3**3 / 12),
+            (plate, 0.4 + np.pi / 2, 2e-3 * 1e-3**3 / 12),
+            (tube, 0, np.pi * (2e-3**4 - 1e-3**4) / 64),
+        ):
+            load = cv.Load("section", force=1e-9, arclength=0.1, azimuth=azimuth)
+            tip = cv.bend(cilium, load).tip
+            expected = 1e-9 * 0.1**3 / (3 * 1e6 * moment)
+            self.assertAlmostEqual(np.hypot(*tip[:2]) / expected, 1, delta=1e-5)
+        with self.assertRaisesRegex(cv.InputError, "along the azimuth"):
+            cv.bend(plate, cv.Load("section", force=1e-9, arclength=0.1))
+        with self.assertRaisesRegex(cv.InputError, "inner diameter"):
+            cv.Cilium.tube(1e-3, 1e-3, rod)
+
+    def test_a_magnet_far_away_pulls_as_a_dipole(self):
+        """Oracle: the coaxial dipoles' 3 mu_0 m m'/(2 pi a^4)."""
+        cilium = paper_cilium()
+        far = cv.Magnet.cylinder([0, 0, 0.3], 4e-3, 5e-3, 1e6, name="far")
+        bent = cv.bend(cilium, model="beam", environment=cv.Environment(magnets=[far]))
+        own = 75e3 * np.pi * 1.5e-3**2 * 17e-3
+        a = 0.3 - 11.5e-3
+        pull = 3 * 4e-7 * np.pi * own * far.moment[2] / (2 * np.pi * a**4)
+        force = bent.magnet_forces["far"]["force"]
+        np.testing.assert_allclose(force, [0, 0, -pull], rtol=1e-2, atol=1e-3 * pull)
+        np.testing.assert_allclose(far.B([0, 0, 0.9]), [[0, 0, 2e-7 * far.moment[2] / 0.6**3]], rtol=1e-3)
+        with self.assertRaisesRegex(cv.InputError, "axis"):
+            cv.Magnet.ball([0, 0, 1], 1e-3, 1e6, axis=[0, 0, 0])
+
     def test_a_flow_bends_a_slender_rod_as_linear_theory(self):
         """Oracle: q L^4 / (8 E I), for a load that hardly bends it."""
         rod = cv.Cilium(1e-3, [cv.Segment(20e-3, 1e6, magnetization=1e4)])

@@ -25,14 +25,6 @@ constexpr std::size_t most_positions = 1000;
 constexpr std::size_t longest_name = 100;
 constexpr std::array<std::string_view, 3> shape_names{"ball", "cylinder", "cuboid"};
 
-/// The shortest turn from the third axis to the direction; half a turn about the first, if it is
-/// the opposite one.
-Quaternion turn_to(const Vector3& direction) {
-  const Vector3 axis = direction.normalized();
-  if (axis.z() < -1 + 1e-15) return Quaternion(0, 1, 0, 0);
-  return Quaternion::FromTwoVectors(Vector3::UnitZ(), axis);
-}
-
 std::optional<Quaternion> read_rotation(const toml::node& node, Faults& faults) {
   const toml::array* list = node.as_array();
   Eigen::Vector4d q = Eigen::Vector4d::Zero();
@@ -63,7 +55,7 @@ void read_pose(Section& table, Magnet& magnet) {
   if (direction && direction->isZero(0))
     faults.add(place(*axis), "'axis' must point somewhere: it is zero");
   else if (direction)
-    magnet.rotation = turn_to(*direction);
+    magnet.rotation = surroundings::magnets::turn_to(*direction);
 }
 
 void read_magnetization(Section& table, Magnet& magnet) {

@@ -50,6 +50,21 @@ TEST(ElasticaEnvironment, BendsInATransverseFieldLikeTheHardMagneticElastica) {
         << field;
 }
 
+// A transverse field is a dead force on the tip (docs/theory/environment.md). Oracle: the elastica
+// without an environment under that force, another method. One step from the straight cilium, at
+// fields so strong that a step may go astray.
+TEST(ElasticaEnvironment, IsThatOfAForceOnTheTipInFieldsOfAnyStrength) {
+  for (const double field : {0.3, 7.0, 30.0, 52.9, 75.0, 100.0, 200.0}) {
+    const MechanicsStep pulled =
+        Elastica().solve(unit_cilium(), {SectionLoad{field, 1, 0}}).steps.at(0);
+    ASSERT_EQ(pulled.status, Status::converged) << pulled.message;
+    const CentrelinePoint end = tip({.uniform_field = in_plane(field, pi / 2)}, unit_cilium());
+    const CentrelinePoint exact = pulled.deformation->centreline.at(1);
+    EXPECT_LT((end.position - exact.position).norm(), 1e-9) << field;
+    EXPECT_NEAR(end.theta(), exact.theta(), 1e-8) << field;
+  }
+}
+
 TEST(ElasticaEnvironment, BendsInAnObliqueField) {
   struct Row {
     double angle, field, z, x;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/budget/budget.h"
 #include "analytic/body/mesh_field.h"
+#include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "fem/potential/potential.h"
 
@@ -338,16 +339,55 @@ TEST(Chain, FollowsTheCase) {
               ElementsAre("elastica/line"));
 }
 
-TEST(Chain, BeginsWithTheBeamBesideMagnets) {
+TEST(Chain, BeginsWithoutWhatIsAround) {
   input::Case problem = test::paper_case({1e-3});
-  surroundings::Environment around;
-  around.magnets.emplace_back();
+  const auto chain = [&](const surroundings::Environment& around) {
+    problem.load_path.front().set_environment(around);
+    return budget::make_chain(problem, {"volume", "mesh", "potential"});
+  };
+  EXPECT_THAT(names(chain({.gravity = {0, 0, -9.81}}).stages),
+              ElementsAre("elastica alone/line", "elastica/line", "beam/line", "solid/line"));
+  EXPECT_THAT(names(chain({.uniform_field = {1e-3, 0, 0}}).stages),
+              ElementsAre("elastica alone/line", "elastica/line", "beam/line",
+                          "solid by the other law/line", "solid/line"));
+  EXPECT_EQ(chain({.uniform_field = {1e-3, 0, 0}}).stages.back().physics,
+            "the magnetic energy by F, in place of R");
+  surroundings::Environment magnets;
+  magnets.magnets.emplace_back();
+  EXPECT_THAT(names(chain(magnets).stages),
+              ElementsAre("elastica alone/line", "beam alone/line", "beam/line",
+                          "solid by the other law/line", "solid/line"));
+  EXPECT_EQ(chain(magnets).beside->name(), "elastica alone/dipole");
+  EXPECT_THAT(names(chain({.gravity = {0, 1, 0}}).stages),
+              ElementsAre("elastica alone/line", "beam alone/line", "beam/line", "solid/line"));
+}
+
+// Oracle: the elastica itself with and without what is around it.
+TEST(Budget, HasALinkOfWhatIsAround) {
+  input::Case problem = test::paper_case({1e-3});
+  for (Segment& segment : problem.cilium.segments) segment.density = 1500;
+  const surroundings::Environment around{.gravity = {0, 0, -9.81}};
+  const Load bare = problem.load_path.front();
   problem.load_path.front().set_environment(around);
-  const budget::Chain chain = budget::make_chain(problem, {});
-  EXPECT_EQ(chain.mechanics, (std::vector<std::string>{"beam", "solid"}));
-  EXPECT_EQ(chain.stages.front().name(), "beam/line");
-  EXPECT_EQ(chain.stages.front().physics, "");
-  EXPECT_EQ(chain.beside->name(), "beam/dipole");
+  const budget::Budget budget =
+      budget::error_budget(problem, models::mechanics_models(), models::field_models(),
+                           {"beam", "solid", "volume", "mesh", "potential", "sensitivity"});
+  const auto tip = [&](const Load& load) {
+    const MechanicsStep step =
+        analytic::elastica::Elastica().solve(problem.cilium, {load}).steps.at(0);
+    return step.deformation->centreline.at(problem.cilium.length()).position;
+  };
+  const Vector3 change = tip(problem.load_path.front()) - tip(bare);
+  ASSERT_GE(budget.rows.size(), 3U);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const budget::BudgetRow& row = budget.rows[axis];
+    EXPECT_EQ(row.quantity, "tip");
+    ASSERT_EQ(row.links.size(), 1U);
+    EXPECT_EQ(row.links[0].from, "elastica alone");
+    EXPECT_EQ(row.links[0].to, "elastica");
+    EXPECT_NEAR(row.links[0].value, change[static_cast<Eigen::Index>(axis)], 1e-12);
+    EXPECT_EQ(row.links[0].verdict, models::Verdict::resolved);
+  }
 }
 
 TEST(Chain, RefusesWhatItDoesNotKnow) {

@@ -17,8 +17,8 @@
     return parts;
   }
 
-  // The surface of the segment between the arc lengths from and to.
-  function tube(step, from, to) {
+  // The surface of the segment between the arc lengths from and to, of a circular or rectangular section.
+  function tube(step, data, from, to) {
     const c = Math.cos(step.azimuth), s = Math.sin(step.azimuth);
     const rows = [];
     const at = (S) => {
@@ -141,7 +141,7 @@
       const step = data.steps[i];
       let S = 0;
       for (const segment of data.segments) {
-        drawn.push(new THREE.Mesh(tube(step, S, S + segment.length), new THREE.MeshLambertMaterial({ color: segment.colour, side: THREE.DoubleSide })));
+        drawn.push(new THREE.Mesh(tube(step, data, S, S + segment.length), new THREE.MeshLambertMaterial({ color: segment.colour, side: THREE.DoubleSide })));
         S += segment.length;
       }
       if (step.plane) drawn.push(plane(step, data.pixels));
