@@ -362,9 +362,9 @@ std::optional<support::Fingerprint> fingerprint(const input::Case& problem,
   add(input::key::diameter, "", problem.cilium.diameter);
   const CrossSection& section = problem.cilium.section;
   if (section.shape != CrossSection::Shape::circle)
-    all.emplace_back("section", fmt::format("{}: {}, {}, {}, {}", static_cast<int>(section.shape),
-                                            section.width, section.height, section.orientation,
-                                            section.inner_diameter));
+    all.emplace_back(
+        "section", fmt::format("{}: {}, {}, {}, {}", static_cast<int>(section.shape), section.width,
+                               section.height, section.orientation, section.inner_diameter));
   all.emplace_back("number of segments", std::to_string(problem.cilium.segments.size()));
   for (const Segment& segment : problem.cilium.segments) {
     const std::string of = " of segment `" + segment.name + "`";

@@ -64,8 +64,8 @@ std::optional<Equilibrium> solve(const Rod& rod, const Conditions& conditions,
 using Path = std::function<std::pair<Rod, Conditions>(double t)>;
 
 /// The equilibrium at t = 1 of the branch that goes through the one at t = 0, which is near
-/// `start`: by steps of t that are halved where Newton's method fails or ends at an equilibrium that
-/// is less stable. Throws SolverError, with t, where the branch ends.
+/// `start`: by steps of t that are halved where Newton's method fails or ends at an equilibrium
+/// that is less stable. Throws SolverError, with t, where the branch ends.
 Equilibrium follow(const Path& path, const Unknowns& start, double tolerance);
 
 /// The shape of an equilibrium.
