@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "analytic/elastica/environment/step.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 
@@ -20,6 +21,7 @@ constexpr double largest_strain = 0.3;   ///< from there on rubber's own law mat
 constexpr double near_magnet = 0.1;      ///< distance of a sensor, in d
 constexpr double least_signal = 0.1e-6;  ///< T: below what Hall sensors resolve
 constexpr double largest_signal = 1;     ///< T
+constexpr double most_buckling = 20;     ///< buckling loads over the environment: more are not told
 
 /// What is usual of cilia and their rubbers.
 struct Usual {
@@ -41,6 +43,7 @@ class Viewer {
     look_at_cilium();
     look_at_sensors();
     look_at_signal();
+    look_at_buckling();
     return std::move(preview_);
   }
 
@@ -145,6 +148,29 @@ class Viewer {
     MechanicsRun alone = run;
     alone.result.steps = {step};
     look_at_field(alone, field);
+  }
+
+  /// The strongest environment of the path, along the axis alone: how often it is borne.
+  void look_at_buckling() {
+    std::optional<double> least;
+    for (const Load& load : problem_.load_path) {
+      surroundings::Environment along = acting_environment(load);
+      for (Vector3* vector : {&along.gravity, &along.uniform_field}) vector->head<2>().setZero();
+      along.magnets.clear();
+      if (surroundings::is_empty(along)) continue;
+      const std::optional<double> factor =
+          analytic::elastica::environment::critical_factor(problem_.cilium, along);
+      if (factor && (!least || *factor < *least)) least = factor;
+    }
+    if (!least || *least > most_buckling) return;
+    const std::string text = fmt::format(
+        "weight and field along the axis buckle the straight cilium at {:.4g} times", *least);
+    if (*least > 1)
+      preview_.signal.push_back(text);
+    else
+      warn(text +
+           " what they are: state an imperfection, a slight tilt of gravity or field, that "
+           "chooses the side");
   }
 
   void warn_of_steps(const MechanicsRun& run) {

@@ -75,6 +75,9 @@ def describe_load(load: dict[str, Any], environment: dict[str, Any] | None = Non
     for name, value in load.items():
         if name == "type" or value is None:
             continue
+        if name == "scale":  # of the environment, which is said below
+            parts += [f"{number(value)} times"] if value != 1 else []
+            continue
         si = parameters[name].rsplit(", ", 1)[-1] if name in parameters else ""
         if name == "velocity":
             si = "m/s"

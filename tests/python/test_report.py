@@ -17,6 +17,7 @@ import ciliaval as cv
 from ciliaval import program, report
 from ciliaval.report import page, view3d
 from ciliaval.report.sentences import findings
+from ciliaval.units import describe_load
 from test_results import quick
 
 MARKUP = """<script>console.error('ran')</script><b id="main">&amp; 'q'"""
@@ -95,6 +96,15 @@ class Report(Results):
         study = json.loads((self.folder / "two" / "study.json").read_text())
         value = study["points"][1]["pairs"]["elastica/line"]["dB_norm"]
         self.assertIn(f"<td>{1e6 * value:.4g}</td>", self.html)
+
+    def test_a_load_and_what_is_around_it_in_words(self):
+        around = {"gravity": [0, 0, -9.81], "uniform_field": [47e-3, 0, 0]}
+        load = {"type": "environment", "scale": 1.0, "azimuth": 0.0}
+        self.assertEqual(
+            describe_load(load, around),
+            "environment: azimuth 0°, gravity (0, 0, −9.81) m/s², uniform field (47, 0, 0) mT",
+        )
+        self.assertEqual(describe_load({**load, "scale": 0.5}), "environment: 0.5 times, azimuth 0°")
 
     def test_the_sentences_are_made_from_the_numbers(self):
         said = findings(self.result)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -140,6 +141,22 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
   if (const auto flow = load.as<FlowLoad>())
     rod.per_height = flow->force_per_height * units.length / units.force;
   return rod;
+}
+
+std::optional<double> critical_factor(const Cilium& cilium,
+                                      const surroundings::Environment& environment) {
+  if (!environment.gravity.head<2>().isZero() || !environment.uniform_field.head<2>().isZero() ||
+      !environment.magnets.empty())
+    throw InputError("the critical load is that of gravity and field along the axis");
+  const CrossSection& section = cilium.section;
+  const double across = cilium.is_rectangular() && section.width > section.height
+                            ? section.orientation + std::numbers::pi / 2
+                            : section.orientation;
+  const Rod rod = rod_of(cilium, with_environment(EnvironmentLoad{1, across}, environment));
+  // In each range the steps are small against the distance of two critical loads.
+  for (const double most : {1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1000.0})
+    if (const auto factor = critical_scale(rod, most)) return factor;
+  return std::nullopt;
 }
 
 void solve_step(const Cilium& cilium, double tolerance, MechanicsStep& step) {

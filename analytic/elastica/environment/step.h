@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <optional>
+
 #include "analytic/elastica/environment/equilibrium.h"
 #include "analytic/elastica/planar.h"
 #include "problem/cilium.h"
@@ -11,6 +13,12 @@ namespace ciliaval::analytic::elastica::environment {
 
 /// L (m) and B/L² (N), the units of a rod.
 PlanarUnits units_of(const Cilium& cilium, double azimuth = 0);
+
+/// The factor on an environment along the axis at which the straight cilium buckles, over its thin
+/// side if it is a rectangle; none up to a thousand. Greenhill's problem, and that of an opposing
+/// field. Throws InputError if the environment is not along the axis.
+std::optional<double> critical_factor(const Cilium& cilium,
+                                      const surroundings::Environment& environment);
 
 /// The cilium with its environment and what its load spreads over it. Throws InputError if the
 /// environment points out of the plane of the load.

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 
 #include "tests/support/synthetic.h"
@@ -43,6 +45,29 @@ TEST(Preview, TakesTheBeamBesideMagnets) {
   const Preview seen = preview(problem);
   EXPECT_THAT(seen.warnings, IsEmpty());
   EXPECT_THAT(seen.signal, Contains(HasSubstr("beam: the tip goes")));
+}
+
+// Oracle: Greenhill, w L³/EI = 7.837347438943486, and π²/4 of M A B L²/EI.
+TEST(Preview, TellsHowFarItIsToBuckling) {
+  input::Case problem = paper_case({1e-5});
+  Cilium& cilium = problem.cilium;
+  cilium.segments = {{"rod", 20e-3, 1e6, 0.49, 75e3, 1500}};
+  const double EI = 1e6 * cilium.second_moment();
+  const double L = cilium.length();
+  const auto surrounded = [&](const surroundings::Environment& around) {
+    problem.load_path.front().set_environment(around);
+    return preview(problem);
+  };
+  const double g = 7.837347438943486 * EI / (1500 * cilium.area() * std::pow(L, 3));
+  EXPECT_THAT(surrounded({.gravity = {0, 0, -g / 4}}).signal,
+              Contains(HasSubstr("buckle the straight cilium at 4 times")));
+  const double B = std::pow(std::numbers::pi, 2) / 4 * EI / (75e3 * cilium.area() * L * L);
+  EXPECT_THAT(surrounded({.uniform_field = {0, 0, -B / 2.5}}).signal,
+              Contains(HasSubstr("buckle the straight cilium at 2.5 times")));
+  EXPECT_THAT(surrounded({.uniform_field = {1e-6, 0, -1.25 * B}}).warnings,
+              Contains(HasSubstr("at 0.8 times what they are: state an imperfection")));
+  EXPECT_THAT(surrounded({.gravity = {0, 0, g}}).signal,
+              testing::Not(Contains(HasSubstr("buckle"))));
 }
 
 TEST(Preview, WarnsOfSlipsInUnits) {
