@@ -107,6 +107,7 @@ Charges charges_of(const rod::RodMagnet& magnet) {
 Charges poles_of(const rod::RodMagnet& magnet) {
   return [ends = magnet.ends](std::size_t) {
     std::vector<PointCharge> charges;
+    charges.reserve(ends.size());
     for (const rod::RodEnd& end : ends)
       charges.push_back({end.section.centre, rod::pole_strength(end)});
     return charges;

@@ -27,6 +27,7 @@ struct Sums {
 
 Sums sums(const std::vector<PointCharge>& charges, const PointsField& field, const Vector3& about) {
   std::vector<Vector3> points;
+  points.reserve(charges.size());
   for (const PointCharge& charge : charges) points.push_back(charge.position);
   const std::vector<Vector3> B = field(points);
   Sums result;

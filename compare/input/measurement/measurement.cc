@@ -87,7 +87,7 @@ std::optional<Measurand> measurand_of(std::string_view name, const Case& c) {
 std::optional<Measurand> read_quantity(const toml::node& node, const Case& c, Faults& faults) {
   const std::optional<std::string> name = read_text(node, "quantity", faults);
   if (!name) return std::nullopt;
-  const std::optional<Measurand> measurand = measurand_of(*name, c);
+  std::optional<Measurand> measurand = measurand_of(*name, c);
   const Parts parts = parts_of(*name);
   if (!measurand) {
     const std::vector<std::string> valid = valid_names(c);

@@ -104,7 +104,7 @@ int unstable_modes(const System& system, const State& state, const Loads& loads)
   const std::vector<Index> free = free_unknowns(system);
   const Eigen::MatrixXd tangent = symmetric_tangent(system, state, loads, free);
   // Each element with its upper vertex: the one below, or the clamp, holds it.
-  const auto block = static_cast<Index>(12 * system.mesh().degree);
+  const Index block = 12 * static_cast<Index>(system.mesh().degree);
   int negative = 0;
   Index before = 0;
   Index begin = 0;
