@@ -14,6 +14,7 @@
 #include "fem/potential/potential.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
+#include "problem/surroundings/plane.h"
 
 namespace ciliaval::compare::budget {
 namespace {
@@ -82,9 +83,8 @@ std::vector<Stage> mechanics_stages(const input::Case& problem) {
     const surroundings::Environment& environment = load.environment();
     is_empty = is_empty && surroundings::is_empty(environment);
     const bool has_magnets = !environment.magnets.empty();
-    const Vector3 across = Vector3::UnitZ().cross(direction(load));
-    is_for_the_beam =
-        is_for_the_beam || has_magnets || surroundings::component(environment, across) > 1e-9;
+    is_for_the_beam = is_for_the_beam || has_magnets ||
+                      !surroundings::lies_in_plane(environment, direction(load));
     has_field = has_field || has_magnets || !environment.uniform_field.isZero();
   }
   if (is_empty) return {elastica, beam, solid};

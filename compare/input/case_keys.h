@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,8 @@ inline constexpr QuantityKey section_orientation{
     section_table,
     "orientation",
     quantity::angle,
-    {-12.6, 12.6, false, "more than two turns is taken for a slip in the unit"},
+    {-4 * std::numbers::pi, 4 * std::numbers::pi, false,
+     "more than two turns is taken for a slip in the unit"},
     "0 deg",
     "`rectangle`: turn of the first side from +x towards +y. The load's azimuth lies along a "
     "side."};

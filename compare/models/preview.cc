@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -65,7 +66,7 @@ class Viewer {
       if (segment.density != 0) look_at(whose, segment.density, "kg/m^3", density);
       if (segment.magnetization != 0) look_at(whose, segment.magnetization, "A/m", magnetization);
     }
-    const double slenderness = cilium.length() / cilium.thickness();
+    const double slenderness = cilium.length() / cilium.extent(azimuth(problem_.load_path.front()));
     if (slenderness < least_slenderness)
       warn(
           fmt::format("the cilium is only {:.2g} diameters long: rods (`elastica`, `beam`) are off "
@@ -101,22 +102,22 @@ class Viewer {
     }
   }
 
-  /// Whether the elastica takes the environment.
-  bool is_planar() const {
-    constexpr double rounding = 1e-9;
-    return std::ranges::all_of(problem_.load_path, [](const Load& load) {
-      const Vector3 across = Vector3::UnitZ().cross(direction(load));
-      return load.environment().magnets.empty() &&
-             surroundings::component(load.environment(), across) <= rounding;
+  /// The first model, so the simplest, that has nothing against the case: the paper's elastica, out
+  /// of its plane and beside magnets the beam.
+  const MechanicsEntry& simplest() const {
+    return *std::ranges::find_if(mechanics_models(), [this](const MechanicsEntry& entry) {
+      bool takes = true;
+      const input::Report report = [&](const std::string&, const std::string&) { takes = false; };
+      if (entry.check) entry.check({problem_, true, true, true, report});
+      return takes;
     });
   }
 
   void look_at_signal() {
-    // The paper's, and its magnet in closed form; out of its plane and beside magnets the beam.
-    const std::string mechanics = is_planar() ? "elastica" : "beam";
-    const std::string field = "volume";
-    const MechanicsRun run = run_mechanics(
-        mechanics, *entry_of(mechanics_models(), mechanics).make(problem_.options), problem_);
+    const MechanicsEntry& entry = simplest();
+    const std::string& mechanics = entry.id;
+    const std::string field = "volume";  // the magnet in closed form
+    const MechanicsRun run = run_mechanics(mechanics, *entry.make(problem_.options), problem_);
     std::optional<std::size_t> largest;  // the step that bends most
     double deflection = -1;
     double strain = 0;
@@ -150,27 +151,38 @@ class Viewer {
     look_at_field(alone, field);
   }
 
-  /// The strongest environment of the path, along the axis alone: how often it is borne.
+  /// How often gravity and field along the axis are borne, at the steps where they are extreme.
   void look_at_buckling() {
+    const auto extremes = [this](const auto& along) {
+      const auto [low, high] = std::ranges::minmax_element(problem_.load_path, {}, along);
+      return std::array{low, high};
+    };
     std::optional<double> least;
-    for (const Load& load : problem_.load_path) {
-      surroundings::Environment along = acting_environment(load);
-      for (Vector3* vector : {&along.gravity, &along.uniform_field}) vector->head<2>().setZero();
-      along.magnets.clear();
-      if (surroundings::is_empty(along)) continue;
-      const std::optional<double> factor =
-          analytic::elastica::environment::critical_factor(problem_.cilium, along);
-      if (factor && (!least || *factor < *least)) least = factor;
-    }
-    if (!least || *least > most_buckling) return;
+    bool is_tilted = false;
+    for (const auto& steps :
+         {extremes([](const Load& load) { return acting_environment(load).uniform_field.z(); }),
+          extremes([](const Load& load) { return acting_environment(load).gravity.z(); })})
+      for (const auto step : steps) {
+        surroundings::Environment along = acting_environment(*step);
+        for (Vector3* vector : {&along.gravity, &along.uniform_field}) {
+          is_tilted = is_tilted || !vector->head<2>().isZero(0);
+          vector->head<2>().setZero();
+        }
+        along.magnets.clear();
+        if (surroundings::is_empty(along)) continue;
+        const std::optional<double> factor =
+            analytic::elastica::environment::critical_factor(problem_.cilium, along, most_buckling);
+        if (factor && (!least || *factor < *least)) least = factor;
+      }
+    if (!least) return;
     const std::string text = fmt::format(
         "weight and field along the axis buckle the straight cilium at {:.4g} times", *least);
     if (*least > 1)
       preview_.signal.push_back(text);
     else
-      warn(text +
-           " what they are: state an imperfection, a slight tilt of gravity or field, that "
-           "chooses the side");
+      warn(text + (is_tilted ? " what they are: their part across the axis chooses the side"
+                             : " what they are: state an imperfection, a slight tilt of gravity "
+                               "or field, that chooses the side"));
   }
 
   void warn_of_steps(const MechanicsRun& run) {

@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "compare/validation/validation.h"
-#include "problem/error.h"
 
 namespace ciliaval::compare::validation {
 namespace {
@@ -16,15 +15,10 @@ struct BendingPlane {
   double stiffness = 0;  ///< E I of the softest segment, N·m²
   double extent = 0;     ///< m
 };
-/// None of a rectangle without a side along the plane.
-std::optional<BendingPlane> bending_plane(const input::Case& c) {
+BendingPlane bending_plane(const input::Case& c) {
   const double phi = azimuth(c.load_path.front());
   const double E = std::ranges::min(c.cilium.segments, {}, &Segment::young_modulus).young_modulus;
-  try {
-    return BendingPlane{E * c.cilium.second_moment(phi), c.cilium.extent(phi)};
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
+  return {E * c.cilium.second_moment(phi), c.cilium.extent(phi)};
 }
 
 /// What F, q or δ is made dimensionless by, and how that is written.
@@ -56,13 +50,13 @@ std::vector<Extent> domain_of(const input::Case& c) {
   };
   const double length = c.cilium.length();
   const Load& first = c.load_path.front();
-  const std::optional<BendingPlane> plane = bending_plane(c);
+  const BendingPlane plane = bending_plane(c);
   const auto& key = first.type().parameters.front().key;
   if (!first.is<EnvironmentLoad>()) {
     const auto loads = along_path([](const Load& load) { return magnitude(load); });
     add("load", fmt::format("{}, {}", type(first), key.name), std::string(magnitude_unit(first)),
         loads);
-    if (const auto number = plane ? load_number(first, length, plane->stiffness) : std::nullopt)
+    if (const auto number = load_number(first, length, plane.stiffness))
       add("load_number", number->meaning, "",
           along_path([&](const Load& load) { return number->factor * magnitude(load); }));
   }
@@ -73,15 +67,11 @@ std::vector<Extent> domain_of(const input::Case& c) {
     for (const Segment& s : c.cilium.segments)
       moment += std::abs(s.magnetization) * c.cilium.area() * s.length;
     add("field", "|B|", "T", field);
-    if (plane)
-      add("field_number", "M A L B L/(E I)", "", along_path([&](const Load& load) {
-            return moment * acting_environment(load).uniform_field.norm() * length /
-                   plane->stiffness;
-          }));
+    add("field_number", "M A L B L/(E I)", "", along_path([&](const Load& load) {
+          return moment * acting_environment(load).uniform_field.norm() * length / plane.stiffness;
+        }));
   }
-  if (plane)
-    add("slenderness", "L over the section's extent along the azimuth", "",
-        {length / plane->extent});
+  add("slenderness", "L over the section's extent along the azimuth", "", {length / plane.extent});
   std::vector<double> ratios;
   for (const Segment& s : c.cilium.segments) ratios.push_back(s.poisson_ratio);
   add("poisson_ratio", "nu", "", ratios);

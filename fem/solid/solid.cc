@@ -20,6 +20,7 @@
 #include "fem/solid/sweep_run.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
+#include "problem/surroundings/plane.h"
 
 namespace ciliaval::fem::solid {
 using namespace material;
@@ -121,11 +122,9 @@ bool is_sweep(const LoadPath& path) {
   return !path.empty() && path.front().is<SweepLoad>();
 }
 
-/// Whether the environment lies in the plane of the load, as the solid's symmetry needs.
+/// As the solid's symmetry needs it.
 bool is_planar(const Load& load) {
-  constexpr double rounding = 1e-9;
-  const Vector3 across = Vector3::UnitZ().cross(direction(load));
-  return surroundings::component(load.environment(), across) <= rounding;
+  return surroundings::lies_in_plane(load.environment(), direction(load));
 }
 
 /// The mesh of a level for a load path, with a plane at each loaded section; half of it if the

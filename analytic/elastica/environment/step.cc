@@ -9,12 +9,10 @@
 #include <string>
 
 #include "problem/error.h"
+#include "problem/surroundings/plane.h"
 
 namespace ciliaval::analytic::elastica::environment {
 namespace {
-
-/// An environment may point out of the plane by rounding of the azimuth.
-constexpr double planar = 1e-9;
 
 PlanarForce in_plane(const Vector3& force, const Vector3& e) {
   return {force.dot(e), force.z()};
@@ -121,7 +119,7 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
   const PlanarUnits units = units_of(cilium, azimuth(load));
   const Vector3 e = direction(load);
   const surroundings::Environment environment = acting_environment(load);
-  if (surroundings::component(environment, Vector3::UnitZ().cross(e)) > planar)
+  if (!surroundings::lies_in_plane(environment, e))
     throw InputError(
         "the elastica is planar: gravity and field must lie in the plane of the load's azimuth; "
         "the beam and the solid take any");
@@ -144,7 +142,7 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
 }
 
 std::optional<double> critical_factor(const Cilium& cilium,
-                                      const surroundings::Environment& environment) {
+                                      const surroundings::Environment& environment, double most) {
   if (!environment.gravity.head<2>().isZero() || !environment.uniform_field.head<2>().isZero() ||
       !environment.magnets.empty())
     throw InputError("the critical load is that of gravity and field along the axis");
@@ -153,9 +151,9 @@ std::optional<double> critical_factor(const Cilium& cilium,
                             ? section.orientation + std::numbers::pi / 2
                             : section.orientation;
   const Rod rod = rod_of(cilium, with_environment(EnvironmentLoad{1, across}, environment));
-  // In each range the steps are small against the distance of two critical loads.
-  for (const double most : {1e-3, 1e-2, 0.1, 1.0, 10.0, 100.0, 1000.0})
-    if (const auto factor = critical_scale(rod, most)) return factor;
+  // By decades, so that the steps in each are small against the distance of two critical loads.
+  for (const double part : {1e-4, 1e-3, 1e-2, 0.1, 1.0})
+    if (const auto factor = critical_scale(rod, part * most)) return factor;
   return std::nullopt;
 }
 

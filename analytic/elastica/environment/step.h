@@ -15,10 +15,10 @@ namespace ciliaval::analytic::elastica::environment {
 PlanarUnits units_of(const Cilium& cilium, double azimuth = 0);
 
 /// The factor on an environment along the axis at which the straight cilium buckles, over its thin
-/// side if it is a rectangle; none up to a thousand. Greenhill's problem, and that of an opposing
+/// side if it is a rectangle; none up to `most`. Greenhill's problem, and that of an opposing
 /// field. Throws InputError if the environment is not along the axis.
 std::optional<double> critical_factor(const Cilium& cilium,
-                                      const surroundings::Environment& environment);
+                                      const surroundings::Environment& environment, double most);
 
 /// The cilium with its environment and what its load spreads over it. Throws InputError if the
 /// environment points out of the plane of the load.

@@ -8,6 +8,7 @@
 
 #include "compare/input/case.h"
 #include "compare/models/entries/values.h"
+#include "problem/surroundings/plane.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {
@@ -38,11 +39,9 @@ void check_height_form(const input::CaseCheck& check) {
 
 /// The elastica bends in the plane of the load, in which the environment must lie.
 void check_plane(const input::CaseCheck& check) {
-  constexpr double rounding = 1e-9;
   constexpr double degree = std::numbers::pi / 180;
   for (const Load& load : check.problem.load_path) {
-    const Vector3 across = Vector3::UnitZ().cross(direction(load));
-    if (surroundings::component(load.environment(), across) <= rounding) continue;
+    if (surroundings::lies_in_plane(load.environment(), direction(load))) continue;
     const auto at = std::ranges::find(check.problem.mechanics, "elastica");
     return check.report(
         fmt::format("models.mechanics[{}]", at - check.problem.mechanics.begin()),

@@ -106,7 +106,6 @@ int unstable_modes(const System& system, const State& state, const Loads& loads)
   // Each element with its upper vertex: the one below, or the clamp, holds it.
   const Index block = 12 * static_cast<Index>(system.mesh().degree);
   int negative = 0;
-  Index before = 0;
   Index begin = 0;
   Eigen::MatrixXd from_below;
   for (std::size_t e = 0; e < system.mesh().n_elements(); ++e) {
@@ -116,10 +115,9 @@ int unstable_modes(const System& system, const State& state, const Loads& loads)
     if (e > 0) diagonal -= from_below;
     const Factors factors(diagonal);
     negative += factors.negative();
-    before = begin;
+    const Index next = std::min(block, tangent.rows() - begin - size);
+    const auto coupling = tangent.block(begin, begin + size, size, next);
     begin += size;
-    const Index next = std::min(block, tangent.rows() - begin);
-    const auto coupling = tangent.block(before, begin, size, next);
     Eigen::MatrixXd solved = coupling;
     factors.solve(solved);
     from_below = coupling.transpose() * solved;

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "tests/support/case_texts.h"
+#include "tests/support/planted_fault.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -14,35 +14,15 @@ namespace {
 using testing::HasSubstr;
 using testing::StartsWith;
 
-struct BadCase {
-  const char* name;
-  std::string_view part;      ///< of good_case
-  std::string_view replaced;  ///< by this
-  const char* place;          ///< "line:column"
-  std::string_view message;
-  std::string_view advice{};  ///< what the message says besides
-};
-
-void PrintTo(const BadCase& bad, std::ostream* out) {
-  *out << bad.name;
-}
-
-class BadCaseFile : public testing::TestWithParam<BadCase> {};
+class BadCaseFile : public testing::TestWithParam<PlantedFault> {};
 
 TEST_P(BadCaseFile, IsRefusedWithOneLocatedMessage) {
-  const BadCase& bad = GetParam();
-  const std::string text = replaced(good_case, bad.part, bad.replaced);
-  ASSERT_FALSE(text.empty()) << "not in the good case: " << bad.part;
-  const std::string faults = faults_of(text);
-  EXPECT_EQ(lines(faults).size(), 1U) << faults;
-  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
-  EXPECT_THAT(faults, HasSubstr(bad.message));
-  EXPECT_THAT(faults, HasSubstr(bad.advice));
+  expect_refused(good_case, GetParam());
 }
 
 constexpr std::string_view slip = "taken for a slip in the sign or the unit";
 
-const BadCase syntax[]{
+const PlantedFault syntax[]{
     {"UnquotedQuantity", "\"3 mm\"", "3 mm", "6:14", "expected a comment or whitespace, saw 'm'",
      "write it in quotes"},
     {"OpenTable", "[cilium]", "[cilium", "5:8", "Error while parsing table header"},
@@ -80,7 +60,7 @@ TEST(BadCaseSyntax, NoAdviceIsGivenWhereNoneIsKnown) {
   }
 }
 
-const BadCase keys[]{
+const PlantedFault keys[]{
     {"UnknownKeyInSegment", "length =", "lenght =", "10:1",
      "unknown key 'lenght' in [[cilium.segment]] (valid: name, length, young_modulus, "
      "poisson_ratio, magnetization, density)",
@@ -147,7 +127,7 @@ TEST(BadLoad, OfAnUnknownTypeHasItsOtherFaultsReported) {
   }
 }
 
-const BadCase values[]{
+const PlantedFault values[]{
     {"NumberWithoutUnit", "diameter = \"3 mm\"", "diameter = 3", "6:12",
      "'diameter': the number 3 has no unit: write a length, such as \"3 mm\""},
     {"TextWithoutUnit", "diameter = \"3 mm\"", "diameter = \"3\"", "6:12", "'3' has no unit"},
@@ -226,7 +206,7 @@ const BadCase values[]{
      "35:16", "'push_forward' cannot be 'U' (valid: F, R)"},
 };
 
-const BadCase lists[]{
+const PlantedFault lists[]{
     {"EmptyMechanics",
      "[\"elastica\", \"beam\", \"solid\"]\nfields = [\"dipole\", \"line\", "
      "\"volume\", \"mesh\"]",
@@ -258,7 +238,7 @@ const BadCase lists[]{
      "'position' must be a point", "found the text '0 mm'"},
 };
 
-const BadCase contradictions[]{
+const PlantedFault contradictions[]{
     {"HeightAboveTheTip", "\"16 mm\"", "\"21 mm\"", "24:10",
      "the contact height 0.021 m must lie between the base and the tip of the cilium, which is "
      "0.02 m high"},
@@ -326,7 +306,7 @@ const BadCase contradictions[]{
 constexpr std::string_view contact_load =
     "type = \"contact\"\nforce = [\"1 mN\", \"2 mN\", \"4 mN\"]\nheight = \"16 mm\"";
 
-const BadCase probe[]{
+const PlantedFault probe[]{
     {"MissingDisplacement", contact_load, "type = \"probe\"\nheight = \"16 mm\"", "21:1",
      "[load] of type 'probe' needs 'displacement'"},
     {"MissingHeight", contact_load, "type = \"probe\"\ndisplacement = \"1 mm\"", "21:1",
@@ -404,7 +384,7 @@ TEST(BadCaseSize, ALoadPathHasAThousandStepsAtMost) {
       StartsWith("bad.toml:23:9: 'force' lists 1001 values: a load path has 1 to 1000 steps"));
 }
 
-const BadCase later[]{
+const PlantedFault later[]{
     {"UnknownLoad", "\"contact\"", "\"contract\"", "22:8", "'type' cannot be 'contract'",
      "did you mean 'contact'?"},
     {"PotentialOptions", "[models.solid]\nrefinement = 1",
@@ -442,9 +422,6 @@ const BadCase later[]{
      "C30/C10 must not be negative"},
 };
 
-std::string name_of(const testing::TestParamInfo<BadCase>& info) {
-  return info.param.name;
-}
 INSTANTIATE_TEST_SUITE_P(Syntax, BadCaseFile, testing::ValuesIn(syntax), name_of);
 INSTANTIATE_TEST_SUITE_P(Keys, BadCaseFile, testing::ValuesIn(keys), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, BadCaseFile, testing::ValuesIn(values), name_of);

@@ -14,7 +14,7 @@
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
 #include "compare/study/case_number.h"
-#include "tests/support/case_texts.h"
+#include "tests/support/planted_fault.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -192,31 +192,13 @@ TEST(EnvironmentCase, StudiesMayVaryIt) {
   EXPECT_EQ(other.load_path.front().as<EnvironmentLoad>()->scale, 0.5);
 }
 
-struct BadEnvironment {
-  const char* name;
-  std::string_view part;
-  std::string_view by;
-  const char* place;
-  std::string_view message;
-};
-
-void PrintTo(const BadEnvironment& bad, std::ostream* out) {
-  *out << bad.name;
-}
-
-class BadEnvironmentCase : public testing::TestWithParam<BadEnvironment> {};
+class BadEnvironmentCase : public testing::TestWithParam<PlantedFault> {};
 
 TEST_P(BadEnvironmentCase, IsRefusedWithOneLocatedMessage) {
-  const BadEnvironment& bad = GetParam();
-  const std::string text = replaced(weight_and_field, bad.part, bad.by);
-  ASSERT_FALSE(text.empty());
-  const std::string faults = faults_of(text);
-  EXPECT_EQ(lines(faults).size(), 1U) << faults;
-  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
-  EXPECT_THAT(faults, HasSubstr(bad.message));
+  expect_refused(weight_and_field, GetParam());
 }
 
-const BadEnvironment bad[]{
+const PlantedFault bad[]{
     {"NoDensity", "density = \"1 g/cm^3\"\n", "", "5:1", "the segment 'base' needs a 'density'"},
     {"NegativeDensity", "1 g/cm^3", "-1 g/cm^3", "10:11", "'density' is -1000 kg/m^3"},
     {"DensityIsNoPressure", "1 g/cm^3", "1 Pa", "10:11", "density"},
@@ -258,9 +240,6 @@ const BadEnvironment bad[]{
      "18:1", "no model takes an environment beside the load type 'sweep'"},
 };
 
-std::string name_of(const testing::TestParamInfo<BadEnvironment>& info) {
-  return info.param.name;
-}
 INSTANTIATE_TEST_SUITE_P(Environment, BadEnvironmentCase, testing::ValuesIn(bad), name_of);
 
 TEST(EnvironmentCase, ListsAsManyFieldsAsTheLoadHasSteps) {

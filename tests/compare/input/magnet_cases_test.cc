@@ -13,7 +13,7 @@
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
 #include "compare/study/case_number.h"
-#include "tests/support/case_texts.h"
+#include "tests/support/planted_fault.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -149,31 +149,13 @@ TEST(MagnetCase, StudiesMayVaryIt) {
   }
 }
 
-struct BadMagnet {
-  const char* name;
-  std::string_view part;
-  std::string_view by;
-  const char* place;
-  std::string_view message;
-};
-
-void PrintTo(const BadMagnet& bad, std::ostream* out) {
-  *out << bad.name;
-}
-
-class BadMagnetCase : public testing::TestWithParam<BadMagnet> {};
+class BadMagnetCase : public testing::TestWithParam<PlantedFault> {};
 
 TEST_P(BadMagnetCase, IsRefusedWithOneLocatedMessage) {
-  const BadMagnet& bad = GetParam();
-  const std::string text = replaced(beside, bad.part, bad.by);
-  ASSERT_FALSE(text.empty());
-  const std::string faults = faults_of(text);
-  EXPECT_EQ(lines(faults).size(), 1U) << faults;
-  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
-  EXPECT_THAT(faults, HasSubstr(bad.message));
+  expect_refused(beside, GetParam());
 }
 
-const BadMagnet bad[]{
+const PlantedFault bad[]{
     {"Touches", "\"20 mm\", \"5 mm\"]\ndiameter", "\"4.4 mm\", \"5 mm\"]\ndiameter", "14:12",
      "the magnet 'ball' touches the straight cilium: move it away"},
     {"NoUnit", "\"6 mm\"", "6", "15:12", "has no unit: write a length"},
@@ -209,9 +191,6 @@ const BadMagnet bad[]{
      "the elastica takes no [[environment.magnet]]: use 'beam' or 'solid'"},
 };
 
-std::string name_of(const testing::TestParamInfo<BadMagnet>& info) {
-  return info.param.name;
-}
 INSTANTIATE_TEST_SUITE_P(Magnets, BadMagnetCase, testing::ValuesIn(bad), name_of);
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
 #include "problem/error.h"
-#include "tests/support/case_texts.h"
+#include "tests/support/planted_fault.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
@@ -101,31 +101,13 @@ TEST(MeasurementCase, IsWrittenBack) {
   EXPECT_TRUE(again.measured.inputs[1].is_plain);
 }
 
-struct BadMeasurement {
-  const char* name;
-  std::string_view part;
-  std::string_view by;
-  const char* place;
-  std::string_view message;
-};
-
-void PrintTo(const BadMeasurement& bad, std::ostream* out) {
-  *out << bad.name;
-}
-
-class BadMeasurementCase : public testing::TestWithParam<BadMeasurement> {};
+class BadMeasurementCase : public testing::TestWithParam<PlantedFault> {};
 
 TEST_P(BadMeasurementCase, IsRefusedWithOneLocatedMessage) {
-  const BadMeasurement& bad = GetParam();
-  const std::string text = replaced(with(tip), bad.part, bad.by);
-  ASSERT_FALSE(text.empty());
-  const std::string faults = faults_of(text);
-  EXPECT_EQ(lines(faults).size(), 1U) << faults;
-  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
-  EXPECT_THAT(faults, HasSubstr(bad.message));
+  expect_refused(with(tip), GetParam());
 }
 
-const BadMeasurement bad[]{
+const PlantedFault bad[]{
     {"UnknownQuantity", "\"tip.deflection\"", "\"tip.deflexion\"", "37:12",
      "'quantity' cannot be 'tip.deflexion' (valid: tip.x, tip.y, tip.z, tip.deflection, tip.theta, "
      "B.0.x"},
@@ -166,10 +148,7 @@ const BadMeasurement bad[]{
      "expected 0 to 2000 tables [[measurement]], found a table"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, BadMeasurementCase, testing::ValuesIn(bad),
-                         [](const testing::TestParamInfo<BadMeasurement>& info) {
-                           return info.param.name;
-                         });
+INSTANTIATE_TEST_SUITE_P(All, BadMeasurementCase, testing::ValuesIn(bad), name_of);
 
 TEST(MeasurementCase, HasItsPointInTheRectangle) {
   std::string text = replaced(

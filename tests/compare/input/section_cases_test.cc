@@ -11,7 +11,7 @@
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
 #include "compare/study/case_number.h"
-#include "tests/support/case_texts.h"
+#include "tests/support/planted_fault.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -99,31 +99,13 @@ TEST(SectionCase, StudiesMayVaryItsSides) {
   EXPECT_EQ(found, 1U);
 }
 
-struct BadSection {
-  const char* name;
-  std::string_view part;
-  std::string_view by;
-  const char* place;
-  std::string_view message;
-};
-
-void PrintTo(const BadSection& bad, std::ostream* out) {
-  *out << bad.name;
-}
-
-class BadSectionCase : public testing::TestWithParam<BadSection> {};
+class BadSectionCase : public testing::TestWithParam<PlantedFault> {};
 
 TEST_P(BadSectionCase, IsRefusedWithOneLocatedMessage) {
-  const BadSection& bad = GetParam();
-  const std::string text = replaced(plate, bad.part, bad.by);
-  ASSERT_FALSE(text.empty());
-  const std::string faults = faults_of(text);
-  EXPECT_EQ(lines(faults).size(), 1U) << faults;
-  EXPECT_THAT(faults, StartsWith("bad.toml:" + std::string(bad.place) + ": "));
-  EXPECT_THAT(faults, HasSubstr(bad.message));
+  expect_refused(plate, GetParam());
 }
 
-const BadSection bad[]{
+const PlantedFault bad[]{
     {"NoHeight", "height = \"5 mm\"\n", "", "4:1", "needs 'height'"},
     {"ZeroHeight", "\"5 mm\"", "\"0 mm\"", "7:10", "'height' is 0 m"},
     {"HeightWithoutUnit", "\"5 mm\"", "5", "7:10", "has no unit: write a length"},
@@ -148,9 +130,6 @@ const BadSection bad[]{
      "type = \"flow\"\nvelocity = \"1 m/s\"", "18:12", "state force_per_height"},
 };
 
-std::string name_of(const testing::TestParamInfo<BadSection>& info) {
-  return info.param.name;
-}
 INSTANTIATE_TEST_SUITE_P(Sections, BadSectionCase, testing::ValuesIn(bad), name_of);
 
 TEST(SectionCase, TheHoleIsNarrowerThanTheTube) {

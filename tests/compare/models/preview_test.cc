@@ -64,8 +64,14 @@ TEST(Preview, TellsHowFarItIsToBuckling) {
   const double B = std::pow(std::numbers::pi, 2) / 4 * EI / (75e3 * cilium.area() * L * L);
   EXPECT_THAT(surrounded({.uniform_field = {0, 0, -B / 2.5}}).signal,
               Contains(HasSubstr("buckle the straight cilium at 2.5 times")));
-  EXPECT_THAT(surrounded({.uniform_field = {1e-6, 0, -1.25 * B}}).warnings,
+  EXPECT_THAT(surrounded({.uniform_field = {0, 0, -1.25 * B}}).warnings,
               Contains(HasSubstr("at 0.8 times what they are: state an imperfection")));
+  EXPECT_THAT(surrounded({.uniform_field = {1e-6, 0, -1.25 * B}}).warnings,
+              Contains(HasSubstr("their part across the axis chooses the side")));
+  // A stub is one by what bends, a tube not by its wall.
+  cilium.section = {.shape = CrossSection::Shape::tube, .inner_diameter = 2.9e-3};
+  cilium.segments[0].length = 8e-3;
+  EXPECT_THAT(surrounded({}).warnings, Contains(HasSubstr("only 2.7 diameters long")));
   EXPECT_THAT(surrounded({.gravity = {0, 0, g}}).signal,
               testing::Not(Contains(HasSubstr("buckle"))));
 }

@@ -38,7 +38,7 @@ std::pair<double, double> off_the_beam(const Cilium& cilium, const Load& load) {
 }
 
 // Oracle: the beam, whose shear coefficients are not exact: kGA is worth 3 E I/(kGA L²) of the
-// deflection, 7e-4 at L/h = 25, of which k may be wrong by some percent.
+// deflection, 1e-3 at L/h = 25, of which k may be wrong by some percent.
 TEST(SolidSections, SlenderOnesBendLikeTheBeam) {
   const double turn = 0.3;
   const CrossSection plate{

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+#include <string_view>
+
+#include "tests/support/case_texts.h"
+
+namespace ciliaval::compare {
+
+/// A fault that is put into a case file without one.
+struct PlantedFault {
+  const char* name;           ///< of the test
+  std::string_view part;      ///< of the good text
+  std::string_view replaced;  ///< by this
+  const char* place;          ///< "line:column" that the message names
+  std::string_view message;
+  std::string_view advice{};  ///< what the message says besides
+};
+
+inline void PrintTo(const PlantedFault& fault, std::ostream* out) {
+  *out << fault.name;
+}
+
+inline std::string name_of(const testing::TestParamInfo<PlantedFault>& info) {
+  return info.param.name;
+}
+
+/// That the good text with the fault is refused with one message, at its place.
+inline void expect_refused(std::string_view good, const PlantedFault& fault) {
+  const std::string text = replaced(good, fault.part, fault.replaced);
+  ASSERT_FALSE(text.empty()) << "not in the good case: " << fault.part;
+  const std::string faults = faults_of(text);
+  EXPECT_EQ(lines(faults).size(), 1U) << faults;
+  EXPECT_THAT(faults, testing::StartsWith("bad.toml:" + std::string(fault.place) + ": "));
+  EXPECT_THAT(faults, testing::HasSubstr(fault.message));
+  EXPECT_THAT(faults, testing::HasSubstr(fault.advice));
+}
+
+}  // namespace ciliaval::compare
