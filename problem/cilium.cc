@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "problem/cilium.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "problem/error.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval {
 
@@ -85,6 +87,11 @@ std::size_t Cilium::segment_at(double S) const {
 
 Cilium turned(Cilium cilium, double angle) {
   cilium.section.orientation += angle;
+  for (Segment& segment : cilium.segments) {
+    auto& [x, y] = segment.transverse_magnetization;
+    const Eigen::Vector2d M = Eigen::Rotation2Dd(angle) * Eigen::Vector2d(x, y);
+    segment.transverse_magnetization = {M.x(), M.y()};
+  }
   return cilium;
 }
 
@@ -111,7 +118,7 @@ void require_valid(const Cilium& cilium) {
     if (!(segment.poisson_ratio > -1 && segment.poisson_ratio < 0.5))
       throw InputError("segment '" + segment.name +
                        "': Poisson's ratio must lie between -1 and 0.5, both excluded");
-    if (!std::isfinite(segment.magnetization))
+    if (!magnetization(segment).allFinite())
       throw InputError("segment '" + segment.name + "': the magnetization must be finite");
     if (!(std::isfinite(segment.density) && segment.density >= 0))
       throw InputError("segment '" + segment.name +

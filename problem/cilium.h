@@ -17,6 +17,8 @@ struct Segment {
   double magnetization =
       0;  ///< M = B_r/μ₀ along the reference axis, base to tip positive, A/m; 0: not magnetic
   double density = 0;  ///< ρ, kg/m³, which gravity needs; 0: not known
+  /// M along the reference's x and y axes, A/m; with magnetization along z the vector M.
+  std::array<double, 2> transverse_magnetization{0, 0};
 
   /// μ = E/(2(1+ν)), Pa.
   double shear_modulus() const { return young_modulus / (2 * (1 + poisson_ratio)); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analytic/rod/mantle.h"
 #include "problem/lagrange.h"
 
 namespace ciliaval::analytic::forces {
@@ -88,9 +89,16 @@ Charges charges_of(const Magnet& magnet) {
 }
 
 Charges charges_of(const rod::RodMagnet& magnet) {
-  return [ends = magnet.ends](std::size_t order) {
+  return [magnet](std::size_t order) {
     std::vector<PointCharge> charges;
-    for (const rod::RodEnd& end : ends) {
+    const QuadratureRule rule = gauss_legendre(order, 0, 1);
+    for (const rod::MantlePatch& patch : rod::mantle_patches(magnet))
+      for (std::size_t i = 0; i < order; ++i)
+        for (std::size_t j = 0; j < order; ++j) {
+          const auto [position, strength] = patch({rule.nodes[i], rule.nodes[j]});
+          charges.push_back({position, rule.weights[i] * rule.weights[j] * strength});
+        }
+    for (const rod::RodEnd& end : magnet.ends) {
       if (end.rectangle) {
         const auto& [axes, half] = *end.rectangle;
         append_rectangle(end.section.centre, half[0] * axes.col(0), half[1] * axes.col(1),

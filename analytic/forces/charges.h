@@ -24,9 +24,10 @@ using Charges = std::function<std::vector<PointCharge>(std::size_t order)>;
 
 /// Of a given magnet.
 Charges charges_of(const surroundings::magnets::Magnet& magnet);
-/// Of the sections where a rod's magnetisation jumps: all that the wedge of the model `volume` has.
+/// Of the sections where a rod's magnetisation jumps and of its mantle: all that the wedge of the
+/// model `volume` has. It refers to the deformation.
 Charges charges_of(const rod::RodMagnet& magnet);
-/// The poles of the model `line` at the centres of these sections.
+/// The poles of the model `line` at the centres of these sections, of an axial magnetisation.
 Charges poles_of(const rod::RodMagnet& magnet);
 /// Of a solid's charged faces, where the deformation has taken them (Piola). It refers to the body.
 Charges charges_of(const SolidBody& body);

@@ -15,11 +15,12 @@ struct Dipole {
   Vector3 moment;    ///< A·m²
 };
 
-/// ∫ r dS, ∫ dr or ∫ d₃ dS over a stretch. r is a polynomial, on which Gauss–Legendre is exact; d₃
-/// is a normalised one, to which twice the nodes and eight more bring it to rounding error.
+/// ∫ r dS and ∫ (M₁ d₁ + M₂ d₂) dS + M₃ ∫ dr or ∫ d₃ dS over a stretch. r is a polynomial, on which
+/// Gauss–Legendre is exact; dᵢ is a normalised one, to which twice the nodes and eight more bring
+/// it to rounding error.
 struct StretchIntegrals {
   Vector3 position = Vector3::Zero();
-  Vector3 axis = Vector3::Zero();
+  Vector3 magnetization = Vector3::Zero();
 };
 
 StretchIntegrals integrate(const RodMagnet& magnet, const RodStretch& stretch,
@@ -30,11 +31,16 @@ StretchIntegrals integrate(const RodMagnet& magnet, const RodStretch& stretch,
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
     const CentrelinePoint point = at(magnet, stretch, rule.nodes[i]);
     integrals.position += rule.weights[i] * point.position;
-    if (push_forward == sources::PushForward::R) integrals.axis += rule.weights[i] * point.normal();
+    integrals.magnetization +=
+        rule.weights[i] * carried_magnetization(stretch, point,
+                                                push_forward == sources::PushForward::R
+                                                    ? point.normal()
+                                                    : Vector3(Vector3::Zero()));
   }
   if (push_forward == sources::PushForward::F)
-    integrals.axis =
-        at(magnet, stretch, stretch.end).position - at(magnet, stretch, stretch.begin).position;
+    integrals.magnetization +=
+        stretch.magnetization.z() *
+        (at(magnet, stretch, stretch.end).position - at(magnet, stretch, stretch.begin).position);
   return integrals;
 }
 
@@ -47,7 +53,7 @@ std::vector<Dipole> dipoles(const Cilium& cilium, const RodMagnet& magnet,
       result.push_back({Vector3::Zero(), Vector3::Zero()});
     const StretchIntegrals integrals = integrate(magnet, stretch, push_forward);
     result.back().position += integrals.position / cilium.segments[stretch.segment].length;
-    result.back().moment += stretch.magnetization * cilium.area() * integrals.axis;
+    result.back().moment += cilium.area() * integrals.magnetization;
   }
   return result;
 }

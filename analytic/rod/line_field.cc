@@ -12,6 +12,12 @@
 namespace ciliaval::analytic::rod {
 namespace {
 
+/// Two poles for each segment stand for its dipoles if these are along the centreline.
+bool has_closed_form(const LineOptions& options, const RodMagnet& magnet) {
+  return options.method == Method::closed_form && options.push_forward == sources::PushForward::F &&
+         !is_transverse(magnet);
+}
+
 /// B of a pole q = A (M below − M above) at each end of the magnet.
 sources::FieldValue field_of_poles(const RodMagnet& magnet, const Vector3& x) {
   sources::FieldValue sum;
@@ -25,7 +31,8 @@ sources::FieldValue field_of_poles(const RodMagnet& magnet, const Vector3& x) {
   return sum;
 }
 
-/// ∫ kernel(m, x − r) over the dipoles m = M πR² dr (F) or M πR² d₃ dS (R) of the centreline.
+/// ∫ kernel(m, x − r) over the dipoles m = A (M₁ d₁ + M₂ d₂) dS + A M₃ dr (F) or A M₃ d₃ dS (R) of
+/// the centreline.
 template <class Kernel>
 sources::FieldValue sum_over_dipoles(const RodMagnet& magnet, double area,
                                      const LineOptions& options, const Vector3& x,
@@ -45,8 +52,9 @@ sources::FieldValue sum_over_dipoles(const RodMagnet& magnet, double area,
       const CentrelinePoint point = at(magnet, part, part.begin + rule.nodes[i] * length);
       const Vector3 axis =
           options.push_forward == sources::PushForward::F ? point.derivative : point.normal();
-      const double strength = part.magnetization * area * rule.weights[i] * length;
-      B += kernel(Vector3(strength * axis), Vector3(x - point.position));
+      const double volume = area * rule.weights[i] * length;
+      B += kernel(Vector3(volume * carried_magnetization(part, point, axis)),
+                  Vector3(x - point.position));
     }
     return B;
   };
@@ -60,8 +68,7 @@ Field LineField::field(const Cilium& cilium, const Deformation& deformation,
                        std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   if (options_.method == Method::uniform) return field_of_uniform_line(magnet, options_, points);
-  const bool closed_form =
-      options_.method == Method::closed_form && options_.push_forward == sources::PushForward::F;
+  const bool closed_form = has_closed_form(options_, magnet);
   if (closed_form)
     return sources::field_at(points, 4096,
                              [&](const Vector3& x) { return field_of_poles(magnet, x); });
@@ -78,8 +85,7 @@ std::vector<Matrix3> LineField::gradient(const Cilium& cilium, const Deformation
         "or `quadrature`");
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   const double area = cilium.area();
-  const bool closed_form =
-      options_.method == Method::closed_form && options_.push_forward == sources::PushForward::F;
+  const bool closed_form = has_closed_form(options_, magnet);
   return sources::gradient_at(points, [&](const Vector3& x) {
     Matrix3 sum = Matrix3::Zero();
     if (closed_form)

@@ -128,7 +128,7 @@ class LoopStack::Part {
       const Vector3 centre = is_short_ ? offset(dS) : Vector3(point.position - middle_.position);
       loops.push_back(
           {centre / R, point.normal(),
-           vacuum_permeability * stretch_.magnetization * rule.weights[i] * extent_ / R});
+           vacuum_permeability * stretch_.magnetization.z() * rule.weights[i] * extent_ / R});
     }
     return loops;
   }
@@ -212,7 +212,7 @@ sources::FieldValue LoopStack::field(const Vector3& x, double tolerance) const {
   // away B by 4|B|δ/d.
   double rounding = 0;
   for (const Near& near : parts) {
-    const double M = vacuum_permeability * std::abs(near.part->stretch().magnetization);
+    const double M = vacuum_permeability * std::abs(near.part->stretch().magnetization.z());
     const double delta = near.part->rounding(near.offset);
     const double bound = near.distance > 3 * magnet_.radius
                              ? 4 * contribution(near, 4).norm() * delta / near.distance

@@ -8,13 +8,15 @@
 #include <numbers>
 
 #include "problem/error.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::analytic::rod {
 namespace {
 
 /// The stretches of one segment. Interfaces and breaks may differ by rounding, which makes no
 /// stretch.
-void append_stretches(RodMagnet& magnet, std::size_t segment, double begin, double end, double M) {
+void append_stretches(RodMagnet& magnet, std::size_t segment, double begin, double end,
+                      const Vector3& M) {
   const std::vector<double>& breaks = magnet.centreline.breaks();
   const double rounding = 1e-12 * magnet.centreline.length();
   for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
@@ -50,25 +52,36 @@ void append_holes(RodMagnet& magnet) {
   }
 }
 
-/// Ends with a jump. An interface's section is taken from the segment below.
+/// Whether the section at an interface has another pose on its two sides: a rod's joint.
+bool has_joint(const RodMagnet& magnet, const RodStretch& below, const RodStretch& above) {
+  const double rounding = 1e-12;
+  const CentrelinePoint a = at(magnet, below, below.end);
+  const CentrelinePoint b = at(magnet, above, above.begin);
+  return (a.position - b.position).norm() > rounding * magnet.centreline.length() ||
+         (a.normal() - b.normal()).norm() > rounding;
+}
+
+/// Ends with a jump. An interface's section is taken from the segment below, unless it is a joint.
 void append_ends(RodMagnet& magnet) {
+  const auto append = [&](const RodStretch& stretch, double S, double jump) {
+    if (jump != 0) magnet.ends.push_back(end_at(magnet, stretch, S, jump));
+  };
   const RodStretch* below = nullptr;
   for (std::size_t i = 0; i < magnet.stretches.size(); ++i) {
     const RodStretch& stretch = magnet.stretches[i];
     if (below == nullptr || below->segment != stretch.segment) {
-      const bool touches = below != nullptr && below->segment + 1 == stretch.segment;
-      const double M_below = touches ? below->magnetization : 0;
-      if (below != nullptr && !touches)
-        magnet.ends.push_back(end_at(magnet, *below, below->end, below->magnetization));
-      if (M_below != stretch.magnetization)
-        magnet.ends.push_back(
-            touches ? end_at(magnet, *below, below->end, M_below - stretch.magnetization)
-                    : end_at(magnet, stretch, stretch.begin, M_below - stretch.magnetization));
+      const bool is_joined = below != nullptr && below->segment + 1 == stretch.segment &&
+                             !has_joint(magnet, *below, stretch);
+      const double M = stretch.magnetization.z();
+      if (below != nullptr && !is_joined) append(*below, below->end, below->magnetization.z());
+      if (is_joined)
+        append(*below, below->end, below->magnetization.z() - M);
+      else
+        append(stretch, stretch.begin, -M);
     }
     below = &stretch;
   }
-  if (below != nullptr)
-    magnet.ends.push_back(end_at(magnet, *below, below->end, below->magnetization));
+  if (below != nullptr) append(*below, below->end, below->magnetization.z());
 }
 
 /// Calls `visit(point)` at the nodes of the stretch and at its ends.
@@ -135,9 +148,9 @@ RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
         "the centreline of the deformation is not as long as the cilium: take both "
         "from the same model");
   for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
-    const double M = cilium.segments[i].magnetization;
-    if (M == 0) continue;
-    append_stretches(magnet, i, interfaces[i], interfaces[i + 1], M);
+    if (is_magnetic(cilium.segments[i]))
+      append_stretches(magnet, i, interfaces[i], interfaces[i + 1],
+                       magnetization(cilium.segments[i]));
   }
   append_ends(magnet);
   append_holes(magnet);
@@ -160,6 +173,20 @@ sources::Circle section(const RodMagnet& magnet, const CentrelinePoint& point) {
 
 Vector3 stretch_vector(const CentrelinePoint& point, const Vector3& x) {
   return point.derivative + point.curvature.cross(x - point.position);
+}
+
+Vector3 carried_magnetization(const RodStretch& stretch, const CentrelinePoint& point,
+                              const Vector3& a) {
+  const Vector3& M = stretch.magnetization;
+  const Vector3 axial = M.z() * a;
+  if (M.head<2>().isZero(0)) return axial;
+  return point.rotation * Vector3(M.x(), M.y(), 0) + axial;
+}
+
+bool is_transverse(const RodMagnet& magnet) {
+  return std::ranges::any_of(magnet.stretches, [](const RodStretch& stretch) {
+    return !stretch.magnetization.head<2>().isZero(0);
+  });
 }
 
 std::optional<std::vector<RodStretch>> graded_stretches(
@@ -251,8 +278,8 @@ std::optional<Vector3> RodInterior::magnetization_between(const Sample& low, con
   }
   const CentrelinePoint point = at(magnet_, stretch, S);
   if (!is_in_section(magnet_, point, x)) return std::nullopt;
-  const Vector3 carried = stretch_vector(point, x);
-  return stretch.magnetization / point.normal().dot(carried) * carried;
+  const Vector3 tangent = stretch_vector(point, x);
+  return carried_magnetization(stretch, point, tangent) / point.normal().dot(tangent);
 }
 
 std::optional<Vector3> RodInterior::magnetization_at(const Vector3& x) const {

@@ -17,11 +17,11 @@ namespace ciliaval::analytic::rod {
 
 /// A smooth stretch of a magnetic segment: its part on one piece of the centreline.
 struct RodStretch {
-  double begin = 0;          ///< S, m
-  double end = 0;            ///< S, m
-  std::size_t piece = 0;     ///< of the centreline
-  std::size_t segment = 0;   ///< of the cilium
-  double magnetization = 0;  ///< M, A/m
+  double begin = 0;                         ///< S, m
+  double end = 0;                           ///< S, m
+  std::size_t piece = 0;                    ///< of the centreline
+  std::size_t segment = 0;                  ///< of the cilium
+  Vector3 magnetization = Vector3::Zero();  ///< M along the reference's axes, A/m
 };
 
 /// The sides of a rectangular section.
@@ -34,7 +34,7 @@ struct RodRectangle {
 /// its segments. A tube has two for each, the hole's with the opposite charge.
 struct RodEnd {
   sources::Circle section;    ///< centred on the centreline, normal d₃; around a rectangle
-  double magnetization_jump;  ///< M below − M above, A/m; the reference charge on the section
+  double magnetization_jump;  ///< M₃ below − M₃ above, A/m; the reference charge on the section
   std::optional<RodRectangle> rectangle{};
 };
 
@@ -64,6 +64,13 @@ sources::Circle section(const RodMagnet& magnet, const CentrelinePoint& point);
 /// length at the point x of the section.
 Vector3 stretch_vector(const CentrelinePoint& point, const Vector3& x);
 
+/// F·M = M₁ d₁ + M₂ d₂ + M₃ a with a = ∂x/∂S, or by rigid sections with a = d₃, A/m.
+Vector3 carried_magnetization(const RodStretch& stretch, const CentrelinePoint& point,
+                              const Vector3& a);
+
+/// Whether a stretch is magnetised across the axis.
+bool is_transverse(const RodMagnet& magnet);
+
 /// The magnet's stretches, bisected until none is longer than the distance of its middle section
 /// from the field point, as `distance` measures it: then Gauss–Legendre converges at least like
 /// 3.7^(−2n) on each. Nothing if a part shorter than `shortest` (m) would be needed.
@@ -82,7 +89,7 @@ class RodInterior {
   explicit RodInterior(const RodMagnet& magnet);
 
   /// m = F·M/J (A/m) at x if x is inside a magnetic segment: on the section S with
-  /// (x − r)·d₃ = 0, nearer to r than the radius, where F·M = M ∂x/∂S and J = d₃·∂x/∂S. The mantle
+  /// (x − r)·d₃ = 0, nearer to r than the radius, and with J = d₃·∂x/∂S. The mantle
   /// and a segment's upper end section count as outside, its lower end section as inside.
   std::optional<Vector3> magnetization_at(const Vector3& x) const;
 

@@ -33,10 +33,10 @@ std::vector<Eigen::Vector2d> directions(std::size_t n) {
   return nodes;
 }
 
-/// B of the slice of unit thickness at `point`, of unit magnetisation.
-Vector3 slice_field(const CentrelinePoint& point, double radius, Slices slices,
-                    const QuadratureRule& radial, const std::vector<Eigen::Vector2d>& azimuthal,
-                    const Vector3& x) {
+/// B of the slice of unit thickness at `point`.
+Vector3 slice_field(const RodStretch& stretch, const CentrelinePoint& point, double radius,
+                    Slices slices, const QuadratureRule& radial,
+                    const std::vector<Eigen::Vector2d>& azimuthal, const Vector3& x) {
   const Matrix3 directors = point.rotation.toRotationMatrix();
   const double angle = 2 * std::numbers::pi / static_cast<double>(azimuthal.size());
   Vector3 B = Vector3::Zero();
@@ -45,8 +45,8 @@ Vector3 slice_field(const CentrelinePoint& point, double radius, Slices slices,
     Vector3 ring = Vector3::Zero();
     for (const Eigen::Vector2d& direction : azimuthal) {
       const Vector3 y = point.position + r * (directors.leftCols<2>() * direction);
-      ring += sources::dipole_field(
-          slices == Slices::wedge ? stretch_vector(point, y) : directors.col(2), x - y);
+      const Vector3 a = slices == Slices::wedge ? stretch_vector(point, y) : directors.col(2);
+      ring += sources::dipole_field(carried_magnetization(stretch, point, a), x - y);
     }
     B += radius * radial.weights[j] * r * angle * ring;
   }
@@ -64,8 +64,8 @@ Vector3 rod_field(const RodMagnet& magnet, Slices slices, const std::vector<RodS
     const double length = part.end - part.begin;
     for (std::size_t i = 0; i < orders[0]; ++i) {
       const CentrelinePoint point = at(magnet, part, part.begin + axial.nodes[i] * length);
-      B += axial.weights[i] * length * part.magnetization *
-           slice_field(point, magnet.radius, slices, radial, azimuthal, x);
+      B += axial.weights[i] * length *
+           slice_field(part, point, magnet.radius, slices, radial, azimuthal, x);
     }
   }
   return B;

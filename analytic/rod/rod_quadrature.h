@@ -8,7 +8,8 @@
 namespace ciliaval::analytic::rod {
 
 /// B (T) at x outside the rod by quadrature over its reference volume,
-///   B = ∫∫∫ dipole_field(M v, x − y) r dr dφ dS,  y = r(S) + r cosφ d₁ + r sinφ d₂,
+///   B = ∫∫∫ dipole_field(M₁ d₁ + M₂ d₂ + M₃ v, x − y) r dr dφ dS,  y = r(S) + r cosφ d₁ + r sinφ
+///   d₂,
 /// v = ∂y/∂S for `wedge` (paper's Eq. 9 with the Jacobian, m dv = F·M dV₀) and v = d₃ for `stacked`
 /// (Eq. 9 with one 1/cosθ). Gauss–Legendre in S, on stretches no longer than their distance from x,
 /// and in r, trapezoid in φ; the order of each of the three directions is raised by itself until

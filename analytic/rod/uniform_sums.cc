@@ -61,7 +61,7 @@ void append_slices(const RodMagnet& magnet, std::span<const RodStretch> segment,
       ++current;
     const RodStretch& stretch = segment[current];
     const CentrelinePoint point = section_at_height(magnet, stretch, z);
-    slices.push_back({point, dz / point.derivative.z(), stretch.magnetization});
+    slices.push_back({point, dz / point.derivative.z(), stretch});
   }
 }
 
@@ -91,7 +91,9 @@ std::vector<Dipole> line_dipoles(const RodMagnet& magnet, const LineOptions& opt
   for (const UniformSlice& slice : uniform_slices(magnet, n)) {
     const Vector3 axis = options.push_forward == sources::PushForward::F ? slice.point.derivative
                                                                          : slice.point.normal();
-    dipoles.push_back({slice.point.position, slice.magnetization * area * slice.thickness * axis});
+    dipoles.push_back(
+        {slice.point.position,
+         area * slice.thickness * carried_magnetization(slice.stretch, slice.point, axis)});
   }
   return dipoles;
 }
@@ -119,9 +121,10 @@ class VolumeSum {
       for (const Place& place : places_) {
         const Vector3 y = slice.point.position + directors.leftCols<2>() * place.offset;
         const Vector3 axis = wedge_ ? stretch_vector(slice.point, y) : Vector3(directors.col(2));
-        section += sources::dipole_field(place.area * axis, x - y);
+        section += sources::dipole_field(
+            place.area * carried_magnetization(slice.stretch, slice.point, axis), x - y);
       }
-      B += slice.magnetization * slice.thickness * section;
+      B += slice.thickness * section;
     }
     return B;
   }

@@ -13,8 +13,8 @@ namespace ciliaval::analytic::rod {
 /// The slice of the magnet at the middle of one of n equal steps of height.
 struct UniformSlice {
   CentrelinePoint point;
-  double thickness;      ///< dS = dz/(dr/dS·e_z), m
-  double magnetization;  ///< M, A/m
+  double thickness;    ///< dS = dz/(dr/dS·e_z), m
+  RodStretch stretch;  ///< that it is of
 };
 
 /// The paper's discretisation of a bent magnet (its section on the numerical integration after
@@ -22,9 +22,9 @@ struct UniformSlice {
 /// InputError if the centreline does not rise all along, or n is 0.
 std::vector<UniformSlice> uniform_slices(const RodMagnet& magnet, std::size_t n);
 
-/// B (T) by the paper's sum of n dipoles πR²M t dS (Eq. 5–7), by the midpoint rule. The uncertainty
-/// is the change from half as many (of one dipole: to two): for a rule of second order three times
-/// the error. Throws InputError as above, SolverError on a dipole.
+/// B (T) by the paper's sum of n dipoles πR²M t dS (Eq. 5–7; M₁ d₁ + M₂ d₂ besides), by the
+/// midpoint rule. The uncertainty is the change from half as many (of one dipole: to two): for a
+/// rule of second order three times the error. Throws InputError as above, SolverError on a dipole.
 Field field_of_uniform_line(const RodMagnet& magnet, const LineOptions& options,
                             std::span<const Vector3> points);
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <array>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "analytic/rod/end_discs.h"
 #include "analytic/rod/end_rectangles.h"
 #include "analytic/rod/field_models.h"
 #include "analytic/rod/loop_stack.h"
+#include "analytic/rod/mantle.h"
 #include "analytic/rod/rod_magnet.h"
 #include "analytic/rod/rod_quadrature.h"
 #include "analytic/rod/uniform_sums.h"
@@ -18,16 +21,26 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-/// B = μ₀ Σ σ H(disc or rectangle) + μ₀ m of the wedge's reference charge on the end sections.
+/// B = μ₀ Σ σ H(disc or rectangle) + μ₀ m of the wedge's reference charge on the end sections, and
+/// by quadrature of what is on the mantle.
 Field field_of_discs(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
   const RodInterior interior(magnet);
   const bool is_rectangular = magnet.shape.shape == CrossSection::Shape::rectangle;
+  const std::vector<MantlePatch> patches = mantle_patches(magnet);
+  const body::PatchIntegral<2, double> mantle(
+      patches.size(),
+      [&patches](std::size_t patch, const std::array<double, 2>& xi) { return patches[patch](xi); },
+      "field of the charged mantle");
   return sources::field_at(points, 256, [&](const Vector3& x) {
     sources::FieldValue sum = is_rectangular ? field_of_end_rectangles(magnet.ends, x)
                                              : field_of_end_discs(magnet.ends, x);
     if (const auto m = interior.magnetization_at(x)) {
       const Vector3 inside = vacuum_permeability * *m;
       sum += {inside, Vector3::Constant(40 * epsilon * inside.norm())};
+    }
+    if (!patches.empty()) {
+      const sources::FieldValue all = mantle.field(x, sum.B, tolerance);
+      sum = {all.B, sum.uncertainty + all.uncertainty};
     }
     sources::require_tolerance(sum, {tolerance, 0, "field of the charged end faces", x});
     return sum;
@@ -54,6 +67,10 @@ Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
         "the model `volume` takes a rectangle or a tube by the slices `wedge` and the method "
         "`closed_form` only");
   if (is_wedge) require_body(magnet);
+  if (!is_wedge && options_.method == Method::closed_form && is_transverse(magnet))
+    throw InputError(
+        "the current loops of the model `volume` with the slices `stacked` are those of an axial "
+        "magnetisation: take the slices `wedge` or the method `quadrature`");
   if (options_.method == Method::closed_form)
     return is_wedge ? field_of_discs(magnet, options_.tolerance, points)
                     : field_of_loops(magnet, options_.tolerance, points);
@@ -75,6 +92,9 @@ std::vector<Matrix3> VolumeField::gradient(const Cilium& cilium, const Deformati
     throw InputError("the gradient of the model `volume` has no closed form for a rectangle yet");
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   require_body(magnet);
+  if (is_transverse(magnet))
+    throw InputError(
+        "the gradient of the model `volume` has a closed form for an axial magnetisation only");
   const RodInterior interior(magnet);
   return sources::gradient_at(points, [&](const Vector3& x) {
     if (interior.magnetization_at(x))
