@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "analytic/elastica/jumps/jump.h"
 #include "analytic/elastica/taylor.h"
 #include "problem/error.h"
 
@@ -40,8 +41,15 @@ std::pair<Reached, PlanarState> climb(const PlanarProblem& problem, double load,
   state.moment = problem.point;
   state.force = 1;
   for (std::size_t i = 0; i < problem.compliance.size(); ++i) {
+    if (!problem.joints.empty()) {
+      const PlanarState lower = state;
+      state = jumps::across(problem.joints[i], load, ForceLaw::constant, lower, jumps::Side::lower);
+      if (state.moment <= 0)
+        return {Reached::contact, jumps::inside(problem.joints[i], load, lower)};
+      if (state.phi <= 0) return {Reached::level, state};
+    }
     while (state.S < problem.ends[i + 1]) {
-      TaylorStep step(state, load * problem.compliance[i], ForceLaw::constant, problem.ends[i + 1],
+      TaylorStep step(state, problem.flexibility(i, load), ForceLaw::constant, problem.ends[i + 1],
                       accuracy.tolerance, accuracy.fraction);
       state = step.end_state();
       const bool contact = state.moment <= 0;
@@ -142,7 +150,8 @@ Launch launch(const PlanarProblem& problem) {
   return {start, foldings > 3 ? x : std::log(linear_angle)};
 }
 
-/// Integrates from `S` down to the base; w, z and H of a flow count from there. Stops below −90°.
+/// Integrates from `S` down to the base; w, z and H of a flow count from there. Stops below −90°. A
+/// load at an interface acts below its joint.
 PlanarState descend(const PlanarProblem& problem, const Launch& from, const Accuracy& accuracy,
                     std::vector<TaylorStep>* steps) {
   PlanarState state;
@@ -153,12 +162,15 @@ PlanarState descend(const PlanarProblem& problem, const Launch& from, const Accu
   if (problem.kind == PlanarLoad::dead) state.force = 1 - from.S;
   for (std::size_t i = problem.compliance.size(); i-- > 0;) {
     while (state.S > problem.ends[i]) {
-      const TaylorStep step(state, problem.load * problem.compliance[i], force_law(problem.kind),
+      const TaylorStep step(state, problem.flexibility(i, problem.load), force_law(problem.kind),
                             problem.ends[i], accuracy.tolerance, accuracy.fraction);
       if (steps != nullptr) steps->push_back(step);
       state = step.end_state();
       if (state.theta < -right_angle) return state;
     }
+    if (!problem.joints.empty() && from.S > problem.ends[i])
+      state = jumps::across(problem.joints[i], problem.load, force_law(problem.kind), state,
+                            jumps::Side::upper);
   }
   return state;
 }
@@ -208,17 +220,28 @@ double shoot(const PlanarProblem& problem, Launch from, const Accuracy& accuracy
 
 /// The level part above the launch and the straight part above a section load, then all in the
 /// order of S with w = z = 0 at the base.
-void complete_from_top(const PlanarProblem& problem, double launch_S,
+void complete_from_top(const PlanarProblem& problem, double launch_S, const PlanarState& base,
                        std::vector<TaylorStep>& steps) {
-  const PlanarState base = steps.back().end_state();
   std::reverse(steps.begin(), steps.end());
   for (TaylorStep& step : steps) step.translate(-base.w, -base.z);
   PlanarState state = steps.back().at(launch_S);
-  if (launch_S < top(problem)) {
+  const ForceLaw law = force_law(problem.kind);
+  while (state.S < top(problem)) {
     state.theta = right_angle;
     state.phi = 0;
-    steps.push_back(TaylorStep::straight(state, force_law(problem.kind), top(problem)));
+    double target = top(problem);
+    double extension = 0;
+    std::size_t above = 0;  // the joint at the target
+    if (!problem.joints.empty()) {
+      const auto end = std::upper_bound(problem.ends.begin(), problem.ends.end(), state.S);
+      above = static_cast<std::size_t>(end - problem.ends.begin());
+      extension = problem.flexibility(above - 1, problem.load).extension;
+      target = std::min(target, *end);
+    }
+    steps.push_back(TaylorStep::straight(state, law, target, extension));
     state = steps.back().end_state();
+    if (target < top(problem))
+      state = jumps::across(problem.joints[above], problem.load, law, state, jumps::Side::lower);
   }
   if (top(problem) < 1) {
     state.force = 0;
@@ -284,7 +307,12 @@ std::optional<PlanarShape> solve_contact(const PlanarProblem& problem, const Acc
   const PlanarState last = steps.back().end_state();
   const bool tail = last.moment == 0 && last.force == 0;
   const double contact = tail ? steps.back().start() : last.S;
-  return shape_of(problem, std::move(steps), contact, error, 2, tolerance);
+  const bool is_at_joint = !problem.joints.empty() && std::ranges::count(problem.ends, contact) > 0;
+  std::optional<double> deflection;
+  if (tail && is_at_joint) deflection = steps.back().at(contact).w;
+  PlanarShape shape = shape_of(problem, std::move(steps), contact, error, 2, tolerance);
+  shape.deflection = deflection;
+  return shape;
 }
 
 PlanarShape solve_from_top(const PlanarProblem& problem, const Accuracy& accuracy,
@@ -302,7 +330,7 @@ PlanarShape solve_from_top(const PlanarProblem& problem, const Accuracy& accurac
   double curvature = 0;  // the last bit of S moves θ by εθ', in every step
   for (const TaylorStep& step : steps) curvature = std::max(curvature, step.end_state().curvature);
   error.rounding = 4 * epsilon * curvature / angle * static_cast<double>(steps.size());
-  complete_from_top(problem, from.S, steps);
+  complete_from_top(problem, from.S, base, steps);
   return shape_of(problem, std::move(steps), std::nullopt, error, iterations + 2, tolerance);
 }
 
@@ -333,7 +361,12 @@ std::optional<PlanarShape> solve_arclength(const PlanarProblem& problem, double 
 double slip_off_arclength(const PlanarProblem& problem, double tolerance) {
   const Accuracy accuracy = step_accuracy(tolerance);
   return slip_off_load(problem, [&](double log_load) {
-    return tip_above_contact(problem, std::exp(log_load), accuracy);
+    try {
+      return tip_above_contact(problem, std::exp(log_load), accuracy);
+    } catch (const SolverError&) {
+      if (problem.joints.empty()) throw;
+      return -1.0;  // a joint turns too far: no load in an equilibrium
+    }
   });
 }
 

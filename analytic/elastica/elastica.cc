@@ -5,9 +5,11 @@
 #include <chrono>
 #include <iomanip>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "analytic/elastica/arclength.h"
 #include "analytic/elastica/environment/step.h"
@@ -16,6 +18,8 @@
 #include "analytic/elastica/probe.h"
 #include "analytic/elastica/sweep_path.h"
 #include "problem/error.h"
+#include "problem/error_estimate.h"
+#include "problem/joints/companions.h"
 
 namespace ciliaval::analytic::elastica {
 namespace {
@@ -44,9 +48,12 @@ double probe_tolerance(const ElasticaOptions& options) {
   return has_height_form(options) ? 1e-9 : 1e-12;
 }
 
-SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options) {
+using Joints = std::span<const joints::Joint>;
+
+SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options,
+                 Joints joints) {
   PlanarProblem problem =
-      planar_problem(cilium, ContactLoad{1, contact_height(load).value(), azimuth(load)});
+      planar_problem(cilium, ContactLoad{1, contact_height(load).value(), azimuth(load)}, joints);
   const double of_one_newton = problem.load;
   problem.load = has_height_form(options) ? slip_off_height(problem)
                                           : slip_off_arclength(problem, options.tolerance);
@@ -65,8 +72,8 @@ struct ProbeForce {
 };
 
 ProbeForce probe_force(const Cilium& cilium, const ProbeLoad& load, double slip_off_force,
-                       const ElasticaOptions& options) {
-  PlanarProblem problem = planar_problem(cilium, load);
+                       const ElasticaOptions& options, Joints joints) {
+  PlanarProblem problem = planar_problem(cilium, load, joints);
   const double of_one_newton = problem.load;
   if (load.displacement == 0) {
     problem.load = 0;
@@ -112,15 +119,16 @@ void say_slipped_off(MechanicsStep& step) {
       slipped_off(step.load, step.slip_off_force.value_or(0), step.slip_off_displacement);
 }
 
-void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsStep& step) {
-  const PlanarProblem problem = planar_problem(cilium, step.load);
+void solve_step(const Cilium& cilium, const ElasticaOptions& options, Joints joints,
+                MechanicsStep& step) {
+  const PlanarProblem problem = planar_problem(cilium, step.load, joints);
   PlanarUnits units = planar_units(cilium, step.load);
   const bool height_form = has_height_form(options);
   std::optional<PlanarShape> shape;
   const std::optional<double> limit = slip_off_limit(step);
   if (!limit || magnitude(step.load) <= *limit) {
     if (const auto probe = step.load.as<ProbeLoad>()) {
-      ProbeForce found = probe_force(cilium, *probe, step.slip_off_force.value(), options);
+      ProbeForce found = probe_force(cilium, *probe, step.slip_off_force.value(), options, joints);
       units.force = found.force;
       shape = std::move(found.shape);
     } else {
@@ -147,6 +155,54 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, MechanicsS
   step.iterations = shape->iterations;
 }
 
+std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
+                                      const ElasticaOptions& options, Joints joints,
+                                      const Progress& progress) {
+  std::vector<MechanicsStep> steps;
+  for (const Load& load : path) {
+    const auto begin = std::chrono::steady_clock::now();
+    MechanicsStep step;
+    step.load = load;
+    try {
+      if (has_environment(load)) {
+        environment::solve_step(cilium, options.tolerance, step);
+        if (step.status == Status::slipped_off) say_slipped_off(step);
+      } else if (contact_height(load)) {
+        const SlipOff limit = slip_off(cilium, load, options, joints);
+        step.slip_off_force = limit.force;
+        step.slip_off_displacement = limit.displacement;
+        if (const auto largest = slip_off_limit(step))
+          step.slip_off_uncertainty = options.tolerance * *largest;
+        solve_step(cilium, options, joints, step);
+      } else {
+        solve_step(cilium, options, joints, step);
+      }
+    } catch (const SolverError& error) {
+      step.status = Status::failed;
+      step.message = error.what();
+    }
+    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    steps.push_back(std::move(step));
+    report_step(progress, steps, path.size());
+  }
+  return steps;
+}
+
+/// What the equations of the joints do not reach.
+void require_correctable(const LoadPath& path, const ElasticaOptions& options) {
+  if (has_height_form(options))
+    throw InputError(
+        "elastica: the height form takes no joints = \"corrected\"; use form = \"arclength\"");
+  for (const Load& load : path) {
+    if (load.is<SweepLoad>())
+      throw InputError("elastica: joints = \"corrected\" takes no sweep: take joints = \"none\"");
+    if (has_environment(load))
+      throw InputError(
+          "elastica: joints = \"corrected\" takes no environment: take the beam, or joints = "
+          "\"none\"");
+  }
+}
+
 }  // namespace
 
 MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
@@ -166,6 +222,7 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
     if (has_environment(load) && load.is<SweepLoad>())
       throw InputError("the elastica takes a sweep without an environment only");
   }
+  if (options_.joints == joints::Correction::corrected) require_correctable(path, options_);
   if (!path.empty() && path.front().is<SweepLoad>()) {
     if (has_height_form(options_)) refuse_type(path.front(), "elastica's height form");
     return solve_sweep(cilium, path, options_.tip, options_.tolerance, progress);
@@ -173,32 +230,27 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
 
   MechanicsResult result;
   result.undeformed.centreline = straight_centreline(cilium.interfaces());
-  for (const Load& load : path) {
-    const auto begin = std::chrono::steady_clock::now();
-    MechanicsStep step;
-    step.load = load;
-    try {
-      if (has_environment(load)) {
-        environment::solve_step(cilium, options_.tolerance, step);
-        if (step.status == Status::slipped_off) say_slipped_off(step);
-      } else if (contact_height(load)) {
-        const SlipOff limit = slip_off(cilium, load, options_);
-        step.slip_off_force = limit.force;
-        step.slip_off_displacement = limit.displacement;
-        if (const auto largest = slip_off_limit(step))
-          step.slip_off_uncertainty = options_.tolerance * *largest;
-        solve_step(cilium, options_, step);
-      } else {
-        solve_step(cilium, options_, step);
-      }
-    } catch (const SolverError& error) {
-      step.status = Status::failed;
-      step.message = error.what();
-    }
-    step.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    result.steps.push_back(std::move(step));
-    report_step(progress, result.steps, path.size());
+  if (options_.joints == joints::Correction::none) {
+    result.steps = solve_path(cilium, path, options_, {}, progress);
+    return result;
   }
+  const joints::Corrections corrections = joints::corrections(cilium);
+  result.steps = solve_path(cilium, path, options_, corrections.joints, progress);
+  joints::remark_on_strains(cilium, result.steps);
+  if (!options_.error_estimate) return result;
+  result.algebraic_error = options_.tolerance;
+  for (MechanicsStep& step : result.steps) {
+    if (step.tip_uncertainty)
+      result.algebraic_error =
+          std::max(result.algebraic_error, *step.tip_uncertainty / cilium.length());
+    step.slip_off_uncertainty.reset();  // of the integration alone
+  }
+  joints::add_companions(
+      result, cilium, corrections,
+      [&](const Cilium& other, const LoadPath& loads, const std::vector<joints::Joint>& joints) {
+        return solve_path(other, loads, options_, joints, {});
+      });
+  estimate_errors(result);
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analytic/elastica/tip_contact.h"
+#include "problem/joints/joints.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::analytic::elastica {
@@ -14,6 +15,10 @@ struct ElasticaOptions {
   Form form = Form::arclength;
   CiliumEnd tip = CiliumEnd::disc;  ///< what touches the surface of a sweep
   double tolerance = 1e-12;  ///< relative, of position over length and of angle, in (0, 1e-3]
+  /// In the arc-length form, without an environment, of other loads than a sweep. Then the rod
+  /// shears and extends as well, and its error is the corrections' uncertainty, too …
+  joints::Correction joints = joints::Correction::none;
+  bool error_estimate = true;  ///< … by companions, which take twice the work more
 };
 
 /// The paper's bending model (Eq. 1–4): inextensible, shear-rigid elastica under horizontal loads,

@@ -148,7 +148,8 @@ PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
   return {length, distributed ? magnitude(load) * length : magnitude(load)};
 }
 
-PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
+PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
+                             std::span<const joints::Joint> joints) {
   const PlanarUnits units = planar_units(cilium, load);
   PlanarProblem problem;
   const auto [kind, point] = kind_and_point(load);
@@ -168,6 +169,21 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load) {
     throw InputError(
         "elastica: the load over the bending stiffness, PL^2/EI, is not finite; check "
         "the units of force, length and Young's modulus");
+  if (joints.empty()) return problem;
+  const double L = units.length;
+  const double B = stiffest * cilium.second_moment(azimuth(load));
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const joints::Joint& joint = joints[i];
+    const Segment& segment = cilium.segments[i];
+    problem.joints.push_back({joint.rotation * B / L, joint.coupling * B / (L * L),
+                              joint.displacement * B / (L * L * L),
+                              joint.extension * B / (L * L * L)});
+    const double nu = segment.poisson_ratio;
+    const double cowper = 6 * (1 + nu) / (7 + 6 * nu);  // J. Appl. Mech. 33, 1966, Eq. 34
+    const double over_area = B / (cilium.area() * L * L);
+    problem.shear.push_back(over_area / (cowper * segment.shear_modulus()));
+    problem.extension.push_back(over_area / segment.young_modulus);
+  }
   return problem;
 }
 
@@ -187,7 +203,8 @@ double root(const std::function<double(double)>& function, double a, double b, d
 }
 
 double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess) {
-  double b = std::log(2.01 / (problem.point * problem.point));
+  const double level = problem.joints.empty() ? 2.01 : 8;
+  double b = std::log(level / (problem.point * problem.point));
   double f_b = excess(b);
   double step = 0.25;
   for (int k = 0; k < 60; ++k, step *= 1.5) {

@@ -5,10 +5,12 @@
 #include <functional>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "problem/centreline.h"
 #include "problem/cilium.h"
+#include "problem/joints/joints.h"
 #include "problem/load.h"
 
 /// The planar elastica without units, which both forms of analytic::Elastica solve: lengths in L,
@@ -23,12 +25,38 @@ enum class PlanarLoad {
   dead      ///< H = 1 − S, M = ∫_S^1 (z(σ) − z(S)) dσ
 };
 
+/// A joint (problem/joints/joints.h), over the load: Δθ = load·(a M + b Q), along the section
+/// load·(b M + c Q), along its normal load·e N.
+struct PlanarJoint {
+  double rotation = 0;      ///< a
+  double coupling = 0;      ///< b
+  double displacement = 0;  ///< c
+  double extension = 0;     ///< e
+};
+
+/// What a section gives way to its moment and force.
+struct Flexibility {
+  double bending = 0;    ///< θ' = bending·M
+  double shear = 0;      ///< along the section shear·Q, Q = H cos θ
+  double extension = 0;  ///< along its normal 1 + extension·N, N = H sin θ
+};
+
 struct PlanarProblem {
   PlanarLoad kind = PlanarLoad::contact;
   std::vector<double> ends;        ///< S/L of the segments' ends: 0, …, 1
   std::vector<double> compliance;  ///< max(EI)/EI of each segment, ≥ 1
   double load = 0;                 ///< PL²/max(EI); θ'(S) = load · compliance · M
   double point = 1;                ///< h/L (contact) or s/L (section)
+  // With corrected joints; else empty. The paper's rod neither shears nor extends.
+  std::vector<PlanarJoint> joints{};  ///< at the lower end of each segment
+  std::vector<double> shear{};        ///< max(EI)/(kGA L²) of each segment
+  std::vector<double> extension{};    ///< max(EI)/(EA L²) of each segment
+
+  /// Of segment i under the load.
+  Flexibility flexibility(std::size_t i, double under) const {
+    if (joints.empty()) return {under * compliance[i]};
+    return {under * compliance[i], under * shear[i], under * extension[i]};
+  }
 };
 
 /// Units of a planar problem.
@@ -38,8 +66,10 @@ struct PlanarUnits {
 };
 
 /// The problem of one load on a cilium. A probe's is a contact with a force of 1 N, which is yet to
-/// be found. Throws InputError if PL²/EI is not representable.
-PlanarProblem planar_problem(const Cilium& cilium, const Load& load);
+/// be found. With joints the segments shear and extend as well. Throws InputError if PL²/EI is not
+/// representable.
+PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
+                             std::span<const joints::Joint> joints = {});
 PlanarUnits planar_units(const Cilium& cilium, const Load& load);
 
 /// State at one material point, in the problem's units.
@@ -61,8 +91,10 @@ struct PlanarShape {
   /// State at S, which lies in the piece [breaks[i], breaks[i+1]]; one-sided at its ends.
   std::function<PlanarState(double S, std::size_t i)> state;
   std::optional<double> contact;  ///< S at z = h
-  double error = 0;               ///< estimate of the error of w and z at the tip
-  int iterations = 0;             ///< integrations along the whole cilium
+  /// w there, if the contact is between the two sides of a joint.
+  std::optional<double> deflection;
+  double error = 0;    ///< estimate of the error of w and z at the tip
+  int iterations = 0;  ///< integrations along the whole cilium
 };
 
 /// Root of a function in [a, b], at whose ends it has the values f_a and f_b of opposite sign, to
@@ -72,7 +104,8 @@ double root(const std::function<double(double)>& function, double a, double b, d
 
 /// The load of a contact problem where `excess`, a function of its logarithm, changes sign: the
 /// search goes down from PL²/EI = 2/h², where a cilium as stiff all over as its stiffest segment
-/// lies level at h. Throws SolverError if there is none.
+/// lies level at h, or from four times it, which stiffens no cilium more, with joints. Throws
+/// SolverError if there is none.
 double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess);
 
 /// Shortest piece: it must have room for its nodes.

@@ -95,6 +95,7 @@ double uncertainty(const PlanarShape& shape, double height, double change) {
 }  // namespace
 
 double contact_deflection(const PlanarShape& shape) {
+  if (shape.deflection) return *shape.deflection;
   return state_below(shape, shape.contact.value()).w;
 }
 
@@ -167,7 +168,11 @@ PlanarProbe probe_by_arclength(PlanarProblem problem, double deflection, double 
   const double a = std::min(std::hypot(height, deflection), 1.0);
   const double b = std::min(height + deflection, 1.0);
   const double S = a < b ? increasing_root(excess, a, b, excess(a), excess(b)) : b;
-  excess(S);
+  const double missed = excess(S);
+  if (!problem.joints.empty() && !(std::abs(missed) <= 1e-9 * std::max(deflection, height)))
+    throw SolverError(
+        "elastica: no equilibrium with this displacement found: its contact is at an interface of "
+        "two segments, between the sides of its joint");
   probe.shape.contact = problem.point;
   probe.shape.iterations = iterations;
   return probe;

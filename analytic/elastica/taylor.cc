@@ -36,13 +36,13 @@ double product(const std::array<double, order + 1>& a, const std::array<double, 
 
 }  // namespace
 
-TaylorStep::TaylorStep(const PlanarState& start, double flexibility, ForceLaw law, double target,
-                       double tolerance, double fraction)
+TaylorStep::TaylorStep(const PlanarState& start, const Flexibility& flexibility, ForceLaw law,
+                       double target, double tolerance, double fraction)
     : start_(start), end_(target), width_(target - start.S), flexibility_(flexibility) {
   const double reach = width_;
   // A trial width near the local length scale keeps the coefficients representable.
-  const double rate = std::max(std::abs(flexibility * start.moment),
-                               std::sqrt(flexibility * std::abs(start.force)));
+  const double rate = std::max(std::abs(flexibility.bending * start.moment),
+                               std::sqrt(flexibility.bending * std::abs(start.force)));
   if (rate * std::abs(reach) > 8) width_ = std::copysign(8 / rate, reach);
   expand(law);
   while (!finite()) {
@@ -64,9 +64,9 @@ TaylorStep::TaylorStep(const PlanarState& start, double flexibility, ForceLaw la
   if (end_ == start.S) throw SolverError("elastica: the step of the integration vanishes");
 }
 
-TaylorStep TaylorStep::straight(PlanarState start, ForceLaw law, double target) {
+TaylorStep TaylorStep::straight(PlanarState start, ForceLaw law, double target, double extension) {
   start.moment = 0;
-  TaylorStep step(start, 0, law, target, 1, 1);
+  TaylorStep step(start, {0, 0, extension}, law, target, 1, 1);
   step.moment_.fill(0);
   return step;
 }
@@ -76,6 +76,15 @@ void TaylorStep::expand(ForceLaw law) {
   Series sine{};
   Series cosine{};
   Series rate{};  // of θ: (k + 1) θ_{k+1}
+  const double shear = flexibility_.shear;
+  const double extension = flexibility_.extension;
+  const bool is_rigid = shear == 0 && extension == 0;
+  Series square{};  // cos² θ
+  Series mixed{};   // sin θ cos θ
+  Series rise{};    // z'
+  const auto times_force = [&](const Series& a, std::size_t k) {
+    return law == ForceLaw::constant ? force_[0] * a[k] : product(force_, a, k);
+  };
   sine[0] = std::sin(start_.theta);
   cosine[0] = std::sin(start_.phi);
   theta_[0] = start_.theta;
@@ -87,15 +96,23 @@ void TaylorStep::expand(ForceLaw law) {
   for (std::size_t k = 0; k < order; ++k) {
     const double over = 1 / static_cast<double>(k + 1);
     const double scale = tau * over;
-    rate[k] = tau * flexibility_ * moment_[k];
+    rate[k] = tau * flexibility_.bending * moment_[k];
     theta_[k + 1] = over * rate[k];
-    w_[k + 1] = scale * sine[k];
-    z_[k + 1] = scale * cosine[k];
-    if (law == ForceLaw::height) force_[k + 1] = -scale * cosine[k];
+    double advance = sine[k];
+    rise[k] = cosine[k];
+    if (!is_rigid) {
+      square[k] = product(cosine, cosine, k);
+      mixed[k] = product(sine, cosine, k);
+      advance += extension * force_[k] + (shear - extension) * times_force(square, k);
+      rise[k] += (extension - shear) * times_force(mixed, k);
+    }
+    w_[k + 1] = scale * advance;
+    z_[k + 1] = scale * rise[k];
+    if (law == ForceLaw::height) force_[k + 1] = -scale * rise[k];
     if (law == ForceLaw::length && k == 0) force_[1] = -tau;
-    double torque = force_[0] * cosine[k];
-    if (law == ForceLaw::height) torque = product(force_, cosine, k);
-    if (law == ForceLaw::length && k > 0) torque += force_[1] * cosine[k - 1];
+    double torque = force_[0] * rise[k];
+    if (law == ForceLaw::height) torque = product(force_, rise, k);
+    if (law == ForceLaw::length && k > 0) torque += force_[1] * rise[k - 1];
     moment_[k + 1] = -scale * torque;
     // (sin θ)' = θ' cos θ, (cos θ)' = −θ' sin θ
     const double sine_rate = product(rate, cosine, k);
@@ -156,12 +173,12 @@ PlanarState TaylorStep::at(double S) const {
   state.z = z_[0] + z;
   state.moment = moment_[0] + moment;
   state.force = force_[0] + force;
-  state.curvature = flexibility_ * state.moment;
+  state.curvature = flexibility_.bending * state.moment;
   return state;
 }
 
 double TaylorStep::zero_moment() const {
-  // M is monotone in the step (−dM/dS = H cos θ); Newton from the end, bisection where it leaves.
+  // M is monotone in the step (−dM/dS = H dz/dS); Newton from the end, bisection where it leaves.
   double a = start();
   double b = end();
   double S = b;
@@ -170,7 +187,10 @@ double TaylorStep::zero_moment() const {
     const auto [turned, rise, force] = horner((S - start_.S) / width_, theta_, moment_, force_);
     const double moment = moment_[0] + rise;
     (sign * moment > 0 ? a : b) = S;
-    const double slope = -(force_[0] + force) * std::sin(start_.phi - turned);
+    const double H = force_[0] + force;
+    const double stretch =
+        1 + (flexibility_.extension - flexibility_.shear) * H * std::sin(start_.theta + turned);
+    const double slope = -H * std::sin(start_.phi - turned) * stretch;
     double next = S - moment / slope;
     if (!((next - a) * (next - b) <= 0)) next = std::midpoint(a, b);
     // After a step of the last bits Newton has converged; smaller ones would only go to and fro.

@@ -11,17 +11,19 @@ namespace ciliaval::analytic::elastica {
 /// How the internal force changes along the arc length, dH/dS.
 enum class ForceLaw {
   constant,  ///< 0: point force
-  height,    ///< −cos θ: force per height
+  height,    ///< −dz/dS: force per height
   length     ///< −1: force per reference length
 };
 
 /// One step of the Taylor-series method for the planar elastica
 ///
-///     dθ/dS = f M,  dM/dS = −H cos θ,  dH/dS by law,  dw/dS = sin θ,  dz/dS = cos θ,
+///     dθ/dS = f M,  dM/dS = −H dz/dS,  dH/dS by law,
+///     dw/dS = sin θ + H (g cos² θ + x sin² θ),  dz/dS = cos θ + (x − g) H sin θ cos θ,
 ///
-/// with constant flexibility f. The coefficients follow from the state by recurrence (Jorba & Zou,
-/// Experimental Mathematics 14, 2005), so the step is also its own dense output. The angle carries
-/// its complement φ = π/2 − θ along: cos θ = sin φ keeps its relative accuracy near 90°.
+/// with constant flexibilities f, g of shear and x of extension. The coefficients follow from the
+/// state by recurrence (Jorba & Zou, Experimental Mathematics 14, 2005), so the step is also its
+/// own dense output. The angle carries its complement φ = π/2 − θ along: cos θ = sin φ keeps its
+/// relative accuracy near 90°.
 class TaylorStep {
  public:
   static constexpr std::size_t order = 24;
@@ -30,11 +32,11 @@ class TaylorStep {
   /// below `tolerance`, relative to each variable's size in the step (for the angle: the smaller of
   /// θ and φ); times `fraction` ≤ 1 unless it gets there in one step. Throws SolverError if the
   /// state is not finite.
-  TaylorStep(const PlanarState& start, double flexibility, ForceLaw law, double target,
+  TaylorStep(const PlanarState& start, const Flexibility& flexibility, ForceLaw law, double target,
              double tolerance, double fraction);
 
   /// A straight part without moment, from `start` to S = target.
-  static TaylorStep straight(PlanarState start, ForceLaw law, double target);
+  static TaylorStep straight(PlanarState start, ForceLaw law, double target, double extension = 0);
 
   double start() const { return start_.S; }
   double end() const { return end_; }
@@ -65,7 +67,7 @@ class TaylorStep {
   PlanarState start_;
   double end_ = 0;
   double width_ = 0;  // τ: the series are in t = (S − start)/τ
-  double flexibility_ = 0;
+  Flexibility flexibility_;
   bool complete_ = false;
   Series theta_{};
   Series w_{};

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "problem/joints/companions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iomanip>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+namespace ciliaval::joints {
+
+std::vector<double> strains(const Cilium& cilium, const Centreline& centreline) {
+  std::vector<double> result(cilium.segments.size(), 0);
+  const std::vector<double>& breaks = centreline.breaks();
+  for (std::size_t piece = 0; piece < centreline.pieces().size(); ++piece) {
+    double& largest = result[cilium.segment_at(std::midpoint(breaks[piece], breaks[piece + 1]))];
+    for (std::size_t i = 0; i < centreline.pieces()[piece].S.size(); ++i)
+      largest = std::max(largest, centreline.node(piece, i).bending_curvature() * cilium.radius());
+  }
+  return result;
+}
+
+std::vector<Joint> changed_joints(const Corrections& corrections) {
+  std::vector<Joint> joints = corrections.joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Joint& by = corrections.uncertainties[i];
+    joints[i].rotation += by.rotation;
+    joints[i].coupling += by.coupling;
+    joints[i].displacement += by.displacement;
+    joints[i].extension += by.extension;
+  }
+  return joints;
+}
+
+void add_companions(MechanicsResult& result, const Cilium& cilium, const Corrections& corrections,
+                    const Solve& solve) {
+  LoadPath path;
+  for (const MechanicsStep& step : result.steps) path.push_back(step.load);
+  MechanicsResult changed{.undeformed = result.undeformed,
+                          .steps = solve(cilium, path, changed_joints(corrections))};
+  MechanicsResult by_law{.undeformed = result.undeformed, .steps = {}};
+  for (const MechanicsStep& step : result.steps) {
+    if (!step.deformation) {
+      by_law.steps.push_back(step);
+      continue;
+    }
+    Cilium softer = cilium;
+    const std::vector<double> strain = strains(cilium, step.deformation->centreline);
+    for (std::size_t i = 0; i < strain.size(); ++i)
+      softer.segments[i].young_modulus /= 1 + nonlinearity * strain[i] * strain[i];
+    by_law.steps.push_back(solve(softer, {step.load}, corrections.joints).front());
+  }
+  for (std::size_t i = 0; i < result.steps.size(); ++i)
+    result.steps[i].seconds += changed.steps[i].seconds + by_law.steps[i].seconds;
+  result.companions.push_back(std::move(changed));
+  result.error_parts.push_back({"joints", result.companions.size(), 0, 1});
+  result.companions.push_back(std::move(by_law));
+  result.error_parts.push_back({"law", result.companions.size(), 0, 1});
+}
+
+void remark_on_strains(const Cilium& cilium, std::vector<MechanicsStep>& steps) {
+  for (MechanicsStep& step : steps) {
+    if (step.status != Status::converged) continue;
+    const std::vector<double> strain = strains(cilium, step.deformation->centreline);
+    const auto largest = std::ranges::max_element(strain);
+    if (!(*largest > largest_strain)) continue;
+    std::ostringstream text;
+    text << "segment '" << cilium.segments[static_cast<std::size_t>(largest - strain.begin())].name
+         << "' is bent to a strain of " << std::setprecision(3) << *largest
+         << ", outside of the domain of joints = \"corrected\", which ends at " << largest_strain;
+    step.message += (step.message.empty() ? "" : "; ") + text.str();
+  }
+}
+
+}  // namespace ciliaval::joints
