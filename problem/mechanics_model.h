@@ -57,6 +57,10 @@ struct MechanicsStep {
   std::optional<double> tip_uncertainty;            ///< of the tip's position, m
   std::optional<double> tip_angle_uncertainty;      ///< rad
   std::optional<double> applied_force_uncertainty;  ///< N
+  // Stability, if the model looked: the second variation of the energy at the equilibrium.
+  std::optional<int> unstable_modes;  ///< ways in which the energy decreases; 0: stable
+  /// Smallest eigenvalue of the second variation over that of the straight cilium without loads.
+  std::optional<double> smallest_eigenvalue;
   std::size_t unknowns = 0;                         ///< of the largest system solved
   int iterations = 0;                               ///< nonlinear iterations, all cutbacks included
   double seconds = 0;                               ///< wall time

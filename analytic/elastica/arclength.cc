@@ -43,9 +43,9 @@ std::pair<Reached, PlanarState> climb(const PlanarProblem& problem, double load,
   for (std::size_t i = 0; i < problem.compliance.size(); ++i) {
     if (!problem.joints.empty()) {
       const PlanarState lower = state;
-      state = jumps::across(problem.joints[i], load, ForceLaw::constant, lower, jumps::Side::lower);
-      if (state.moment <= 0)
-        return {Reached::contact, jumps::inside(problem.joints[i], load, lower)};
+      const PlanarJoint joint = problem.joint(i, load);
+      state = jumps::across(joint, ForceLaw::constant, lower, jumps::Side::lower);
+      if (state.moment <= 0) return {Reached::contact, jumps::inside(joint, lower)};
       if (state.phi <= 0) return {Reached::level, state};
     }
     while (state.S < problem.ends[i + 1]) {
@@ -169,7 +169,7 @@ PlanarState descend(const PlanarProblem& problem, const Launch& from, const Accu
       if (state.theta < -right_angle) return state;
     }
     if (!problem.joints.empty() && from.S > problem.ends[i])
-      state = jumps::across(problem.joints[i], problem.load, force_law(problem.kind), state,
+      state = jumps::across(problem.joint(i, problem.load), force_law(problem.kind), state,
                             jumps::Side::upper);
   }
   return state;
@@ -241,7 +241,7 @@ void complete_from_top(const PlanarProblem& problem, double launch_S, const Plan
     steps.push_back(TaylorStep::straight(state, law, target, extension));
     state = steps.back().end_state();
     if (target < top(problem))
-      state = jumps::across(problem.joints[above], problem.load, law, state, jumps::Side::lower);
+      state = jumps::across(problem.joint(above, problem.load), law, state, jumps::Side::lower);
   }
   if (top(problem) < 1) {
     state.force = 0;

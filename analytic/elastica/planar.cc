@@ -139,7 +139,30 @@ std::pair<PlanarLoad, double> kind_and_point(const Load& load) {
   refuse_type(load, "elastica");
 }
 
+/// Under the force F, over the length: a law's jumps, times m, go with 1/L.
+PlanarLaw planar_law(const joints::BendingLaw& law, double F, double L, double per_length) {
+  const double M = F * L;
+  return {law.lengthening * M * M * per_length, law.softening * M * M * M * L * per_length,
+          law.further_softening * std::pow(M, 5) * L * per_length};
+}
+
+PlanarLaw scaled(const PlanarLaw& law, double load) {
+  return {law.lengthening * load * load, law.softening * std::pow(load, 3),
+          law.further_softening * std::pow(load, 5)};
+}
+
 }  // namespace
+
+Flexibility PlanarProblem::flexibility(std::size_t i, double under) const {
+  if (joints.empty()) return {.bending = under * compliance[i]};
+  return {under * compliance[i], under * shear[i], under * extension[i], scaled(laws[i], under)};
+}
+
+PlanarJoint PlanarProblem::joint(std::size_t i, double under) const {
+  const PlanarJoint& j = joints[i];
+  return {under * j.rotation, under * j.coupling, under * j.displacement, under * j.extension,
+          scaled(j.law, under)};
+}
 
 PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
   const double length = cilium.length();
@@ -175,14 +198,16 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const joints::Joint& joint = joints[i];
     const Segment& segment = cilium.segments[i];
-    problem.joints.push_back({joint.rotation * B / L, joint.coupling * B / (L * L),
-                              joint.displacement * B / (L * L * L),
-                              joint.extension * B / (L * L * L)});
+    const double force = B / (L * L);  // of the load 1
+    problem.joints.push_back({joint.rotation * B / L, joint.coupling * force,
+                              joint.displacement * force / L, joint.extension * force / L,
+                              planar_law(joint.beyond, force, L, 1 / L)});
     const double nu = segment.poisson_ratio;
     const double cowper = 6 * (1 + nu) / (7 + 6 * nu);  // J. Appl. Mech. 33, 1966, Eq. 34
     const double over_area = B / (cilium.area() * L * L);
     problem.shear.push_back(over_area / (cowper * segment.shear_modulus()));
     problem.extension.push_back(over_area / segment.young_modulus);
+    problem.laws.push_back(planar_law(joints::bending_law(cilium.diameter, segment), force, L, 1));
   }
   return problem;
 }

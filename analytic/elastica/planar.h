@@ -25,13 +25,26 @@ enum class PlanarLoad {
   dead      ///< H = 1 − S, M = ∫_S^1 (z(σ) − z(S)) dσ
 };
 
-/// A joint (problem/joints/joints.h), over the load: Δθ = load·(a M + b Q), along the section
-/// load·(b M + c Q), along its normal load·e N.
+/// The second-order law of bending (problem/joints/joints.h) without units: θ' = … + 2 p N M + g M³
+/// + h M⁵, along the normal … + p M².
+struct PlanarLaw {
+  double lengthening = 0;        ///< p
+  double softening = 0;          ///< g
+  double further_softening = 0;  ///< h
+
+  double of_rotation(double M, double N) const {
+    return M * (2 * lengthening * N + M * M * (softening + M * M * further_softening));
+  }
+};
+
+/// A joint (problem/joints/joints.h): Δθ = a M + b Q, along the section b M + c Q, along its normal
+/// e N, and what its law adds.
 struct PlanarJoint {
   double rotation = 0;      ///< a
   double coupling = 0;      ///< b
   double displacement = 0;  ///< c
   double extension = 0;     ///< e
+  PlanarLaw law{};
 };
 
 /// What a section gives way to its moment and force.
@@ -39,6 +52,9 @@ struct Flexibility {
   double bending = 0;    ///< θ' = bending·M
   double shear = 0;      ///< along the section shear·Q, Q = H cos θ
   double extension = 0;  ///< along its normal 1 + extension·N, N = H sin θ
+  PlanarLaw law{};
+
+  bool is_rigid() const { return shear == 0 && extension == 0 && law.lengthening == 0; }
 };
 
 struct PlanarProblem {
@@ -48,15 +64,15 @@ struct PlanarProblem {
   double load = 0;                 ///< PL²/max(EI); θ'(S) = load · compliance · M
   double point = 1;                ///< h/L (contact) or s/L (section)
   // With corrected joints; else empty. The paper's rod neither shears nor extends.
-  std::vector<PlanarJoint> joints{};  ///< at the lower end of each segment
+  std::vector<PlanarJoint> joints{};  ///< under a load of 1, at the lower end of each segment
   std::vector<double> shear{};        ///< max(EI)/(kGA L²) of each segment
   std::vector<double> extension{};    ///< max(EI)/(EA L²) of each segment
+  std::vector<PlanarLaw> laws{};      ///< of each segment
 
   /// Of segment i under the load.
-  Flexibility flexibility(std::size_t i, double under) const {
-    if (joints.empty()) return {under * compliance[i]};
-    return {under * compliance[i], under * shear[i], under * extension[i]};
-  }
+  Flexibility flexibility(std::size_t i, double under) const;
+  /// Joint i under the load.
+  PlanarJoint joint(std::size_t i, double under) const;
 };
 
 /// Units of a planar problem.

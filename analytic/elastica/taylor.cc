@@ -66,7 +66,7 @@ TaylorStep::TaylorStep(const PlanarState& start, const Flexibility& flexibility,
 
 TaylorStep TaylorStep::straight(PlanarState start, ForceLaw law, double target, double extension) {
   start.moment = 0;
-  TaylorStep step(start, {0, 0, extension}, law, target, 1, 1);
+  TaylorStep step(start, {.extension = extension}, law, target, 1, 1);
   step.moment_.fill(0);
   return step;
 }
@@ -78,10 +78,14 @@ void TaylorStep::expand(ForceLaw law) {
   Series rate{};  // of θ: (k + 1) θ_{k+1}
   const double shear = flexibility_.shear;
   const double extension = flexibility_.extension;
-  const bool is_rigid = shear == 0 && extension == 0;
-  Series square{};  // cos² θ
-  Series mixed{};   // sin θ cos θ
-  Series rise{};    // z'
+  const PlanarLaw& law_of_bending = flexibility_.law;
+  const bool is_rigid = flexibility_.is_rigid();
+  Series square{};     // cos² θ
+  Series mixed{};      // sin θ cos θ
+  Series rise{};       // z'
+  Series moment_2{};   // M²
+  Series moment_4{};   // M⁴
+  Series softening{};  // of θ' beyond small strains, over M
   const auto times_force = [&](const Series& a, std::size_t k) {
     return law == ForceLaw::constant ? force_[0] * a[k] : product(force_, a, k);
   };
@@ -97,15 +101,23 @@ void TaylorStep::expand(ForceLaw law) {
     const double over = 1 / static_cast<double>(k + 1);
     const double scale = tau * over;
     rate[k] = tau * flexibility_.bending * moment_[k];
-    theta_[k + 1] = over * rate[k];
     double advance = sine[k];
     rise[k] = cosine[k];
     if (!is_rigid) {
+      moment_2[k] = product(moment_, moment_, k);
+      moment_4[k] = product(moment_2, moment_2, k);
+      softening[k] = 2 * law_of_bending.lengthening * times_force(sine, k) +
+                     law_of_bending.softening * moment_2[k] +
+                     law_of_bending.further_softening * moment_4[k];
+      rate[k] += tau * product(softening, moment_, k);
+      advance += law_of_bending.lengthening * product(moment_2, sine, k);
+      rise[k] += law_of_bending.lengthening * product(moment_2, cosine, k);
       square[k] = product(cosine, cosine, k);
       mixed[k] = product(sine, cosine, k);
       advance += extension * force_[k] + (shear - extension) * times_force(square, k);
       rise[k] += (extension - shear) * times_force(mixed, k);
     }
+    theta_[k + 1] = over * rate[k];
     w_[k + 1] = scale * advance;
     z_[k + 1] = scale * rise[k];
     if (law == ForceLaw::height) force_[k + 1] = -scale * rise[k];
@@ -173,7 +185,8 @@ PlanarState TaylorStep::at(double S) const {
   state.z = z_[0] + z;
   state.moment = moment_[0] + moment;
   state.force = force_[0] + force;
-  state.curvature = flexibility_.bending * state.moment;
+  state.curvature = flexibility_.bending * state.moment +
+                    flexibility_.law.of_rotation(state.moment, state.force * std::sin(state.theta));
   return state;
 }
 

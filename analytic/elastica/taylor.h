@@ -20,10 +20,10 @@ enum class ForceLaw {
 ///     dθ/dS = f M,  dM/dS = −H dz/dS,  dH/dS by law,
 ///     dw/dS = sin θ + H (g cos² θ + x sin² θ),  dz/dS = cos θ + (x − g) H sin θ cos θ,
 ///
-/// with constant flexibilities f, g of shear and x of extension. The coefficients follow from the
-/// state by recurrence (Jorba & Zou, Experimental Mathematics 14, 2005), so the step is also its
-/// own dense output. The angle carries its complement φ = π/2 − θ along: cos θ = sin φ keeps its
-/// relative accuracy near 90°.
+/// with constant flexibilities f, g of shear and x of extension, and with what a PlanarLaw adds.
+/// The coefficients follow from the state by recurrence (Jorba & Zou, Experimental Mathematics 14,
+/// 2005), so the step is also its own dense output. The angle carries its complement φ = π/2 − θ
+/// along: cos θ = sin φ keeps its relative accuracy near 90°.
 class TaylorStep {
  public:
   static constexpr std::size_t order = 24;

@@ -30,6 +30,9 @@ std::vector<Joint> changed_joints(const Corrections& corrections) {
     joints[i].coupling += by.coupling;
     joints[i].displacement += by.displacement;
     joints[i].extension += by.extension;
+    joints[i].beyond.lengthening += by.beyond.lengthening;
+    joints[i].beyond.softening += by.beyond.softening;
+    joints[i].beyond.further_softening += by.beyond.further_softening;
   }
   return joints;
 }

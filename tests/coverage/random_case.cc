@@ -116,12 +116,8 @@ surroundings::Profile random_profile(Draw& draw, std::uint32_t turn, const Ciliu
   }
 }
 
-}  // namespace
-
-RandomCase random_case(std::uint32_t seed) {
-  Draw draw(seed);
-  RandomCase result;
-  result.cilium = random_cilium(draw);
+/// A load that turns the elastica's tip by 2° to 60°.
+void load(Draw& draw, std::uint32_t seed, RandomCase& result) {
   const double L = result.cilium.length();
   const Load shape = shaped_load(draw, seed % 5, result.cilium);
   result.tip_angle = draw.even(2, 60) * pi / 180;
@@ -144,7 +140,47 @@ RandomCase random_case(std::uint32_t seed) {
   result.tip_angle = elastica_angle(result.cilium, result.load);
   if (const auto h = contact_height(shape))
     result.kernel_width = std::min(result.kernel_width, std::min(*h, L - *h) / 3);
+}
+
+Cilium random_stub(Draw& draw) {
+  Cilium cilium;
+  const double d = draw.log_even(0.5e-3, 5e-3);  // m
+  cilium.diameter = d;
+  const auto poisson = [&] {
+    return draw.choice(2) == 0 ? draw.even(0.3, 0.49) : 0.5 - draw.log_even(1e-4, 0.02);
+  };
+  const double E = draw.log_even(0.05e6, 1e6);  // Pa
+  const double stiffer = draw.log_even(1, 100);
+  cilium.segments.push_back({"base", d * draw.log_even(0.5, 8), E, poisson()});
+  const std::size_t between = draw.choice(2) == 0 ? 0 : 1 + draw.choice(2);
+  for (std::size_t i = 0; i < between; ++i)
+    cilium.segments.push_back({"layer" + std::to_string(i), d * draw.log_even(0.5, 2),
+                               E * std::pow(stiffer, draw.even(0, 1)), poisson()});
+  cilium.segments.push_back(
+      {"magnet", d * draw.log_even(2, 10), E * stiffer, poisson(), draw.even(2e4, 1e5)});
+  return cilium;
+}
+
+}  // namespace
+
+RandomCase random_case(std::uint32_t seed) {
+  Draw draw(seed);
+  RandomCase result;
+  result.cilium = random_cilium(draw);
+  load(draw, seed, result);
   result.sensors = random_sensors(draw, result.cilium);
+  return result;
+}
+
+RandomCase random_design(std::uint32_t seed) {
+  Draw draw(seed);
+  RandomCase result;
+  result.cilium = random_stub(draw);
+  load(draw, seed, result);
+  const double d = result.cilium.diameter;
+  const double phi = draw.even(0, 2 * pi);
+  const double aside = draw.even(0, 0.3) * d;
+  result.sensors = {{aside * std::cos(phi), aside * std::sin(phi), -d * draw.even(0.3, 2)}};
   return result;
 }
 

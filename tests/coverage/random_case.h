@@ -25,8 +25,14 @@ struct RandomCase {
 /// third of the room that the height leaves it.
 RandomCase random_case(std::uint32_t seed);
 
-/// Such a cilium under a surface, flat, a sine or a trapezoid by turns, pressed on it by 0.003 to
-/// 0.1 lengths, with a friction up to 0.6.
+/// A cilium of the box in which joints are corrected: a soft base of 0.5 to 8 diameters and ν of
+/// 0.3 to 0.4999, a magnet of 2 to 10 diameters, 1 to 100 times stiffer, and every second time one
+/// or two segments of 0.5 to 2 diameters between them; the loads and angles of random_case(); a
+/// sensor 0.3 to 2 diameters below the base.
+RandomCase random_design(std::uint32_t seed);
+
+/// A cilium of random_case() under a surface, flat, a sine or a trapezoid by turns, pressed on it
+/// by 0.003 to 0.1 lengths, with a friction up to 0.6.
 RandomCase random_sweep(std::uint32_t seed);
 
 }  // namespace ciliaval::test

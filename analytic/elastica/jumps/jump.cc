@@ -8,16 +8,16 @@
 
 namespace ciliaval::analytic::elastica::jumps {
 
-PlanarState across(const PlanarJoint& joint, double load, ForceLaw law, const PlanarState& state,
-                   Side from, double part) {
+PlanarState across(const PlanarJoint& joint, ForceLaw law, const PlanarState& state, Side from,
+                   double part) {
   constexpr int most_iterations = 50;
   constexpr double largest_turn = 1;  // rad
   constexpr double enough = 4 * std::numeric_limits<double>::epsilon();
   const double half = from == Side::lower ? 0.5 : -0.5;
-  const double a = part * load * joint.rotation;
-  const double b = part * load * joint.coupling;
-  const double c = part * load * joint.displacement;
-  const double e = part * load * joint.extension;
+  const double a = part * joint.rotation;
+  const double b = part * joint.coupling;
+  const double c = part * joint.displacement;
+  const double e = part * joint.extension;
   double theta = 0;
   double z = 0;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
@@ -27,12 +27,13 @@ PlanarState across(const PlanarJoint& joint, double load, ForceLaw law, const Pl
     const double M = state.moment - half * H * z;
     const double Q = H * cosine;
     const double N = H * sine;
-    const double turned = a * M + b * Q;
+    const double beyond = part * joint.law.of_rotation(M, N);
+    const double turned = a * M + b * Q + beyond;
     const double along = b * M + c * Q;
-    const double normal = e * N;
+    const double normal = e * N + part * joint.law.lengthening * M * M;
     const double rise = normal * cosine - along * sine;
     // To the rounding of the sums.
-    const double turn_scale = std::abs(a * M) + std::abs(b * Q);
+    const double turn_scale = std::abs(a * M) + std::abs(b * Q) + std::abs(beyond);
     const double way_scale = std::abs(b * M) + std::abs(c * Q) + std::abs(normal);
     if (std::abs(turned - theta) <= enough * turn_scale &&
         std::abs(rise - z) <= enough * way_scale) {
@@ -46,7 +47,7 @@ PlanarState across(const PlanarJoint& joint, double load, ForceLaw law, const Pl
       if (law == ForceLaw::height) other.force -= 2 * half * rise;
       return other;
     }
-    // Derivatives of turned and rise by theta and z, but for that of H.
+    // Derivatives of turned and rise by theta and z, but for those of H and of the law.
     const double turned_theta = -half * b * N;
     const double turned_z = -half * a * H;
     const double rise_theta =
@@ -61,12 +62,12 @@ PlanarState across(const PlanarJoint& joint, double load, ForceLaw law, const Pl
   throw SolverError("elastica: a joint turns by more than a radian, far outside of its domain");
 }
 
-PlanarState inside(const PlanarJoint& joint, double load, const PlanarState& lower) {
+PlanarState inside(const PlanarJoint& joint, const PlanarState& lower) {
   const auto moment = [&](double part) {
-    return across(joint, load, ForceLaw::constant, lower, Side::lower, part).moment;
+    return across(joint, ForceLaw::constant, lower, Side::lower, part).moment;
   };
   const double part = root(moment, 0, 1, lower.moment, moment(1));
-  return across(joint, load, ForceLaw::constant, lower, Side::lower, part);
+  return across(joint, ForceLaw::constant, lower, Side::lower, part);
 }
 
 }  // namespace ciliaval::analytic::elastica::jumps
