@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "problem/error.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::fem::beam {
 namespace {
@@ -102,12 +103,18 @@ Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam
   Loads result;
   if (surroundings::is_empty(environment)) return result;
   result.magnetic_energy = environment.magnetic_energy;
+  const bool is_transverse = has_transverse_magnetization(cilium);
   for (const std::size_t segment : beam.segments) {
     result.force_per_length.push_back(
         cilium.area() * surroundings::weight_per_volume(environment, cilium.segments[segment]));
     result.magnetic_force.push_back(surroundings::pole_force(environment, cilium, segment));
     if (!environment.magnets.empty())
       result.magnetic_charge.push_back(cilium.segments[segment].magnetization * cilium.area());
+    if (!is_transverse) continue;
+    const Eigen::Vector2d charge =
+        cilium.area() * magnetization(cilium.segments[segment]).head<2>();
+    result.transverse_force.push_back(environment.uniform_field * charge.transpose());
+    result.transverse_charge.push_back(charge);
   }
   result.magnets = environment.magnets;
   return result;

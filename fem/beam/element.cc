@@ -57,12 +57,34 @@ void add_residual(const ReferenceElement& reference, const ElementData& data, st
       w * (strain.kappa - data.kappa0[g] - h * data.section.moment_compliance.cwiseProduct(m));
 }
 
-/// c·d₃ = e₃·Λᵀc as a function of p: the power of a force e₃ on a tangent c.
-StressPower turned_magnet(const Interpolation& x, const Vector3& c) {
-  return stress_power(x.p, c, strain(x.p, x.s, c), Vector3::UnitZ(), Vector3::Zero());
+/// m·Λᵀc as a function of p, of a material vector m: the power of a force m on a tangent c.
+StressPower turned_magnet(const Interpolation& x, const Vector3& c, const Vector3& m) {
+  return stress_power(x.p, c, strain(x.p, x.s, c), m, Vector3::Zero());
 }
 
-/// −M A B(r)·d₃ of the magnets at a Gauss point, with its derivatives by r and p.
+/// The uniform field's c·d₃ (law R) and C₁·d₁ + C₂·d₂, with its derivatives by p.
+struct TurningPower {
+  double value = 0;
+  Vector4 p = Vector4::Zero();
+  Matrix4 pp = Matrix4::Zero();
+};
+
+TurningPower turning_power(const ElementData& data, const Interpolation& x) {
+  TurningPower sum;
+  const auto add = [&](const Vector3& c, int director) {
+    if (c.isZero(0)) return;
+    const StressPower d = turned_magnet(x, c, Vector3::Unit(director));
+    sum.value += d.value;
+    sum.p += d.p;
+    sum.pp += d.pp;
+  };
+  if (data.magnetic_energy == surroundings::MagneticEnergy::R) add(data.magnetic_force, 2);
+  for (const int i : {0, 1}) add(data.transverse_force.col(i), i);
+  return sum;
+}
+
+/// −A B(r)·(M₁ d₁ + M₂ d₂ + M₃ d₃) of the magnets at a Gauss point, M₃ by the law R alone, with its
+/// derivatives by r and p.
 struct MagnetPower {
   StressPower by_p{};  ///< value, p and pp
   Vector3 r = Vector3::Zero();
@@ -70,25 +92,30 @@ struct MagnetPower {
   Matrix34 rp = Matrix34::Zero();
 };
 
-/// Whether the element has a part of the energy in the magnets' field.
-bool feels_magnets(const ElementData& data) {
-  return !data.magnets.empty() && data.magnetic_charge != 0 &&
-         data.magnetic_energy == surroundings::MagneticEnergy::R;
+/// A M of what turns with the sections, material components, A·m.
+Vector3 turning_charge(const ElementData& data) {
+  const Eigen::Vector2d& across = data.transverse_charge;
+  const bool turns = data.magnetic_energy == surroundings::MagneticEnergy::R;
+  return {across[0], across[1], turns ? data.magnetic_charge : 0};
 }
 
-/// Zero by the law F.
+/// Whether the element has a part of the energy in the magnets' field.
+bool feels_magnets(const ElementData& data) {
+  return !data.magnets.empty() && !turning_charge(data).isZero(0);
+}
+
 MagnetPower magnet_power(const ElementData& data, const Interpolation& x) {
   MagnetPower power;
   if (!feels_magnets(data)) return power;
   surroundings::magnets::FieldJet jet;
   for (const auto& magnet : data.magnets) jet += surroundings::magnets::jet(magnet, x.r);
-  jet = -data.magnetic_charge * jet;
-  power.by_p = turned_magnet(x, jet.B);
-  const Vector3 d3 = power.by_p.t;
-  power.r = jet.gradient.transpose() * d3;
+  const Vector3 m = -turning_charge(data);
+  power.by_p = turned_magnet(x, jet.B, m);
+  const Vector3 turned = power.by_p.t;
+  power.r = jet.gradient.transpose() * turned;
   for (int k = 0; k < 3; ++k) {
-    power.rr.row(k) = d3.transpose() * jet.second[static_cast<std::size_t>(k)];
-    power.rp.row(k) = turned_magnet(x, jet.gradient.col(k)).p.transpose();
+    power.rr.row(k) = turned.transpose() * jet.second[static_cast<std::size_t>(k)];
+    power.rp.row(k) = turned_magnet(x, jet.gradient.col(k), m).p.transpose();
   }
   return power;
 }
@@ -117,18 +144,18 @@ void add_magnet_power(const ReferenceElement& reference, const ElementData& data
   }
 }
 
-/// Takes c·∂r/∂ξ or h c·d₃ off the power f of the section forces, per unit of ξ.
+/// Takes c·∂r/∂ξ or h c·d₃, and h (C₁·d₁ + C₂·d₂), off the power f of the section forces, per unit
+/// of ξ.
 void add_magnetic_energy(const ElementData& data, const Interpolation& x, StressPower& f) {
-  if (data.magnetic_force.isZero(0)) return;
+  if (data.magnetic_force.isZero(0) && data.transverse_force.isZero(0)) return;
   if (data.magnetic_energy == surroundings::MagneticEnergy::F) {
     f.value -= data.magnetic_force.dot(x.t);
     f.t -= data.magnetic_force;
-    return;
   }
-  const StressPower d3 = turned_magnet(x, data.magnetic_force);
-  f.value -= data.length * d3.value;
-  f.p -= data.length * d3.p;
-  f.pp -= data.length * d3.pp;
+  const TurningPower turned = turning_power(data, x);
+  f.value -= data.length * turned.value;
+  f.p -= data.length * turned.p;
+  f.pp -= data.length * turned.pp;
 }
 
 /// Adds one Gauss point's part of the tangent, without the curvature of the rotation update.
@@ -244,10 +271,8 @@ Eigen::VectorXd element_length_derivative(const ReferenceElement& reference,
   for (std::size_t g = 0; g < reference.n_points(); ++g) {
     const double w = reference.weights[g];
     const Interpolation x(reference, state.position, state.rotation, g);
-    const bool turns = data.magnetic_energy == surroundings::MagneticEnergy::R;
     const MagnetPower magnets = magnet_power(data, x);
-    Vector4 by_p = magnets.by_p.p;
-    if (turns) by_p -= turned_magnet(x, data.magnetic_force).p;
+    const Vector4 by_p = magnets.by_p.p - turning_power(data, x).p;
     for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
       const double wN = w * reference.N(g, a);
       derivative.segment<3>(node_row(a)) += wN * (magnets.r - data.force_per_length);

@@ -32,6 +32,9 @@ struct ReferenceElement {
   }
 };
 
+/// A vector for each of d₁ and d₂.
+using Matrix32 = Eigen::Matrix<double, 3, 2>;
+
 /// The constants of an element.
 struct ElementData {
   double length = 0;  ///< h, reference arc length, m; 0 is allowed
@@ -43,9 +46,13 @@ struct ElementData {
   /// c = M A B₀, N: energy −∫ c·∂r/∂S dS by the law F, −∫ c·d₃ dS by the law R.
   Vector3 magnetic_force = Vector3::Zero();
   surroundings::MagneticEnergy magnetic_energy = surroundings::MagneticEnergy::F;
+  /// C = A B₀ ⊗ (M₁, M₂), N: energy −∫ (C₁·d₁ + C₂·d₂) dS by both laws.
+  Matrix32 transverse_force = Matrix32::Zero();
   /// M A, A·m, and the magnets beside the beam, whose energy by the law R, −∫ M A B(r)·d₃ dS, the
   /// element has; by the law F it is that of poles (System).
   double magnetic_charge = 0;
+  /// A (M₁, M₂), A·m: energy −∫ A (M₁ d₁ + M₂ d₂)·B(r) dS in their field by both laws.
+  Eigen::Vector2d transverse_charge = Eigen::Vector2d::Zero();
   std::span<const surroundings::magnets::Magnet> magnets{};
 };
 
@@ -63,7 +70,8 @@ void set_reference_strains(const ReferenceElement& reference, std::span<const Ve
 
 /// Hellinger–Reissner energy of the element less the work of its dead load,
 ///   Π = Σ_g w_g [n·(γ − hΓ₀) + m·(κ − hK₀) − ½h (n·C_n n + m·C_m m) − h q·r − c·a],   J,
-/// with a = ∂r/∂ξ (law F) or h d₃ (law R), to which B(r) of magnets adds −h M A B·d₃.
+/// with a = ∂r/∂ξ (law F) or h d₃ (law R), to which B(r) of magnets adds −h M A B·d₃, and M across
+/// the axis −h (C₁ + A M₁ B)·d₁ − h (C₂ + A M₂ B)·d₂.
 /// force_per_height has no potential and is left out.
 double element_energy(const ReferenceElement& reference, const ElementData& data,
                       const ElementState& state);

@@ -62,8 +62,9 @@ void require_straight_where_moving(const Mesh& mesh, const ReferenceCurve& curve
 }
 
 /// sum += factor · of_elements; an empty one is zero.
-void add(double factor, const std::vector<Vector3>& of_elements, std::vector<Vector3>& sum) {
-  if (sum.size() < of_elements.size()) sum.resize(of_elements.size(), Vector3::Zero());
+template <class Force>
+void add(double factor, const std::vector<Force>& of_elements, std::vector<Force>& sum) {
+  if (sum.size() < of_elements.size()) sum.resize(of_elements.size(), Force::Zero());
   for (std::size_t e = 0; e < of_elements.size(); ++e) sum[e] += factor * of_elements[e];
 }
 
@@ -83,8 +84,10 @@ Loads combine(double a, const Loads& x, double b, const Loads& y) {
     sum.force_per_height += factor * loads->force_per_height;
     add(factor, loads->force_per_length, sum.force_per_length);
     add(factor, loads->magnetic_force, sum.magnetic_force);
+    add(factor, loads->transverse_force, sum.transverse_force);
     if (!loads->magnetic_force.empty()) sum.magnetic_energy = loads->magnetic_energy;
     if (!loads->magnetic_charge.empty()) sum.magnetic_charge = loads->magnetic_charge;
+    if (!loads->transverse_charge.empty()) sum.transverse_charge = loads->transverse_charge;
   }
   sum.magnets = surroundings::magnets::superposed(a, x.magnets, b, y.magnets);
   return sum;
@@ -161,7 +164,10 @@ ElementData System::element_data(const State& state, const Loads& loads,
   if (!loads.magnetic_force.empty()) data.magnetic_force = loads.magnetic_force.at(element);
   data.magnetic_energy = loads.magnetic_energy;
   if (!loads.magnetic_charge.empty()) data.magnetic_charge = loads.magnetic_charge.at(element);
+  if (!loads.transverse_force.empty()) data.transverse_force = loads.transverse_force.at(element);
   data.magnets = loads.magnets;
+  if (!loads.transverse_charge.empty())
+    data.transverse_charge = loads.transverse_charge.at(element);
   std::vector<Vector3> position;
   std::vector<Quaternion> rotation;
   for (std::size_t a = 0; a < reference_.n_nodes(); ++a) {

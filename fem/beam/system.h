@@ -61,7 +61,9 @@ struct Loads {
   Vector3 force_per_height = Vector3::Zero();  ///< per unit of current height z, N/m
   std::vector<Vector3> magnetic_force;         ///< c of each element (ElementData), N; empty: none
   surroundings::MagneticEnergy magnetic_energy = surroundings::MagneticEnergy::F;
+  std::vector<Matrix32> transverse_force;              ///< C of each element, N; empty: none
   std::vector<double> magnetic_charge;                 ///< M A of each element, A·m; empty: none
+  std::vector<Eigen::Vector2d> transverse_charge;      ///< A (M₁, M₂), A·m; empty: none
   std::vector<surroundings::magnets::Magnet> magnets;  ///< beside the beam
   std::vector<PrescribedDisplacement> displacements;
 };

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "problem/error.h"
+#include "problem/magnetization.h"
 #include "problem/surroundings/plane.h"
 
 namespace ciliaval::analytic::elastica::environment {
@@ -119,10 +120,10 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
   const PlanarUnits units = units_of(cilium, azimuth(load));
   const Vector3 e = direction(load);
   const surroundings::Environment environment = acting_environment(load);
-  if (!surroundings::lies_in_plane(environment, e))
+  if (!surroundings::lies_in_plane(environment, cilium, e))
     throw InputError(
-        "the elastica is planar: gravity and field must lie in the plane of the load's azimuth; "
-        "the beam and the solid take any");
+        "the elastica is planar: gravity, field and magnetisation must lie in the plane of the "
+        "load's azimuth; the beam and the solid take any");
   const double B = units.force * units.length * units.length;
   Rod rod;
   for (const double end : cilium.interfaces()) rod.ends.push_back(end / units.length);
@@ -134,8 +135,15 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
     rod.per_length.push_back(in_plane(force * units.length / units.force, e));
     rod.compliance.push_back(B / (segment.young_modulus * cilium.second_moment(azimuth(load))));
   }
-  for (const Vector3& force : surroundings::pole_forces(environment, cilium))
-    rod.at_ends.push_back(in_plane(force / units.force, e));
+  std::vector<Vector3> at_ends = surroundings::pole_forces(environment, cilium);
+  for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
+    // M·e across the axis is turned as M₃ would be by the field turned by 90°.
+    const Vector3 force = cilium.area() * magnetization(cilium.segments[i]).dot(e) *
+                          e.cross(Vector3::UnitZ()).cross(environment.uniform_field);
+    at_ends[i] -= force;
+    at_ends[i + 1] += force;
+  }
+  for (const Vector3& force : at_ends) rod.at_ends.push_back(in_plane(force / units.force, e));
   if (const auto flow = load.as<FlowLoad>())
     rod.per_height = flow->force_per_height * units.length / units.force;
   return rod;
@@ -146,6 +154,10 @@ std::optional<double> critical_factor(const Cilium& cilium,
   if (!environment.gravity.head<2>().isZero() || !environment.uniform_field.head<2>().isZero() ||
       !environment.magnets.empty())
     throw InputError("the critical load is that of gravity and field along the axis");
+  if (!environment.uniform_field.isZero(0) && has_transverse_magnetization(cilium))
+    throw InputError(
+        "a cilium that is magnetised across its axis is bent by a field along it and does not "
+        "buckle");
   const CrossSection& section = cilium.section;
   const double across = cilium.is_rectangular() && section.width > section.height
                             ? section.orientation + std::numbers::pi / 2

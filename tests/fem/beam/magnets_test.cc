@@ -61,6 +61,8 @@ Scene scene(MagneticEnergy law) {
   s.loads.magnetic_energy = law;
   s.loads.magnetic_charge = {2, 2, -3};
   s.loads.magnetic_force.assign(3, Vector3(0.3, -0.2, 0.5));
+  s.loads.transverse_force.assign(3, Matrix32{{0.2, -0.4}, {0.1, 0.3}, {-0.5, 0.2}});
+  s.loads.transverse_charge = {{0.5, -1}, {0.5, 1}, {-1, 0.3}};
   const Quaternion turn(Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()));
   s.loads.magnets = {{"a", Shape::cuboid, {3, 1, 1}, turn, 0, 0, {1, 2, 1.5}, {2e6, -1e6, 4e6}},
                      {"b", Shape::cylinder, {-2, -1, 2}, turn, 1, 1.5, {0, 0, 0}, {0, 0, 6e6}}};
