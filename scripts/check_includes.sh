@@ -11,7 +11,7 @@ problem:
 analytic: problem
 meshes: problem
 fem: problem
-fem/beam: problem
+fem/beam: problem fem/lanczos.h
 fem/potential: problem fem/parallel.h
 fem/solid: problem meshes fem
 fem/calculix: problem meshes fem
@@ -21,7 +21,7 @@ compare/output: problem meshes analytic/rod/field_models.h analytic/sources/push
 compare/plot: problem compare/output
 compare/regression: $shared
 compare/convergence: $shared compare/regression
-compare/budget: $shared analytic/rod/field_models.h analytic/body/mesh_field.h fem/potential/potential.h
+compare/budget: $shared analytic/elastica/elastica.h analytic/rod/field_models.h analytic/body/mesh_field.h fem/beam/beam.h fem/potential/potential.h
 compare/sensing: $shared
 compare/signal: problem
 compare/study: $shared compare/budget analytic/elastica/elastica.h

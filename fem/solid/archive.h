@@ -151,14 +151,16 @@ template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
          slip_off_uncertainty, contact_arclength, contact, tip_uncertainty, tip_angle_uncertainty,
-         applied_force_uncertainty, unknowns, iterations, seconds] = step;
+         applied_force_uncertainty, unstable_modes, smallest_eigenvalue, unknowns, iterations,
+         seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
   // Estimated anew.
   static_cast<void>(tip_uncertainty);
   static_cast<void>(tip_angle_uncertainty);
   static_cast<void>(applied_force_uncertainty);
   archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
-      slip_off_uncertainty& contact_arclength& contact& unknowns& iterations& seconds;
+      slip_off_uncertainty& contact_arclength& contact& unstable_modes& smallest_eigenvalue&
+          unknowns& iterations& seconds;
 }
 
 }  // namespace boost::serialization

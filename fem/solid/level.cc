@@ -8,6 +8,7 @@
 
 #include "fem/beam/beam.h"
 #include "fem/solid/equilibrium/initial_guess.h"
+#include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/postprocessing/body.h"
 #include "fem/solid/postprocessing/centreline.h"
 #include "meshes/gmsh/gmsh_mesh.h"
@@ -74,12 +75,23 @@ std::vector<EquilibriumPair> pairs(const LoadPathState* own, const LoadPathState
   return result;
 }
 
+/// Contact forces follow the cilium, and a flow pushes by its height.
+bool has_potential(const Load& load) {
+  return load.is<EnvironmentLoad>() || load.is<DeadLoad>() || load.is<SectionLoad>();
+}
+
 /// A clamped base; on the plane of symmetry, where there is one, no displacement across it.
 std::vector<DirichletCondition> supports(Extent extent) {
   std::vector<DirichletCondition> conditions{{.boundary = meshes::base_id}};
   if (extent == Extent::half)
     conditions.push_back({.boundary = meshes::symmetry_id, .components = {false, true, false}});
   return conditions;
+}
+
+/// … where the half of the body moves against its mirror image.
+std::vector<DirichletCondition> antisymmetric_supports() {
+  return {{.boundary = meshes::base_id},
+          {.boundary = meshes::symmetry_id, .components = {true, false, true}}};
 }
 
 }  // namespace
@@ -210,6 +222,33 @@ Deformation Level::deformation(const SolidState& state, double azimuth) const {
 
 Deformation Level::undeformed(double azimuth) const {
   return deformation(space_->undeformed(), azimuth);
+}
+
+std::optional<SecondVariation> Level::second_variation() {
+  const Equilibrium& now = solver().current();
+  if (!has_potential(now.load)) return std::nullopt;
+  const auto of = [this](const ExternalForces& external, const SolidState& state) {
+    const auto modes = [&](const std::vector<DirichletCondition>& supports) {
+      return newton().second_variation(external, state, increment_constraints(*space_, supports));
+    };
+    auto result = modes(supports(quadrature_->extent()));
+    if (!result || quadrature_->extent() == Extent::whole) return result;
+    const SecondVariation across = modes(antisymmetric_supports()).value();
+    result->unstable_modes += across.unstable_modes;
+    result->smallest_eigenvalue = std::min(result->smallest_eigenvalue, across.smallest_eigenvalue);
+    return result;
+  };
+  auto result =
+      of(external_forces(*space_, *quadrature_, cilium_, now.load, options_.path.kernel_width),
+         now.state);
+  if (!result) return std::nullopt;
+  if (!eigenvalue_at_rest_)
+    eigenvalue_at_rest_ =
+        of(dead_forces(dealii::Vector<double>(space_->unknowns())), space_->undeformed())
+            .value()
+            .smallest_eigenvalue;
+  result->smallest_eigenvalue /= *eigenvalue_at_rest_;
+  return result;
 }
 
 MantleCompression Level::mantle_compression() const {

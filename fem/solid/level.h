@@ -76,6 +76,10 @@ class Level {
   postprocessing::MantleCompression mantle_compression(
       const discretisation::SolidState& state) const;
   double applied_force() const { return solver().current().applied_force; }
+  /// Of the level's state in all displacements of the whole body, with the smallest eigenvalue over
+  /// that of the straight cilium without loads. None if the load has no potential, or as
+  /// Newton::second_variation(), whose errors it throws.
+  std::optional<equilibrium::SecondVariation> second_variation();
   std::size_t unknowns() const { return space_->unknowns(); }
 
   // For solvers that make their own way, apart from the level's load path.
@@ -113,6 +117,7 @@ class Level {
   std::unique_ptr<discretisation::ExtrudedQuadrature> quadrature_;
   std::unique_ptr<equilibrium::Newton> newton_;
   std::unique_ptr<equilibrium::LoadPathSolver> solver_;
+  std::optional<double> eigenvalue_at_rest_;
 };
 
 }  // namespace ciliaval::fem::solid

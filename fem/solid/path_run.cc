@@ -96,6 +96,25 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
   return step;
 }
 
+/// Adds a remark to a step that has converged.
+void remark(MechanicsStep& step, const std::string& text) {
+  step.message += (step.message.empty() ? "" : "; ") + text;
+}
+
+/// States the stability of the level's equilibrium, which the step has ended with.
+void judge(Level& level, MechanicsStep& step) {
+  try {
+    const auto variation = level.second_variation();
+    if (!variation) return;
+    step.unstable_modes = variation->unstable_modes;
+    step.smallest_eigenvalue = variation->smallest_eigenvalue;
+  } catch (const SolverError& error) {
+    return remark(step,
+                  "whether this equilibrium is stable is not known: " + std::string(error.what()));
+  }
+  if (*step.unstable_modes > 0) remark(step, not_stable(*step.unstable_modes));
+}
+
 }  // namespace
 
 std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression) {
@@ -208,9 +227,10 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
     // The coarser levels are there already, unless the finest has left them behind.
     Progress of_companions;
     if (shown) of_companions = with_prefix(shown, "error estimate, ");
+    if (!surroundings::is_empty(acting_environment(load))) judge(finest(), step);
     const bool has_companions = levels_.all.size() > levels_.finest + 1;
     if (fold) {
-      step.message = *fold;
+      remark(step, *fold);
       // Without this companion there is no estimate.
       if (has_companions) levels_.all.back()->restore(std::nullopt);
     } else if (has_companions && is_at(*levels_.all.front(), load)) {

@@ -186,6 +186,7 @@ void solve_step(const Cilium& cilium, double tolerance, MechanicsStep& step) {
       planar_centreline(found, units, direction(step.load), std::max(tolerance / 10, 1e-13)),
       nullptr};
   step.status = Status::converged;
+  step.unstable_modes = equilibrium->unstable_modes;
   if (equilibrium->unstable_modes > 0) step.message = not_stable(equilibrium->unstable_modes);
   const CentrelinePoint tip = step.deformation->centreline.at(units.length);
   step.applied_force = applied_force(step.load, units, *equilibrium, tip.position.z());

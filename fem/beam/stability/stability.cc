@@ -5,7 +5,6 @@
 #include <deal.II/base/types.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -86,14 +85,24 @@ Eigen::MatrixXd symmetric_tangent(const System& system, const State& state, cons
   return (tangent + tangent.transpose()) / 2;
 }
 
-/// The length that belongs to each node, over L.
-std::vector<double> shares(const System& system, const State& state) {
-  const std::size_t nodes = state.position.size();
-  std::vector<double> result(nodes, 0);
-  for (std::size_t i = 0; i < nodes; ++i) {
-    const double below = i == 0 ? 0 : system.node_arclength(state, i - 1);
-    const double above = system.node_arclength(state, i + 1 == nodes ? i : i + 1);
-    result[i] = (above - below) / (2 * system.length_scale());
+/// ∫ N_a u dS/L of the displacements u, nothing of the other unknowns.
+Eigen::VectorXd weighed(const System& system, const State& state, const Eigen::VectorXd& u) {
+  const ReferenceElement& element = system.reference_element();
+  const Eigen::Map<const Eigen::VectorXd> weights(element.weights.data(),
+                                                  static_cast<Index>(element.n_points()));
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(u.size());
+  for (std::size_t e = 0; e < system.mesh().n_elements(); ++e) {
+    const double length =
+        (system.vertex_arclength(state, e + 1) - system.vertex_arclength(state, e)) /
+        system.length_scale();
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::vector<Index> unknowns;
+      for (std::size_t a = 0; a < element.n_nodes(); ++a)
+        unknowns.push_back(
+            static_cast<Index>(system.node_unknown(e * system.mesh().degree + a, c)));
+      const Eigen::VectorXd at_points = length * weights.cwiseProduct(element.values * u(unknowns));
+      result(unknowns) += element.values.transpose() * at_points;
+    }
   }
   return result;
 }
@@ -125,41 +134,13 @@ int unstable_modes(const System& system, const State& state, const Loads& loads)
   return negative - static_cast<int>(6 * state.force.size());
 }
 
-Eigenvalue smallest_eigenvalue(const System& system, const State& state, const Loads& loads) {
-  const auto all = static_cast<Index>(system.n_unknowns());
-  const std::vector<Index> free = free_unknowns(system);
-  const Factors factors(symmetric_tangent(system, state, loads, free));
-
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(all);
-  Eigen::VectorXd start = Eigen::VectorXd::Zero(all);
-  const std::vector<double> share = shares(system, state);
-  for (std::size_t node = 0; node < share.size(); ++node)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto i = static_cast<Index>(system.node_unknown(node, c));
-      weights[i] = share[node];
-      // Some of every mode.
-      start[i] = std::pow(system.node_arclength(state, node) / system.length_scale(), 2) +
-                 0.1 * static_cast<double>(c);
-    }
-  const Eigen::VectorXd w = weights(free);
-  Eigen::VectorXd u = start(free);
-  double omega = 0;
-  constexpr int most = 500;
-  for (int k = 0; k < most; ++k) {
-    Eigen::VectorXd next = w.cwiseProduct(u);
-    factors.solve(next);
-    // Rayleigh's quotient of the inverse.
-    const double inverse = u.dot(w.cwiseProduct(next)) / u.dot(w.cwiseProduct(u));
-    u = next / std::sqrt(next.dot(w.cwiseProduct(next)));
-    const double before = omega;
-    omega = 1 / inverse;
-    if (std::abs(omega - before) <= 1e-13 * std::abs(omega)) break;
-  }
-  Eigenvalue result;
-  result.value = omega;
-  result.mode = Eigen::VectorXd::Zero(all);
-  for (std::size_t k = 0; k < free.size(); ++k) result.mode[free[k]] = u[static_cast<Index>(k)];
-  return result;
+Eigenpair smallest_eigenvalue(System& system, const State& state, const Loads& loads,
+                              int unstable_modes) {
+  system.factorize(state, loads);
+  return smallest_eigenpair({static_cast<Index>(system.n_unknowns()),
+                             [&](const Eigen::VectorXd& f) { return system.solve(f); },
+                             [&](const Eigen::VectorXd& u) { return weighed(system, state, u); }},
+                            unstable_modes);
 }
 
 }  // namespace ciliaval::fem::beam::stability

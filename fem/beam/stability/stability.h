@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fem/beam/system.h"
+#include "fem/lanczos.h"
 
 namespace ciliaval::fem::beam::stability {
 
@@ -10,19 +11,20 @@ namespace ciliaval::fem::beam::stability {
 ///
 /// With the tangent T = [K B; Bᵀ −C] of displacements and section forces, of which there are n, K
 /// has as many as T has beyond n (Haynsworth's inertia additivity; with rigid modes, C = 0, on what
-/// they leave free). T is eliminated element by element from the base up, each block as LDLᵀ with
-/// Bunch and Kaufman's pivots (LAPACK's dsytrf). The loads must have a potential: force_per_height
-/// and contacts have none. Throws SolverError if a block is singular.
+/// they leave free). The count is that above the straight cilium without loads, where K = 0 and B
+/// is square: T has n negative eigenvalues whatever C is. So the joints' negative compliance,
+/// without which the cilium would be no stiffer, does not count. T is eliminated element by element
+/// from the base up, each block as LDLᵀ with Bunch and Kaufman's pivots (LAPACK's dsytrf). The
+/// loads must have a potential: force_per_height and contacts have none. Throws SolverError if a
+/// block is singular.
 int unstable_modes(const System& system, const State& state, const Loads& loads);
 
-/// The eigenvalue of the second variation that is nearest to 0.
-struct Eigenvalue {
-  double value = 0;      ///< ω, K u = ω W u, dimensionless
-  Eigen::VectorXd mode;  ///< u of it, in the order of the system's unknowns
-};
-
-/// By inverse iteration with all of T. W takes a node's displacement with its share of the length,
-/// rotations with nothing. ω vanishes where the equilibrium ceases to be stable.
-Eigenvalue smallest_eigenvalue(const System& system, const State& state, const Loads& loads);
+/// The smallest eigenvalue ω of the second variation, K u = ω W u, dimensionless, and its mode u in
+/// the order of the system's unknowns, at an equilibrium with so many unstable modes. uᵀW u is
+/// the integral of the squared displacement over the length; rotations have no weight. ω vanishes
+/// where the equilibrium ceases to be stable. Leaves the factors of the tangent in the system.
+/// Throws SolverError if that is singular.
+Eigenpair smallest_eigenvalue(System& system, const State& state, const Loads& loads,
+                              int unstable_modes);
 
 }  // namespace ciliaval::fem::beam::stability

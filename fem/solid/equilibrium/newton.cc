@@ -80,6 +80,7 @@ Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constr
                SolverKind solver, MPI_Comm communicator)
     : space_(space),
       constraints_(std::move(constraints)),
+      communicator_(communicator),
       size_(dealii::GridTools::diameter(space.dof_handler().get_triangulation())) {
   dealii::DynamicSparsityPattern pattern(space.unknowns());
   dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), pattern);
@@ -131,11 +132,23 @@ Newton::Use Newton::use_of(const Step& step, const SolidState& state, const Newt
 }
 
 void Newton::assemble_tangent(const ExternalForces& external, const SolidState& state,
-                              const InternalForces& internal) {
+                              const InternalForces& internal,
+                              const dealii::AffineConstraints<double>& constraints) {
   matrix_ = 0;
-  add_stiffness(space_, state, internal, constraints_, matrix_, cells_);
+  add_stiffness(space_, state, internal, constraints, matrix_, cells_);
   Vector<double> unused(space_.unknowns());
-  external(state.displacement, unused, constraints_, &matrix_);
+  external(state.displacement, unused, constraints, &matrix_);
+}
+
+std::optional<SecondVariation> Newton::second_variation(
+    const ExternalForces& external, const SolidState& state,
+    const dealii::AffineConstraints<double>& constraints) {
+  if (!solver_->is_direct()) return std::nullopt;
+  const auto internal = internal_forces(space_, state);
+  if (!internal) throw SolverError("det F is not positive at a quadrature point");
+  assemble_tangent(external, state, *internal, constraints);
+  return equilibrium::second_variation(space_, constraints, matrix_, solver_->rows(),
+                                       communicator_);
 }
 
 Newton::Step Newton::own_tangents_step(const SolidState& state, const Vector<double>& residual,
@@ -190,7 +203,7 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
         }
         if (iteration == static_cast<int>(options.max_iterations))
           return fail("no convergence in " + std::to_string(iteration) + " iterations");
-        assemble_tangent(external, state, *internal);
+        assemble_tangent(external, state, *internal, constraints_);
         if (iteration == 0)
           solver_->prepare(matrix_);
         else

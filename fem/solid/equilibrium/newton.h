@@ -8,11 +8,13 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/equilibrium/second_variation.h"
 #include "fem/solid/loads/external_forces.h"
 #include "fem/solid/solvers/linear_solver.h"
 
@@ -73,6 +75,13 @@ class Newton {
   NewtonResult solve(loads::UnknownForce& force, discretisation::SolidState& state,
                      const NewtonOptions& options, const NewtonProgress& progress = {});
 
+  /// At an equilibrium under external forces that have a potential, in the displacements that the
+  /// constraints leave free. None with the iterative solver, for meshes of its size have large
+  /// factors. Throws SolverError as equilibrium::second_variation().
+  std::optional<SecondVariation> second_variation(
+      const loads::ExternalForces& external, const discretisation::SolidState& state,
+      const dealii::AffineConstraints<double>& constraints);
+
  private:
   struct Step {
     dealii::Vector<double> increment;
@@ -88,7 +97,8 @@ class Newton {
              const NewtonOptions& options) const;
   void assemble_tangent(const loads::ExternalForces& external,
                         const discretisation::SolidState& state,
-                        const discretisation::InternalForces& internal);
+                        const discretisation::InternalForces& internal,
+                        const dealii::AffineConstraints<double>& constraints);
   /// The increment by the tangent at the state, which the solver has.
   Step own_tangents_step(const discretisation::SolidState& state,
                          const dealii::Vector<double>& residual, BorderedSystem* bordered);
@@ -101,6 +111,7 @@ class Newton {
   dealii::SparsityPattern sparsity_;
   dealii::SparseMatrix<double> matrix_;
   std::unique_ptr<solvers::LinearSolver> solver_;
+  MPI_Comm communicator_;
   std::vector<std::size_t> cells_;  ///< the cells that this rank assembles
   double size_;                     ///< diameter of the body, m
 };

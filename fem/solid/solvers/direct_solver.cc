@@ -87,6 +87,8 @@ struct DirectSolver::Mumps {
     option(4) = 0;
     option(6) = 0;  // no columns permuted to large diagonals: a stiffness matrix has them
     option(8) = 0;  // no scaling: it gains nothing
+    // ScaLAPACK would not count the negative pivots of the last front.
+    if (kind == Kind::symmetric_part) option(13) = 1;
     option(18) = alone ? 0 : 3;                           // each rank gives its own entries
     option(15) = -static_cast<MUMPS_INT>(node_unknowns);  // the pattern is analysed node by node
     option(14) = first_margin;
@@ -166,6 +168,10 @@ void DirectSolver::factorize(const dealii::SparseMatrix<double>& matrix) {
     code = m.run(factorize_matrix);
   }
   m.check(code);
+}
+
+int DirectSolver::negative_eigenvalues() const {
+  return mumps_->data.infog[11];
 }
 
 void DirectSolver::solve(const dealii::Vector<double>& rhs,

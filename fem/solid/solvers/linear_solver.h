@@ -30,6 +30,7 @@ class LinearSolver {
   /// This rank's rows: the only ones in which the matrix must be complete. The cells that have a
   /// degree of freedom among them must be assembled.
   const RowRange& rows() const { return rows_; }
+  bool is_direct() const { return direct_ != nullptr; }
 
   /// Factorises, or prepares the multigrid. The matrix must stay as it is until the next call.
   void prepare(const dealii::SparseMatrix<double>& matrix);

@@ -119,6 +119,7 @@ TEST(ElasticaEnvironment, SaysThatAnUprightCiliumBeyondGreenhillsWeightIsNotStab
     EXPECT_EQ(step.message.empty(), weight < 7.837) << step.message;
     // The second critical weight is 55.98: its Bessel function's second zero.
     EXPECT_EQ(step.message.find("2 mode") != std::string::npos, weight > 56) << step.message;
+    EXPECT_EQ(step.unstable_modes, weight > 56 ? 2 : weight > 7.837 ? 1 : 0);
   }
 }
 
