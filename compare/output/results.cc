@@ -119,6 +119,8 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   if (step.contact) json["contact"] = contact_json(*step.contact);
   if (step.contact && step.contact->energy_lost)
     json["jump"] = {{"energy_lost", *step.contact->energy_lost}};
+  if (step.unstable_modes) json["unstable_modes"] = *step.unstable_modes;
+  if (step.smallest_eigenvalue) json["smallest_eigenvalue"] = *step.smallest_eigenvalue;
   json["unknowns"] = step.unknowns;
   json["iterations"] = step.iterations;
   json["seconds"] = step.seconds;

@@ -66,6 +66,9 @@ std::string mechanics_table(const models::CaseResult& result, std::size_t index)
   for (const models::MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
     if (!step.message.empty()) text += fmt::format("  {}: {}\n", run.model, step.message);
+    if (step.smallest_eigenvalue)
+      text += fmt::format("  {}: smallest eigenvalue {:.3g} of that at rest\n", run.model,
+                          *step.smallest_eigenvalue);
     if (step.status != Status::slipped_off) continue;
     if (step.slip_off_displacement)
       text += fmt::format("  {}: slips off beyond {:.4g} mm\n", run.model,

@@ -271,6 +271,13 @@ void bind_models(py::module_& module) {
           "Largest load that an equilibrium bears (a contact's force, N, a "
           "probe's displacement, m); None: not known.")
       .def_property_readonly(
+          "unstable_modes", [](const Shape& s) { return s.step().unstable_modes; },
+          "Ways in which the energy decreases, 0: stable; None: not known.")
+      .def_property_readonly(
+          "smallest_eigenvalue", [](const Shape& s) { return s.step().smallest_eigenvalue; },
+          "Smallest eigenvalue of the second variation over that of the straight cilium without "
+          "loads; None: not known.")
+      .def_property_readonly(
           "magnet_forces",
           [](const Shape& s) {
             py::dict result;

@@ -111,6 +111,19 @@ TEST(Summary, StatesTheEnvironmentBesideTheLoad) {
                                                       {"magnetic_energy", "R"}}));
 }
 
+TEST(Summary, StatesTheStabilityWhereAModelKnowsIt) {
+  models::CaseResult result = two_models();
+  result.mechanics[0].result.steps[1].unstable_modes = 2;
+  result.mechanics[0].result.steps[1].smallest_eigenvalue = -0.25;
+  const json summary = json::parse(output::summary_json(result, {}, origin));
+  const json& known = summary["steps"][1]["mechanics"]["one"];
+  EXPECT_EQ(known["unstable_modes"], 2);
+  EXPECT_EQ(known["smallest_eigenvalue"], -0.25);
+  const json& unknown = summary["steps"][0]["mechanics"]["one"];
+  EXPECT_FALSE(unknown.contains("unstable_modes"));
+  EXPECT_FALSE(unknown.contains("smallest_eigenvalue"));
+}
+
 // Oracle: the field of the cilium's end sections on the charges of the magnet; the program states
 // the reaction to the force on the cilium.
 TEST(Summary, StatesForceAndTorqueOnEachMagnet) {
