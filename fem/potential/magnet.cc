@@ -12,6 +12,7 @@
 
 #include "problem/error.h"
 #include "problem/lagrange.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::fem::potential {
 namespace {
@@ -53,10 +54,10 @@ Magnet::Magnet(const Cilium& cilium, const Deformation& deformation, MagnetPushF
   for (std::size_t piece = 0; piece < centreline_.pieces().size(); ++piece) {
     const std::vector<double>& S = centreline_.pieces()[piece].S;
     for (std::size_t s = 0; s < cilium.segments.size(); ++s) {
-      const double M = cilium.segments[s].magnetization;
+      const Vector3 M = magnetization(cilium.segments[s]);
       const double lower = std::max(S.front(), ends[s]);
       const double upper = std::min(S.back(), ends[s + 1]);
-      if (M == 0 || !(upper - lower > 1e-12 * cilium.length())) continue;
+      if (M.isZero(0) || !(upper - lower > 1e-12 * cilium.length())) continue;
       for (int quadrant = 0; quadrant < 4; ++quadrant)
         blocks_.push_back(
             {rod_.size(), box_of(lower, upper, 0, radius_, quadrant * std::numbers::pi / 2,
@@ -93,9 +94,12 @@ MagnetSample Magnet::on_rod(const RodPart& part, const CentrelinePoint& section,
   const Vector3 tangent = section.derivative + section.curvature.cross(offset);
   const Vector3 normal = section.normal();
   const double J = normal.dot(tangent);
-  const Vector3 moment = part.magnetization * r *
-                         (push_forward_ == MagnetPushForward::F ? tangent : Vector3(J * normal));
-  return {section.position + offset, J * r, moment};
+  const Vector3& M = part.magnetization;
+  const Vector3 moment =
+      push_forward_ == MagnetPushForward::F
+          ? Vector3(section.rotation * Vector3(M.x(), M.y(), 0) + M.z() * tangent)
+          : Vector3(J * (section.rotation * M));
+  return {section.position + offset, J * r, r * moment};
 }
 
 /// Volume and moment per dξ dη dζ.

@@ -19,7 +19,7 @@ struct PermeableBox {
 };
 
 /// How the reference magnetisation M enters the current configuration: `F`, m = F·M/J, an ideal
-/// hard magnet; `R`, m = R·M with the rotation R of F = R·U (solid) or m = M d₃ (rod).
+/// hard magnet; `R`, m = R·M with the rotation R of F = R·U (solid) or of the section (rod).
 enum class MagnetPushForward { F, R };
 
 /// A quadrature point of the deformed magnet.
@@ -70,7 +70,7 @@ class Magnet {
  private:
   struct RodPart {
     std::size_t piece;
-    double magnetization;
+    Vector3 magnetization;
   };
   void require_usable() const;
   MagnetSample on_rod(const RodPart& part, const CentrelinePoint& section, double r,

@@ -53,6 +53,24 @@ TEST(Magnet, BothPushForwardsOfAnInextensibleRodHaveTheSameTotal) {
   EXPECT_LT((F.moment - rigid.moment).norm() / F.moment.norm(), 1e-12);
 }
 
+// Across the axis M turns with the sections: ∫ d₁ dS = [(sin θ, 0, cos θ)/κ] of an arc, d₂ stays.
+TEST(Magnet, BentRodCarriesWhatIsAcrossItsAxis) {
+  constexpr double curvature = 60;
+  Cilium cilium = test::paper_cilium();
+  cilium.segments.back().magnetization = 0;
+  cilium.segments.back().transverse_magnetization = {M, -M / 2};
+  const double low = curvature * 3e-3;
+  const double high = curvature * 20e-3;
+  const Vector3 exact =
+      std::numbers::pi * R * R * M *
+      (Vector3(std::sin(high) - std::sin(low), 0, std::cos(high) - std::cos(low)) / curvature -
+       L / 2 * Vector3::UnitY());
+  for (const auto push_forward : {MagnetPushForward::F, MagnetPushForward::R}) {
+    const Total sum = total(Magnet(cilium, test::arc(curvature), push_forward), 8);
+    EXPECT_LT((sum.moment - exact).norm() / exact.norm(), 1e-12);
+  }
+}
+
 // The ball's volume 4π/3 R³. Measured 5e-6: its geometry is interpolated with degree 5.
 TEST(Magnet, CellsOfASolidAreSampledWithTheirVolume) {
   const Vector3 m(1e3, -2e3, 3e3);
