@@ -63,6 +63,8 @@ void expect_same(const MechanicsResult& a, const MechanicsResult& b, const std::
     EXPECT_EQ(p.contact_arclength, q.contact_arclength) << what;
     EXPECT_EQ(p.tip_uncertainty, q.tip_uncertainty) << what;
     EXPECT_EQ(p.tip_angle_uncertainty, q.tip_angle_uncertainty) << what;
+    EXPECT_EQ(p.unstable_modes, q.unstable_modes) << what;
+    EXPECT_EQ(p.smallest_eigenvalue, q.smallest_eigenvalue) << what;
     EXPECT_EQ(p.iterations, q.iterations) << what;
     EXPECT_EQ(p.unknowns, q.unknowns) << what;
     ASSERT_EQ(p.contact.has_value(), q.contact.has_value()) << what;
@@ -115,6 +117,18 @@ void stop_and_go_on(const SolidOptions& options, const LoadPath& loads, int stop
 // Oracle: the solution that nothing has stopped, to the last bit: steps, iterations, shape, stress.
 TEST(SolidCheckpoint, GoesOnToTheSameBits) {
   stop_and_go_on(coarse(), path({2e-3, 4e-3, 1e-3}), 4);
+}
+
+// … in a field, where the stability is stated.
+TEST(SolidCheckpoint, KeepsTheStability) {
+  LoadPath loads;
+  for (const double part : {0.5, 1.0})
+    loads.push_back(with_environment(EnvironmentLoad{part, 0}, {.uniform_field = {0.05, 0, -0.1}}));
+  Memory memory;
+  Solid(coarse()).solve_from(stub(), {loads[0]}, memory.checkpoint());
+  const MechanicsResult on = Solid(coarse()).solve_from(stub(), loads, memory.checkpoint());
+  EXPECT_EQ(on.steps.at(0).unstable_modes, 0);
+  expect_same(on, Solid(coarse()).solve(stub(), loads), "in a field");
 }
 
 // … on the way to the slip-off and with its bracket half closed.
