@@ -38,6 +38,7 @@ class PathSolver {
     if (!beam_ || load_at != load_at_) {
       load_at_ = load_at;
       beam_ = cilium_beam(cilium_, options_, load_at);
+      eigenvalue_at_rest_.reset();
       state_ = beam_->system.reference_state();
       applied_ = {};
     }
@@ -57,8 +58,7 @@ class PathSolver {
     step.status = report.converged ? Status::converged : Status::failed;
     step.message = report.message;
     step.iterations = report.iterations;
-    if (may_buckle && report.converged)
-      if (const int modes = unstable_modes(state_, to); modes > 0) step.message = not_stable(modes);
+    if (may_buckle && report.converged) judge(unstable_modes(state_, to), step);
     return step;
   }
 
@@ -67,10 +67,22 @@ class PathSolver {
   const Loads& applied() const { return applied_; }
 
  private:
+  void judge(int unstable_modes, MechanicsStep& step) {
+    System& system = beam_->system;
+    const auto eigenvalue = [&](const State& state, const Loads& loads, int modes) {
+      return stability::smallest_eigenvalue(system, state, loads, modes).value;
+    };
+    if (!eigenvalue_at_rest_) eigenvalue_at_rest_ = eigenvalue(system.reference_state(), {}, 0);
+    step.unstable_modes = unstable_modes;
+    step.smallest_eigenvalue = eigenvalue(state_, applied_, unstable_modes) / *eigenvalue_at_rest_;
+    if (unstable_modes > 0) step.message = not_stable(unstable_modes);
+  }
+
   Cilium cilium_;
   BeamOptions options_;
   std::optional<double> load_at_;
   std::optional<CiliumBeam> beam_;
+  std::optional<double> eigenvalue_at_rest_;
   State state_;
   Loads applied_;
 };
