@@ -93,6 +93,7 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
   for (const Stage& stage : chain.mechanics) {
     input::Case surrounded = problem;
     surrounded.load_path = loads_of(stage, computed.path.loads);
+    surrounded.options = mechanics_options(stage, problem.options);
     const models::MechanicsEntry& entry = models::entry_of(mechanics, stage.mechanics);
     const models::MechanicsRun& run =
         computed.around

@@ -30,8 +30,9 @@ struct Stage {
   std::string physics;      ///< the assumption that changes from the stage before
   bool sensitivity = true;  ///< whether dB/dF is computed here
   Around around = Around::all;
+  bool joints = false;  ///< whether the rods' joints are corrected
 
-  /// The id with what is around it: "elastica alone", "solid, R".
+  /// The id with what is around it or changed in it: "elastica alone", "beam, joints corrected".
   std::string mechanics_name() const;
   std::string field_name() const { return variant.empty() ? field : field + ' ' + variant; }
   std::string name() const { return mechanics_name() + '/' + field_name(); }
@@ -48,14 +49,18 @@ struct Chain {
   std::string physics(std::size_t from, std::size_t to) const;
 };
 
-/// elastica alone/line, if the case has an environment → elastica/line → beam/line → solid/line, in
-/// a field by both magnetic energies → solid/volume stacked → solid/volume wedge → solid/mesh R →
+/// elastica alone/line, if the case has an environment → elastica/line → beam/line → the same with
+/// corrected joints, if the case has them in the beam → solid/line, in a field by both magnetic
+/// energies → solid/volume stacked → solid/volume wedge → solid/mesh R →
 /// solid/mesh F → solid/potential mu_r = 1 → the same with the case's μ_r, if it is another → with
 /// the case's plates, if it has any. The options are the case's but for those named; line and
 /// potential push forward by F. `without` names models to leave out: beam, solid (its fields then
 /// go with the beam, and mesh with it is left out), volume, mesh, potential, dipole; "sensitivity"
 /// leaves out dB/dF. Throws InputError if one is not one of these.
 Chain make_chain(const input::Case& problem, const std::vector<std::string>& without);
+
+/// The case's options with the rods' joints as at a stage.
+input::ModelOptions mechanics_options(const Stage& stage, input::ModelOptions options);
 
 /// The effect of one change of model on one number: next − previous.
 struct BudgetLink {

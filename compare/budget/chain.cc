@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "analytic/body/mesh_field.h"
+#include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "compare/budget/budget.h"
+#include "fem/beam/beam.h"
 #include "fem/potential/potential.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
@@ -71,6 +73,12 @@ std::vector<Stage> mechanics_stages(const input::Case& problem) {
   const Stage solid{
       "solid", "line", "", line,
       "three dimensions: bonded ends, near-incompressibility, a contact of some width"};
+  std::vector<Stage> corrected;
+  if (problem.options.of<fem::beam::BeamOptions>().joints == joints::Correction::corrected) {
+    corrected.push_back(beam);
+    corrected.front().joints = true;
+    corrected.front().physics = "joints as stiff as bonded sections make them";
+  }
   const auto with = [](Stage stage, Around what, std::string_view physics) {
     stage.around = what;
     if (!physics.empty()) stage.physics = physics;
@@ -84,16 +92,22 @@ std::vector<Stage> mechanics_stages(const input::Case& problem) {
     is_empty = is_empty && surroundings::is_empty(environment);
     const bool has_magnets = !environment.magnets.empty();
     is_for_the_beam = is_for_the_beam || has_magnets ||
-                      !surroundings::lies_in_plane(environment, direction(load));
+                      !surroundings::lies_in_plane(environment, problem.cilium, direction(load));
     has_field = has_field || has_magnets || !environment.uniform_field.isZero();
   }
-  if (is_empty) return {elastica, beam, solid};
+  if (is_empty) {
+    std::vector<Stage> stages{elastica, beam};
+    stages.insert(stages.end(), corrected.begin(), corrected.end());
+    stages.push_back(solid);
+    return stages;
+  }
   std::vector<Stage> stages{with(elastica, Around::nothing, "")};
   if (is_for_the_beam)
     stages.push_back(with(beam, Around::nothing, ""));
   else
     stages.push_back(with(elastica, Around::all, around));
   stages.push_back(is_for_the_beam ? with(beam, Around::all, around) : beam);
+  stages.insert(stages.end(), corrected.begin(), corrected.end());
   if (has_field) {
     const bool is_F =
         problem.load_path.front().environment().magnetic_energy == surroundings::MagneticEnergy::F;
@@ -137,7 +151,15 @@ std::vector<Stage> field_stages(const input::Case& problem, const std::string& m
 
 }  // namespace
 
+input::ModelOptions mechanics_options(const Stage& stage, input::ModelOptions options) {
+  const auto joints = stage.joints ? joints::Correction::corrected : joints::Correction::none;
+  options.of<fem::beam::BeamOptions>().joints = joints;
+  options.of<analytic::elastica::ElasticaOptions>().joints = joints;
+  return options;
+}
+
 std::string Stage::mechanics_name() const {
+  if (joints) return mechanics + ", joints corrected";
   switch (around) {
     case Around::nothing:
       return mechanics + " alone";
@@ -179,10 +201,12 @@ Chain make_chain(const input::Case& problem, const std::vector<std::string>& wit
     if (!is_left_out(stage.mechanics)) chain.mechanics.push_back(stage);
   }
   const std::string best = chain.mechanics.back().mechanics;
-  for (const Stage& stage : field_stages(problem, best))
+  for (Stage& stage : field_stages(problem, best)) {
+    stage.joints = chain.mechanics.back().joints;
     add(stage, is_left_out(stage.field)                   ? stage.field
                : stage.field == "mesh" && best != "solid" ? "solid"
                                                           : "");
+  }
   if (is_left_out(beside.field))
     chain.not_run.push_back(fmt::format("{}: without {}", beside.name(), beside.field));
   else

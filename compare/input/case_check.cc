@@ -9,6 +9,7 @@
 
 #include "compare/input/case_sections.h"
 #include "problem/error.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -70,11 +71,6 @@ bool any_environment(const LoadPath& path, const Acts& acts) {
 
 bool has_environment(const LoadPath& path) {
   return any_environment(path, [](const auto& e) { return !surroundings::is_empty(e); });
-}
-
-bool has_magnet(const Cilium& cilium) {
-  return std::ranges::any_of(cilium.segments,
-                             [](const Segment& s) { return s.magnetization != 0; });
 }
 
 /// Weight needs densities, a field a magnet, and magnets a place beside the cilium.

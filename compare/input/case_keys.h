@@ -67,7 +67,8 @@ inline constexpr QuantityKey magnetization{
     quantity::magnetization,
     {-1e8, 1e8, false, "the strongest magnets have about 1.2e6 A/m; divide a B_r in T by mu_0"},
     "0 A/m",
-    "Axial magnetisation B_r/mu_0 from base to tip; negative points to the base."};
+    "Axial magnetisation B_r/mu_0 from base to tip, negative to the base; or three components "
+    "along x, y, z of the straight cilium."};
 inline constexpr QuantityKey density{
     "cilium.segment",
     "density",

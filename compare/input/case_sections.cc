@@ -23,6 +23,18 @@ bool has_control_character(std::string_view text) {
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
+/// A number, which is axial, or three.
+void read_magnetization(Section& table, Segment& segment) {
+  const toml::node* node = table.find(key::magnetization.name);
+  if (node == nullptr || !node->is_array()) {
+    segment.magnetization = table.value(key::magnetization).value_or(0);
+    return;
+  }
+  const Vector3 M = read_point(*node, key::magnetization, table.faults()).value_or(Vector3::Zero());
+  segment.transverse_magnetization = {M.x(), M.y()};
+  segment.magnetization = M.z();
+}
+
 void read_segments(Section& cilium, std::vector<Segment>& segments) {
   cilium.require("segment");
   cilium.tables("segment", 1, most_segments, [&](Section& table) {
@@ -32,7 +44,7 @@ void read_segments(Section& cilium, std::vector<Segment>& segments) {
     segment.length = table.value(key::segment_length).value_or(0);
     segment.young_modulus = table.value(key::young_modulus).value_or(0);
     segment.poisson_ratio = table.value(key::poisson_ratio).value_or(0);
-    segment.magnetization = table.value(key::magnetization).value_or(0);
+    read_magnetization(table, segment);
     segment.density = table.value(key::density).value_or(0);
     const bool known = std::any_of(segments.begin(), segments.end(),
                                    [&](const Segment& s) { return s.name == segment.name; });

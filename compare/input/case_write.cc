@@ -10,6 +10,7 @@
 #include "compare/input/case_keys.h"
 #include "compare/input/case_sections.h"
 #include "compare/input/environment/environment.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -75,6 +76,14 @@ std::string parameters(const Case& c) {
   return text;
 }
 
+std::string magnetization_line(const Segment& segment) {
+  const Vector3 M = magnetization(segment);
+  if (M.head<2>().isZero(0)) return line(key::magnetization, M.z());
+  std::vector<std::string> components;
+  for (const double component : M) components.push_back(value(key::magnetization, component));
+  return fmt::format("{} = {}\n", key::magnetization.name, list(components));
+}
+
 std::string cilium(const Case& c) {
   using Shape = CrossSection::Shape;
   const CrossSection& section = c.cilium.section;
@@ -93,7 +102,7 @@ std::string cilium(const Case& c) {
   for (const Segment& s : c.cilium.segments) {
     text += fmt::format("\n[[cilium.segment]]\nname = {}\n", toml_text(s.name));
     text += line(key::segment_length, s.length) + line(key::young_modulus, s.young_modulus) +
-            line(key::poisson_ratio, s.poisson_ratio) + line(key::magnetization, s.magnetization);
+            line(key::poisson_ratio, s.poisson_ratio) + magnetization_line(s);
     if (s.density != 0) text += line(key::density, s.density);
   }
   return text;

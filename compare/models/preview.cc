@@ -13,6 +13,7 @@
 #include "analytic/elastica/environment/step.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::models {
 namespace {
@@ -64,7 +65,8 @@ class Viewer {
       const std::string whose = "segment \"" + segment.name + "\"";
       look_at(whose, segment.young_modulus, "Pa", modulus);
       if (segment.density != 0) look_at(whose, segment.density, "kg/m^3", density);
-      if (segment.magnetization != 0) look_at(whose, segment.magnetization, "A/m", magnetization);
+      if (is_magnetic(segment))
+        look_at(whose, ciliaval::magnetization(segment).norm(), "A/m", magnetization);
     }
     const double slenderness = cilium.length() / cilium.extent(azimuth(problem_.load_path.front()));
     if (slenderness < least_slenderness)
@@ -80,7 +82,7 @@ class Viewer {
     const std::vector<double> ends = cilium.interfaces();
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
-      if (cilium.segments[i].magnetization == 0) continue;
+      if (!is_magnetic(cilium.segments[i])) continue;
       const double along = std::max({ends[i] - point.z(), point.z() - ends[i + 1], 0.0});
       const double across = std::max(std::hypot(point.x(), point.y()) - cilium.radius(), 0.0);
       nearest = std::min(nearest, std::hypot(along, across));
@@ -151,7 +153,8 @@ class Viewer {
     look_at_field(alone, field);
   }
 
-  /// How often gravity and field along the axis are borne, at the steps where they are extreme.
+  /// How often gravity and field along the axis are borne, at the steps where they are extreme. A
+  /// magnet across the axis has no straight state in a field.
   void look_at_buckling() {
     const auto extremes = [this](const auto& along) {
       const auto [low, high] = std::ranges::minmax_element(problem_.load_path, {}, along);
@@ -169,6 +172,7 @@ class Viewer {
           vector->head<2>().setZero();
         }
         along.magnets.clear();
+        if (has_transverse_magnetization(problem_.cilium)) along.uniform_field.setZero();
         if (surroundings::is_empty(along)) continue;
         const std::optional<double> factor =
             analytic::elastica::environment::critical_factor(problem_.cilium, along, most_buckling);

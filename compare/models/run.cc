@@ -372,6 +372,11 @@ std::optional<support::Fingerprint> fingerprint(const input::Case& problem,
     add(input::key::young_modulus, of, segment.young_modulus);
     add(input::key::poisson_ratio, of, segment.poisson_ratio);
     add(input::key::magnetization, of, segment.magnetization);
+    const auto& [x, y] = segment.transverse_magnetization;
+    if (x != 0 || y != 0) {
+      add(input::key::magnetization, " along x" + of, x);
+      add(input::key::magnetization, " along y" + of, y);
+    }
     if (segment.density != 0) add(input::key::density, of, segment.density);
   }
   all.emplace_back("number of load steps", std::to_string(problem.load_path.size()));

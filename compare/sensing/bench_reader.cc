@@ -64,7 +64,7 @@ void read_problem(input::Section& table, const std::filesystem::path& file, inpu
     if (problem.sensors.empty()) throw InputError("the case has no sensor");
     if (problem.load_path.front().is<SweepLoad>())
       throw InputError("it is a sweep, and a bench has loads with a magnitude");
-    require_load_to_sense(problem.load_path);
+    require_load_to_sense(problem);
     for (const Load& load : problem.load_path)
       if (!(magnitude(load) > 0)) throw InputError("the case has a load that is zero");
   } catch (const InputError& error) {

@@ -11,6 +11,7 @@
 
 #include "compare/models/registry.h"
 #include "problem/error.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::sensing {
 namespace {
@@ -98,7 +99,8 @@ models::ModelPair parse_pair(const std::string& text) {
   return pair;
 }
 
-void require_load_to_sense(const LoadPath& path) {
+void require_load_to_sense(const input::Case& problem) {
+  const LoadPath& path = problem.load_path;
   constexpr double vertical = 1e-9;
   if (path.front().is<EnvironmentLoad>())
     throw InputError("the load type 'environment' has no load to be found from readings");
@@ -112,6 +114,10 @@ void require_load_to_sense(const LoadPath& path) {
           "a load is found by a response that is the same from all sides: an [environment] beside "
           "it points along z and has no magnets");
   }
+  if (problem.cilium.is_rectangular() || has_transverse_magnetization(problem.cilium))
+    throw InputError(
+        "a load is found by a response that is the same from all sides: the cilium is round and "
+        "magnetised along its axis");
 }
 
 Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
@@ -120,7 +126,7 @@ Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, do
   for (const auto& [option, mesh] : input::user_meshes({{entry}, {}}, problem.options))
     throw InputError("a solid with a mesh of the user is not the same from all sides: leave out " +
                      option);
-  require_load_to_sense(problem.load_path);
+  require_load_to_sense(problem);
   if (!(largest > 0) || !std::isfinite(largest))
     throw InputError("the largest load must be finite and positive");
   Shapes shapes;

@@ -27,9 +27,9 @@ struct Shapes {
   std::vector<double> check_magnitudes;
 };
 
-/// Throws InputError unless the path has loads that readings can tell: not of the type
-/// `environment`, in one environment that is the same from all sides.
-void require_load_to_sense(const LoadPath& path);
+/// Throws InputError unless the case has loads that readings can tell: not of the type
+/// `environment`, on a cilium and in one environment that are the same from all sides.
+void require_load_to_sense(const input::Case& problem);
 
 /// The shapes of the case's load up to the largest magnitude, by the mechanics model. Throws
 /// SolverError if the cilium slips off below it, or the model fails; InputError if the case's

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "compare/validation/validation.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::validation {
 namespace {
@@ -65,7 +66,7 @@ std::vector<Extent> domain_of(const input::Case& c) {
   if (std::ranges::max(field) > 0) {
     double moment = 0;  // M A L of all segments
     for (const Segment& s : c.cilium.segments)
-      moment += std::abs(s.magnetization) * c.cilium.area() * s.length;
+      moment += magnetization(s).norm() * c.cilium.area() * s.length;
     add("field", "|B|", "T", field);
     add("field_number", "M A L B L/(E I)", "", along_path([&](const Load& load) {
           return moment * acting_environment(load).uniform_field.norm() * length / plane.stiffness;

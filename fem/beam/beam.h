@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include "problem/joints/joints.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::fem::beam {
@@ -18,6 +19,9 @@ struct BeamOptions {
   unsigned int max_cutbacks = 8;
   TipShape tip = TipShape::rim;  ///< of a sweep
   bool error_estimate = true;    ///< by a companion of a higher degree; over half of the work
+  /// Of other loads than a sweep. With error_estimate the error is the corrections' uncertainty,
+  /// too.
+  joints::Correction joints = joints::Correction::none;
 };
 
 /// Geometrically exact (Simo–Reissner) beam: bending, torsion, shear and extension, finite 3D

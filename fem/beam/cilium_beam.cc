@@ -29,8 +29,11 @@ SectionStiffness stiffness(const Cilium& cilium, const Segment& s) {
 
 Section segment_section(const Cilium& cilium, std::size_t segment, const BeamOptions& options) {
   const Segment& s = cilium.segments[segment];
-  const Section law = section(stiffness(cilium, s));
-  return options.shear_rigid ? rigid_in_shear(law) : law;
+  Section law = section(stiffness(cilium, s));
+  if (options.shear_rigid) return rigid_in_shear(law);
+  if (options.joints == joints::Correction::corrected)
+    law.beyond = joints::bending_law(cilium.diameter, s);
+  return law;
 }
 
 /// Appends 2^refinement equal elements up to S = end.
@@ -45,6 +48,14 @@ void append(Mesh& mesh, double end, const Section& law, const BeamOptions& optio
   }
 }
 
+/// Appends the joint below segment k.
+void append_joint(Mesh& mesh, double S, std::span<const joints::Joint> joints, std::size_t k) {
+  if (joints.empty()) return;
+  if (mesh.vertices.empty()) mesh.vertices.push_back(S);
+  mesh.vertices.push_back(S);
+  mesh.sections.push_back(joint_section(joints[k]));
+}
+
 CiliumBeam finished(Mesh mesh, std::size_t loaded, const Cilium& cilium) {
   std::vector<std::size_t> segments;
   for (std::size_t e = 0; e < mesh.n_elements(); ++e)
@@ -55,7 +66,7 @@ CiliumBeam finished(Mesh mesh, std::size_t loaded, const Cilium& cilium) {
 }  // namespace
 
 CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
-                       std::optional<double> load_at) {
+                       std::optional<double> load_at, std::span<const joints::Joint> joints) {
   const std::vector<double> ends = cilium.interfaces();
   const double L = ends.back();
   Mesh mesh;
@@ -63,6 +74,7 @@ CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
   std::size_t loaded = 0;
   for (std::size_t k = 0; k < cilium.segments.size(); ++k) {
     const Section law = segment_section(cilium, k, options);
+    append_joint(mesh, ends[k], joints, k);
     const bool inside = load_at && *load_at > ends[k] && *load_at < ends[k + 1];
     if (inside) {
       append(mesh, *load_at, law, options);
@@ -75,7 +87,7 @@ CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
 }
 
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
-                                          std::size_t host) {
+                                          std::size_t host, std::span<const joints::Joint> joints) {
   const std::vector<double> ends = cilium.interfaces();
   const std::size_t n = std::size_t{1} << options.refinement;
   Mesh mesh;
@@ -83,6 +95,7 @@ CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOption
   std::size_t loaded = 0;
   for (std::size_t k = 0; k < cilium.segments.size(); ++k) {
     const Section law = segment_section(cilium, k, options);
+    append_joint(mesh, ends[k], joints, k);
     if (k == host) {
       append(mesh, ends[k], law, options);
       loaded = mesh.n_elements();
@@ -104,15 +117,19 @@ Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam
   if (surroundings::is_empty(environment)) return result;
   result.magnetic_energy = environment.magnetic_energy;
   const bool is_transverse = has_transverse_magnetization(cilium);
-  for (const std::size_t segment : beam.segments) {
+  for (std::size_t e = 0; e < beam.segments.size(); ++e) {
+    const std::size_t segment = beam.segments[e];
+    const bool is_joint = beam.system.mesh().sections[e].is_joint;  // which is not magnetic
     result.force_per_length.push_back(
         cilium.area() * surroundings::weight_per_volume(environment, cilium.segments[segment]));
-    result.magnetic_force.push_back(surroundings::pole_force(environment, cilium, segment));
+    result.magnetic_force.push_back(
+        is_joint ? Vector3::Zero() : surroundings::pole_force(environment, cilium, segment));
     if (!environment.magnets.empty())
-      result.magnetic_charge.push_back(cilium.segments[segment].magnetization * cilium.area());
+      result.magnetic_charge.push_back(
+          is_joint ? 0 : cilium.segments[segment].magnetization * cilium.area());
     if (!is_transverse) continue;
-    const Eigen::Vector2d charge =
-        cilium.area() * magnetization(cilium.segments[segment]).head<2>();
+    Eigen::Vector2d charge = Eigen::Vector2d::Zero();
+    if (!is_joint) charge = cilium.area() * magnetization(cilium.segments[segment]).head<2>();
     result.transverse_force.push_back(environment.uniform_field * charge.transpose());
     result.transverse_charge.push_back(charge);
   }

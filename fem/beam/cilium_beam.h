@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fem/beam/beam.h"
@@ -16,18 +17,21 @@ namespace ciliaval::fem::beam {
 struct CiliumBeam {
   System system;
   std::size_t loaded = 0;
-  std::vector<std::size_t> segments{};  ///< of each element
+  std::vector<std::size_t> segments{};  ///< of each element; of a joint the one above
 };
 
 /// Clamped straight beam with 2^refinement equal elements between segment interfaces and `load_at`
-/// (m), if given. `loaded` is the vertex at load_at, else the tip.
+/// (m), if given. `loaded` is the vertex at load_at, else the tip. Each of the joints, if there are
+/// any, is an element of length zero below its segment; a load at an interface acts below it.
 CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
-                       std::optional<double> load_at = {});
+                       std::optional<double> load_at = {},
+                       std::span<const joints::Joint> joints = {});
 
 /// The same with a vertex that moves inside segment `host`, at S_host + s for State::shift s: the
 /// elements of the host below and above it stretch and shrink in proportion and may vanish.
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
-                                          std::size_t host);
+                                          std::size_t host,
+                                          std::span<const joints::Joint> joints = {});
 
 /// Weight and field of the environment that acts under the load.
 Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam);

@@ -3,6 +3,8 @@
 
 #include <map>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "fem/beam/cilium_beam.h"
 
@@ -13,11 +15,12 @@ namespace ciliaval::fem::beam {
 /// arc length s_c one more unknown. A contact load gives the force; a probe gives the deflection δ
 /// of the vertex, and the force is a second unknown. The vertex starts in the segment that holds h.
 /// At the end of its segment the force is found with which that end is at h, and the vertex goes on
-/// at the lower end of the next segment. At the end of the last segment the contact slips off.
+/// at the lower end of the next segment, above the joint if there is one. At the end of the last
+/// segment the contact slips off.
 class ContactSolver {
  public:
-  ContactSolver(Cilium cilium, BeamOptions options)
-      : cilium_(std::move(cilium)), options_(options) {}
+  ContactSolver(Cilium cilium, BeamOptions options, std::vector<joints::Joint> joints)
+      : cilium_(std::move(cilium)), options_(options), joints_(std::move(joints)) {}
 
   /// The load is a ContactLoad or a ProbeLoad.
   MechanicsStep solve(const Load& load, const PathProgress& progress);
@@ -64,12 +67,15 @@ class ContactSolver {
   double magnitude_of(const Loaded& trial) const;
   double displacement_of(const State& state) const;
   Loads force_at_vertex(double force) const;
-  /// From the upper end of the segment to the lower end of the next, the same point.
-  void enter_next_segment();
+  /// From the upper end of the segment to the lower end of the next: the same point, or the other
+  /// side of a joint, which the force then loads. False if there is no equilibrium or if the load
+  /// is between those of the two sides.
+  bool enter_next_segment(const Load& load, MechanicsStep& step);
   double host_length() const { return cilium_.segments[host_].length; }
 
   Cilium cilium_;
   BeamOptions options_;
+  std::vector<joints::Joint> joints_;
   std::map<double, SlipOff> slip_offs_;  ///< by height, in this environment:
   surroundings::Environment environment_;
   std::optional<CiliumBeam> beam_;

@@ -51,10 +51,11 @@ void add_residual(const ReferenceElement& reference, const ElementData& data, st
     gradient[a] += N * f.p + D * f.s;
   }
   const Index row = point_row(reference, g);
+  const double compliant = data.compliant_length();
   residual.segment<3>(row) =
-      w * (strain.gamma - data.gamma0[g] - h * data.section.force_compliance.cwiseProduct(n));
+      w * (strain.gamma - data.gamma0[g] - compliant * data.section.force_strain(n, m));
   residual.segment<3>(row + 3) =
-      w * (strain.kappa - data.kappa0[g] - h * data.section.moment_compliance.cwiseProduct(m));
+      w * (strain.kappa - data.kappa0[g] - compliant * data.section.moment_strain(n, m));
 }
 
 /// m·Λᵀc as a function of p, of a material vector m: the power of a force m on a tangent c.
@@ -160,8 +161,8 @@ void add_magnetic_energy(const ElementData& data, const Interpolation& x, Stress
 
 /// Adds one Gauss point's part of the tangent, without the curvature of the rotation update.
 void add_tangent(const ReferenceElement& reference, const ElementData& data, std::size_t g,
-                 const Strain& strain, const StressPower& f, const std::vector<Matrix43>& E,
-                 Eigen::MatrixXd& K) {
+                 const Strain& strain, const StressPower& f, const Vector3& n, const Vector3& m,
+                 const std::vector<Matrix43>& E, Eigen::MatrixXd& K) {
   const double w = reference.weights[g];
   const Index row = point_row(reference, g);
   for (std::size_t a = 0; a < reference.n_nodes(); ++a) {
@@ -187,8 +188,7 @@ void add_tangent(const ReferenceElement& reference, const ElementData& data, std
     K.block<3, 3>(row + 3, ra + 3) = moment_spin;
     K.block<3, 3>(ra + 3, row + 3) = moment_spin.transpose();
   }
-  K.diagonal().segment<3>(row) = -w * data.length * data.section.force_compliance;
-  K.diagonal().segment<3>(row + 3) = -w * data.length * data.section.moment_compliance;
+  K.block<6, 6>(row, row) = -w * data.compliant_length() * data.section.compliance(n, m);
 }
 
 /// ∂(E_aᵀ g_a)/∂θ_a at constant g_a: ¼ (e_i∘e_j∘q)·g = −¼ (q·g) δ_ij + ½ ε_ijk R_k, R = E_aᵀ g_a.
@@ -225,14 +225,14 @@ double element_energy(const ReferenceElement& reference, const ElementData& data
     const Strain e = strain(x.p, x.s, x.t);
     const Vector3& n = state.force[g];
     const Vector3& m = state.moment[g];
-    const double complementary = 0.5 * n.dot(data.section.force_compliance.cwiseProduct(n)) +
-                                 0.5 * m.dot(data.section.moment_compliance.cwiseProduct(m));
+    const double complementary = data.section.complementary_energy(n, m);
     StressPower magnetic{};
     add_magnetic_energy(data, x, magnetic);
     magnetic.value += data.length * magnet_power(data, x).by_p.value;
-    energy += reference.weights[g] *
-              (magnetic.value + n.dot(e.gamma - data.gamma0[g]) + m.dot(e.kappa - data.kappa0[g]) -
-               data.length * (complementary + data.force_per_length.dot(x.r)));
+    energy +=
+        reference.weights[g] *
+        (magnetic.value + n.dot(e.gamma - data.gamma0[g]) + m.dot(e.kappa - data.kappa0[g]) -
+         data.compliant_length() * complementary - data.length * data.force_per_length.dot(x.r));
   }
   return energy;
 }
@@ -254,7 +254,8 @@ void element_residual(const ReferenceElement& reference, const ElementData& data
     add_magnetic_energy(data, x, f);
     add_magnet_power(reference, data, g, x, E, f, residual, tangent);
     add_residual(reference, data, g, x, e, f, state.force[g], state.moment[g], residual, gradient);
-    if (tangent != nullptr) add_tangent(reference, data, g, e, f, E, *tangent);
+    if (tangent != nullptr)
+      add_tangent(reference, data, g, e, f, state.force[g], state.moment[g], E, *tangent);
   }
   for (std::size_t a = 0; a < n_nodes; ++a) {
     const Vector3 moment = E[a].transpose() * gradient[a];
@@ -281,9 +282,9 @@ Eigen::VectorXd element_length_derivative(const ReferenceElement& reference,
     }
     const Index row = point_row(reference, g);
     derivative.segment<3>(row) =
-        -w * (Vector3::UnitZ() + data.section.force_compliance.cwiseProduct(state.force[g]));
+        -w * (Vector3::UnitZ() + data.section.force_strain(state.force[g], state.moment[g]));
     derivative.segment<3>(row + 3) =
-        -w * data.section.moment_compliance.cwiseProduct(state.moment[g]);
+        -w * data.section.moment_strain(state.force[g], state.moment[g]);
   }
   return derivative;
 }

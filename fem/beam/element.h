@@ -39,6 +39,8 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 struct ElementData {
   double length = 0;  ///< h, reference arc length, m; 0 is allowed
   Section section;
+  /// Of the strains: h, or 1 of a joint.
+  double compliant_length() const { return section.is_joint ? 1 : length; }
   std::vector<Vector3> gamma0;  ///< hΓ₀ = Λ₀ᵀ dr₀/dξ at the Gauss points, m
   std::vector<Vector3> kappa0;  ///< hK₀ at the Gauss points, rad
   Vector3 force_per_length = Vector3::Zero();  ///< dead load per reference length, N/m
@@ -69,8 +71,9 @@ void set_reference_strains(const ReferenceElement& reference, std::span<const Ve
                            std::span<const Quaternion> rotation, ElementData& data);
 
 /// Hellinger–Reissner energy of the element less the work of its dead load,
-///   Π = Σ_g w_g [n·(γ − hΓ₀) + m·(κ − hK₀) − ½h (n·C_n n + m·C_m m) − h q·r − c·a],   J,
-/// with a = ∂r/∂ξ (law F) or h d₃ (law R), to which B(r) of magnets adds −h M A B·d₃, and M across
+///   Π = Σ_g w_g [n·(γ − hΓ₀) + m·(κ − hK₀) − ½h (n·Γ + m·K) − h q·r − c·a],   J,
+/// with the section's law Γ(n, m), K(n, m), which a joint has without h,
+/// and a = ∂r/∂ξ (law F) or h d₃ (law R), to which B(r) of magnets adds −h M A B·d₃, and M across
 /// the axis −h (C₁ + A M₁ B)·d₁ − h (C₂ + A M₂ B)·d₂.
 /// force_per_height has no potential and is left out.
 double element_energy(const ReferenceElement& reference, const ElementData& data,

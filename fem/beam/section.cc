@@ -9,6 +9,29 @@
 
 namespace ciliaval::fem::beam {
 
+double Section::complementary_energy(const Vector3& n, const Vector3& m) const {
+  const double square = m.head<2>().squaredNorm();
+  return n.dot(force_compliance.cwiseProduct(n)) / 2 +
+         m.dot(moment_compliance.cwiseProduct(m)) / 2 + coupling * (n[0] * m[1] - n[1] * m[0]) +
+         square * (beyond.lengthening * n[2] + square * beyond.softening / 4 +
+                   square * square * beyond.further_softening / 6);
+}
+
+Eigen::Matrix<double, 6, 6> Section::compliance(const Vector3& n, const Vector3& m) const {
+  Eigen::Matrix<double, 6, 6> C = Eigen::Matrix<double, 6, 6>::Zero();
+  C.diagonal() << force_compliance, moment_compliance;
+  C(0, 4) = C(4, 0) = coupling;
+  C(1, 3) = C(3, 1) = -coupling;
+  const Eigen::Vector2d bending = m.head<2>();
+  C.diagonal().segment<2>(3).array() += softening(n, m);
+  C.block<2, 2>(3, 3) +=
+      (2 * beyond.softening + 4 * beyond.further_softening * bending.squaredNorm()) * bending *
+      bending.transpose();
+  C.block<2, 1>(3, 2) = 2 * beyond.lengthening * bending;
+  C.block<1, 2>(2, 3) = C.block<2, 1>(3, 2).transpose();
+  return C;
+}
+
 Section section(const SectionStiffness& s) {
   for (const double stiffness : {s.EA, s.kGA1, s.kGA2, s.GJ, s.EI1, s.EI2})
     if (!(stiffness > 0)) throw InputError("every stiffness of a beam section must be positive");
@@ -63,6 +86,14 @@ SectionStiffness rectangular_section(double a, double b, double young_modulus,
           .GJ = G * J,
           .EI1 = young_modulus * a * std::pow(b, 3) / 12,
           .EI2 = young_modulus * std::pow(a, 3) * b / 12};
+}
+
+Section joint_section(const joints::Joint& joint) {
+  return {{joint.displacement, joint.displacement, joint.extension},
+          {joint.rotation, joint.rotation, 0},
+          joint.coupling,
+          true,
+          joint.beyond};
 }
 
 Section rigid_in_shear(const Section& section) {

@@ -99,7 +99,8 @@ System::System(ReferenceCurve curve, Mesh mesh, std::vector<Support> supports)
   require_straight_where_moving(mesh_, curve_);
   double compliance = 0;
   for (const Section& section : mesh_.sections)
-    compliance = std::max(compliance, section.moment_compliance.head<2>().maxCoeff());
+    if (!section.is_joint)
+      compliance = std::max(compliance, section.moment_compliance.head<2>().maxCoeff());
   if (!(compliance > 0 && std::isfinite(compliance)))
     throw InputError("a beam needs a section that can bend");
   length_scale_ = mesh_.vertices.back() - mesh_.vertices.front();
@@ -163,11 +164,11 @@ ElementData System::element_data(const State& state, const Loads& loads,
   if (!loads.force_per_length.empty()) data.force_per_length = loads.force_per_length.at(element);
   if (!loads.magnetic_force.empty()) data.magnetic_force = loads.magnetic_force.at(element);
   data.magnetic_energy = loads.magnetic_energy;
-  if (!loads.magnetic_charge.empty()) data.magnetic_charge = loads.magnetic_charge.at(element);
   if (!loads.transverse_force.empty()) data.transverse_force = loads.transverse_force.at(element);
-  data.magnets = loads.magnets;
+  if (!loads.magnetic_charge.empty()) data.magnetic_charge = loads.magnetic_charge.at(element);
   if (!loads.transverse_charge.empty())
     data.transverse_charge = loads.transverse_charge.at(element);
+  data.magnets = loads.magnets;
   std::vector<Vector3> position;
   std::vector<Quaternion> rotation;
   for (std::size_t a = 0; a < reference_.n_nodes(); ++a) {

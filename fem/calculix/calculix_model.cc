@@ -79,8 +79,8 @@ class CalculixMesh {
     const std::vector<bool> used = calculix_node_set(nodes_);
     return 3 * static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
   }
-  /// Of the displacements, three for each node, or of none: the undeformed cilium. The load has the
-  /// azimuth 0.
+  /// Of the displacements, three for each node, or of none: the undeformed cilium. Cilium and load
+  /// are turned to the azimuth 0.
   Deformation deformation(const Cilium& cilium, const std::vector<double>& displacements,
                           const Load& load) const {
     const SolidState at = state(displacements);
@@ -342,7 +342,8 @@ struct Problem {
       Solution solution;
       if (magnitude(load) != 0)
         solution = run_on_first_rank([&] { return run(mesh, cilium, load, options, label); });
-      const Deformation straight_up = mesh.deformation(cilium, solution.displacements, load);
+      const Deformation straight_up =
+          mesh.deformation(turned(cilium, -turn), solution.displacements, load);
       if (magnitude(load) != 0)
         step.tip_uncertainty = tip_uncertainty(load, label, tip(straight_up), step.message);
       step.deformation = turned(straight_up, turn);
@@ -380,9 +381,8 @@ MechanicsResult Calculix::solve(const Cilium& cilium, const LoadPath& path,
   std::unique_ptr<CalculixMesh> coarser;
   if (options_.error_estimate) coarser = std::make_unique<CalculixMesh>(cilium, path, level - 1);
   const Problem problem{cilium, options_, mesh, coarser.get()};
-  MechanicsResult result{
-      turned(mesh.deformation(cilium, {}, DeadLoad{}), path.empty() ? 0 : azimuth(path.front())),
-      {}};
+  const double turn = path.empty() ? 0 : azimuth(path.front());
+  MechanicsResult result{turned(mesh.deformation(turned(cilium, -turn), {}, DeadLoad{}), turn), {}};
   for (std::size_t i = 0; i < path.size(); ++i) {
     const std::string number = std::to_string(i + 1);
     if (progress)

@@ -20,6 +20,7 @@
 #include "fem/solid/sweep_run.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
+#include "problem/magnetization.h"
 #include "problem/surroundings/plane.h"
 
 namespace ciliaval::fem::solid {
@@ -105,8 +106,11 @@ void require_valid(const Cilium& cilium, const LoadPath& path, const SolidOption
     ciliaval::require_valid(load, cilium);
     if (load.is<SweepLoad>() && !surroundings::is_empty(load.environment()))
       throw InputError("the solid takes a sweep without an environment only");
-    if (cilium.is_rectangular() && azimuth(load) != azimuth(path.front()))
-      throw InputError("the solid takes a path of one azimuth only, if the section is a rectangle");
+    if ((cilium.is_rectangular() || has_transverse_magnetization(cilium)) &&
+        azimuth(load) != azimuth(path.front()))
+      throw InputError(
+          "the solid takes a path of one azimuth only, if the section is a rectangle or the "
+          "magnetisation has components across the axis");
     if (type(load) != type(path.front()))
       throw InputError("a load path cannot change from one load type to another");
     const std::optional<double> height = contact_height(load);
@@ -155,8 +159,12 @@ LevelOptions make_level_options(const Cilium& cilium, const SolidOptions& option
 
 /// The meshes from the coarsest to the refinement asked for and that of the section's error; a
 /// user's mesh alone.
-Levels make_levels(const Cilium& given, const LoadPath& path, const SolidOptions& options,
+Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions options,
                    MPI_Comm communicator) {
+  options.symmetry =
+      options.symmetry && std::ranges::all_of(path, [&given](const Load& load) {
+        return surroundings::lies_in_plane(load.environment(), given, direction(load));
+      });
   const bool in_load_frame = options.mesh.empty() && !path.empty();  // as PathRun solves it
   const Cilium cilium = turned(given, in_load_frame ? -azimuth(path.front()) : 0);
   const LevelOptions level_options = make_level_options(cilium, options, communicator);

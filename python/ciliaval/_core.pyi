@@ -14,7 +14,7 @@ class Segment:
     length: float
     young_modulus: float
     poisson_ratio: float
-    magnetization: float
+    magnetization: Any  # a number, or a tuple of three if it is not axial
     name: str
     density: float
     def __init__(
@@ -22,7 +22,7 @@ class Segment:
         length: float,
         young_modulus: float,
         poisson_ratio: float = 0.49,
-        magnetization: float = 0.0,
+        magnetization: npt.ArrayLike = 0.0,
         name: str = "",
         density: float = 0.0,
     ) -> None: ...

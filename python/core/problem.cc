@@ -14,6 +14,7 @@
 #include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/load.h"
+#include "problem/magnetization.h"
 #include "python/core/convert.h"
 
 namespace ciliaval::python::core {
@@ -105,11 +106,28 @@ std::string text(const Load& load) {
 }
 
 std::string text(const Segment& segment) {
+  const Vector3 M = magnetization(segment);
   return fmt::format(
-      "Segment(length={:.6g}, young_modulus={:.6g}, poisson_ratio={:.6g}, magnetization={:.6g}, "
+      "Segment(length={:.6g}, young_modulus={:.6g}, poisson_ratio={:.6g}, magnetization={}, "
       "name='{}', density={:.6g})",
-      segment.length, segment.young_modulus, segment.poisson_ratio, segment.magnetization,
-      segment.name, segment.density);
+      segment.length, segment.young_modulus, segment.poisson_ratio,
+      M.head<2>().isZero(0) ? fmt::format("{:.6g}", M.z()) : text(M), segment.name,
+      segment.density);
+}
+
+/// Along the axis, or three components.
+void set_magnetization(Segment& segment, const py::object& value) {
+  const bool is_axial = py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value);
+  const Vector3 M =
+      is_axial ? Vector3(value.cast<double>() * Vector3::UnitZ()) : vector(value, "magnetization");
+  segment.transverse_magnetization = {M.x(), M.y()};
+  segment.magnetization = M.z();
+}
+
+py::object get_magnetization(const Segment& segment) {
+  const Vector3 M = magnetization(segment);
+  if (M.head<2>().isZero(0)) return py::float_(M.z());
+  return py::make_tuple(M.x(), M.y(), M.z());
 }
 
 std::string text(const Cilium& cilium) {
@@ -139,21 +157,24 @@ Cilium valid(Cilium cilium) {
 
 void bind_problem(py::module_& module) {
   bind_magnets(module);
-  py::class_<Segment>(module, "Segment",
-                      "A segment of a cilium: one material.\n\n"
-                      "length in m, young_modulus in Pa, poisson_ratio, magnetization M along the\n"
-                      "axis in A/m (M = B_r / mu_0; 0: not magnetic), name for people, density in\n"
-                      "kg/m^3 (0: not known), which gravity needs.")
+  py::class_<Segment>(
+      module, "Segment",
+      "A segment of a cilium: one material.\n\n"
+      "length in m, young_modulus in Pa, poisson_ratio, magnetization M along the\n"
+      "axis in A/m (M = B_r / mu_0; 0: not magnetic) or its three components, name\n"
+      "for people, density in kg/m^3 (0: not known), which gravity needs.")
       .def(py::init([](double length, double young_modulus, double poisson_ratio,
-                       double magnetization, const std::string& name, double density) {
-             return Segment{name, length, young_modulus, poisson_ratio, magnetization, density};
+                       const py::object& M, const std::string& name, double density) {
+             Segment segment{name, length, young_modulus, poisson_ratio, 0, density};
+             set_magnetization(segment, M);
+             return segment;
            }),
            py::arg("length"), py::arg("young_modulus"), py::arg("poisson_ratio") = 0.49,
            py::arg("magnetization") = 0.0, py::arg("name") = "", py::arg("density") = 0.0)
       .def_readwrite("length", &Segment::length)
       .def_readwrite("young_modulus", &Segment::young_modulus)
       .def_readwrite("poisson_ratio", &Segment::poisson_ratio)
-      .def_readwrite("magnetization", &Segment::magnetization)
+      .def_property("magnetization", &get_magnetization, &set_magnetization)
       .def_readwrite("name", &Segment::name)
       .def_readwrite("density", &Segment::density)
       .def("__repr__", [](const Segment& segment) { return text(segment); });

@@ -120,6 +120,16 @@ void elastica_solve(benchmark::State& run) {
   for (auto _ : run) benchmark::DoNotOptimize(model.solve(cilium, path).steps.data());
 }
 
+void corrected_elastica_solve(benchmark::State& run, bool error_estimate) {
+  const Cilium cilium = magnetic_cilium();
+  const LoadPath path{paper_load()};
+  elastica::ElasticaOptions options;
+  options.joints = joints::Correction::corrected;
+  options.error_estimate = error_estimate;
+  const elastica::Elastica model(options);
+  for (auto _ : run) benchmark::DoNotOptimize(model.solve(cilium, path).steps.data());
+}
+
 /// A new design each time: the force grows from 1 to 4 mN in steps of a percent.
 class Designs {
  public:
@@ -190,6 +200,8 @@ int main(int argc, char** argv) {
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();
   benchmark::RegisterBenchmark("elastica", elastica_solve);
+  benchmark::RegisterBenchmark("elastica/joints", corrected_elastica_solve, false);
+  benchmark::RegisterBenchmark("elastica/joints_with_error", corrected_elastica_solve, true);
   benchmark::RegisterBenchmark("design/by_the_models", design_by_the_models);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -88,6 +88,25 @@ class Bend(unittest.TestCase):
         with self.assertRaisesRegex(cv.InputError, "neither a load nor an environment"):
             cv.bend(rod)
 
+    def test_a_segment_is_magnetised_across_its_axis(self):
+        """Oracles: c L^3 / (3 E I) of a couple c = M A B per length, and mu_0 M / 2 in the middle."""
+        segment = cv.Segment(0.1, 1e6, magnetization=[1e3, -2e3, 0.0])
+        self.assertEqual(segment.magnetization, (1e3, -2e3, 0.0))
+        self.assertIn("magnetization=[1000, -2000, 0]", repr(segment))
+        rod = cv.Cilium(1e-3, [segment])
+        area, bending = np.pi * 0.25e-6, 1e6 * np.pi * 1e-12 / 64
+        field = cv.Environment(uniform_field=[0, 0, 1e-8])
+        tip = cv.bend(rod, environment=field, model="beam").tip
+        expected = -np.array([1e3, -2e3]) * area * 1e-8 * 0.1**3 / (3 * bending)
+        np.testing.assert_allclose(tip[:2], expected, rtol=1e-5)
+        B = cv.bend(rod, cv.Load("dead", force_per_length=0.0)).B([0, 0, 0.05])
+        middle = 4e-7 * np.pi / 2 * np.array([1e3, -2e3, 0])
+        np.testing.assert_allclose(B, middle, rtol=1e-4, atol=1e-12)
+        segment.magnetization = 5e3
+        self.assertEqual(segment.magnetization, 5e3)
+        with self.assertRaisesRegex(cv.InputError, "magnetization"):
+            cv.Segment(0.1, 1e6, magnetization=[1e3, 2e3])
+
     def test_a_section_of_another_shape_bends_by_its_second_moment(self):
         """Oracle: F L^3/(3 E I) with I = b h^3/12, and pi (d^4 - d_i^4)/64."""
         rod = [cv.Segment(length=0.1, young_modulus=1e6, magnetization=1e3)]

@@ -171,7 +171,7 @@ ExitCode sense_readings(const Options& options, const std::string& words) {
   const input::Case problem = read_cases({options.file}).front();
   if (problem.sensors.empty()) throw InputError(options.file.string() + ": the case has no sensor");
   if (output::is_sweep(problem)) return sense_surface(problem, options, words);
-  sensing::require_load_to_sense(problem.load_path);
+  sensing::require_load_to_sense(problem);
   sensing::Sensing sensing;
   sensing.case_name = problem.name;
   sensing.models = sensing::parse_pair(options.models);

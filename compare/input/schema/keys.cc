@@ -295,9 +295,10 @@ std::vector<Key> all_keys(const Models& models) {
       only_with({"rectangle"}, number(key::section_orientation)),
       only_with({"tube"}, number(key::section_inner_diameter)),
       text("cilium.segment", "name", "", "Name of the segment, different from the others'.")};
-  for (const QuantityKey& k : {key::segment_length, key::young_modulus, key::poisson_ratio,
-                               key::magnetization, key::density})
+  for (const QuantityKey& k : {key::segment_length, key::young_modulus, key::poisson_ratio})
     keys.push_back(number(k));
+  keys.push_back(number(key::magnetization, Kind::quantities));
+  keys.push_back(number(key::density));
   add_load(keys);
   add_environment(keys);
   add_surface(keys);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/beam/beam.h"
 
+#include "compare/input/case.h"
+#include "compare/models/entries/joints.h"
 #include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {
@@ -20,6 +22,7 @@ input::MechanicsEntry beam() {
                                 "Each step halves the elements."),
                   input::flag(&BeamOptions::shear_rigid, "shear_rigid",
                               "No shear and no extension: the elastica's assumptions."),
+                  input::choice(&BeamOptions::joints, "joints", corrections(), joints_doc),
                   input::choice(
                       &BeamOptions::tip, "tip",
                       {{"rim", fem::beam::TipShape::rim}, {"point", fem::beam::TipShape::point}},
@@ -37,6 +40,10 @@ input::MechanicsEntry beam() {
                       halvings("degree", {2, 3, 4, 5, 6}, "2^-degree")},
       .takes_environment = true,
       .takes_sections = true,
+      .check =
+          [](const input::CaseCheck& check) {
+            check_joints(check, "beam", check.problem.options.of<BeamOptions>().joints);
+          },
   };
 }
 

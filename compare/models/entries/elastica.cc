@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "compare/input/case.h"
+#include "compare/models/entries/joints.h"
 #include "compare/models/entries/values.h"
 #include "problem/surroundings/plane.h"
 
@@ -41,14 +42,16 @@ void check_height_form(const input::CaseCheck& check) {
 void check_plane(const input::CaseCheck& check) {
   constexpr double degree = std::numbers::pi / 180;
   for (const Load& load : check.problem.load_path) {
-    if (surroundings::lies_in_plane(load.environment(), direction(load))) continue;
+    const bool is_planar = surroundings::lies_in_plane(load.environment(), direction(load));
+    if (surroundings::lies_in_plane(load.environment(), check.problem.cilium, direction(load)))
+      continue;
     const auto at = std::ranges::find(check.problem.mechanics, "elastica");
     return check.report(
         fmt::format("models.mechanics[{}]", at - check.problem.mechanics.begin()),
         fmt::format("the elastica bends in the plane of the load, along the azimuth {:g} deg, and "
-                    "the environment points out of it: change the azimuth, or use 'beam' or "
-                    "'solid'",
-                    azimuth(load) / degree));
+                    "the {} out of it: change the azimuth, or use 'beam' or 'solid'",
+                    azimuth(load) / degree,
+                    is_planar ? "magnetisation in the field points" : "environment points"));
   }
 }
 
@@ -60,12 +63,29 @@ void refuse_magnets(const input::CaseCheck& check) {
                "the elastica takes no [[environment.magnet]]: use 'beam' or 'solid'");
 }
 
+/// The equations of the corrected joints are those of the arc-length form without an environment.
+void check_corrected(const input::CaseCheck& check) {
+  const auto& options = check.problem.options.of<ElasticaOptions>();
+  check_joints(check, "elastica", options.joints);
+  if (options.joints == joints::Correction::none) return;
+  constexpr const char* option = "models.elastica.joints";
+  if (options.form == ElasticaOptions::Form::height)
+    check.report(option,
+                 "the elastica's form 'height' (Eq. 1-4) takes no corrected joints: use the form "
+                 "'arclength'");
+  else if (std::ranges::any_of(check.problem.load_path, has_environment))
+    check.report(option,
+                 "the elastica takes no corrected joints in an [environment]: use 'beam', or "
+                 "joints = 'none'");
+}
+
 void check(const input::CaseCheck& check) {
   if (!check.is_asked_for || !check.load_is_right) return;
   if (!check.problem.load_path.front().environment().magnets.empty()) return refuse_magnets(check);
   check_plane(check);
   if (check.problem.options.of<ElasticaOptions>().form == ElasticaOptions::Form::height)
     check_height_form(check);
+  check_corrected(check);
 }
 
 }  // namespace
@@ -84,6 +104,7 @@ input::MechanicsEntry elastica() {
                                 {{"rim", CiliumEnd::disc}, {"point", CiliumEnd::point}},
                                 "`sweep`: `rim`, the end is a disc with a rim and a mantle that "
                                 "touch; `point`, the end of the centreline does."),
+                  input::choice(&ElasticaOptions::joints, "joints", corrections(), joints_doc),
                   input::option(&ElasticaOptions::tolerance, "tolerance", tolerance_range,
                                 "Relative, of position over length and of angle.")},
       .refinements = {tolerances({1e-4, 1e-6, 1e-8, 1e-10, 1e-12})},

@@ -10,6 +10,7 @@
 #include "fem/solid/material/hyperelastic.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "meshes/gmsh/gmsh_mesh.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {
@@ -35,6 +36,17 @@ void check_kernel(const input::CaseCheck& check) {
   }
 }
 
+/// The mesh is turned to the azimuth of the load, and the magnet with it.
+void check_azimuths(const input::CaseCheck& check) {
+  const LoadPath& path = check.problem.load_path;
+  if (!has_transverse_magnetization(check.problem.cilium)) return;
+  for (std::size_t i = 1; i < path.size(); ++i)
+    if (azimuth(path[i]) != azimuth(path.front()))
+      return check.report(fmt::format("load.azimuth[{}]", i),
+                          "the solid takes a path of one azimuth, if a segment is magnetised "
+                          "across its axis: make a case of each azimuth, or leave out 'solid'");
+}
+
 void check_error_limit(const input::CaseCheck& check) {
   const auto& limit = check.problem.options.of<ErrorLimit>();
   if (limit.percent > 0 && !check.problem.options.of<SolidOptions>().mesh.empty())
@@ -51,7 +63,10 @@ void check_error_limit(const input::CaseCheck& check) {
 
 void check(const input::CaseCheck& check) {
   const auto& options = check.problem.options.of<SolidOptions>();
-  if (check.is_asked_for && check.cilium_is_right && check.load_is_right) check_kernel(check);
+  if (check.is_asked_for && check.cilium_is_right && check.load_is_right) {
+    check_kernel(check);
+    check_azimuths(check);
+  }
   check_error_limit(check);
   const auto [ratio_2, ratio_3] = options.yeoh_ratios;
   if (!fem::solid::material::yeoh_is_stable(ratio_2, ratio_3))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/input/case.h"
 #include "compare/models/entries/values.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {
@@ -15,12 +16,17 @@ bool is_integrated(const input::ModelOptions& all) {
          (o.method == Method::closed_form && o.slices == VolumeOptions::Slices::stacked);
 }
 
-/// A rectangle and a tube have the closed form of their charged end faces alone.
+/// A rectangle and a tube have the closed form of their charged faces alone, and a stack of loops
+/// is magnetised along its axis.
 void check(const input::CaseCheck& to) {
   const auto& o = to.problem.options.of<VolumeOptions>();
-  if (!to.is_asked_for || !to.cilium_is_right ||
-      to.problem.cilium.section.shape == CrossSection::Shape::circle)
-    return;
+  if (!to.is_asked_for || !to.cilium_is_right) return;
+  if (o.method == Method::closed_form && o.slices == VolumeOptions::Slices::stacked &&
+      has_transverse_magnetization(to.problem.cilium))
+    to.report("models.volume.slices",
+              "the slices \"stacked\" have a closed form for an axial magnetisation only: take "
+              "\"wedge\", or the method \"quadrature\"");
+  if (to.problem.cilium.section.shape == CrossSection::Shape::circle) return;
   if (o.method != Method::closed_form)
     to.report("models.volume.method", "a rectangle or a tube has the method \"closed_form\" only");
   else if (o.slices != VolumeOptions::Slices::wedge)

@@ -27,6 +27,7 @@
 #include "compare/output/results.h"
 #include "compare/output/vtk/files.h"
 #include "meshes/gmsh/gmsh_mesh.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::compare::output::vtk {
 namespace {
@@ -332,8 +333,8 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
   std::vector<Vector3> positions;
   Column moment("moment", 3, "A m^2");
   for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
-    const double M = cilium.segments[i].magnetization;
-    if (M == 0) continue;
+    const Vector3 M = magnetization(cilium.segments[i]);
+    if (M.isZero(0)) continue;
     const double dS = (ends[i + 1] - ends[i]) / slices;
     for (int k = 0; k < slices; ++k) {
       const double S = ends[i] + k * dS;
@@ -342,7 +343,8 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
       const Vector3 axis = push_forward == analytic::sources::PushForward::F
                                ? Vector3(centreline.at(S + dS).position - centreline.at(S).position)
                                : Vector3(middle.normal() * dS);
-      moment.add(Vector3(cilium.area() * M * axis));
+      moment.add(Vector3(cilium.area() *
+                         (middle.rotation * Vector3(M.x(), M.y(), 0) * dS + M.z() * axis)));
     }
   }
   auto data = vertices(positions);

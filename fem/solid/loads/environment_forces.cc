@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fem/solid/loads/dead_forces.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
@@ -39,11 +40,11 @@ dealii::Vector<double> dead_part(const SolidSpace& space, const Cilium& cilium,
   for (const SolidElement& element : space.elements()) {
     const Segment& segment = segment_of(element, cilium);
     const Vector3 weight = surroundings::weight_per_volume(environment, segment);
-    const double M = has_poles ? segment.magnetization : 0;
+    const Vector3 M = has_poles ? magnetization(segment) : Vector3(Vector3::Zero());
     Eigen::Matrix<double, element_nodes, 3> f =
         (space.shape_values() * element.weights) * weight.transpose();
     for (int q = 0; q < element_points; ++q)
-      f += element.weights[q] * M * element.gradients.col(Eigen::Index{3} * q + 2) *
+      f += element.weights[q] * element.gradients.middleCols<3>(Eigen::Index{3} * q) * M *
            environment.uniform_field.transpose();
     for (unsigned int a = 0; a < element_nodes; ++a)
       for (unsigned int c = 0; c < 3; ++c) forces[element.dofs[c * element_nodes + a]] += f(a, c);
@@ -56,7 +57,7 @@ using Field = std::function<FieldJet(const Vector3& x)>;
 
 /// Adds the forces ∂(work)/∂u of an element's magnet in a field and, if asked for, minus their
 /// derivative.
-void add_magnet(const SolidSpace& space, const SolidElement& element, double magnetization,
+void add_magnet(const SolidSpace& space, const SolidElement& element, const Vector3& M,
                 const Field& field, MagneticEnergy law, const dealii::Vector<double>& displacement,
                 dealii::Vector<double>& forces,
                 const dealii::AffineConstraints<double>& constraints,
@@ -69,8 +70,7 @@ void add_magnet(const SolidSpace& space, const SolidElement& element, double mag
         element.gradients.middleCols<3>(Eigen::Index{3} * q);
     const Eigen::Matrix<double, element_nodes, 1> N = space.shape_values().col(q);
     const Vector3 x = (element.nodes + u).transpose() * N;
-    const MagnetInField e = magnet_in_field(deformation_gradient(element, u, q),
-                                            magnetization * Vector3::UnitZ(), field(x), law);
+    const MagnetInField e = magnet_in_field(deformation_gradient(element, u, q), M, field(x), law);
     const double w = element.weights[q];
     f += w * (dN * e.by_F.transpose() + N * e.by_x.transpose());
     if (matrix == nullptr) continue;
@@ -185,8 +185,8 @@ ExternalForces environment_forces(const SolidSpace& space, const Cilium& cilium,
           dealii::SparseMatrix<double>* matrix) {
         dead(displacement, forces, constraints, matrix);
         for (const SolidElement& element : space.elements()) {
-          const double M = segment_of(element, cilium).magnetization;
-          if (M != 0)
+          const Vector3 M = magnetization(segment_of(element, cilium));
+          if (!M.isZero(0))
             add_magnet(space, element, M, field, law, displacement, forces, constraints, matrix);
         }
       };

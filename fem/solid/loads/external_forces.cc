@@ -3,6 +3,7 @@
 
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/environment_forces.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
@@ -63,6 +64,12 @@ SpreadLoad spread_load(const Cilium& cilium, const Load& load, double area, doub
     result.magnetization.push_back(segment.magnetization);
   }
   result.magnets = environment.magnets;
+  result.uniform_field = environment.uniform_field;
+  if (has_transverse_magnetization(cilium))
+    for (const Segment& segment : cilium.segments) {
+      const Vector3 M = magnetization(segment);
+      result.transverse_magnetization.emplace_back(M.x(), M.y(), 0);
+    }
   return result;
 }
 

@@ -43,6 +43,9 @@ struct SpreadLoad {
   /// What adds M B(x) to it: M of each segment, A/m, and the magnets beside the cilium.
   std::vector<double> magnetization{};
   std::vector<surroundings::magnets::Magnet> magnets{};
+  /// M across the axis of each segment, A/m, in B₀ (T) and the magnets; empty: none.
+  std::vector<Vector3> transverse_magnetization{};
+  Vector3 uniform_field = Vector3::Zero();
 
   /// Force per area of a segment's end face at x, Pa.
   Vector3 pole(std::size_t segment, const Vector3& x) const;

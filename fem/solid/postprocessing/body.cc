@@ -2,8 +2,12 @@
 #include "fem/solid/postprocessing/body.h"
 
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <vector>
+
+#include "meshes/boundary_ids.h"
+#include "problem/magnetization.h"
 
 namespace ciliaval::fem::solid::postprocessing {
 using namespace discretisation;
@@ -35,7 +39,7 @@ SolidCell patch(const Cilium& cilium, const SolidElement& element, const Pressur
   const NodalVectors u = nodal_displacements(element, displacement);
   SolidCell cell;
   cell.segment = element.cell->material_id();
-  cell.magnetization = cilium.segments[cell.segment].magnetization * Vector3::UnitZ();
+  cell.magnetization = magnetization(cilium.segments[cell.segment]);
   cell.reference.reserve(element_nodes);
   cell.current.reserve(element_nodes);
   cell.jacobian.reserve(element_nodes);
@@ -53,19 +57,35 @@ SolidCell patch(const Cilium& cilium, const SolidElement& element, const Pressur
   return cell;
 }
 
-/// The face ζ = 0 (normal −Z) or ζ = 1 (normal +Z) of a patch.
-ChargedFace face(const SolidCell& cell, bool top, double jump) {
+/// A face of a patch by deal.II's number: 2d of the lower end of the local direction d, 2d + 1 of
+/// the upper one. Its first local coordinate is that after d, of a lower end that before d.
+ChargedFace face(const SolidCell& cell, unsigned int number, const Vector3& jump) {
   constexpr std::size_t n = edge_nodes;
+  constexpr std::array<std::size_t, 3> strides{1, n, n * n};
+  const unsigned int d = number / 2;
+  const bool is_upper = number % 2 == 1;
+  const std::size_t first = strides.at((d + (is_upper ? 1 : 2)) % 3);
+  const std::size_t second = strides.at((d + (is_upper ? 2 : 1)) % 3);
+  const std::size_t origin = is_upper ? (n - 1) * strides.at(d) : 0;
   ChargedFace result;
-  result.magnetization_jump = jump * Vector3::UnitZ();
+  result.magnetization_jump = jump;
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t node = top ? (n - 1) * n * n + j * n + i : i * n + j;
+      const std::size_t node = origin + i * first + j * second;
       result.reference.push_back(cell.reference[node]);
       result.current.push_back(cell.current[node]);
     }
   }
   return result;
+}
+
+/// The sides of an element on the mantle, if the charge M·N on them is not zero.
+void append_mantle(const SolidElement& element, const SolidCell& cell,
+                   std::vector<ChargedFace>& faces) {
+  if (cell.magnetization.head<2>().isZero(0)) return;
+  for (unsigned int f = 0; f < 4; ++f)
+    if (element.cell->at_boundary(f) && element.cell->face(f)->boundary_id() == meshes::mantle_id)
+      faces.push_back(face(cell, f, cell.magnetization));
 }
 
 Vector3 mirrored(const Vector3& x) {
@@ -121,13 +141,16 @@ SolidBody solid_body(const SolidSpace& space, const ExtrudedQuadrature& quadratu
     const SolidElement& element = space.elements()[e];
     body.cells.push_back(patch(cilium, element, state.pressure[e], state.displacement));
     const SolidCell& cell = body.cells.back();
+    const auto add_axial = [&](unsigned int number, double jump) {
+      if (jump != 0) body.charged_faces.push_back(face(cell, number, jump * Vector3::UnitZ()));
+    };
     const double inside = cell.magnetization.z();
-    if (quadrature.cells()[e].bottom < tolerance && inside != 0)
-      body.charged_faces.push_back(face(cell, false, inside));
+    append_mantle(element, cell, body.charged_faces);
+    if (quadrature.cells()[e].bottom < tolerance) add_axial(4, inside);
     if (std::abs(quadrature.cells()[e].top - interfaces[cell.segment + 1]) > tolerance) continue;
     const bool last = cell.segment + 1 == cilium.segments.size();
     const double outside = last ? 0.0 : cilium.segments[cell.segment + 1].magnetization;
-    if (inside != outside) body.charged_faces.push_back(face(cell, true, inside - outside));
+    add_axial(5, inside - outside);
   }
   if (quadrature.extent() == Extent::half) add_mirror_image(body);
   return body;

@@ -10,7 +10,8 @@ namespace ciliaval::fem::solid::postprocessing {
 
 /// The solid of a cilium as patches of the elements' own polynomials X and x = X + u, with
 /// J = det(1 + ∂u/∂X) and the Cauchy stress of (F, p) at the nodes. Charged
-/// faces are the horizontal planes across which M jumps: end faces and interfaces. At an interface
+/// faces are the horizontal planes across which M₃ jumps, end faces and interfaces, and the mantle
+/// of segments that are magnetised across the axis. At an interface
 /// the lower segment is `inside`; its normal is +Z. A half body is completed by its image in y = 0.
 SolidBody solid_body(const discretisation::SolidSpace& space,
                      const discretisation::ExtrudedQuadrature& quadrature, const Cilium& cilium,

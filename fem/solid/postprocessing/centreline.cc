@@ -12,6 +12,7 @@
 #include "fem/solid/discretisation/assembly.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
+#include "problem/surroundings/magnets/field.h"
 
 namespace ciliaval::fem::solid::postprocessing {
 using namespace discretisation;
@@ -52,6 +53,7 @@ struct Layer {
   std::size_t segment = 0;
   std::vector<std::size_t> cells;   ///< indices of the elements
   std::vector<DeformedLine> lines;  ///< of all of them
+  Wrench across{};                  ///< of the fields on M across the axis
 };
 
 /// Section integrals in one plane, and the load between it and the top of its layer.
@@ -87,6 +89,9 @@ struct Extraction {
 
  private:
   void add_cell(Layer& layer, std::size_t index) const;
+  /// Adds the forces of the fields on M across the axis, by the law F, at the nodes of a cell from
+  /// the given one on.
+  void add_across(std::size_t index, Eigen::Index first, Wrench& wrench) const;
   /// Adds weight and field of the part of a line above ζ: a magnet of constant M is pulled by
   /// M dA B₀ at its upper end and by −M dA B₀ at its lower one (law F).
   void add_environment(const Layer& layer, const Matrix3& x, double dA, double zeta,
@@ -113,10 +118,31 @@ void Extraction::add_cell(Layer& layer, std::size_t index) const {
   }
 }
 
+void Extraction::add_across(std::size_t index, Eigen::Index first, Wrench& wrench) const {
+  if (load.transverse_magnetization.empty()) return;
+  const SolidElement& element = space.elements()[index];
+  const Vector3& M = load.transverse_magnetization.at(element.cell->material_id());
+  if (M.isZero(0)) return;
+  const Eigen::Matrix<double, element_nodes, 3> x =
+      element.nodes + nodal_displacements(element, state.displacement);
+  for (int q = 0; q < element_points; ++q) {
+    const Eigen::Matrix<double, element_nodes, 1> along_M =
+        element.gradients.middleCols<3>(Eigen::Index{3} * q) * M;
+    const Eigen::Matrix<double, element_nodes, 1> N = space.shape_values().col(q);
+    const auto jet = surroundings::magnets::jet(load.magnets, x.transpose() * N);
+    const Vector3 B = load.uniform_field + jet.B;
+    const Vector3 force = jet.gradient.transpose() * (x.transpose() * along_M);
+    for (Eigen::Index a = first; a < element_nodes; ++a)
+      wrench.add(x.row(a).transpose(), element.weights[q] * (along_M[a] * B + N[a] * force));
+  }
+}
+
 std::vector<Layer> Extraction::layers() const {
   std::map<double, Layer> by_bottom;
   for (std::size_t e = 0; e < space.elements().size(); ++e)
     add_cell(by_bottom[quadrature.cells()[e].bottom], e);
+  for (auto& [bottom, layer] : by_bottom)
+    for (const std::size_t e : layer.cells) add_across(e, 0, layer.across);
   std::vector<Layer> result;
   result.reserve(by_bottom.size());
   for (auto& [bottom, layer] : by_bottom) result.push_back(std::move(layer));
@@ -139,6 +165,8 @@ Station Extraction::station(const Layer& layer, double zeta) const {
     add_environment(layer, x, dA, zeta, result.load);
     if (!load.poles.empty()) result.poles.add(here, dA * load.pole(layer.segment, here));
   }
+  result.load.force += (1 - zeta) * layer.across.force;
+  result.load.moment += (1 - zeta) * layer.across.moment;
   if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
@@ -179,6 +207,10 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
       // ∫ N₂ dζ = 1/6, ∫ dN₂/dζ dζ = 1 for the node at ζ = 1
       result.add(x.col(2), -dA * (load.weight[layer.segment] * (layer.top - layer.bottom) / 6 +
                                   load.pole(layer.segment, x.col(2))));
+  Wrench across;
+  for (const std::size_t e : layer.cells) add_across(e, 18, across);
+  result.force -= across.force;
+  result.moment -= across.moment;
   if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
 }

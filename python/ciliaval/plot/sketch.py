@@ -57,19 +57,23 @@ def _draw_side(
     z = 0.0
     for i, segment in enumerate(cilium.segments):
         h = 1e3 * segment.length
-        magnetic = segment.magnetization != 0
+        M = segment.magnetization if isinstance(segment.magnetization, tuple) else (0.0, 0.0, segment.magnetization)
+        magnetic = any(M)
         colour = SEGMENTS[i % len(SEGMENTS)] if magnetic or i == 0 else SEGMENTS[0]
         axes.add_patch(Rectangle((-d / 2, z), d, h, facecolor=colour, edgecolor="0.3", linewidth=0.8))
         if magnetic:
-            sign = np.sign(segment.magnetization)
-            ends = [(0, z + h / 2 - sign * h / 4), (0, z + h / 2 + sign * h / 4)]
-            axes.add_patch(FancyArrowPatch(*ends, color="0.2", linewidth=1.2, **_ARROW))
+            across = M[0] * np.cos(azimuth) + M[1] * np.sin(azimuth)
+            arrow = np.array([across * d / 3, M[2] * h / 4]) / np.linalg.norm(M)
+            if arrow.any():
+                ends = [(-arrow[0], z + h / 2 - arrow[1]), (arrow[0], z + h / 2 + arrow[1])]
+                axes.add_patch(FancyArrowPatch(*ends, color="0.2", linewidth=1.2, **_ARROW))
         lines = [
             f"{segment.name or f'segment {i}'}: {number(h)} mm",
             f"E = {quantity(segment.young_modulus, 'Pa')}, ν = {number(segment.poisson_ratio)}",
         ]
         if magnetic:
-            lines.append(f"M = {quantity(segment.magnetization, 'A/m')}")
+            shown = [quantity(m, "A/m") for m in (M if any(M[:2]) else M[2:])]
+            lines.append("M = " + ", ".join(shown))
         axes.text(-0.5 * d - 0.22 * length, z + h / 2, "\n".join(lines), ha="right", va="center", fontsize=7)
         z += h
     reach = max(1.2 * d, 0.55 * length)

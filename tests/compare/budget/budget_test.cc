@@ -3,6 +3,7 @@
 #include "analytic/body/mesh_field.h"
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
+#include "fem/beam/beam.h"
 #include "fem/potential/potential.h"
 
 #include <gmock/gmock.h>
@@ -337,6 +338,26 @@ TEST(Chain, FollowsTheCase) {
   EXPECT_EQ(options.of<fem::potential::PotentialOptions>().plates.size(), 1U);
   EXPECT_THAT(names(budget::make_chain(problem, {"beam", "solid", "volume", "potential"}).stages),
               ElementsAre("elastica/line"));
+}
+
+TEST(Chain, HasALinkForTheJoints) {
+  input::Case problem = test::paper_case({1e-3});
+  problem.options.of<fem::beam::BeamOptions>().joints = joints::Correction::corrected;
+  problem.options.of<analytic::elastica::ElasticaOptions>().joints = joints::Correction::corrected;
+  const budget::Chain chain = budget::make_chain(problem, {"mesh", "potential"});
+  EXPECT_THAT(names(chain.stages),
+              ElementsAre("elastica/line", "beam/line", "beam, joints corrected/line", "solid/line",
+                          "solid/volume stacked", "solid/volume wedge"));
+  for (const budget::Stage& stage : chain.mechanics) {
+    const input::ModelOptions options = budget::mechanics_options(stage, problem.options);
+    const auto joints = options.of<fem::beam::BeamOptions>().joints;
+    EXPECT_EQ(joints == joints::Correction::corrected, stage.mechanics_name() != stage.mechanics);
+    EXPECT_EQ(options.of<analytic::elastica::ElasticaOptions>().joints, joints);
+  }
+  EXPECT_THAT(
+      names(budget::make_chain(problem, {"solid", "mesh", "potential"}).stages),
+      ElementsAre("elastica/line", "beam/line", "beam, joints corrected/line",
+                  "beam, joints corrected/volume stacked", "beam, joints corrected/volume wedge"));
 }
 
 TEST(Chain, BeginsWithoutWhatIsAround) {

@@ -307,5 +307,13 @@ TEST(EnvironmentCase, TheHeightFormTakesNone) {
                         "[environment]"));
 }
 
+TEST(EnvironmentCase, TheElasticasCorrectedJointsTakeNone) {
+  EXPECT_THAT(faults_of(with_load("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
+                                  "azimuth = \"90 deg\"") +
+                        "[models.elastica]\njoints = \"corrected\"\n"),
+              HasSubstr("bad.toml:31:10: the elastica takes no corrected joints in an "
+                        "[environment]: use 'beam'"));
+}
+
 }  // namespace
 }  // namespace ciliaval::compare

@@ -286,11 +286,13 @@ constexpr std::string_view all_option_lines = R"toml(
 [models.elastica]
 form = "height"
 tip = "point"
+joints = "none"
 tolerance = 1e-9
 [models.beam]
 degree = 2
 refinement = 4
 shear_rigid = true
+joints = "corrected"
 tip = "point"
 tolerance = 1e-8
 max_iterations = 11
@@ -352,7 +354,8 @@ std::string with_all_options() {
 /// The other material and the paper's sums, and their options.
 std::string with_mooney_rivlin() {
   return replaced(good_case, "refinement = 1", "mooney_ratio = 0.1\nmaterial = \"mooney-rivlin\"") +
-         "\n[models.line]\nmethod = \"uniform\"\nelements = 7\n"
+         "\n[models.elastica]\njoints = \"corrected\"\n"
+         "[models.line]\nmethod = \"uniform\"\nelements = 7\n"
          "[models.volume]\nmethod = \"uniform\"\nelements = 9\n";
 }
 
@@ -370,6 +373,7 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().degree, 2U);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().refinement, 4U);
   EXPECT_TRUE(o.of<fem::beam::BeamOptions>().shear_rigid);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().joints, joints::Correction::corrected);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().tolerance, 1e-8);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_iterations, 11U);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_cutbacks, 3U);
@@ -379,6 +383,8 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().material,
             fem::solid::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().mooney_ratio, 0.1);
+  EXPECT_EQ(mooney.of<analytic::elastica::ElasticaOptions>().joints,
+            joints::Correction::corrected);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().method, analytic::rod::Method::uniform);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().elements, 7U);
   EXPECT_EQ(mooney.of<analytic::rod::VolumeOptions>().method, analytic::rod::Method::uniform);

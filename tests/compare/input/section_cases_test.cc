@@ -124,6 +124,8 @@ const PlantedFault bad[]{
      "potential takes circular sections only"},
     {"NotInClosedForm", "\"mesh\"]\n", "\"mesh\"]\n[models.volume]\nmethod = \"quadrature\"\n",
      "27:10", "a rectangle or a tube has the method \"closed_form\" only"},
+    {"CorrectedJoints", "\"mesh\"]\n", "\"mesh\"]\n[models.beam]\njoints = \"corrected\"\n",
+     "27:10", "circular"},
     {"Stacked", "\"mesh\"]\n", "\"mesh\"]\n[models.volume]\nslices = \"stacked\"\n", "27:10",
      "a rectangle or a tube has the slices \"wedge\" only"},
     {"Drag", "type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"",

@@ -216,6 +216,11 @@ TEST_F(ProfileFile, RunsAlongTheWayOfTheTip) {
   EXPECT_EQ(read(input::to_toml(c, models::known())).surface.file, c.surface.file);
 }
 
+TEST(SweepCase, TakesNoCorrectedJoints) {
+  EXPECT_THAT(faults_of(std::string(good_sweep) + "[models.elastica]\njoints = \"corrected\"\n"),
+              HasSubstr("bad.toml:37:10: the corrected joints take no sweep"));
+}
+
 TEST_F(ProfileFile, IsRefusedWithItsPlace) {
   const auto said = [&](std::string_view csv) { return faults_of(text(csv)); };
   EXPECT_THAT(said("x [mm], height [um]\n0, 0\n1, 0\n"), HasSubstr("4 points or more, not 2"));

@@ -34,7 +34,7 @@ Vector3 random_vector(std::mt19937& engine) {
   return {uniform(engine), uniform(engine), uniform(engine)};
 }
 
-/// A curved beam of three elements in a state that solves nothing.
+/// A beam of three elements, curved or with a joint between two, in a state that solves nothing.
 struct Scene {
   System system;
   State state;
@@ -42,11 +42,24 @@ struct Scene {
   Loads height;
 };
 
-Scene scene() {
+/// Straight, with a joint for its second element.
+System jointed(const Section& law) {
+  Mesh mesh = uniform_mesh(2, 3, 3, law);
+  mesh.vertices = {0, 0.8, 0.8, 2};
+  mesh.sections[1] =
+      joint_section({.rotation = -0.3, .coupling = -0.2, .displacement = -0.1, .extension = 0.05});
+  return {straight_curve, mesh, {{0}}};
+}
+
+Scene scene(bool has_joint = false) {
   std::mt19937 engine(7);
   Section law = section({.EA = 40, .kGA1 = 20, .kGA2 = 30, .GJ = 0.8, .EI1 = 1, .EI2 = 2});
-  Scene s{
-      System([](double S) { return arc(1.5, S); }, uniform_mesh(2, 3, 3, law), {{0}}), {}, {}, {}};
+  Scene s{has_joint
+              ? jointed(law)
+              : System([](double S) { return arc(1.5, S); }, uniform_mesh(2, 3, 3, law), {{0}}),
+          {},
+          {},
+          {}};
   s.state = s.system.reference_state();
   for (Vector3& r : s.state.position) r += 0.2 * random_vector(engine);
   for (Quaternion& q : s.state.rotation) q = exponential(0.4 * random_vector(engine)) * q;
@@ -107,11 +120,13 @@ double gradient_error(const Scene& s, const Loads& loads) {
 }
 
 TEST(BeamDerivatives, ResidualIsTheGradientOfTheEnergy) {
-  const Scene s = scene();
   // Measured 2e-12 on entries of order one.
-  EXPECT_LT(measured("dead", gradient_error(s, s.conservative)), 2e-11);
-  for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
-    EXPECT_LT(measured("field", gradient_error(s, in_field(s.conservative, 3, law))), 2e-11);
+  for (const bool has_joint : {false, true}) {
+    const Scene s = scene(has_joint);
+    EXPECT_LT(measured("dead", gradient_error(s, s.conservative)), 2e-11);
+    for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
+      EXPECT_LT(measured("field", gradient_error(s, in_field(s.conservative, 3, law))), 2e-11);
+  }
 }
 
 double tangent_error(const Scene& s, const Loads& loads) {
@@ -127,11 +142,13 @@ double tangent_error(const Scene& s, const Loads& loads) {
 }
 
 TEST(BeamDerivatives, TangentIsTheDerivativeOfTheResidual) {
-  const Scene s = scene();
-  EXPECT_LT(measured("conservative", tangent_error(s, s.conservative)), 2e-11);
-  EXPECT_LT(measured("flow", tangent_error(s, s.height)), 2e-11);
-  for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
-    EXPECT_LT(measured("field", tangent_error(s, in_field(s.conservative, 3, law))), 2e-11);
+  for (const bool has_joint : {false, true}) {
+    const Scene s = scene(has_joint);
+    EXPECT_LT(measured("conservative", tangent_error(s, s.conservative)), 2e-11);
+    EXPECT_LT(measured("flow", tangent_error(s, s.height)), 2e-11);
+    for (const auto law : {MagneticEnergy::F, MagneticEnergy::R})
+      EXPECT_LT(measured("field", tangent_error(s, in_field(s.conservative, 3, law))), 2e-11);
+  }
 }
 
 // Oracle: Eigen's dense LU of the rows and columns that no support holds. One element, whose band
