@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "problem/error.h"
-#include "problem/magnetization.h"
 
 namespace ciliaval {
 

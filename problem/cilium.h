@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
+
+#include "problem/types.h"
 
 namespace ciliaval {
 
@@ -69,6 +72,27 @@ struct Cilium {
 
 /// The same turned by the angle (rad) about the z axis.
 Cilium turned(Cilium cilium, double angle);
+
+/// M of a segment along the reference's axes x, y, z, A/m.
+inline Vector3 magnetization(const Segment& segment) {
+  const auto& [x, y] = segment.transverse_magnetization;
+  return {x, y, segment.magnetization};
+}
+
+inline bool is_magnetic(const Segment& segment) {
+  return !magnetization(segment).isZero(0);
+}
+
+inline bool has_magnet(const Cilium& cilium) {
+  return std::ranges::any_of(cilium.segments, is_magnetic);
+}
+
+/// Whether a segment is magnetised across the axis.
+inline bool has_transverse_magnetization(const Cilium& cilium) {
+  return std::ranges::any_of(cilium.segments, [](const Segment& segment) {
+    return segment.transverse_magnetization != std::array{0.0, 0.0};
+  });
+}
 
 /// Throws InputError if a length or modulus is not finite and positive, −1 < ν < 0.5 does not hold,
 /// or the section is none.

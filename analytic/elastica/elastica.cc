@@ -245,11 +245,10 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
           std::max(result.algebraic_error, *step.tip_uncertainty / cilium.length());
     step.slip_off_uncertainty.reset();  // of the integration alone
   }
-  joints::add_companions(
-      result, cilium, corrections,
-      [&](const Cilium& other, const LoadPath& loads, const std::vector<joints::Joint>& joints) {
-        return solve_path(other, loads, options_, joints, {});
-      });
+  joints::add_companion(result, corrections,
+                        [&](const LoadPath& loads, const std::vector<joints::Joint>& joints) {
+                          return solve_path(cilium, loads, options_, joints, {});
+                        });
   estimate_errors(result);
   return result;
 }

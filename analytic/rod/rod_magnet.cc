@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "problem/cilium.h"
 #include "problem/error.h"
-#include "problem/magnetization.h"
 
 namespace ciliaval::analytic::rod {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "compare/input/case_sections.h"
+#include "problem/cilium.h"
 #include "problem/error.h"
-#include "problem/magnetization.h"
 
 namespace ciliaval::compare::input {
 namespace {

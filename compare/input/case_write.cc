@@ -10,7 +10,7 @@
 #include "compare/input/case_keys.h"
 #include "compare/input/case_sections.h"
 #include "compare/input/environment/environment.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::compare::input {
 namespace {

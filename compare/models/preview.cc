@@ -13,7 +13,7 @@
 #include "analytic/elastica/environment/step.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::compare::models {
 namespace {

@@ -10,8 +10,8 @@
 #include <numbers>
 
 #include "compare/models/registry.h"
+#include "problem/cilium.h"
 #include "problem/error.h"
-#include "problem/magnetization.h"
 
 namespace ciliaval::compare::sensing {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "compare/validation/validation.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::compare::validation {
 namespace {

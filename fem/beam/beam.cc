@@ -223,11 +223,10 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
     for (std::size_t i = 0; i < path.size(); ++i)
       result.steps[i].seconds += result.companions.front().steps[i].seconds;
     if (corrects)
-      joints::add_companions(result, cilium, corrections,
-                             [&](const Cilium& other, const LoadPath& loads,
-                                 const std::vector<joints::Joint>& joints) {
-                               return solve_path(other, loads, options_, joints, {});
-                             });
+      joints::add_companion(result, corrections,
+                            [&](const LoadPath& loads, const std::vector<joints::Joint>& joints) {
+                              return solve_path(cilium, loads, options_, joints, {});
+                            });
     estimate_errors(result);
     sweep::forget_uncertainties_near_jumps(result);
   }

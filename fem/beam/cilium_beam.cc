@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "problem/cilium.h"
 #include "problem/error.h"
-#include "problem/magnetization.h"
 
 namespace ciliaval::fem::beam {
 namespace {

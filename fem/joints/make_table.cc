@@ -79,6 +79,13 @@ std::string text(const Entry& e) {
                      e.extension);
 }
 
+/// The last index of the array, and the braces of the one before it.
+void print_row(const std::vector<Entry>& row, bool first, bool last) {
+  for (std::size_t i = 0; i < row.size(); ++i)
+    fmt::print("{}{}{}\n", i > 0 ? "" : (first ? "{{" : "{"), text(row[i]),
+               i + 1 < row.size() ? "," : (last ? "}}," : "},"));
+}
+
 void tell(std::size_t done, std::size_t all) {
   fmt::print(stderr, "\r{} of {}", done, all);
   if (done == all) fmt::print(stderr, "\n");
@@ -97,28 +104,20 @@ int main() {
       "#include \"problem/joints/table.h\"\n\n"
       "namespace ciliaval::joints {{\n\n"
       "const Entry alone[n_poisson][n_poisson][n_ratio] = {{\n");
-  for (const double soft : poisson_nodes()) {
-    fmt::print("  {{\n");
-    for (const double stiff : poisson_nodes()) {
-      fmt::print("    {{\n");
-      for (const double t : ratio_nodes()) {
-        fmt::print("      {},\n", text(joint(soft, stiff, t)));
-        tell(++done, all);
-      }
-      fmt::print("    }},\n");
+  const std::vector<double> poisson = poisson_nodes();
+  const std::vector<double> ratios = ratio_nodes();
+  for (const double soft : poisson)
+    for (const double stiff : poisson) {
+      std::vector<Entry> row;
+      for (const double t : ratios) row.push_back(joint(soft, stiff, t));
+      print_row(row, stiff == poisson.front(), stiff == poisson.back());
+      tell(done += n_ratio, all);
     }
-    fmt::print("  }},\n");
-  }
   fmt::print("}};\n\nconst Entry together[n_poisson][n_ratio][n_length] = {{\n");
-  for (const double poisson : poisson_nodes()) {
-    fmt::print("  {{\n");
-    for (const double t : ratio_nodes()) {
-      fmt::print("    {{\n");
-      for (const Entry& e : segments_between(poisson, t)) fmt::print("      {},\n", text(e));
+  for (const double nu : poisson)
+    for (const double t : ratios) {
+      print_row(segments_between(nu, t), t == ratios.front(), t == ratios.back());
       tell(done += n_length, all);
-      fmt::print("    }},\n");
     }
-    fmt::print("  }},\n");
-  }
   fmt::print("}};\n\n}}  // namespace ciliaval::joints\n");
 }

@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
+#include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
-#include "problem/magnetization.h"
 
 namespace ciliaval::fem::potential {
 namespace {

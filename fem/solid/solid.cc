@@ -19,8 +19,8 @@
 #include "fem/solid/path_run.h"
 #include "fem/solid/sweep_run.h"
 #include "meshes/cylinder/cylinder_mesh.h"
+#include "problem/cilium.h"
 #include "problem/error.h"
-#include "problem/magnetization.h"
 #include "problem/surroundings/plane.h"
 
 namespace ciliaval::fem::solid {

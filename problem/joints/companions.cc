@@ -37,30 +37,18 @@ std::vector<Joint> changed_joints(const Corrections& corrections) {
   return joints;
 }
 
-void add_companions(MechanicsResult& result, const Cilium& cilium, const Corrections& corrections,
-                    const Solve& solve) {
+void add_companion(MechanicsResult& result, const Corrections& corrections, const Solve& solve) {
   LoadPath path;
-  for (const MechanicsStep& step : result.steps) path.push_back(step.load);
-  MechanicsResult changed{.undeformed = result.undeformed,
-                          .steps = solve(cilium, path, changed_joints(corrections))};
-  MechanicsResult by_law{.undeformed = result.undeformed, .steps = {}};
   for (const MechanicsStep& step : result.steps) {
-    if (!step.deformation) {
-      by_law.steps.push_back(step);
-      continue;
-    }
-    Cilium softer = cilium;
-    const std::vector<double> strain = strains(cilium, step.deformation->centreline);
-    for (std::size_t i = 0; i < strain.size(); ++i)
-      softer.segments[i].young_modulus /= 1 + nonlinearity * strain[i] * strain[i];
-    by_law.steps.push_back(solve(softer, {step.load}, corrections.joints).front());
+    const bool is_probe = step.load.is<ProbeLoad>();
+    path.push_back(is_probe ? with_magnitude(step.load, (1 + probe_error) * magnitude(step.load))
+                            : step.load);
   }
-  for (std::size_t i = 0; i < result.steps.size(); ++i)
-    result.steps[i].seconds += changed.steps[i].seconds + by_law.steps[i].seconds;
-  result.companions.push_back(std::move(changed));
+  result.companions.push_back(
+      {.undeformed = result.undeformed, .steps = solve(path, changed_joints(corrections))});
   result.error_parts.push_back({"joints", result.companions.size(), 0, 1});
-  result.companions.push_back(std::move(by_law));
-  result.error_parts.push_back({"law", result.companions.size(), 0, 1});
+  for (std::size_t i = 0; i < result.steps.size(); ++i)
+    result.steps[i].seconds += result.companions.back().steps[i].seconds;
 }
 
 void remark_on_strains(const Cilium& cilium, std::vector<MechanicsStep>& steps) {

@@ -11,9 +11,9 @@ namespace ciliaval::joints {
 
 /// Largest strain ε = |κ| d/2 of bending up to which the corrections were compared with the solid.
 inline constexpr double largest_strain = 0.6;
-/// c: the solid's law is not the rods' linear one, which changes the bending flexibility of a
-/// segment by some 1 + c ε².
-inline constexpr double nonlinearity = 0.1;
+
+/// Of a probe's displacement, relative: the load deforms the section that it moves.
+inline constexpr double probe_error = 6e-4;
 
 /// The largest ε of each segment.
 std::vector<double> strains(const Cilium& cilium, const Centreline& centreline);
@@ -22,14 +22,11 @@ std::vector<double> strains(const Cilium& cilium, const Centreline& centreline);
 std::vector<Joint> changed_joints(const Corrections& corrections);
 
 /// Solves a path with other joints than the result's.
-using Solve = std::function<std::vector<MechanicsStep>(const Cilium& cilium, const LoadPath& path,
+using Solve = std::function<std::vector<MechanicsStep>(const LoadPath& path,
                                                        const std::vector<Joint>& joints)>;
 
-/// Adds two companions with their error parts to a result with these corrections: "joints", with
-/// the changed joints, and "law", whose Young's moduli are E/(1 + c ε²), step by step. A step that
-/// did not converge has no ε and is its own companion.
-void add_companions(MechanicsResult& result, const Cilium& cilium, const Corrections& corrections,
-                    const Solve& solve);
+/// Adds the companion with the changed joints and probes, and its error part "joints".
+void add_companion(MechanicsResult& result, const Corrections& corrections, const Solve& solve);
 
 /// Adds a remark to the converged steps in which the ε of a segment is above largest_strain.
 void remark_on_strains(const Cilium& cilium, std::vector<MechanicsStep>& steps);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 #include "problem/surroundings/environment.h"
 
 namespace ciliaval::surroundings {

@@ -12,10 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "analytic/elastica/elastica.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/results.h"
+#include "fem/beam/beam.h"
 #include "problem/error.h"
 #include "python/core/convert.h"
 
@@ -159,7 +161,8 @@ Design solve(const MechanicsModel& mechanics, const FieldModel& field, const Cil
 }
 
 py::dict batch(const std::vector<Cilium>& cilia, const std::vector<Load>& loads,
-               const py::object& where, const std::string& model, const std::string& field_model) {
+               const py::object& where, const std::string& model, const std::string& field_model,
+               const py::kwargs& chosen) {
   if (cilia.size() != loads.size())
     throw InputError(fmt::format("there are {} cilia and {} loads: give one load for each cilium",
                                  cilia.size(), loads.size()));
@@ -167,9 +170,13 @@ py::dict batch(const std::vector<Cilium>& cilia, const std::vector<Load>& loads,
   const input::FieldEntry& field = models::entry_of(models::field_models(), field_model);
   const std::vector<Vector3> at = where.is_none() ? std::vector<Vector3>{} : points(where);
   std::vector<Design> designs(cilia.size());
+  input::ModelOptions options;
+  set_options(model, mechanics.options, chosen, options);
+  // A batch tells no uncertainties.
+  options.of<analytic::elastica::ElasticaOptions>().error_estimate = false;
+  options.of<fem::beam::BeamOptions>().error_estimate = false;
   {
     const py::gil_scoped_release released;
-    const input::ModelOptions options;
     const auto solver = mechanics.make(options);
     const auto source = field.make(options);
     const auto one = [&](std::size_t i) {
@@ -336,8 +343,9 @@ void bind_models(py::module_& module) {
   module.def(
       "bend_batch", &batch, py::arg("cilia"), py::arg("loads"), py::arg("points") = py::none(),
       py::arg("model") = "elastica", py::arg("field") = "volume",
-      "Many designs at once, on all cores: a list of cilia and one load for each, and points\n"
-      "(m, 3) at which B is asked for (None: nowhere). Returns a dict of arrays: converged\n"
+      "Many designs at once, on all cores: a list of cilia and one load for each, points (m, 3)\n"
+      "at which B is asked for (None: nowhere), and options of the mechanics model, such as\n"
+      "joints='corrected'. Returns a dict of arrays: converged\n"
       "(n,), tip (n, 3), tip_angle (n,), applied_force (n,), slip_off (n,), B (n, m, 3), with\n"
       "NaN where there is none, and a list message. One design's failure does not stop the\n"
       "others.");

@@ -14,7 +14,6 @@
 #include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/load.h"
-#include "problem/magnetization.h"
 #include "python/core/convert.h"
 
 namespace ciliaval::python::core {

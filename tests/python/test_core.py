@@ -228,6 +228,16 @@ class Batch(unittest.TestCase):
                 self.assertTrue(np.isnan(batch["tip"][i]).all())
                 self.assertEqual(batch["slip_off"][i], shape.slip_off)
 
+    def test_takes_options_of_the_model(self):
+        cilium, load = paper_cilium(3e-3), contact(2e-3)
+        batch = cv.bend_batch([cilium], [load], joints="corrected")
+        shape = cv.bend(cilium, load, joints="corrected")
+        np.testing.assert_array_equal(batch["tip"][0], shape.tip)
+        self.assertGreater(shape.tip_uncertainty, 1e-6)
+        self.assertLess(shape.tip[0] / cv.bend(cilium, load).tip[0], 0.92)
+        with self.assertRaisesRegex(cv.InputError, "joints"):
+            cv.bend_batch([cilium], [load], joints="glued")
+
     def test_of_none_is_empty(self):
         self.assertEqual(cv.bend_batch([], [])["tip"].shape, (0, 3))
 

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "problem/cilium.h"
 #include "problem/error.h"
-#include "problem/magnetization.h"
 #include "problem/surroundings/plane.h"
 
 namespace ciliaval::analytic::elastica::environment {

@@ -11,8 +11,8 @@ namespace ciliaval::compare::models::entries {
 
 inline constexpr std::string_view joints_doc =
     "`corrected`: clamp and interfaces, where bonded sections can neither contract nor warp, are "
-    "as "
-    "stiff as in the solid, and what the corrections are uncertain by counts as the model's error.";
+    "as stiff as in the solid, large strains of bending soften as in neo-Hooke's, and what the "
+    "corrections are uncertain by counts as the model's error.";
 
 inline input::Choices<joints::Correction> corrections() {
   return {{"none", joints::Correction::none}, {"corrected", joints::Correction::corrected}};

@@ -10,7 +10,7 @@
 #include "fem/solid/material/hyperelastic.h"
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "meshes/gmsh/gmsh_mesh.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/input/case.h"
 #include "compare/models/entries/values.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {

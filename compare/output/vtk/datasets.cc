@@ -27,7 +27,7 @@
 #include "compare/output/results.h"
 #include "compare/output/vtk/files.h"
 #include "meshes/gmsh/gmsh_mesh.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::compare::output::vtk {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fem/solid/loads/dead_forces.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;

@@ -3,7 +3,7 @@
 
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/environment_forces.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "meshes/boundary_ids.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 
 namespace ciliaval::fem::solid::postprocessing {
 using namespace discretisation;

@@ -12,9 +12,9 @@
 #include "analytic/forces/wrench.h"
 #include "analytic/rod/field_models.h"
 #include "analytic/sources/dipole.h"
+#include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
-#include "problem/magnetization.h"
 #include "problem/surroundings/magnets/field.h"
 #include "tests/analytic/oracles/bent_rods.h"
 

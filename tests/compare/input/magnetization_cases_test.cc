@@ -8,7 +8,7 @@
 
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
-#include "problem/magnetization.h"
+#include "problem/cilium.h"
 #include "tests/support/planted_fault.h"
 
 namespace ciliaval::compare {

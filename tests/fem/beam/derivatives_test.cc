@@ -46,14 +46,18 @@ struct Scene {
 System jointed(const Section& law) {
   Mesh mesh = uniform_mesh(2, 3, 3, law);
   mesh.vertices = {0, 0.8, 0.8, 2};
-  mesh.sections[1] =
-      joint_section({.rotation = -0.3, .coupling = -0.2, .displacement = -0.1, .extension = 0.05});
+  mesh.sections[1] = joint_section({.rotation = -0.3,
+                                    .coupling = -0.2,
+                                    .displacement = -0.1,
+                                    .extension = 0.05,
+                                    .beyond = {0.07, -0.04, 0.02}});
   return {straight_curve, mesh, {{0}}};
 }
 
 Scene scene(bool has_joint = false) {
   std::mt19937 engine(7);
   Section law = section({.EA = 40, .kGA1 = 20, .kGA2 = 30, .GJ = 0.8, .EI1 = 1, .EI2 = 2});
+  law.beyond = {0.05, 0.3, 0.1};
   Scene s{has_joint
               ? jointed(law)
               : System([](double S) { return arc(1.5, S); }, uniform_mesh(2, 3, 3, law), {{0}}),

@@ -10,9 +10,9 @@
 
 #include "analytic/elastica/elastica.h"
 #include "fem/beam/beam.h"
+#include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
-#include "problem/magnetization.h"
 
 namespace ciliaval::fem::beam {
 namespace {

@@ -14,9 +14,9 @@
 #include "analytic/sources/dipole.h"
 #include "fem/beam/beam.h"
 #include "fem/solid/solid.h"
+#include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
-#include "problem/magnetization.h"
 #include "tests/analytic/oracles/bent_rods.h"
 
 namespace ciliaval::fem::solid {
