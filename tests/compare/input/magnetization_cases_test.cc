@@ -77,9 +77,9 @@ TEST_P(BadMagnetizationCase, IsRefusedWithOneLocatedMessage) {
 const PlantedFault bad[]{
     {"TwoComponents", "\"0 A/m\", ", "", "10:17",
      "'magnetization' must have three components along x, y and z", "found 2"},
-    {"WithoutUnit", "\"-75 kA/m\"", "-75000", "10:39", "has no unit: write a magnetization"},
-    {"FluxDensity", "\"-75 kA/m\"", "\"-0.1 T\"", "10:39", "'T' is not a unit of a magnetization"},
-    {"NoNumber", "\"-75 kA/m\"", "\"strong\"", "10:39", "'magnetization'"},
+    {"WithoutUnit", "\"-75 kA/m\"", "-75000", "10:38", "has no unit: write a magnetization"},
+    {"FluxDensity", "\"-75 kA/m\"", "\"-0.1 T\"", "10:38", "'T' is not a unit of a magnetization"},
+    {"NoNumber", "\"-75 kA/m\"", "\"strong\"", "10:38", "'magnetization'"},
     {"NoNumberAtAll", three, "true", "10:17", "'magnetization'"},
     {"TooStrong", "\"10 kA/m\"", "\"101 MA/m\"", "10:18", "'magnetization' is 1.01e+08 A/m"},
     {"OutOfTheElasticasPlane", "\"0 A/m\", \"-75", "\"1 A/m\", \"-75", "20:14",

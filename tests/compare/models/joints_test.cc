@@ -157,9 +157,12 @@ TEST(Joints, OfElasticaAndBeamAgreeUnderEveryLoad) {
       const MechanicsStep beam = solved(Beam(corrected_beam()), cilium, load);
       if (!elastica.deformation || !beam.deformation) continue;
       const double d = distance(elastica.deformation->centreline, beam.deformation->centreline);
-      const MechanicsStep plain = solved(Beam(), cilium, load);
-      EXPECT_LT(20 * d, distance(plain.deformation->centreline, beam.deformation->centreline))
-          << type(load);
+      // The plain beam slips off earlier.
+      const MechanicsStep plain = Beam().solve(cilium, {load}).steps.at(0);
+      if (plain.deformation) {
+        EXPECT_LT(20 * d, distance(plain.deformation->centreline, beam.deformation->centreline))
+            << type(load);
+      }
       EXPECT_NEAR(tip(elastica).theta(), tip(beam).theta(), 1e-4) << type(load);
       EXPECT_NEAR(beam.applied_force, elastica.applied_force, 1e-4 * elastica.applied_force);
       largest = std::max(largest, d);
@@ -272,12 +275,14 @@ TEST(Joints, OfTheElasticaAreInEquilibriumAndObeyTheirLaw) {
         const Vector3 across = std::cos(theta) * e - std::sin(theta) * Vector3::UnitZ();
         const joints::Joint& joint = corrections.joints[i];
         const double Q = H * std::cos(theta);
-        const double turn = joint.rotation * M + joint.coupling * Q;
+        const double N = H * std::sin(theta);
+        const auto& [p, g, h] = joint.beyond;
+        const double turn = joint.rotation * M + joint.coupling * Q + 2 * p * N * M +
+                            g * std::pow(M, 3) + h * std::pow(M, 5);
         EXPECT_NEAR(angle(upper) - angle(lower), turn, 1e-13) << type(load) << i;
         EXPECT_NEAR(jump.dot(across), joint.coupling * M + joint.displacement * Q,
                     1e-13 * cilium.length());
-        EXPECT_NEAR(jump.dot(normal), joint.extension * H * std::sin(theta),
-                    1e-13 * cilium.length());
+        EXPECT_NEAR(jump.dot(normal), joint.extension * N + p * M * M, 1e-13 * cilium.length());
         EXPECT_NEAR(M_lower - M_upper, H * jump.z(), 1e-13 * base);
       }
     }
@@ -339,19 +344,15 @@ TEST(Joints, CountTheirUncertaintyAsError) {
                       ContactLoad{9e-3, 16e-3, 0}};
   const MechanicsResult elastica = Elastica(corrected_elastica(true)).solve(cilium, path);
   const MechanicsResult beam = Beam(corrected_beam(true)).solve(cilium, path);
-  ASSERT_EQ(elastica.companions.size(), 2U);
+  ASSERT_EQ(elastica.companions.size(), 1U);
   EXPECT_EQ(elastica.error_parts.front().direction, "joints");
-  ASSERT_EQ(beam.companions.size(), 3U);
+  ASSERT_EQ(beam.companions.size(), 2U);
   EXPECT_EQ(beam.error_parts[1].direction, "joints");
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto distance_to = [&](std::size_t companion) {
-      return (tip(elastica.companions[companion].steps[i]).position -
-              tip(elastica.steps[i]).position)
-          .norm();
-    };
-    EXPECT_NEAR(*elastica.steps[i].tip_uncertainty, distance_to(0) + distance_to(1), 1e-13);
-    EXPECT_GT(distance_to(0), 0);
-    EXPECT_GT(distance_to(1), 0);
+    const double distance =
+        (tip(elastica.companions[0].steps[i]).position - tip(elastica.steps[i]).position).norm();
+    EXPECT_NEAR(*elastica.steps[i].tip_uncertainty, distance, 1e-13);
+    EXPECT_GT(distance, 1e-7);
     EXPECT_NEAR(*beam.steps[i].tip_uncertainty / *elastica.steps[i].tip_uncertainty, 1, 1e-3);
     EXPECT_GT(*elastica.steps[i].tip_angle_uncertainty, 0);
   }
@@ -359,17 +360,15 @@ TEST(Joints, CountTheirUncertaintyAsError) {
   EXPECT_GT(*elastica.steps[2].slip_off_uncertainty, 1e-6 * *elastica.steps[2].slip_off_force);
 }
 
-// Oracle: |κ| d/2 of the base from its section moment.
+// Oracle: |κ| d/2 of the base.
 TEST(Joints, SayWhereTheyAreOutOfTheirDomain) {
-  for (const double F : {1e-3, 5e-3}) {
-    const MechanicsStep step =
-        solved(Elastica(corrected_elastica()), paper(), ContactLoad{F, 16e-3, 0});
-    const MechanicsStep beam = solved(Beam(corrected_beam()), paper(), ContactLoad{F, 16e-3, 0});
-    const CentrelinePoint base = step.deformation->centreline.at(0);
-    const double EI = 1e5 * paper().second_moment();
-    const double strain = base.forces.moment.norm() / EI * 1.5e-3;
+  for (const double F : {1e-3, 15e-3}) {
+    const Load load = SectionLoad{F, 16e-3, 0};
+    const MechanicsStep step = solved(Elastica(corrected_elastica()), paper(), load);
+    const MechanicsStep beam = solved(Beam(corrected_beam()), paper(), load);
+    const double strain = step.deformation->centreline.at(0).bending_curvature() * 1.5e-3;
     const bool is_outside = strain > joints::largest_strain;
-    EXPECT_EQ(is_outside, F > 2e-3);
+    EXPECT_EQ(is_outside, F > 2e-3) << strain;
     for (const MechanicsStep& each : {step, beam}) {
       EXPECT_EQ(each.message.empty(), !is_outside) << each.message;
       EXPECT_THAT(each.message,
