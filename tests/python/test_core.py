@@ -101,7 +101,7 @@ class Bend(unittest.TestCase):
         np.testing.assert_allclose(tip[:2], expected, rtol=1e-5)
         B = cv.bend(rod, cv.Load("dead", force_per_length=0.0)).B([0, 0, 0.05])
         middle = 4e-7 * np.pi / 2 * np.array([1e3, -2e3, 0])
-        np.testing.assert_allclose(B, middle, rtol=1e-4, atol=1e-12)
+        np.testing.assert_allclose(B[0], middle, rtol=1e-4, atol=1e-12)
         segment.magnetization = 5e3
         self.assertEqual(segment.magnetization, 5e3)
         with self.assertRaisesRegex(cv.InputError, "magnetization"):
@@ -233,7 +233,7 @@ class Batch(unittest.TestCase):
         batch = cv.bend_batch([cilium], [load], joints="corrected")
         shape = cv.bend(cilium, load, joints="corrected")
         np.testing.assert_array_equal(batch["tip"][0], shape.tip)
-        self.assertGreater(shape.tip_uncertainty, 1e-6)
+        self.assertGreater(shape.tip_uncertainty, 1e-7)
         self.assertLess(shape.tip[0] / cv.bend(cilium, load).tip[0], 0.92)
         with self.assertRaisesRegex(cv.InputError, "joints"):
             cv.bend_batch([cilium], [load], joints="glued")
