@@ -61,9 +61,9 @@ struct MechanicsStep {
   std::optional<int> unstable_modes;  ///< ways in which the energy decreases; 0: stable
   /// Smallest eigenvalue of the second variation over that of the straight cilium without loads.
   std::optional<double> smallest_eigenvalue;
-  std::size_t unknowns = 0;                         ///< of the largest system solved
-  int iterations = 0;                               ///< nonlinear iterations, all cutbacks included
-  double seconds = 0;                               ///< wall time
+  std::size_t unknowns = 0;  ///< of the largest system solved
+  int iterations = 0;        ///< nonlinear iterations, all cutbacks included
+  double seconds = 0;        ///< wall time
 };
 
 /// The largest magnitude that an equilibrium bears, of a contact N, of a probe m, if it is known.

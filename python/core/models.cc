@@ -12,12 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "analytic/elastica/elastica.h"
+#include "compare/models/estimates.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/results.h"
-#include "fem/beam/beam.h"
 #include "problem/error.h"
 #include "python/core/convert.h"
 
@@ -172,9 +171,7 @@ py::dict batch(const std::vector<Cilium>& cilia, const std::vector<Load>& loads,
   std::vector<Design> designs(cilia.size());
   input::ModelOptions options;
   set_options(model, mechanics.options, chosen, options);
-  // A batch tells no uncertainties.
-  options.of<analytic::elastica::ElasticaOptions>().error_estimate = false;
-  options.of<fem::beam::BeamOptions>().error_estimate = false;
+  models::without_error_estimates(options);
   {
     const py::gil_scoped_release released;
     const auto solver = mechanics.make(options);

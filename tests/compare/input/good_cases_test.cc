@@ -383,8 +383,7 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().material,
             fem::solid::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().mooney_ratio, 0.1);
-  EXPECT_EQ(mooney.of<analytic::elastica::ElasticaOptions>().joints,
-            joints::Correction::corrected);
+  EXPECT_EQ(mooney.of<analytic::elastica::ElasticaOptions>().joints, joints::Correction::corrected);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().method, analytic::rod::Method::uniform);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().elements, 7U);
   EXPECT_EQ(mooney.of<analytic::rod::VolumeOptions>().method, analytic::rod::Method::uniform);
