@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
@@ -19,6 +20,7 @@
 #include "problem/error.h"
 #include "problem/joints/companions.h"
 #include "problem/lagrange.h"
+#include "problem/surroundings/surface.h"
 
 namespace ciliaval {
 namespace {
@@ -153,9 +155,11 @@ TEST(Joints, OfElasticaAndBeamAgreeUnderEveryLoad) {
     const Cilium cilium = random_cilium(engine);
     for (const Load& any : loads_on(cilium)) {
       const Load load = turning(cilium, any, 45 * degree);
-      const MechanicsStep elastica = solved(Elastica(corrected_elastica()), cilium, load);
+      const MechanicsStep elastica =
+          Elastica(corrected_elastica()).solve(cilium, {load}).steps.at(0);
+      if (!elastica.deformation || !elastica.message.empty()) continue;  // outside of the domain
       const MechanicsStep beam = solved(Beam(corrected_beam()), cilium, load);
-      if (!elastica.deformation || !beam.deformation) continue;
+      if (!beam.deformation) continue;
       const double d = distance(elastica.deformation->centreline, beam.deformation->centreline);
       // The plain beam slips off earlier.
       const MechanicsStep plain = Beam().solve(cilium, {load}).steps.at(0);
@@ -169,6 +173,7 @@ TEST(Joints, OfElasticaAndBeamAgreeUnderEveryLoad) {
     }
   }
   RecordProperty("distance", std::to_string(1e9 * largest) + "e-9");
+  std::printf("elastica and beam, in the domain: %.1e of the length apart\n", largest);
   EXPECT_LT(largest, 1e-4);
   EXPECT_GT(largest, 0);
 }
@@ -245,6 +250,7 @@ double moment_at_base(const MechanicsStep& step) {
 // the mean axes of both sides.
 TEST(Joints, OfTheElasticaAreInEquilibriumAndObeyTheirLaw) {
   std::mt19937 engine(7);
+  int judged = 0;
   for (int n = 0; n < 8; ++n) {
     const Cilium cilium = random_cilium(engine);
     const joints::Corrections corrections = joints::corrections(cilium);
@@ -252,15 +258,19 @@ TEST(Joints, OfTheElasticaAreInEquilibriumAndObeyTheirLaw) {
       const Load load = turning(cilium, any, 45 * degree);
       const Vector3 e = direction(load);
       const Vector3 axis = Vector3::UnitZ().cross(e);
-      const MechanicsStep step = solved(Elastica(corrected_elastica()), cilium, load);
+      const MechanicsStep step = Elastica(corrected_elastica()).solve(cilium, {load}).steps.at(0);
+      if (!step.deformation || !step.message.empty()) continue;  // outside of the domain
+      ++judged;
       const Centreline& line = step.deformation->centreline;
       const double base = line.at(0).forces.moment.dot(axis);
       EXPECT_NEAR(moment_at_base(step) / base, 1, 1e-13) << type(load);
       const std::vector<double> ends = cilium.interfaces();
       for (std::size_t i = 0; i < corrections.joints.size(); ++i) {
         CentrelinePoint lower;  // of the clamp
-        if (i > 0) lower = line.at(ends[i], line.piece_at(ends[i]) - 1);
-        const CentrelinePoint upper = line.at(ends[i]);
+        // The break may be the interface but for rounding.
+        const std::size_t above = line.piece_at(ends[i] + 1e-12 * cilium.length());
+        if (i > 0) lower = line.at(ends[i], above - 1);
+        const CentrelinePoint upper = line.at(ends[i], above);
         const Vector3 jump = upper.position - lower.position;
         const double q = load.is<FlowLoad>() ? magnitude(load) : 0;
         const double H = upper.forces.force.dot(e) + q * jump.z() / 2;
@@ -287,39 +297,41 @@ TEST(Joints, OfTheElasticaAreInEquilibriumAndObeyTheirLaw) {
       }
     }
   }
+  EXPECT_GE(judged, 20);
 }
 
 // Oracle: two algorithms. A low contact that passes an interface, and slips off.
-TEST(Joints, LetAContactPassAndSlipOff) {
-  const Cilium cilium = paper();
-  const Elastica model(corrected_elastica());
-  BeamOptions fine = corrected_beam();
-  fine.refinement = 2;
-  for (const double height : {2e-3, 16e-3}) {
-    const double limit =
-        *model.solve(cilium, {ContactLoad{1e-3, height, 0}}).steps[0].slip_off_force;
-    LoadPath path;
-    for (const double part : {0.3, 0.6, 0.8, 0.9, 1.1, 0.5})
-      path.push_back(ContactLoad{part * limit, height, 0});
-    const MechanicsResult elastica = model.solve(cilium, path);
-    const MechanicsResult beam = Beam(fine).solve(cilium, path);
-    bool is_in_base = false;
-    bool is_in_magnet = false;
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      const MechanicsStep& a = elastica.steps[i];
-      const MechanicsStep& b = beam.steps[i];
-      ASSERT_EQ(a.status, b.status) << height << ' ' << i << a.message << b.message;
-      EXPECT_EQ(a.status, i == 4 ? Status::slipped_off : Status::converged);
-      if (a.status == Status::converged) {
-        (*a.contact_arclength < 3e-3 ? is_in_base : is_in_magnet) = true;
-        EXPECT_NEAR(*b.contact_arclength / *a.contact_arclength, 1, 2e-3) << height << ' ' << i;
-      } else {
-        EXPECT_NEAR(*b.slip_off_force / *a.slip_off_force, 1, 1e-3) << height;
-      }
-    }
-    EXPECT_TRUE(is_in_magnet);
-    EXPECT_EQ(is_in_base, height < 3e-3);
+TEST(Joints, LetAContactPass) {
+  LoadPath path;
+  for (const double F : {5e-3, 20e-3, 40e-3, 10e-3}) path.push_back(ContactLoad{F, 2.95e-3, 0});
+  const MechanicsResult elastica = Elastica(corrected_elastica()).solve(paper(), path);
+  const MechanicsResult beam = Beam(corrected_beam()).solve(paper(), path);
+  bool is_in_base = false;
+  bool is_in_magnet = false;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const MechanicsStep& a = elastica.steps[i];
+    const MechanicsStep& b = beam.steps[i];
+    ASSERT_EQ(a.status, Status::converged) << i << a.message;
+    ASSERT_EQ(b.status, Status::converged) << i << b.message;
+    (*a.contact_arclength < 3e-3 ? is_in_base : is_in_magnet) = true;
+    EXPECT_NEAR(*b.contact_arclength / *a.contact_arclength, 1, 1e-3) << i;
   }
+  EXPECT_TRUE(is_in_base);
+  EXPECT_TRUE(is_in_magnet);
+}
+
+TEST(Joints, LetAContactSlipOff) {
+  const Elastica model(corrected_elastica());
+  const double limit = *model.solve(paper(), {ContactLoad{1e-3, 16e-3, 0}}).steps[0].slip_off_force;
+  LoadPath path;
+  for (const double part : {0.5, 0.9, 1.1}) path.push_back(ContactLoad{part * limit, 16e-3, 0});
+  const MechanicsResult elastica = model.solve(paper(), path);
+  const MechanicsResult beam = Beam(corrected_beam()).solve(paper(), path);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    ASSERT_EQ(elastica.steps[i].status, beam.steps[i].status) << beam.steps[i].message;
+    EXPECT_EQ(beam.steps[i].status, i == 2 ? Status::slipped_off : Status::converged);
+  }
+  EXPECT_NEAR(*beam.steps[2].slip_off_force / limit, 1, 1e-3);
 }
 
 // A probe's displacement gives back the force of a contact.
@@ -410,8 +422,9 @@ TEST(Joints, RefuseWhatTheyDoNotReach) {
       with_environment(ContactLoad{1e-3, 16e-3, 0}, {.uniform_field = {1e-3, 0, 0}});
   EXPECT_THAT(refusal(Elastica(corrected_elastica()), in_field), HasSubstr("take the beam"));
   EXPECT_EQ(refusal(Beam(corrected_beam()), in_field), "");
-  SweepLoad sweep;
-  sweep.interference = 1e-3;
+  const Load sweep(SweepLoad{1e-3, 1e-3, 0, 0},
+                   std::make_shared<const surroundings::Surface>(
+                       surroundings::Surface{surroundings::FlatProfile{}, 0, 0}));
   EXPECT_THAT(refusal(Elastica(corrected_elastica()), sweep), HasSubstr("takes no sweep"));
   EXPECT_THAT(refusal(Beam(corrected_beam()), sweep), HasSubstr("takes no sweep"));
 }
