@@ -25,11 +25,12 @@ Centreline::Piece piece(const System& system, const State& state, std::size_t el
     section.rotation = state.rotation[node];
     gauss.values(reference.nodes[a], weights);
     for (std::size_t g = 0; g < p; ++g) {
+      const Vector3& force = state.force[element * p + g];
       const Vector3& moment = state.moment[element * p + g];
-      section.forces.force += weights[g] * state.force[element * p + g];
+      section.forces.force += weights[g] * force;
       section.forces.moment += weights[g] * moment;
-      section.curvature += weights[g] * (data.section.moment_compliance.cwiseProduct(moment) +
-                                         data.kappa0[g] / data.length);
+      section.curvature +=
+          weights[g] * (data.section.moment_strain(force, moment) + data.kappa0[g] / data.length);
     }
     section.forces.force = section.rotation * section.forces.force;
     section.forces.moment = section.rotation * section.forces.moment;
