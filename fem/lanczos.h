@@ -21,7 +21,8 @@ struct Eigenpair {
 
 /// The smallest ω, of which `negative` are negative, as the inertia of K tells: by Lanczos's method
 /// on K⁻¹ W in the inner product of W, with full reorthogonalisation (Parlett, The Symmetric
-/// Eigenvalue Problem, ch. 13). It is the one nearest to 0; of the negative ones, if there are any.
+/// Eigenvalue Problem, ch. 13). If none are, it is the one
+/// nearest to 0.
 /// The start is the same in every run. Throws SolverError if it is not found.
 Eigenpair smallest_eigenpair(const EigenProblem& problem, int negative);
 

@@ -18,7 +18,7 @@ struct ElasticaOptions {
   /// In the arc-length form, without an environment, of other loads than a sweep. Then the rod
   /// shears and extends as well, and its error is the corrections' uncertainty, too …
   joints::Correction joints = joints::Correction::none;
-  bool error_estimate = true;  ///< … by companions, which take twice the work more
+  bool error_estimate = true;  ///< … by a companion, which takes the same work again
 };
 
 /// The paper's bending model (Eq. 1–4): inextensible, shear-rigid elastica under horizontal loads,

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
 #include "problem/lagrange.h"
 
 namespace ciliaval::analytic::elastica {
@@ -203,9 +204,9 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
                               joint.displacement * force / L, joint.extension * force / L,
                               planar_law(joint.beyond, force, L, 1 / L)});
     const double nu = segment.poisson_ratio;
-    const double cowper = 6 * (1 + nu) / (7 + 6 * nu);  // J. Appl. Mech. 33, 1966, Eq. 34
     const double over_area = B / (cilium.area() * L * L);
-    problem.shear.push_back(over_area / (cowper * segment.shear_modulus()));
+    problem.shear.push_back(over_area /
+                            (joints::cowper_shear_coefficient(nu) * segment.shear_modulus()));
     problem.extension.push_back(over_area / segment.young_modulus);
     problem.laws.push_back(planar_law(joints::bending_law(cilium.diameter, segment), force, L, 1));
   }

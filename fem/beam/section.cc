@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
 
 namespace ciliaval::fem::beam {
 
@@ -38,15 +39,11 @@ Section section(const SectionStiffness& s) {
   return {{1 / s.kGA1, 1 / s.kGA2, 1 / s.EA}, {1 / s.EI1, 1 / s.EI2, 1 / s.GJ}};
 }
 
-double cowper_circle(double poisson_ratio) {
-  return 6 * (1 + poisson_ratio) / (7 + 6 * poisson_ratio);
-}
-
 SectionStiffness circular_section(double diameter, double young_modulus, double poisson_ratio) {
   const double area = std::numbers::pi * diameter * diameter / 4;
   const double I = std::numbers::pi * std::pow(diameter, 4) / 64;
   const double G = young_modulus / (2 * (1 + poisson_ratio));
-  const double kGA = cowper_circle(poisson_ratio) * G * area;
+  const double kGA = joints::cowper_shear_coefficient(poisson_ratio) * G * area;
   return {.EA = young_modulus * area,
           .kGA1 = kGA,
           .kGA2 = kGA,

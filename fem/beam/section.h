@@ -55,10 +55,6 @@ struct SectionStiffness {
 /// Throws InputError if a stiffness is not positive.
 Section section(const SectionStiffness& stiffness);
 
-/// Shear coefficient k = 6(1+ν)/(7+6ν) of the solid circular section (G. R. Cowper, The shear
-/// coefficient in Timoshenko's beam theory, J. Appl. Mech. 33, 1966, Eq. 34).
-double cowper_circle(double poisson_ratio);
-
 /// Solid circular section of diameter d (m), Young's modulus E (Pa) and Poisson's ratio ν:
 /// EA = Eπd²/4, EI = Eπd⁴/64, GJ = Gπd⁴/32, kGA with Cowper's k, G = E/(2(1+ν)).
 SectionStiffness circular_section(double diameter, double young_modulus, double poisson_ratio);

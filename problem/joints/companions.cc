@@ -24,16 +24,7 @@ std::vector<double> strains(const Cilium& cilium, const Centreline& centreline) 
 
 std::vector<Joint> changed_joints(const Corrections& corrections) {
   std::vector<Joint> joints = corrections.joints;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const Joint& by = corrections.uncertainties[i];
-    joints[i].rotation += by.rotation;
-    joints[i].coupling += by.coupling;
-    joints[i].displacement += by.displacement;
-    joints[i].extension += by.extension;
-    joints[i].beyond.lengthening += by.beyond.lengthening;
-    joints[i].beyond.softening += by.beyond.softening;
-    joints[i].beyond.further_softening += by.beyond.further_softening;
-  }
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] += corrections.uncertainties[i];
   return joints;
 }
 

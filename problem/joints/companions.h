@@ -12,7 +12,8 @@ namespace ciliaval::joints {
 /// Largest strain ε = |κ| d/2 of bending up to which the corrections were compared with the solid.
 inline constexpr double largest_strain = 0.6;
 
-/// Of a probe's displacement, relative: the load deforms the section that it moves.
+/// Of a probe's displacement, relative: the load deforms the section that it moves. As much as the
+/// random designs of docs/evidence/joints.md show.
 inline constexpr double probe_error = 6e-4;
 
 /// The largest ε of each segment.

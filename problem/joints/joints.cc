@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <span>
 #include <string>
 
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
 #include "problem/joints/table.h"
 #include "problem/lagrange.h"
 
@@ -69,8 +68,9 @@ Entry joint_alone(double soft_poisson, double stiff_poisson, double t) {
 /// Of a segment of so many diameters between bodies with the ratios t of its modulus to theirs.
 Entry joints_together(double poisson, double t_below, double t_above, double length) {
   if (length >= apart || t_below >= 1 || t_above >= 1) return {};
-  // The layers reach each other by way of both ends: the products of what each of them reflects,
-  // about (1 − t)/(1 + 3t), is that of one ratio with a rigid body.
+  // The layers reach each other by way of both ends: the product of what the two reflect,
+  // about (1 − t)/(1 + 3t) each, is that of one ratio with a rigid body. The test AShortSegmentIn-
+  // TheMiddle says how well.
   const auto reflected = [](double t) { return (1 - t) / (1 + 3 * t); };
   const double product = reflected(t_below) * reflected(t_above);
   const double t = (1 - product) / (1 + 3 * product);
@@ -117,21 +117,12 @@ Joint scaled(const Entry& entry, double diameter, double young_modulus) {
           {}};
 }
 
-Joint& operator+=(Joint& a, const Joint& b) {
-  a.rotation += b.rotation;
-  a.coupling += b.coupling;
-  a.displacement += b.displacement;
-  a.extension += b.extension;
-  return a;
-}
-
 /// Renton's shear compliance of the strain energy less Cowper's of mean displacements, per length:
 /// the table goes with the former, the rods with the latter, and ∫ Q² dS = [−QM] between the ends.
 double shear_difference(double diameter, const Segment& segment) {
   const double nu = segment.poisson_ratio;
   const double GA = segment.shear_modulus() * std::numbers::pi * diameter * diameter / 4;
-  return ((7 + 14 * nu + 8 * nu * nu) / (6 * (1 + nu) * (1 + nu)) - (7 + 6 * nu) / (6 * (1 + nu))) /
-         GA;
+  return (1 / energy_shear_coefficient(nu) - 1 / cowper_shear_coefficient(nu)) / GA;
 }
 
 void require_in_table(const Cilium& cilium) {
@@ -163,6 +154,17 @@ std::vector<double> ratio_nodes() {
   for (const double s : bases().ratio.nodes())
     nodes.push_back(half_ratio * s / (1 + half_ratio - s));
   return nodes;
+}
+
+Joint& operator+=(Joint& a, const Joint& b) {
+  a.rotation += b.rotation;
+  a.coupling += b.coupling;
+  a.displacement += b.displacement;
+  a.extension += b.extension;
+  a.beyond.lengthening += b.beyond.lengthening;
+  a.beyond.softening += b.beyond.softening;
+  a.beyond.further_softening += b.beyond.further_softening;
+  return a;
 }
 
 BendingLaw bending_law(double diameter, const Segment& segment) {

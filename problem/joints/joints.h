@@ -38,6 +38,8 @@ struct Joint {
   BendingLaw beyond{};      ///< small strains: of the jumps, as K and Γ₃ have it, times m
 };
 
+Joint& operator+=(Joint& a, const Joint& b);
+
 /// The joints at S₀ … S_{N−1}, the clamp first, and what their numbers are uncertain by.
 struct Corrections {
   std::vector<Joint> joints;

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
-#include <map>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -86,13 +86,17 @@ class Comparison {
 };
 
 struct Rod {
-  std::string name;
-  std::vector<double> tip, angle, field, stated_over_error;
-  void add(const Errors& e) {
+  std::string name{};
+  std::vector<double> tip{}, angle{}, field{}, stated{};
+  int inside = 0;             ///< the stated uncertainty
+  int inside_with_solid = 0;  ///< that and the solid's
+  void add(const Errors& e, double of_the_solid) {
     tip.push_back(e.tip);
     angle.push_back(e.angle);
     field.push_back(e.field);
-    if (e.stated) stated_over_error.push_back(*e.stated / e.tip);
+    stated.push_back(e.stated.value_or(0));
+    if (e.tip <= stated.back()) ++inside;
+    if (e.tip <= stated.back() + of_the_solid) ++inside_with_solid;
   }
 };
 
@@ -115,7 +119,7 @@ void compare(std::uint32_t designs, std::uint32_t first_seed) {
   const std::vector<std::pair<std::string, const MechanicsModel*>> models{
       {"beam", &plain}, {"corrected beam", &corrected}, {"corrected elastica", &elastica}};
   std::vector<Rod> rods;
-  for (const auto& model : models) rods.push_back({model.first, {}, {}, {}, {}});
+  for (const auto& model : models) rods.push_back({.name = model.first});
   fmt::print(
       "seed,load,segments,L1/d,L/d,E2/E1,nu1,angle_deg,solid_tip,model,tip,angle,dB,stated,"
       "remark\n");
@@ -126,6 +130,8 @@ void compare(std::uint32_t designs, std::uint32_t first_seed) {
     fmt::print(stderr, "seed {} {} {:.1f} s {}\n", seed, type(drawn.load),
                comparison.step().seconds, comparison.step().message);
     if (!comparison.solved()) continue;
+    const double of_the_solid =
+        comparison.step().tip_uncertainty.value_or(0) / comparison.deflection();
     for (std::size_t m = 0; m < models.size(); ++m) {
       std::optional<Errors> errors;
       std::string refusal;
@@ -144,8 +150,8 @@ void compare(std::uint32_t designs, std::uint32_t first_seed) {
           models[m].first);
       if (errors) {
         fmt::print("{:.3e},{:.3e},{:.3e},{:.3e},\"{}\"\n", errors->tip, errors->angle,
-                   errors->field, errors->stated.value_or(NAN), errors->remark);
-        rods[m].add(*errors);
+                   errors->field, errors->stated.value_or(0), errors->remark);
+        rods[m].add(*errors, of_the_solid);
       } else {
         fmt::print(",,,,\"{}\"\n", refusal);
       }
@@ -158,7 +164,9 @@ void compare(std::uint32_t designs, std::uint32_t first_seed) {
     print_quantiles(rod.name + ": tip", rod.tip);
     print_quantiles(rod.name + ": angle", rod.angle);
     print_quantiles(rod.name + ": dB", rod.field);
-    print_quantiles(rod.name + ": stated/error", rod.stated_over_error);
+    print_quantiles(rod.name + ": stated of the tip", rod.stated);
+    fmt::print(stderr, "{}: {} of {} tips inside what it states, {} with the solid's uncertainty\n",
+               rod.name, rod.inside, rod.tip.size(), rod.inside_with_solid);
   }
 }
 

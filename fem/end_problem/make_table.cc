@@ -4,23 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <numbers>
-#include <random>
+#include <string>
+#include <vector>
 
-#include "fem/joints/end_problem.h"
+#include "fem/end_problem/excess.h"
 #include "problem/joints/joints.h"
 #include "problem/joints/table.h"
 
 namespace {
 
 namespace problem = ciliaval::joints;
-using ciliaval::fem::joints::Bar;
-using ciliaval::fem::joints::Base;
-using ciliaval::fem::joints::Excess;
-using ciliaval::fem::joints::excess;
-using ciliaval::fem::joints::Resolution;
+using ciliaval::fem::end_problem::Bar;
+using ciliaval::fem::end_problem::Base;
+using ciliaval::fem::end_problem::Excess;
+using ciliaval::fem::end_problem::excess;
 using problem::Entry;
 
 constexpr double EA = std::numbers::pi / 4;
@@ -44,10 +44,9 @@ Entry moved(Entry e, double up) {
   return e;
 }
 
-Entry joint(double soft, double stiff, double t, const Resolution& resolution = {}) {
-  if (t > 0)
-    return entry(excess({{far, 1, soft}, {far, 1 / t, stiff}}, Base::free, far, resolution));
-  Entry mirrored = entry(excess({{far, 1, soft}}, Base::clamped, 0, resolution));
+Entry joint(double soft, double stiff, double t) {
+  if (t > 0) return entry(excess({{far, 1, soft}, {far, 1 / t, stiff}}, Base::free, far));
+  Entry mirrored = entry(excess({{far, 1, soft}}, Base::clamped, 0));
   mirrored.coupling = -mirrored.coupling;
   return mirrored;
 }
@@ -99,7 +98,7 @@ int main() {
   const std::size_t all = n_poisson * n_poisson * n_ratio + n_poisson * n_ratio * n_length;
   fmt::print(
       "// SPDX-License-Identifier: LGPL-2.1-or-later\n"
-      "// Made by fem/joints/make_table.cc; not to be edited.\n"
+      "// Made by fem/end_problem/make_table.cc; not to be edited.\n"
       "// clang-format off\n"
       "#include \"problem/joints/table.h\"\n\n"
       "namespace ciliaval::joints {{\n\n"

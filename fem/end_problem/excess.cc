@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fem/joints/end_problem.h"
+#include "fem/end_problem/excess.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_handler.h>
@@ -18,14 +18,16 @@
 #include <deal.II/lac/sparsity_pattern.h>
 #include <deal.II/lac/vector.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
 
-namespace ciliaval::fem::joints {
+namespace ciliaval::fem::end_problem {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -260,10 +262,6 @@ class Meridional {
 
 }  // namespace
 
-double energy_shear_coefficient(double nu) {
-  return 6 * (1 + nu) * (1 + nu) / (7 + 14 * nu + 8 * nu * nu);
-}
-
 Excess excess(const std::vector<Bar>& bars, Base base, double z, const Resolution& resolution) {
   require_valid(bars);
   double top = 0;
@@ -281,7 +279,8 @@ Excess excess(const std::vector<Bar>& bars, Base base, double z, const Resolutio
   for (const Bar& bar : bars) {
     const double EI = bar.young_modulus * second_moment;
     const double EA = bar.young_modulus * area;
-    const double kGA = energy_shear_coefficient(bar.poisson_ratio) * shear_modulus(bar) * area;
+    const double kGA =
+        joints::energy_shear_coefficient(bar.poisson_ratio) * shear_modulus(bar) * area;
     const double from = z - begin;  // arms of Q
     const double to = from - bar.length;
     result.rotation -= bar.length / EI;
@@ -293,4 +292,4 @@ Excess excess(const std::vector<Bar>& bars, Base base, double z, const Resolutio
   return result;
 }
 
-}  // namespace ciliaval::fem::joints
+}  // namespace ciliaval::fem::end_problem

@@ -5,7 +5,7 @@
 
 /// The end problem of a rod: the linear elasticity of a stack of bonded round bars, and how much
 /// stiffer it is than the rods' theory says. docs/theory/joints.md.
-namespace ciliaval::fem::joints {
+namespace ciliaval::fem::end_problem {
 
 /// A bar of the stack, from below upwards; the diameter is 1.
 struct Bar {
@@ -16,7 +16,9 @@ struct Bar {
 
 /// Compliance beyond that of Saint-Venant's solution in each bar, in units of 1/E and the diameter:
 /// a quadratic form in the moment M and the shear force Q at a height z, and in the axial force N.
-/// The bars' own compliance is that of a Timoshenko beam with the shear coefficient k_e.
+/// The bars' own compliance is that of a Timoshenko beam with the shear coefficient of the energy
+/// (problem/joints/shear_coefficient.h): with Cowper's the end faces' moments would appear beside
+/// it.
 struct Excess {
   double rotation = 0;      ///< of M by M
   double coupling = 0;      ///< of M by Q
@@ -44,10 +46,4 @@ enum class Base {
 /// Throws InputError if a length, modulus or ratio is out of range.
 Excess excess(const std::vector<Bar>& bars, Base base, double z, const Resolution& resolution = {});
 
-/// The shear coefficient of the strain energy in Saint-Venant's flexure of a circle,
-/// k_e = 6(1+ν)²/(7+14ν+8ν²) (J. D. Renton, Generalized beam theory applied to shear stiffness,
-/// Int. J. Solids Structures 27, 1991): that of displacements weighted by the shear stress. With
-/// Cowper's k, of mean displacements, the end faces' moments would appear beside it.
-double energy_shear_coefficient(double poisson_ratio);
-
-}  // namespace ciliaval::fem::joints
+}  // namespace ciliaval::fem::end_problem
