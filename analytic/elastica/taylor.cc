@@ -80,9 +80,9 @@ void TaylorStep::expand(ForceLaw law) {
   const double extension = flexibility_.extension;
   const PlanarLaw& law_of_bending = flexibility_.law;
   const bool is_rigid = flexibility_.is_rigid();
-  Series square{};     // cos² θ
-  Series mixed{};      // sin θ cos θ
+  const bool has_law = law_of_bending.lengthening != 0 || law_of_bending.softening != 0;
   Series rise{};       // z'
+  Series stretch{};    // of the middle line along the section's normal
   Series moment_2{};   // M²
   Series moment_4{};   // M⁴
   Series softening{};  // of θ' beyond small strains, over M
@@ -104,18 +104,20 @@ void TaylorStep::expand(ForceLaw law) {
     double advance = sine[k];
     rise[k] = cosine[k];
     if (!is_rigid) {
-      moment_2[k] = product(moment_, moment_, k);
-      moment_4[k] = product(moment_2, moment_2, k);
-      softening[k] = 2 * law_of_bending.lengthening * times_force(sine, k) +
-                     law_of_bending.softening * moment_2[k] +
-                     law_of_bending.further_softening * moment_4[k];
-      rate[k] += tau * product(softening, moment_, k);
-      advance += law_of_bending.lengthening * product(moment_2, sine, k);
-      rise[k] += law_of_bending.lengthening * product(moment_2, cosine, k);
-      square[k] = product(cosine, cosine, k);
-      mixed[k] = product(sine, cosine, k);
-      advance += extension * force_[k] + (shear - extension) * times_force(square, k);
-      rise[k] += (extension - shear) * times_force(mixed, k);
+      // dw/dS = s sin θ + g H, dz/dS = s cos θ with s = 1 + (x − g) H sin θ + p M².
+      const double axial = times_force(sine, k);
+      stretch[k] = (extension - shear) * axial + (k == 0 ? 1 : 0);
+      if (has_law) {
+        moment_2[k] = product(moment_, moment_, k);
+        moment_4[k] = product(moment_2, moment_2, k);
+        softening[k] = 2 * law_of_bending.lengthening * axial +
+                       law_of_bending.softening * moment_2[k] +
+                       law_of_bending.further_softening * moment_4[k];
+        rate[k] += tau * product(softening, moment_, k);
+        stretch[k] += law_of_bending.lengthening * moment_2[k];
+      }
+      advance = product(stretch, sine, k) + shear * force_[k];
+      rise[k] = product(stretch, cosine, k);
     }
     theta_[k + 1] = over * rate[k];
     w_[k + 1] = scale * advance;

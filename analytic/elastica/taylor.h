@@ -18,7 +18,7 @@ enum class ForceLaw {
 /// One step of the Taylor-series method for the planar elastica
 ///
 ///     dθ/dS = f M,  dM/dS = −H dz/dS,  dH/dS by law,
-///     dw/dS = sin θ + H (g cos² θ + x sin² θ),  dz/dS = cos θ + (x − g) H sin θ cos θ,
+///     dw/dS = s sin θ + g H,  dz/dS = s cos θ,  s = 1 + (x − g) H sin θ,
 ///
 /// with constant flexibilities f, g of shear and x of extension, and with what a PlanarLaw adds.
 /// The coefficients follow from the state by recurrence (Jorba & Zou, Experimental Mathematics 14,

@@ -85,18 +85,25 @@ py::object array(const std::vector<Vector3>& vectors) {
   return array(std::move(values), {static_cast<py::ssize_t>(vectors.size()), 3});
 }
 
-std::vector<Vector3> points(const py::object& values) {
+namespace {
+
+std::vector<Vector3> rows_of_three(const py::object& values, std::string_view expected) {
   const py::object numbers =
       py::module_::import("numpy").attr("ascontiguousarray")(values, py::arg("dtype") = "float64");
   const py::buffer_info info = numbers.cast<py::buffer>().request();
   const bool is_one = info.ndim == 1 && info.shape[0] == 3;
-  if (!is_one && !(info.ndim == 2 && info.shape[1] == 3))
-    throw InputError("points are an array of shape (3,) or (n, 3), in m");
+  if (!is_one && !(info.ndim == 2 && info.shape[1] == 3)) throw InputError(std::string(expected));
   const auto* data = static_cast<const double*>(info.ptr);
   std::vector<Vector3> result;
   for (py::ssize_t i = 0; i < info.size; i += 3)
     result.emplace_back(data[i], data[i + 1], data[i + 2]);
   return result;
+}
+
+}  // namespace
+
+std::vector<Vector3> points(const py::object& values) {
+  return rows_of_three(values, "points are an array of shape (3,) or (n, 3), in m");
 }
 
 void set_options(const std::string& model, const std::vector<Option>& options,
@@ -138,9 +145,10 @@ void bind_array(py::module_& module) {
 }
 
 Vector3 vector(const py::object& value, const char* name) {
-  const std::vector<Vector3> found = points(value);
+  const std::string expected = fmt::format("`{}` is a vector [x, y, z]", name);
+  const std::vector<Vector3> found = rows_of_three(value, expected);
   if (found.size() != 1)
-    throw InputError(fmt::format("`{}` is a vector [x, y, z], not {} of them", name, found.size()));
+    throw InputError(fmt::format("{}, not {} of them", expected, found.size()));
   return found.front();
 }
 
