@@ -5,7 +5,6 @@
 #include <chrono>
 #include <iomanip>
 #include <limits>
-#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -48,12 +47,12 @@ double probe_tolerance(const ElasticaOptions& options) {
   return has_height_form(options) ? 1e-9 : 1e-12;
 }
 
-using Joints = std::span<const joints::Joint>;
+using joints::Corrections;
 
 SlipOff slip_off(const Cilium& cilium, const Load& load, const ElasticaOptions& options,
-                 Joints joints) {
-  PlanarProblem problem =
-      planar_problem(cilium, ContactLoad{1, contact_height(load).value(), azimuth(load)}, joints);
+                 const Corrections& corrections) {
+  PlanarProblem problem = planar_problem(
+      cilium, ContactLoad{1, contact_height(load).value(), azimuth(load)}, corrections);
   const double of_one_newton = problem.load;
   problem.load = has_height_form(options) ? slip_off_height(problem)
                                           : slip_off_arclength(problem, options.tolerance);
@@ -72,8 +71,8 @@ struct ProbeForce {
 };
 
 ProbeForce probe_force(const Cilium& cilium, const ProbeLoad& load, double slip_off_force,
-                       const ElasticaOptions& options, Joints joints) {
-  PlanarProblem problem = planar_problem(cilium, load, joints);
+                       const ElasticaOptions& options, const Corrections& corrections) {
+  PlanarProblem problem = planar_problem(cilium, load, corrections);
   const double of_one_newton = problem.load;
   if (load.displacement == 0) {
     problem.load = 0;
@@ -119,16 +118,17 @@ void say_slipped_off(MechanicsStep& step) {
       slipped_off(step.load, step.slip_off_force.value_or(0), step.slip_off_displacement);
 }
 
-void solve_step(const Cilium& cilium, const ElasticaOptions& options, Joints joints,
-                MechanicsStep& step) {
-  const PlanarProblem problem = planar_problem(cilium, step.load, joints);
+void solve_step(const Cilium& cilium, const ElasticaOptions& options,
+                const Corrections& corrections, MechanicsStep& step) {
+  const PlanarProblem problem = planar_problem(cilium, step.load, corrections);
   PlanarUnits units = planar_units(cilium, step.load);
   const bool height_form = has_height_form(options);
   std::optional<PlanarShape> shape;
   const std::optional<double> limit = slip_off_limit(step);
   if (!limit || magnitude(step.load) <= *limit) {
     if (const auto probe = step.load.as<ProbeLoad>()) {
-      ProbeForce found = probe_force(cilium, *probe, step.slip_off_force.value(), options, joints);
+      ProbeForce found =
+          probe_force(cilium, *probe, step.slip_off_force.value(), options, corrections);
       units.force = found.force;
       shape = std::move(found.shape);
     } else {
@@ -156,8 +156,8 @@ void solve_step(const Cilium& cilium, const ElasticaOptions& options, Joints joi
 }
 
 std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
-                                      const ElasticaOptions& options, Joints joints,
-                                      const Progress& progress) {
+                                      const ElasticaOptions& options,
+                                      const Corrections& corrections, const Progress& progress) {
   std::vector<MechanicsStep> steps;
   for (const Load& load : path) {
     const auto begin = std::chrono::steady_clock::now();
@@ -168,14 +168,14 @@ std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path
         environment::solve_step(cilium, options.tolerance, step);
         if (step.status == Status::slipped_off) say_slipped_off(step);
       } else if (contact_height(load)) {
-        const SlipOff limit = slip_off(cilium, load, options, joints);
+        const SlipOff limit = slip_off(cilium, load, options, corrections);
         step.slip_off_force = limit.force;
         step.slip_off_displacement = limit.displacement;
         if (const auto largest = slip_off_limit(step))
           step.slip_off_uncertainty = options.tolerance * *largest;
-        solve_step(cilium, options, joints, step);
+        solve_step(cilium, options, corrections, step);
       } else {
-        solve_step(cilium, options, joints, step);
+        solve_step(cilium, options, corrections, step);
       }
     } catch (const SolverError& error) {
       step.status = Status::failed;
@@ -234,8 +234,8 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
     result.steps = solve_path(cilium, path, options_, {}, progress);
     return result;
   }
-  const joints::Corrections corrections = joints::corrections(cilium);
-  result.steps = solve_path(cilium, path, options_, corrections.joints, progress);
+  const Corrections corrections = joints::corrections(cilium);
+  result.steps = solve_path(cilium, path, options_, corrections, progress);
   joints::remark_on_strains(cilium, result.steps);
   if (!options_.error_estimate) return result;
   result.algebraic_error = options_.tolerance;
@@ -245,9 +245,9 @@ MechanicsResult Elastica::solve(const Cilium& cilium, const LoadPath& path,
           std::max(result.algebraic_error, *step.tip_uncertainty / cilium.length());
     step.slip_off_uncertainty.reset();  // of the integration alone
   }
-  joints::add_companion(result, corrections,
-                        [&](const LoadPath& loads, const std::vector<joints::Joint>& joints) {
-                          return solve_path(cilium, loads, options_, joints, {});
+  joints::add_companion(result, cilium, corrections,
+                        [&](const LoadPath& loads, const Corrections& changed) {
+                          return solve_path(cilium, loads, options_, changed, {});
                         });
   estimate_errors(result);
   return result;

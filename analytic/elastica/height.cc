@@ -199,7 +199,7 @@ std::optional<PlanarShape> solve_height(const PlanarProblem& problem) {
 double slip_off_height(const PlanarProblem& problem) {
   require_height_form(problem);
   return slip_off_load(problem, [&](double log_load) {
-    return march(problem, std::exp(log_load), problem.point).excess;
+    return -march(problem, std::exp(log_load), problem.point).excess;
   });
 }
 

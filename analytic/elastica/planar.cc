@@ -140,16 +140,18 @@ std::pair<PlanarLoad, double> kind_and_point(const Load& load) {
   refuse_type(load, "elastica");
 }
 
+PlanarLaw scaled(const PlanarLaw& law, double load) {
+  const double square = load * load;
+  return {law.lengthening * square, law.softening * square * load,
+          law.further_softening * square * square * load};
+}
+
 /// Under the force F, over the length: a law's jumps, times m, go with 1/L.
 PlanarLaw planar_law(const joints::BendingLaw& law, double F, double L, double per_length) {
   const double M = F * L;
-  return {law.lengthening * M * M * per_length, law.softening * M * M * M * L * per_length,
-          law.further_softening * std::pow(M, 5) * L * per_length};
-}
-
-PlanarLaw scaled(const PlanarLaw& law, double load) {
-  return {law.lengthening * load * load, law.softening * std::pow(load, 3),
-          law.further_softening * std::pow(load, 5)};
+  return scaled({law.lengthening * per_length, law.softening * L * per_length,
+                 law.further_softening * L * per_length},
+                M);
 }
 
 }  // namespace
@@ -173,7 +175,7 @@ PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
 }
 
 PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
-                             std::span<const joints::Joint> joints) {
+                             const joints::Corrections& corrections) {
   const PlanarUnits units = planar_units(cilium, load);
   PlanarProblem problem;
   const auto [kind, point] = kind_and_point(load);
@@ -193,11 +195,11 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
     throw InputError(
         "elastica: the load over the bending stiffness, PL^2/EI, is not finite; check "
         "the units of force, length and Young's modulus");
-  if (joints.empty()) return problem;
+  if (corrections.empty()) return problem;
   const double L = units.length;
   const double B = stiffest * cilium.second_moment(azimuth(load));
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const joints::Joint& joint = joints[i];
+  for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
+    const joints::Joint& joint = corrections.joints[i];
     const Segment& segment = cilium.segments[i];
     const double force = B / (L * L);  // of the load 1
     problem.joints.push_back({joint.rotation * B / L, joint.coupling * force,
@@ -208,10 +210,36 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
     problem.shear.push_back(over_area /
                             (joints::cowper_shear_coefficient(nu) * segment.shear_modulus()));
     problem.extension.push_back(over_area / segment.young_modulus);
-    problem.laws.push_back(planar_law(joints::bending_law(cilium.diameter, segment), force, L, 1));
+    problem.laws.push_back(planar_law(corrections.laws[i], force, L, 1));
   }
   return problem;
 }
+
+namespace {
+
+/// The load under which the tip sinks to h by linear theory, ∫ θ²/2 dS = 1 − h, but no more than
+/// brings the contact to an angle of 1 rad: sin θ there is the linear theory's angle.
+double linear_slip_off_load(const PlanarProblem& problem) {
+  constexpr std::array<double, 3> points{0.1127016653792583, 0.5, 0.8872983346207417};
+  constexpr std::array<double, 3> weights{5. / 18, 8. / 18, 5. / 18};
+  const double h = problem.point;
+  double angle = 0;  // θ under the load 1, ∫ f (h − S) dS
+  double sum = 0;    // ∫ θ² dS
+  for (std::size_t i = 0; i < problem.compliance.size() && problem.ends[i] < h; ++i) {
+    const double begin = problem.ends[i];
+    const double length = std::min(problem.ends[i + 1], h) - begin;
+    const auto at = [&](double S) {
+      return angle + problem.compliance[i] * (S - begin) * (h - std::midpoint(begin, S));
+    };
+    for (std::size_t q = 0; q < points.size(); ++q)
+      sum += length * weights[q] * std::pow(at(begin + points[q] * length), 2);
+    angle = at(begin + length);
+  }
+  sum += (1 - h) * angle * angle;
+  return std::min(std::sqrt(2 * (1 - h) / sum), 1 / angle);
+}
+
+}  // namespace
 
 double root(const std::function<double(double)>& function, double a, double b, double f_a,
             double f_b) {
@@ -228,14 +256,29 @@ double root(const std::function<double(double)>& function, double a, double b, d
   return std::midpoint(left, right);
 }
 
+std::optional<double> secant_root(const std::function<double(double)>& function, double a, double b,
+                                  double f_a, double f_b) {
+  for (int k = 0; k < 10; ++k) {
+    const double next = b - f_b * (b - a) / (f_b - f_a);
+    if (!(std::abs(next - b) <= 0.5)) return std::nullopt;
+    const double enough = epsilon * std::max(1.0, std::abs(next));
+    if (std::abs(next - b) * std::abs(b - a) <= enough / 4 || std::abs(next - b) <= enough)
+      return next;
+    a = std::exchange(b, next);
+    f_a = std::exchange(f_b, function(next));
+  }
+  return std::nullopt;
+}
+
 double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess) {
-  const double level = problem.joints.empty() ? 2.01 : 8;
-  double b = std::log(level / (problem.point * problem.point));
+  double b = std::log(linear_slip_off_load(problem));
   double f_b = excess(b);
-  double step = 0.25;
-  for (int k = 0; k < 60; ++k, step *= 1.5) {
-    const double a = b - step;
+  double step = f_b > 0 ? 0.05 : -0.05;
+  for (int k = 0; k < 60; ++k, step *= 2) {
+    const double a = b + step;
     const double f_a = excess(a);
+    if (k == 0)
+      if (const auto found = secant_root(excess, a, b, f_a, f_b)) return std::exp(*found);
     if ((f_a > 0) != (f_b > 0)) return std::exp(root(excess, a, b, f_a, f_b));
     b = a;
     f_b = f_a;

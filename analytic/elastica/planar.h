@@ -5,7 +5,6 @@
 #include <functional>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "problem/centreline.h"
@@ -82,10 +81,10 @@ struct PlanarUnits {
 };
 
 /// The problem of one load on a cilium. A probe's is a contact with a force of 1 N, which is yet to
-/// be found. With joints the segments shear and extend as well. Throws InputError if PL²/EI is not
-/// representable.
+/// be found. With corrections the segments shear and extend as well. Throws InputError if PL²/EI is
+/// not representable.
 PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
-                             std::span<const joints::Joint> joints = {});
+                             const joints::Corrections& corrections = {});
 PlanarUnits planar_units(const Cilium& cilium, const Load& load);
 
 /// State at one material point, in the problem's units.
@@ -118,10 +117,13 @@ struct PlanarShape {
 double root(const std::function<double(double)>& function, double a, double b, double f_a,
             double f_b);
 
-/// The load of a contact problem where `excess`, a function of its logarithm, changes sign: the
-/// search goes down from PL²/EI = 2/h², where a cilium as stiff all over as its stiffest segment
-/// lies level at h, or from four times it, which stiffens no cilium more, with joints. Throws
-/// SolverError if there is none.
+/// Root of a smooth function by secants from a and b; nothing if they lead away. The error of a
+/// secant's root is about the product of the last two steps: it ends where that is rounding error.
+std::optional<double> secant_root(const std::function<double(double)>& function, double a, double b,
+                                  double f_a, double f_b);
+
+/// The load of a contact problem where `excess`, a decreasing function of its logarithm, changes
+/// sign, from where linear theory has it. Throws SolverError if it is not found.
 double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess);
 
 /// Shortest piece: it must have room for its nodes.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
+#include <type_traits>
 
 #include "problem/error.h"
 
@@ -26,12 +27,24 @@ std::array<double, sizeof...(Series)> horner(double t, const Series&... series) 
   return sums;
 }
 
-/// Σ_{j ≤ k} a_j b_{k−j}, the coefficient k of a product.
-double product(const std::array<double, order + 1>& a, const std::array<double, order + 1>& b,
-               std::size_t k) {
-  const auto n = static_cast<Eigen::Index>(k + 1);
-  return Eigen::Map<const Eigen::VectorXd>(a.data(), n)
-      .dot(Eigen::Map<const Eigen::VectorXd>(b.data(), n).reverse());
+/// A series of pairs, whose two numbers are computed at once.
+using Pair = Eigen::Array2d;
+using Pairs = std::array<Pair, order + 1>;
+
+/// Coefficient k of a product of series, Σ_{j ≤ k} a_j b_{k−j}.
+template <class A, class B>
+auto product(const std::array<A, order + 1>& a, const std::array<B, order + 1>& b, std::size_t k) {
+  using Value = std::conditional_t<std::is_same_v<A, Pair>, A, B>;
+  Value even = a[0] * b[k];
+  if (k == 0) return even;
+  Value odd = a[1] * b[k - 1];  // two sums, which do not wait for each other
+  std::size_t j = 2;
+  for (; j < k; j += 2) {
+    even += a[j] * b[k - j];
+    odd += a[j + 1] * b[k - j - 1];
+  }
+  if (j == k) even += a[j] * b[0];
+  return Value(even + odd);
 }
 
 }  // namespace
@@ -73,24 +86,18 @@ TaylorStep TaylorStep::straight(PlanarState start, ForceLaw law, double target, 
 
 void TaylorStep::expand(ForceLaw law) {
   const double tau = width_;
-  Series sine{};
-  Series cosine{};
   Series rate{};  // of θ: (k + 1) θ_{k+1}
   const double shear = flexibility_.shear;
   const double extension = flexibility_.extension;
   const PlanarLaw& law_of_bending = flexibility_.law;
   const bool is_rigid = flexibility_.is_rigid();
   const bool has_law = law_of_bending.lengthening != 0 || law_of_bending.softening != 0;
-  Series rise{};       // z'
-  Series stretch{};    // of the middle line along the section's normal
-  Series moment_2{};   // M²
-  Series moment_4{};   // M⁴
-  Series softening{};  // of θ' beyond small strains, over M
-  const auto times_force = [&](const Series& a, std::size_t k) {
-    return law == ForceLaw::constant ? force_[0] * a[k] : product(force_, a, k);
-  };
-  sine[0] = std::sin(start_.theta);
-  cosine[0] = std::sin(start_.phi);
+  Pairs direction;   // sin θ, cos θ
+  Pairs beyond;      // M², and what the law adds to θ' over M
+  Pairs factors;     // M², M
+  Series rise{};     // z'
+  Series stretch{};  // s, of the middle line
+  direction[0] = {std::sin(start_.theta), std::sin(start_.phi)};
   theta_[0] = start_.theta;
   w_[0] = start_.w;
   z_[0] = start_.z;
@@ -101,26 +108,28 @@ void TaylorStep::expand(ForceLaw law) {
     const double over = 1 / static_cast<double>(k + 1);
     const double scale = tau * over;
     rate[k] = tau * flexibility_.bending * moment_[k];
-    double advance = sine[k];
-    rise[k] = cosine[k];
+    Pair advance = direction[k];  // w', z'
     if (!is_rigid) {
-      // dw/dS = s sin θ + g H, dz/dS = s cos θ with s = 1 + (x − g) H sin θ + p M².
-      const double axial = times_force(sine, k);
+      double axial = force_[0] * direction[k][0];  // H sin θ
+      if (law != ForceLaw::constant) axial = product(force_, direction, k)[0];
       stretch[k] = (extension - shear) * axial + (k == 0 ? 1 : 0);
       if (has_law) {
-        moment_2[k] = product(moment_, moment_, k);
-        moment_4[k] = product(moment_2, moment_2, k);
-        softening[k] = 2 * law_of_bending.lengthening * axial +
-                       law_of_bending.softening * moment_2[k] +
-                       law_of_bending.further_softening * moment_4[k];
-        rate[k] += tau * product(softening, moment_, k);
-        stretch[k] += law_of_bending.lengthening * moment_2[k];
+        const double square = product(moment_, moment_, k);
+        factors[k] = {square, moment_[k]};
+        // M⁴ first, of which the softening is made.
+        beyond[k] = {square, 0};
+        Pair sums = product(beyond, factors, k);
+        beyond[k][1] = 2 * law_of_bending.lengthening * axial + law_of_bending.softening * square +
+                       law_of_bending.further_softening * sums[0];
+        rate[k] += tau * (sums[1] + beyond[k][1] * moment_[0]);
+        stretch[k] += law_of_bending.lengthening * square;
       }
-      advance = product(stretch, sine, k) + shear * force_[k];
-      rise[k] = product(stretch, cosine, k);
+      advance = product(stretch, direction, k);
+      advance[0] += shear * force_[k];
     }
+    rise[k] = advance[1];
     theta_[k + 1] = over * rate[k];
-    w_[k + 1] = scale * advance;
+    w_[k + 1] = scale * advance[0];
     z_[k + 1] = scale * rise[k];
     if (law == ForceLaw::height) force_[k + 1] = -scale * rise[k];
     if (law == ForceLaw::length && k == 0) force_[1] = -tau;
@@ -129,10 +138,8 @@ void TaylorStep::expand(ForceLaw law) {
     if (law == ForceLaw::length && k > 0) torque += force_[1] * rise[k - 1];
     moment_[k + 1] = -scale * torque;
     // (sin θ)' = θ' cos θ, (cos θ)' = −θ' sin θ
-    const double sine_rate = product(rate, cosine, k);
-    const double cosine_rate = -product(rate, sine, k);
-    sine[k + 1] = over * sine_rate;
-    cosine[k + 1] = over * cosine_rate;
+    const Pair turned = product(rate, direction, k);
+    direction[k + 1] = {over * turned[1], -over * turned[0]};
   }
 }
 

@@ -31,15 +31,15 @@ void require_valid(const BeamOptions& options) {
 /// Load path of dead and flow loads: the equilibrium is followed from one load to the next.
 class PathSolver {
  public:
-  PathSolver(Cilium cilium, BeamOptions options, std::vector<joints::Joint> joints)
-      : cilium_(std::move(cilium)), options_(options), joints_(std::move(joints)) {}
+  PathSolver(Cilium cilium, BeamOptions options, joints::Corrections corrections)
+      : cilium_(std::move(cilium)), options_(options), corrections_(std::move(corrections)) {}
 
   MechanicsStep solve(const Load& load, const PathProgress& progress) {
     std::optional<double> load_at;
     if (const auto section = load.as<SectionLoad>()) load_at = section->arclength;
     if (!beam_ || load_at != load_at_) {
       load_at_ = load_at;
-      beam_ = cilium_beam(cilium_, options_, load_at, joints_);
+      beam_ = cilium_beam(cilium_, options_, load_at, corrections_);
       eigenvalue_at_rest_.reset();
       state_ = beam_->system.reference_state();
       applied_ = {};
@@ -77,7 +77,7 @@ class PathSolver {
     if (!eigenvalue_at_rest_) eigenvalue_at_rest_ = eigenvalue(system.reference_state(), {}, 0);
     step.unstable_modes = unstable_modes;
     // Joints of negative compliance have negative eigenvalues of their own, far below 0.
-    if (unstable_modes == 0 || joints_.empty())
+    if (unstable_modes == 0 || corrections_.empty())
       step.smallest_eigenvalue =
           eigenvalue(state_, applied_, unstable_modes) / *eigenvalue_at_rest_;
     if (unstable_modes > 0) step.message = not_stable(unstable_modes);
@@ -85,7 +85,7 @@ class PathSolver {
 
   Cilium cilium_;
   BeamOptions options_;
-  std::vector<joints::Joint> joints_;
+  joints::Corrections corrections_;
   std::optional<double> load_at_;
   std::optional<CiliumBeam> beam_;
   std::optional<double> eigenvalue_at_rest_;
@@ -130,10 +130,10 @@ MechanicsStep solve_step(const Cilium& cilium, const Load& load, PathSolver& pat
 
 std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
                                       const BeamOptions& options,
-                                      const std::vector<joints::Joint>& joints,
+                                      const joints::Corrections& corrections,
                                       const Progress& progress) {
-  PathSolver path_solver(cilium, options, joints);
-  ContactSolver contact_solver(cilium, options, joints);
+  PathSolver path_solver(cilium, options, corrections);
+  ContactSolver contact_solver(cilium, options, corrections);
   std::vector<MechanicsStep> steps;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -180,12 +180,12 @@ void turn(MechanicsResult& result, const LoadPath& path, double angle) {
 }
 
 MechanicsResult solve_all(const Cilium& cilium, const LoadPath& path, const BeamOptions& options,
-                          const std::vector<joints::Joint>& joints, const Progress& progress) {
+                          const joints::Corrections& corrections, const Progress& progress) {
   MechanicsResult result;
   const CiliumBeam straight = cilium_beam(cilium, options);
   result.undeformed.centreline = centreline(straight.system, straight.system.reference_state());
   result.steps = is_sweep(path) ? sweep::solve(cilium, path, options, progress)
-                                : solve_path(cilium, path, options, joints, progress);
+                                : solve_path(cilium, path, options, corrections, progress);
   return result;
 }
 
@@ -212,20 +212,20 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
     throw InputError("beam: joints = \"corrected\" takes no sweep: take joints = \"none\"");
   const joints::Corrections corrections =
       corrects ? joints::corrections(cilium) : joints::Corrections{};
-  MechanicsResult result = solve_all(cilium, path, options_, corrections.joints, progress);
+  MechanicsResult result = solve_all(cilium, path, options_, corrections, progress);
   if (corrects) joints::remark_on_strains(cilium, result.steps);
   if (options_.error_estimate) {
     BeamOptions higher = options_;
     higher.degree += companion_degrees;
-    result.companions.push_back(solve_all(cilium, path, higher, corrections.joints, {}));
+    result.companions.push_back(solve_all(cilium, path, higher, corrections, {}));
     result.error_parts = {{"degree", 1, 0, safety}};
     result.algebraic_error = is_sweep(path) ? sweep_error : rounding;
     for (std::size_t i = 0; i < path.size(); ++i)
       result.steps[i].seconds += result.companions.front().steps[i].seconds;
     if (corrects)
-      joints::add_companion(result, corrections,
-                            [&](const LoadPath& loads, const std::vector<joints::Joint>& joints) {
-                              return solve_path(cilium, loads, options_, joints, {});
+      joints::add_companion(result, cilium, corrections,
+                            [&](const LoadPath& loads, const joints::Corrections& changed) {
+                              return solve_path(cilium, loads, options_, changed, {});
                             });
     estimate_errors(result);
     sweep::forget_uncertainties_near_jumps(result);

@@ -27,12 +27,12 @@ SectionStiffness stiffness(const Cilium& cilium, const Segment& s) {
   }
 }
 
-Section segment_section(const Cilium& cilium, std::size_t segment, const BeamOptions& options) {
+Section segment_section(const Cilium& cilium, std::size_t segment, const BeamOptions& options,
+                        const joints::Corrections& corrections) {
   const Segment& s = cilium.segments[segment];
   Section law = section(stiffness(cilium, s));
   if (options.shear_rigid) return rigid_in_shear(law);
-  if (options.joints == joints::Correction::corrected)
-    law.beyond = joints::bending_law(cilium.diameter, s);
+  if (!corrections.empty()) law.beyond = corrections.laws[segment];
   return law;
 }
 
@@ -49,11 +49,11 @@ void append(Mesh& mesh, double end, const Section& law, const BeamOptions& optio
 }
 
 /// Appends the joint below segment k.
-void append_joint(Mesh& mesh, double S, std::span<const joints::Joint> joints, std::size_t k) {
-  if (joints.empty()) return;
+void append_joint(Mesh& mesh, double S, const joints::Corrections& corrections, std::size_t k) {
+  if (corrections.empty()) return;
   if (mesh.vertices.empty()) mesh.vertices.push_back(S);
   mesh.vertices.push_back(S);
-  mesh.sections.push_back(joint_section(joints[k]));
+  mesh.sections.push_back(joint_section(corrections.joints[k]));
 }
 
 CiliumBeam finished(Mesh mesh, std::size_t loaded, const Cilium& cilium) {
@@ -66,15 +66,15 @@ CiliumBeam finished(Mesh mesh, std::size_t loaded, const Cilium& cilium) {
 }  // namespace
 
 CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
-                       std::optional<double> load_at, std::span<const joints::Joint> joints) {
+                       std::optional<double> load_at, const joints::Corrections& corrections) {
   const std::vector<double> ends = cilium.interfaces();
   const double L = ends.back();
   Mesh mesh;
   mesh.degree = options.degree;
   std::size_t loaded = 0;
   for (std::size_t k = 0; k < cilium.segments.size(); ++k) {
-    const Section law = segment_section(cilium, k, options);
-    append_joint(mesh, ends[k], joints, k);
+    const Section law = segment_section(cilium, k, options, corrections);
+    append_joint(mesh, ends[k], corrections, k);
     const bool inside = load_at && *load_at > ends[k] && *load_at < ends[k + 1];
     if (inside) {
       append(mesh, *load_at, law, options);
@@ -87,15 +87,16 @@ CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
 }
 
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
-                                          std::size_t host, std::span<const joints::Joint> joints) {
+                                          std::size_t host,
+                                          const joints::Corrections& corrections) {
   const std::vector<double> ends = cilium.interfaces();
   const std::size_t n = std::size_t{1} << options.refinement;
   Mesh mesh;
   mesh.degree = options.degree;
   std::size_t loaded = 0;
   for (std::size_t k = 0; k < cilium.segments.size(); ++k) {
-    const Section law = segment_section(cilium, k, options);
-    append_joint(mesh, ends[k], joints, k);
+    const Section law = segment_section(cilium, k, options, corrections);
+    append_joint(mesh, ends[k], corrections, k);
     if (k == host) {
       append(mesh, ends[k], law, options);
       loaded = mesh.n_elements();

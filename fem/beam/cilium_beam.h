@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "fem/beam/beam.h"
@@ -21,17 +20,17 @@ struct CiliumBeam {
 };
 
 /// Clamped straight beam with 2^refinement equal elements between segment interfaces and `load_at`
-/// (m), if given. `loaded` is the vertex at load_at, else the tip. Each of the joints, if there are
-/// any, is an element of length zero below its segment; a load at an interface acts below it.
+/// (m), if given. `loaded` is the vertex at load_at, else the tip. Each joint, if they are
+/// corrected, is an element of length zero below its segment; a load at an interface acts below it.
 CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
                        std::optional<double> load_at = {},
-                       std::span<const joints::Joint> joints = {});
+                       const joints::Corrections& corrections = {});
 
 /// The same with a vertex that moves inside segment `host`, at S_host + s for State::shift s: the
 /// elements of the host below and above it stretch and shrink in proportion and may vanish.
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
                                           std::size_t host,
-                                          std::span<const joints::Joint> joints = {});
+                                          const joints::Corrections& corrections = {});
 
 /// Weight and field of the environment that acts under the load.
 Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam);

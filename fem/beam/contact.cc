@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -107,10 +106,10 @@ struct SunkTip {
   double deflection = 0;  ///< m
 };
 std::optional<SunkTip> force_that_sinks_the_tip(const Cilium& cilium, const BeamOptions& options,
-                                                std::span<const joints::Joint> joints,
+                                                const joints::Corrections& corrections,
                                                 const Load& load, int& iterations) {
   const double height = contact_height(load).value();
-  CiliumBeam beam = cilium_beam(cilium, options, cilium.length(), joints);
+  CiliumBeam beam = cilium_beam(cilium, options, cilium.length(), corrections);
   const NewtonOptions newton_options{
       options.tolerance, options.max_iterations, options.max_cutbacks, {}, largest_turn(load)};
   const int last = iterations + search_limit;
@@ -170,7 +169,7 @@ double ContactSolver::magnitude_of(const Loaded& trial) const {
 std::optional<double> ContactSolver::untouched_arclength(const Load& load,
                                                          MechanicsStep& step) const {
   const double height = contact_height(load).value();
-  CiliumBeam beam = cilium_beam(cilium_, options_, {}, joints_);
+  CiliumBeam beam = cilium_beam(cilium_, options_, {}, corrections_);
   State state = beam.system.reference_state();
   const PathReport report = advance(
       beam.system, state, {}, environment_loads(cilium_, load, beam),
@@ -202,7 +201,7 @@ bool ContactSolver::stand_untouched(const Load& load, MechanicsStep& step) {
   const std::vector<double> ends = cilium_.interfaces();
   const std::size_t last = cilium_.segments.size() - 1;
   for (host_ = 0; host_ < last && ends[host_ + 1] <= *arclength + at_end * ends.back();) ++host_;
-  beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_, joints_);
+  beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_, corrections_);
   current_ = {beam_->system.reference_state(std::max(*arclength - ends[host_], 0.0)), 0};
   last_ = with_magnitude(load, 0);
   entry_magnitude_ = 0;
@@ -324,21 +323,21 @@ bool ContactSolver::enter_next_segment(const Load& load, MechanicsStep& step) {
   const std::size_t contact = beam_->loaded * p;
   const std::size_t n = std::size_t{1} << options_.refinement;
   ++host_;
-  beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_, joints_);
+  beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_, corrections_);
   State& state = current_.state;
   const Vector3 force = state.rotation[contact].conjugate() * (current_.force * direction(*last_));
-  const std::size_t loaded = joints_.empty() ? n : n + 1;  // elements
+  const std::size_t loaded = corrections_.empty() ? n : n + 1;  // elements
   for (std::size_t k = contact; k < contact + loaded * p; ++k) {
     state.force[k] = force;
     state.moment[k].setZero();
   }
   state.shift = 0;
-  if (!joints_.empty()) {
+  if (!corrections_.empty()) {
     if (!find_force(current_, step)) return false;
     last_ = with_magnitude(*last_, magnitude_of(current_));
   }
   entry_magnitude_ = magnitude(*last_);
-  if (joints_.empty() || entry_magnitude_ <= magnitude(load) * (1 + 1e-9)) return true;
+  if (corrections_.empty() || entry_magnitude_ <= magnitude(load) * (1 + 1e-9)) return true;
   step.message = "the contact is at an interface of two segments, between the sides of its joint";
   return false;
 }
@@ -380,7 +379,8 @@ MechanicsStep ContactSolver::solve(const Load& load, const PathProgress& progres
     leg = enter_next_segment(load, step) ? follow(load, step, progress) : Leg::failed;
   }
   if (leg == Leg::failed) {
-    const auto sunk = force_that_sinks_the_tip(cilium_, options_, joints_, load, step.iterations);
+    const auto sunk =
+        force_that_sinks_the_tip(cilium_, options_, corrections_, load, step.iterations);
     if (sunk && is_beyond({sunk->force, sunk->deflection})) {
       last_.reset();
       return slip({sunk->force, sunk->deflection});

@@ -19,8 +19,8 @@ namespace ciliaval::fem::beam {
 /// segment the contact slips off.
 class ContactSolver {
  public:
-  ContactSolver(Cilium cilium, BeamOptions options, std::vector<joints::Joint> joints)
-      : cilium_(std::move(cilium)), options_(options), joints_(std::move(joints)) {}
+  ContactSolver(Cilium cilium, BeamOptions options, joints::Corrections corrections)
+      : cilium_(std::move(cilium)), options_(options), corrections_(std::move(corrections)) {}
 
   /// The load is a ContactLoad or a ProbeLoad.
   MechanicsStep solve(const Load& load, const PathProgress& progress);
@@ -75,7 +75,7 @@ class ContactSolver {
 
   Cilium cilium_;
   BeamOptions options_;
-  std::vector<joints::Joint> joints_;
+  joints::Corrections corrections_;
   std::map<double, SlipOff> slip_offs_;  ///< by height, in this environment:
   surroundings::Environment environment_;
   std::optional<CiliumBeam> beam_;

@@ -48,15 +48,15 @@ CentrelinePoint pose(const Bar& bar, const Centreline& line) {
 
 CentrelinePoint by_beam(const Bar& bar, double strain, const Layers& layers) {
   const Cilium cilium = bar.cilium();
-  std::vector<joints::Joint> joints = joints::corrections(cilium).joints;
-  const joints::BendingLaw law = joints::bending_law(d, cilium.segments[0]);
-  for (joints::Joint& joint : joints)
+  joints::Corrections corrections = joints::corrections(cilium);
+  const joints::BendingLaw& law = corrections.laws[0];
+  for (joints::Joint& joint : corrections.joints)
     joint.beyond = {-layers[1] * d * law.lengthening, -layers[0] * d * law.softening,
                     -layers[0] * d * law.further_softening};
   const fem::beam::BeamOptions options{.joints = joints::Correction::corrected};
   const Load load = bar.load(strain);
   fem::beam::CiliumBeam beam =
-      fem::beam::cilium_beam(cilium, options, bar.load(strain).arclength, joints);
+      fem::beam::cilium_beam(cilium, options, bar.load(strain).arclength, corrections);
   fem::beam::State state = beam.system.reference_state();
   const auto report =
       fem::beam::advance(beam.system, state, {}, fem::beam::loads(cilium, load, beam), {});

@@ -22,21 +22,16 @@ std::vector<double> strains(const Cilium& cilium, const Centreline& centreline) 
   return result;
 }
 
-std::vector<Joint> changed_joints(const Corrections& corrections) {
-  std::vector<Joint> joints = corrections.joints;
-  for (std::size_t i = 0; i < joints.size(); ++i) joints[i] += corrections.uncertainties[i];
-  return joints;
-}
-
-void add_companion(MechanicsResult& result, const Corrections& corrections, const Solve& solve) {
+void add_companion(MechanicsResult& result, const Cilium& cilium, Corrections corrections,
+                   const Solve& solve) {
   LoadPath path;
   for (const MechanicsStep& step : result.steps) {
     const bool is_probe = step.load.is<ProbeLoad>();
     path.push_back(is_probe ? with_magnitude(step.load, (1 + probe_error) * magnitude(step.load))
                             : step.load);
   }
-  result.companions.push_back(
-      {.undeformed = result.undeformed, .steps = solve(path, changed_joints(corrections))});
+  corrections += uncertainties(cilium);
+  result.companions.push_back({.undeformed = result.undeformed, .steps = solve(path, corrections)});
   result.error_parts.push_back({"joints", result.companions.size(), 0, 1});
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     result.steps[i].seconds += result.companions.back().steps[i].seconds;

@@ -19,15 +19,14 @@ inline constexpr double probe_error = 6e-4;
 /// The largest ε of each segment.
 std::vector<double> strains(const Cilium& cilium, const Centreline& centreline);
 
-/// The joints as they are if all are wrong by their uncertainties.
-std::vector<Joint> changed_joints(const Corrections& corrections);
+/// Solves a path with other corrections than the result's.
+using Solve =
+    std::function<std::vector<MechanicsStep>(const LoadPath& path, const Corrections& corrections)>;
 
-/// Solves a path with other joints than the result's.
-using Solve = std::function<std::vector<MechanicsStep>(const LoadPath& path,
-                                                       const std::vector<Joint>& joints)>;
-
-/// Adds the companion with the changed joints and probes, and its error part "joints".
-void add_companion(MechanicsResult& result, const Corrections& corrections, const Solve& solve);
+/// Adds the companion whose corrections and probes are wrong by what they are uncertain by, and its
+/// error part "joints".
+void add_companion(MechanicsResult& result, const Cilium& cilium, Corrections corrections,
+                   const Solve& solve);
 
 /// Adds a remark to the converged steps in which the ε of a segment is above largest_strain.
 void remark_on_strains(const Cilium& cilium, std::vector<MechanicsStep>& steps);

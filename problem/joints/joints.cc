@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "problem/error.h"
 #include "problem/joints/shear_coefficient.h"
@@ -19,8 +20,9 @@ namespace {
 constexpr double half_ratio = 0.2;  // κ
 /// Of the table between its nodes and of the end problem's elements, at most.
 constexpr Entry table_error{1e-4, 1e-4, 1e-4, 3e-4};
-/// Of the layers' bending law, relative.
+/// Of the layers' part of the bending law and of the law itself, relative.
 constexpr double layer_error = 0.15;
+constexpr double law_error = 0.25;
 
 double ratio_coordinate(double t) {
   return t * (1 + half_ratio) / (t + half_ratio);
@@ -98,10 +100,16 @@ Layer layer(double poisson, double t, double length) {
           held * std::max(0.26 * poisson - 0.018, 0.0)};
 }
 
-BendingLaw less(const Layer& layer, double diameter, const BendingLaw& law) {
-  return {-layer.lengthening * diameter * law.lengthening,
-          -layer.softening * diameter * law.softening,
-          -layer.softening * diameter * law.further_softening};
+BendingLaw& operator+=(BendingLaw& a, const BendingLaw& b) {
+  a.lengthening += b.lengthening;
+  a.softening += b.softening;
+  a.further_softening += b.further_softening;
+  return a;
+}
+
+BendingLaw scaled(const BendingLaw& law, double lengthening, double softening) {
+  return {lengthening * law.lengthening, softening * law.softening,
+          softening * law.further_softening};
 }
 
 /// Units of an Entry for a material.
@@ -123,6 +131,30 @@ double shear_difference(double diameter, const Segment& segment) {
   const double GA = segment.shear_modulus() * std::numbers::pi * diameter * diameter / 4;
   return (1 / energy_shear_coefficient(nu) - 1 / cowper_shear_coefficient(nu)) / GA;
 }
+
+/// Both sides of the joint below segment i.
+struct Interface {
+  const Segment* soft;
+  const Segment* stiff;            ///< of a clamp, as it has no material: the soft one
+  double ratio = 0;                ///< of their moduli, at most 1
+  bool is_between_joints = false;  ///< the soft one
+
+  Interface(const std::vector<Segment>& segments, std::size_t i)
+      : soft(&segments[i]), stiff(i == 0 ? soft : &segments[i - 1]) {
+    if (i > 0) ratio = soft->young_modulus / stiff->young_modulus;
+    is_between_joints = i + 1 < segments.size();
+    if (ratio <= 1) return;
+    std::swap(soft, stiff);
+    ratio = 1 / ratio;
+    is_between_joints = true;
+  }
+  bool is_soft_below() const { return soft < stiff; }
+  Layer layer(double diameter) const {
+    return joints::layer(
+        soft->poisson_ratio, ratio,
+        is_between_joints ? soft->length / diameter : std::numeric_limits<double>::infinity());
+  }
+};
 
 void require_in_table(const Cilium& cilium) {
   const std::string what = "joints = \"corrected\": ";
@@ -160,9 +192,13 @@ Joint& operator+=(Joint& a, const Joint& b) {
   a.coupling += b.coupling;
   a.displacement += b.displacement;
   a.extension += b.extension;
-  a.beyond.lengthening += b.beyond.lengthening;
-  a.beyond.softening += b.beyond.softening;
-  a.beyond.further_softening += b.beyond.further_softening;
+  a.beyond += b.beyond;
+  return a;
+}
+
+Corrections& operator+=(Corrections& a, const Corrections& b) {
+  for (std::size_t i = 0; i < a.joints.size(); ++i) a.joints[i] += b.joints[i];
+  for (std::size_t i = 0; i < a.laws.size(); ++i) a.laws[i] += b.laws[i];
   return a;
 }
 
@@ -184,44 +220,44 @@ Corrections corrections(const Cilium& cilium) {
   require_in_table(cilium);
   const double d = cilium.diameter;
   const std::vector<Segment>& segments = cilium.segments;
-  const std::size_t n = segments.size();
-  Corrections result{std::vector<Joint>(n), std::vector<Joint>(n)};
-  // t of the bodies below and above segment i, as it sees them.
-  const auto ratio_below = [&](std::size_t i) {
-    return i == 0 ? 0 : segments[i].young_modulus / segments[i - 1].young_modulus;
-  };
-  const auto ratio_above = [&](std::size_t i) {
-    return segments[i].young_modulus / segments[i + 1].young_modulus;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const double t = ratio_below(i);
-    const bool soft_below = t > 1;
-    const Segment& soft = soft_below ? segments[i - 1] : segments[i];
-    const Segment& stiff = soft_below || i == 0 ? segments[i] : segments[i - 1];
-    const double softer = soft_below ? 1 / t : t;
-    Entry entry = joint_alone(soft.poisson_ratio, stiff.poisson_ratio, softer);
-    if (!soft_below) entry.coupling = -entry.coupling;
-    result.joints[i] = scaled(entry, d, soft.young_modulus);
-    result.joints[i].coupling += shear_difference(d, segments[i]) / 2;
-    if (i > 0) result.joints[i].coupling -= shear_difference(d, segments[i - 1]) / 2;
-    result.uncertainties[i] = scaled(table_error, d, soft.young_modulus);
-    const bool has_two_joints = soft_below || i + 1 < n;
-    const double length =
-        has_two_joints ? soft.length / d : std::numeric_limits<double>::infinity();
-    const Layer held = layer(soft.poisson_ratio, softer, length);
-    const BendingLaw law = bending_law(d, soft);
-    result.joints[i].beyond = less(held, d, law);
-    result.uncertainties[i].beyond =
-        less({layer_error * held.softening, layer_error * held.lengthening}, d, law);
+  Corrections result;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Interface at(segments, i);
+    Entry entry = joint_alone(at.soft->poisson_ratio, at.stiff->poisson_ratio, at.ratio);
+    if (!at.is_soft_below()) entry.coupling = -entry.coupling;
+    Joint joint = scaled(entry, d, at.soft->young_modulus);
+    joint.coupling += shear_difference(d, segments[i]) / 2;
+    if (i > 0) joint.coupling -= shear_difference(d, segments[i - 1]) / 2;
+    const Layer held = at.layer(d);
+    joint.beyond = scaled(bending_law(d, *at.soft), -held.lengthening * d, -held.softening * d);
+    result.joints.push_back(joint);
+    result.laws.push_back(bending_law(d, segments[i]));
   }
-  for (std::size_t i = 0; i + 1 < n; ++i) {
+  for (std::size_t i = 0; i + 1 < segments.size(); ++i) {
     const double length = segments[i].length / d;
-    Entry half = joints_together(segments[i].poisson_ratio, ratio_below(i), ratio_above(i), length);
+    const double t_below = i == 0 ? 0 : segments[i].young_modulus / segments[i - 1].young_modulus;
+    const double t_above = segments[i].young_modulus / segments[i + 1].young_modulus;
+    Entry half = joints_together(segments[i].poisson_ratio, t_below, t_above, length);
     // M² at the middle is the mean of M² at the ends less Q² L²/4.
     half.displacement -= half.rotation * length * length / 4;
     for (const auto component : components) half.*component /= 2;
     const Joint joint = scaled(half, d, segments[i].young_modulus);
     for (const std::size_t j : {i, i + 1}) result.joints[j] += joint;
+  }
+  return result;
+}
+
+Corrections uncertainties(const Cilium& cilium) {
+  const double d = cilium.diameter;
+  Corrections result;
+  for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
+    const Interface at(cilium.segments, i);
+    Joint joint = scaled(table_error, d, at.soft->young_modulus);
+    const Layer held = at.layer(d);
+    joint.beyond = scaled(bending_law(d, *at.soft), layer_error * held.lengthening * d,
+                          layer_error * held.softening * d);
+    result.joints.push_back(joint);
+    result.laws.push_back(scaled(bending_law(d, cilium.segments[i]), law_error, law_error));
   }
   return result;
 }

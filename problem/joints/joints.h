@@ -40,14 +40,24 @@ struct Joint {
 
 Joint& operator+=(Joint& a, const Joint& b);
 
-/// The joints at S₀ … S_{N−1}, the clamp first, and what their numbers are uncertain by.
+/// What a corrected rod has beyond the paper's: of each segment the joint at its lower end, the
+/// clamp first, and the law of bending. Empty: nothing.
 struct Corrections {
-  std::vector<Joint> joints;
-  std::vector<Joint> uncertainties;
+  std::vector<Joint> joints{};
+  std::vector<BendingLaw> laws{};
+
+  bool empty() const { return joints.empty(); }
 };
+
+Corrections& operator+=(Corrections& a, const Corrections& b);
 
 /// Throws InputError, with what to do, where the table does not reach: a section that is no circle,
 /// a segment shorter than 0.3 diameters, Poisson's ratio or a ratio of moduli outside of it.
 Corrections corrections(const Cilium& cilium);
+
+/// What the corrections are uncertain by, all to the softer side, so that they add up: 1e-4 d/EI
+/// (3e-4 d/EA) of the table, 15 % of a joint's law, 25 % of a segment's, for what is of its order
+/// and left out of it (docs/theory/joints.md).
+Corrections uncertainties(const Cilium& cilium);
 
 }  // namespace ciliaval::joints

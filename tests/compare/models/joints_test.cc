@@ -202,8 +202,8 @@ int unstable_modes(double lambda, double a) {
   const Cilium rod{d, {{"rod", 1, 64 / (std::numbers::pi * std::pow(d, 4)), 0.3, 1 / area}}};
   BeamOptions options;
   options.shear_rigid = true;
-  fem::beam::CiliumBeam beam =
-      fem::beam::cilium_beam(rod, options, {}, std::vector{joints::Joint{.rotation = a}});
+  const joints::Corrections corrections{{{.rotation = a}}, {{}}};
+  fem::beam::CiliumBeam beam = fem::beam::cilium_beam(rod, options, {}, corrections);
   fem::beam::State state = beam.system.reference_state();
   const fem::beam::Loads loads = fem::beam::loads(
       rod, with_environment(EnvironmentLoad{}, {.uniform_field = {0, 0, -lambda}}), beam);

@@ -83,7 +83,7 @@ void compare(const char* what, double z,
     const std::vector<Bar> bars = draw(random);
     const Excess own = corrected(bars, z);
     const Excess exact = fem::end_problem::excess(bars, Base::clamped, z);
-    const Excess bound = together(corrections(cilium(bars)).uncertainties, bars, z);
+    const Excess bound = together(uncertainties(cilium(bars)).joints, bars, z);
     for (const auto part :
          {&Excess::rotation, &Excess::coupling, &Excess::displacement, &Excess::extension}) {
       const double error = std::abs(own.*part - exact.*part);
