@@ -22,7 +22,7 @@ constexpr double half_ratio = 0.2;  // κ
 constexpr Entry table_error{1e-4, 1e-4, 1e-4, 3e-4};
 /// Of the layers' part of the bending law and of the law itself, relative.
 constexpr double layer_error = 0.15;
-constexpr double law_error = 0.25;
+constexpr double law_error = 0.2;
 
 double ratio_coordinate(double t) {
   return t * (1 + half_ratio) / (t + half_ratio);

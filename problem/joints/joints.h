@@ -56,7 +56,7 @@ Corrections& operator+=(Corrections& a, const Corrections& b);
 Corrections corrections(const Cilium& cilium);
 
 /// What the corrections are uncertain by, all to the softer side, so that they add up: 1e-4 d/EI
-/// (3e-4 d/EA) of the table, 15 % of a joint's law, 25 % of a segment's, for what is of its order
+/// (3e-4 d/EA) of the table, 15 % of a joint's law, 20 % of a segment's, for what is of its order
 /// and left out of it (docs/theory/joints.md).
 Corrections uncertainties(const Cilium& cilium);
 

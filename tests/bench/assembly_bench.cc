@@ -126,8 +126,8 @@ void stiffness(benchmark::State& run, const Hyperelastic& material) {
   BentCilium cilium(material);
   for (auto _ : run) {
     cilium.matrix() = 0;
-    add_stiffness(cilium.space(), cilium.state(), cilium.internal(), cilium.constraints(),
-                  cilium.matrix());
+    AssembledTangent tangent(cilium.constraints(), cilium.matrix());
+    add_stiffness(cilium.space(), cilium.state(), cilium.internal(), tangent);
   }
   count_points(run, cilium.points());
   dealii::MultithreadInfo::set_thread_limit(1);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The speed-up by two ranks, table of docs/measurements/solid.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank with one
+# Speed-up and memory of two ranks, table of docs/measurements/solid.md: `ciliaval run` of the paper's fig3b, solid and `line` alone, on one rank with one
 # thread and under mpirun on two; start of the program, coarser meshes and VTK included. 15 minutes on a quiet machine.
 # Usage: tests/bench/ranks.sh [PROGRAM [ROW …]]   (default: build/release/ciliaval, all rows; a row is mesh:refinement:solver:loads)
 # Loads: 2 mN with 1, else so many equal steps up to 4 mN.
@@ -26,25 +26,32 @@ write_case() {
     "$refinement" "$solver" "$([ "$mesh" = half ] && echo true || echo false)"
 }
 
-# Wall seconds of a command; what it prints stands in `log`.
-seconds() {
-  local start=$EPOCHREALTIME
-  "$@" >log 2>&1 || { cat log >&2; echo "error: $* failed" >&2; exit 1; }
-  awk -v a="$start" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.2f", b - a }'
+# Wall seconds of a command, and the largest memory of one of the program's processes in GB; what it prints stands in `log`.
+measured() {
+  local start=$EPOCHREALTIME job peak=0 now
+  "$@" >log 2>&1 &
+  job=$!
+  while kill -0 "$job" 2>/dev/null; do
+    now=$(for p in $(pgrep -x "$(basename "$program")"); do cat "/proc/$p/status" 2>/dev/null || true; done | awk '/VmHWM/ && $2 > m { m = $2 } END { print m + 0 }')
+    ((now <= peak)) || peak=$now
+    sleep 0.1
+  done
+  wait "$job" || { cat log >&2; echo "error: $* failed" >&2; exit 1; }
+  awk -v a="$start" -v b="$EPOCHREALTIME" -v m="$peak" 'BEGIN { printf "%.2f %.2f", b - a, m * 1024 / 1e9 }'
 }
 
 # The three numbers of each step's tip, in one column.
 tips() { tr -d ' \n' < "$1/ranks/summary.json" | grep -o '"tip":\[[^]]*\]' | sed 's/.*\[//; s/\]//' | tr ',' '\n'; }
 
-echo '| mesh | refinement | solver | loads | unknowns | one rank, s | two ranks, s | ratio | tips apart by, m |'
-echo '|---|---|---|---|---|---|---|---|---|'
+echo '| mesh | refinement | solver | loads | unknowns | one rank, s | two ranks, s | ratio | one rank, GB | two ranks, GB each | tips apart by, m |'
+echo '|---|---|---|---|---|---|---|---|---|---|---|'
 for row in "${rows[@]}"; do
   IFS=: read -r mesh refinement solver loads <<< "$row"
   write_case "$mesh" "$refinement" "$solver" "$loads" > case.toml
-  one=$(DEAL_II_NUM_THREADS=1 seconds "$program" run case.toml -o one)
-  two=$(seconds mpirun -np 2 "$program" run case.toml -o two)
+  read -r one one_memory <<< "$(DEAL_II_NUM_THREADS=1 measured "$program" run case.toml -o one)"
+  read -r two two_memory <<< "$(measured mpirun -np 2 "$program" run case.toml -o two)"
   unknowns=$(tr -d ' \n' < one/ranks/summary.json | grep -o '"unknowns":[0-9]*' | head -1 | cut -d: -f2)
   apart=$(paste <(tips one) <(tips two) | awk '{ d = $1 - $2; d = d < 0 ? -d : d; m = d > m ? d : m } END { printf "%.1e", m }')
-  awk -v a="$one" -v b="$two" -v row="| $mesh | $refinement | $solver | $loads | $unknowns |" -v apart="$apart" \
-    'BEGIN { printf "%s %s | %s | %.2f | %s |\n", row, a, b, a / b, apart }'
+  awk -v a="$one" -v b="$two" -v row="| $mesh | $refinement | $solver | $loads | $unknowns |" -v apart="$apart" -v memory="$one_memory | $two_memory" \
+    'BEGIN { printf "%s %s | %s | %.2f | %s | %s |\n", row, a, b, a / b, memory, apart }'
 done

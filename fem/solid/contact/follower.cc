@@ -130,15 +130,16 @@ std::optional<ContactState> Follower::attempt(const SweepPlace& place, const Con
   ContactState state{place, start, from.memory, {}, 0, Vector3::Zero()};
   const loads::ExternalForces touch = contact_forces(nodes_, state.memory, surface, law_);
   const auto external = [&](const dealii::Vector<double>& u, dealii::Vector<double>& forces,
-                            const dealii::AffineConstraints<double>& constraints,
-                            dealii::SparseMatrix<double>* matrix) {
-    touch(u, forces, constraints, matrix);
+                            discretisation::TangentMatrix* tangent) {
+    touch(u, forces, tangent);
     forces.add(place.hold, hold_);
     if (brake.damping == 0) return;
+    dealii::FullMatrix<double> diagonal(1, 1);
     for (dealii::types::global_dof_index i = 0; i < u.size(); ++i) {
       const double rate = brake.damping * volumes_[i];
       forces[i] -= rate * (u[i] - from.solid.displacement[i]);
-      if (matrix != nullptr) matrix->diag_element(i) += rate;
+      diagonal(0, 0) = rate;
+      if (tangent != nullptr) tangent->add(diagonal, std::array{i});
     }
   };
   for (int update = 0;; ++update) {

@@ -69,15 +69,11 @@ void for_each_face(const SolidSpace& space, const Visit& visit) {
     }
 }
 
-void subtract(const ContactNode& node, const Matrix3& derivative,
-              const dealii::AffineConstraints<double>& constraints,
-              dealii::SparseMatrix<double>& matrix) {
+void subtract(const ContactNode& node, const Matrix3& derivative, TangentMatrix& tangent) {
   dealii::FullMatrix<double> block(3, 3);
   for (unsigned int i = 0; i < 3; ++i)
     for (unsigned int j = 0; j < 3; ++j) block(i, j) = -derivative(i, j);
-  constraints.distribute_local_to_global(
-      block, std::vector<dealii::types::global_dof_index>(node.dofs.begin(), node.dofs.end()),
-      matrix);
+  tangent.add(block, node.dofs);
 }
 
 }  // namespace
@@ -221,8 +217,7 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
                                      const RigidSurface& surface, const ContactLaw& law) {
   return [&nodes, &memory, surface, law, expected = std::vector<ExpectedNormal>(nodes.size())](
              const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-             const dealii::AffineConstraints<double>& constraints,
-             dealii::SparseMatrix<double>* matrix) mutable {
+             TangentMatrix* tangent) mutable {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const Vector3 x = nodes[i].position(displacement);
       const SurfacePoint point = surface_point(surface, x);
@@ -230,7 +225,7 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
       const NodeForce force = node_force(point, surface.direction, memory[i], law, normal);
       if (memory[i].state == NodeState::free) continue;
       for (unsigned int c = 0; c < 3; ++c) forces[nodes[i].dofs[c]] += force.force[c];
-      if (matrix != nullptr) subtract(nodes[i], force.derivative, constraints, *matrix);
+      if (tangent != nullptr) subtract(nodes[i], force.derivative, *tangent);
     }
   };
 }

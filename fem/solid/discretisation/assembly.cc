@@ -18,8 +18,6 @@ namespace {
 using ElementVector = Eigen::Matrix<double, element_dofs, 1>;
 using NodalVectors = Eigen::Matrix<double, element_nodes, 3>;
 /// ∂N_a/∂X_J at all Gauss points, of a size that is known when compiling.
-using Gradients = Eigen::Map<const Eigen::Matrix<double, element_nodes, 3 * element_points>>;
-using GlobalDofs = std::vector<dealii::types::global_dof_index>;
 
 /// One element's share, from the parallel worker to the serial copier.
 struct ForceShare {
@@ -31,14 +29,10 @@ struct ForceShare {
 
 struct StiffnessShare {
   dealii::FullMatrix<double> matrix = dealii::FullMatrix<double>(element_dofs, element_dofs);
-  GlobalDofs dofs = GlobalDofs(element_dofs);
+  std::size_t index = 0;
 };
 
 struct NoScratch {};
-
-Gradients gradients(const SolidElement& element) {
-  return Gradients(element.gradients.data());
-}
 
 /// F = 1 + Σ u_a ⊗ ∂N_a/∂X at all Gauss points: columns 3q + J.
 Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(
@@ -46,9 +40,26 @@ Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(
   const NodalVectors u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, 3, 3 * element_points> F;
   // Eigen's blocked product is meant for large matrices and slower here.
-  F = u.transpose().lazyProduct(gradients(element));
-  for (Eigen::Index q = 0; q < element_points; ++q) F.middleCols<3>(3 * q) += Matrix3::Identity();
+  F = u.transpose().lazyProduct(unit_gradients());
+  for (Eigen::Index q = 0; q < element_points; ++q) {
+    const Matrix3 by_unit = F.middleCols<3>(3 * q);
+    F.middleCols<3>(3 * q).noalias() =
+        by_unit.lazyProduct(element.inverse_jacobians.middleCols<3>(3 * q));
+    F.middleCols<3>(3 * q) += Matrix3::Identity();
+  }
   return F;
+}
+
+/// Fluxes by ξ from fluxes by X, row 3q + J.
+template <int columns>
+Eigen::Matrix<double, 3 * element_points, columns> to_unit_cell(
+    const SolidElement& element, Eigen::Matrix<double, 3 * element_points, columns> fluxes) {
+  for (Eigen::Index q = 0; q < element_points; ++q) {
+    const Eigen::Matrix<double, 3, columns> by_X = fluxes.template middleRows<3>(3 * q);
+    fluxes.template middleRows<3>(3 * q).noalias() =
+        element.inverse_jacobians.middleCols<3>(3 * q).lazyProduct(by_X);
+  }
+  return fluxes;
 }
 
 /// J F⁻ᵀ.
@@ -87,7 +98,7 @@ void force_share(const SolidElement& element, const SolidState& state, std::size
   }
   share.admissible = true;
   Eigen::Matrix<double, element_nodes, 3 + 3 * element_pressures> sums;
-  sums.noalias() = gradients(element) * fluxes;
+  sums.noalias() = unit_gradients() * to_unit_cell(element, fluxes);
   share.forces = sums.leftCols<3>().reshaped();
   for (Eigen::Index c = 0; c < 3; ++c)
     equation.gradient.middleCols<element_nodes>(c * element_nodes) =
@@ -103,6 +114,7 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
                        const PressureEquation& equation, dealii::FullMatrix<double>& matrix) {
   using Block = Eigen::Matrix<double, element_nodes, element_nodes>;
   const auto F = deformation_gradients(element, state.displacement);
+  const ShapeGradients gradients = element.gradients();
   std::array<StressTangent, element_points> tangents;
   for (Eigen::Index q = 0; q < element_points; ++q) {
     const double p = element.pressure_values.col(q).dot(state.pressure[index]);
@@ -123,15 +135,15 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
       const auto first_column = element_nodes * k;
       for (Eigen::Index q = 0; q < element_points; ++q)
         flux.middleCols<3>(3 * q).noalias() =
-            gradients(element).middleCols<3>(3 * q) *
+            gradients.middleCols<3>(3 * q) *
             tangents[static_cast<std::size_t>(q)].block<3, 3>(3 * i, 3 * k).transpose();
       block.noalias() = equation.gradient.middleCols<element_nodes>(first_row).transpose() *
                         pressure.middleCols<element_nodes>(first_column);
       if (i == k) {
-        block.triangularView<Eigen::Lower>() += gradients(element) * flux.transpose();
+        block.triangularView<Eigen::Lower>() += gradients * flux.transpose();
         block.triangularView<Eigen::StrictlyUpper>() = block.transpose();
       } else {
-        block.noalias() += gradients(element) * flux.transpose();
+        block.noalias() += gradients * flux.transpose();
         stiffness.block<element_nodes, element_nodes>(first_column, first_row) = block.transpose();
       }
       stiffness.block<element_nodes, element_nodes>(first_row, first_column) = block;
@@ -150,7 +162,7 @@ Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& eleme
     fluxes.middleRows<3>(3 * q) =
         element.weights[q] * first_piola_stress(element.material, F, p).transpose();
   }
-  return gradients(element).lazyProduct(fluxes);
+  return unit_gradients().lazyProduct(to_unit_cell(element, fluxes));
 }
 
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state) {
@@ -179,8 +191,7 @@ std::optional<InternalForces> internal_forces(const SolidSpace& space, const Sol
 }
 
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
-                   const dealii::AffineConstraints<double>& constraints,
-                   dealii::SparseMatrix<double>& matrix, std::span<const std::size_t> cells) {
+                   TangentMatrix& matrix, std::span<const std::size_t> cells) {
   const auto& elements = space.elements();
   std::vector<std::size_t> indices(cells.begin(), cells.end());
   if (indices.empty()) {
@@ -191,10 +202,10 @@ void add_stiffness(const SolidSpace& space, const SolidState& state, const Inter
   const auto worker = [&](const Iterator& cell, NoScratch&, StiffnessShare& share) {
     const SolidElement& element = elements[*cell];
     element_stiffness(element, state, *cell, internal.pressure[*cell], share.matrix);
-    std::copy(element.dofs.begin(), element.dofs.end(), share.dofs.begin());
+    share.index = *cell;
   };
   const auto copier = [&](const StiffnessShare& share) {
-    constraints.distribute_local_to_global(share.matrix, share.dofs, matrix);
+    matrix.add(share.matrix, elements[share.index].dofs);
   };
   dealii::WorkStream::run(indices.cbegin(), indices.cend(), worker, copier, NoScratch(),
                           StiffnessShare());

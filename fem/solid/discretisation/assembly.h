@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <Eigen/Core>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/discretisation/tangent_matrix.h"
 
 namespace ciliaval::fem::solid::discretisation {
 
@@ -48,8 +47,7 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
 /// if none are given. As in internal_forces(), threads compute the cells and one adds them in their
 /// order, so that the result does not depend on the number of threads.
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
-                   const dealii::AffineConstraints<double>& constraints,
-                   dealii::SparseMatrix<double>& matrix, std::span<const std::size_t> cells = {});
+                   TangentMatrix& matrix, std::span<const std::size_t> cells = {});
 
 /// u += Δu, p += C⁻¹ (R_p + G Δu), with the pressure equations of the state before.
 void advance(const SolidSpace& space, const InternalForces& internal,

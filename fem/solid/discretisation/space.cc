@@ -49,6 +49,29 @@ std::map<global_dof_index, double> boundary_values(const SolidSpace& space,
 
 }  // namespace
 
+const ShapeGradients& unit_gradients() {
+  static const ShapeGradients result = [] {
+    const dealii::FE_Q<3> element(element_degree);
+    const dealii::QGauss<3> gauss(element_degree + 1);
+    const std::vector<unsigned int> nodes = element.get_poly_space_numbering_inverse();
+    ShapeGradients gradients;
+    for (unsigned int a = 0; a < element_nodes; ++a)
+      for (unsigned int q = 0; q < element_points; ++q)
+        for (unsigned int j = 0; j < 3; ++j)
+          gradients(a, 3 * q + j) = element.shape_grad(nodes[a], gauss.point(q))[j];
+    return gradients;
+  }();
+  return result;
+}
+
+ShapeGradients SolidElement::gradients() const {
+  ShapeGradients result;
+  for (Eigen::Index q = 0; q < element_points; ++q)
+    result.middleCols<3>(3 * q) =
+        unit_gradients().middleCols<3>(3 * q).lazyProduct(inverse_jacobians.middleCols<3>(3 * q));
+  return result;
+}
+
 PressureVector SolidElement::pressure_basis(const Vector3& X) const {
   PressureVector psi;
   psi << 1, (X - centre) / size;
@@ -70,14 +93,9 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
 
   const dealii::QGauss<3> gauss(element_degree + 1);
   shape_values_.resize(element_nodes, element_points);
-  Eigen::MatrixXd unit_gradients(element_nodes, 3 * element_points);  // ∂N_a/∂ξ_j: column 3q + j
   for (unsigned int q = 0; q < gauss.size(); ++q)
-    for (unsigned int a = 0; a < element_nodes; ++a) {
+    for (unsigned int a = 0; a < element_nodes; ++a)
       shape_values_(lexicographic_[a], q) = scalar_element_.shape_value(a, gauss.point(q));
-      for (unsigned int j = 0; j < 3; ++j)
-        unit_gradients(lexicographic_[a], 3 * q + j) =
-            scalar_element_.shape_grad(a, gauss.point(q))[j];
-    }
 
   dealii::FEValues<3> nodes(mapping_, scalar_element_, unit_nodes(),
                             dealii::update_quadrature_points);
@@ -92,7 +110,6 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
       const auto [component, node] = element_.system_to_component_index(i);
       element.dofs[component * element_nodes + lexicographic_[node]] = dofs[i];
     }
-    element.gradients.resize(element_nodes, 3 * element_points);
     element.weights.resize(element_points);
     element.pressure_values.resize(element_pressures, element_points);
     for (unsigned int a = 0; a < element_nodes; ++a)
@@ -103,11 +120,11 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
     element.centre = Vector3(centre[0], centre[1], centre[2]);
     element.size = cell->diameter();
     for (Eigen::Index q = 0; q < element_points; ++q) {
-      const auto gradients = unit_gradients.middleCols<3>(3 * q);
-      const Matrix3 jacobian = element.nodes.transpose() * gradients;  // ∂X/∂ξ
+      const Matrix3 jacobian =
+          element.nodes.transpose() * unit_gradients().middleCols<3>(3 * q);  // ∂X/∂ξ
       element.weights[q] = jacobian.determinant() * gauss.weight(static_cast<unsigned int>(q));
       element.pressure_values.col(q) = element.pressure_basis(points.row(q).transpose());
-      element.gradients.middleCols<3>(3 * q).noalias() = gradients * jacobian.inverse();
+      element.inverse_jacobians.middleCols<3>(3 * q) = jacobian.inverse();
     }
     initialize(element, materials);
     elements_.push_back(std::move(element));

@@ -31,6 +31,10 @@ inline constexpr int element_pressures = 4;
 using PressureVector = Eigen::Matrix<double, element_pressures, 1>;
 using PressureMatrix = Eigen::Matrix<double, element_pressures, element_pressures>;
 
+using ShapeGradients = Eigen::Matrix<double, element_nodes, 3 * element_points>;
+/// ∂N_a/∂ξ_j at Gauss point q: row a, column 3q + j.
+const ShapeGradients& unit_gradients();
+
 /// The data of one cell for assembly, computed once in the reference configuration.
 struct SolidElement {
   dealii::Triangulation<3>::active_cell_iterator cell;
@@ -39,11 +43,15 @@ struct SolidElement {
   Eigen::Matrix<double, element_nodes, 3> nodes;  ///< X of the nodes, m: row a
   Vector3 centre;                                 ///< origin of the pressure's linear basis, m
   double size = 1;                                ///< its unit of length, m
-  Eigen::MatrixXd gradients;  ///< ∂N_a/∂X_J at Gauss point q: row a, column 3q + J, 1/m
-  Eigen::VectorXd weights;    ///< det(∂X/∂ξ) w_q, m³
+  Eigen::Matrix<double, 3, 3 * element_points>
+      inverse_jacobians;    ///< ∂ξ_j/∂X_J: column 3q + J, 1/m
+  Eigen::VectorXd weights;  ///< det(∂X/∂ξ) w_q, m³
   Eigen::Matrix<double, element_pressures, Eigen::Dynamic> pressure_values;  ///< ψ_m at the points
   PressureMatrix inverse_compliance;  ///< (∫ ψψᵀ/K dV)⁻¹, Pa/m³
 
+  /// ∂N_a/∂X_J at Gauss point q: row a, column 3q + J, 1/m. Kept, they would be the largest part of
+  /// the element.
+  ShapeGradients gradients() const;
   /// ψ(X) = (1, (X − centre)/size).
   PressureVector pressure_basis(const Vector3& X) const;
 };

@@ -12,7 +12,7 @@ void BorderedSystem::prepare(const dealii::Vector<double>& u, const Solve& solve
   force_.condition(u, &gradient_);
   constraints_.set_zero(gradient_);
   dealii::Vector<double> unit(u.size());
-  force_.forces(1)(u, unit, constraints_, nullptr);
+  force_.forces(1)(u, unit, nullptr);
   constraints_.set_zero(unit);
   response_.reinit(u.size());
   solve(unit, response_);

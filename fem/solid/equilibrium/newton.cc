@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/equilibrium/newton.h"
 
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,17 +80,7 @@ Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constr
       constraints_(std::move(constraints)),
       communicator_(communicator),
       size_(dealii::GridTools::diameter(space.dof_handler().get_triangulation())) {
-  dealii::DynamicSparsityPattern pattern(space.unknowns());
-  dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), pattern);
-  sparsity_.copy_from(pattern);
-  matrix_.reinit(sparsity_);
-  solver_ = std::make_unique<LinearSolver>(space, constraints_, sparsity_, solver, communicator);
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
-    const auto& dofs = space.elements()[e].dofs;
-    if (std::any_of(dofs.begin(), dofs.end(),
-                    [this](auto dof) { return solver_->rows().contains(dof); }))
-      cells_.push_back(e);
-  }
+  solver_ = std::make_unique<LinearSolver>(space, constraints_, solver, communicator);
 }
 
 NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
@@ -103,10 +91,9 @@ NewtonResult Newton::solve(const ExternalForces& external, SolidState& state,
 NewtonResult Newton::solve(UnknownForce& force, SolidState& state, const NewtonOptions& options,
                            const NewtonProgress& progress) {
   BorderedSystem bordered(force, constraints_);
-  const auto external = [&force](const auto& u, auto& forces, const auto& constraints,
-                                 auto* matrix) {
-    force.forces(force.amplitude)(u, forces, constraints, matrix);
-    if (force.others) force.others(u, forces, constraints, matrix);
+  const auto external = [&force](const auto& u, auto& forces, auto* tangent) {
+    force.forces(force.amplitude)(u, forces, tangent);
+    if (force.others) force.others(u, forces, tangent);
   };
   return iterate(external, &bordered, state, options, progress);
 }
@@ -132,12 +119,10 @@ Newton::Use Newton::use_of(const Step& step, const SolidState& state, const Newt
 }
 
 void Newton::assemble_tangent(const ExternalForces& external, const SolidState& state,
-                              const InternalForces& internal,
-                              const dealii::AffineConstraints<double>& constraints) {
-  matrix_ = 0;
-  add_stiffness(space_, state, internal, constraints, matrix_, cells_);
+                              const InternalForces& internal, TangentMatrix& tangent) {
+  add_stiffness(space_, state, internal, tangent, solver_->cells());
   Vector<double> unused(space_.unknowns());
-  external(state.displacement, unused, constraints, &matrix_);
+  external(state.displacement, unused, &tangent);
 }
 
 std::optional<SecondVariation> Newton::second_variation(
@@ -146,9 +131,10 @@ std::optional<SecondVariation> Newton::second_variation(
   if (!solver_->is_direct()) return std::nullopt;
   const auto internal = internal_forces(space_, state);
   if (!internal) throw SolverError("det F is not positive at a quadrature point");
-  assemble_tangent(external, state, *internal, constraints);
-  return equilibrium::second_variation(space_, constraints, matrix_, solver_->rows(),
-                                       communicator_);
+  dealii::SparseMatrix<double> matrix(solver_->matrix().get_sparsity_pattern());
+  AssembledTangent tangent(constraints, matrix);
+  assemble_tangent(external, state, *internal, tangent);
+  return equilibrium::second_variation(space_, constraints, matrix, solver_->rows(), communicator_);
 }
 
 Newton::Step Newton::own_tangents_step(const SolidState& state, const Vector<double>& residual,
@@ -180,7 +166,7 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
     if (!internal) return fail("det F is not positive at a quadrature point");
     result.external.reinit(space_.unknowns());
     try {
-      external(state.displacement, result.external, constraints_, nullptr);
+      external(state.displacement, result.external, nullptr);
     } catch (const SolverError& error) {  // inside a magnet
       return fail(error.what());
     }
@@ -203,11 +189,11 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
         }
         if (iteration == static_cast<int>(options.max_iterations))
           return fail("no convergence in " + std::to_string(iteration) + " iterations");
-        assemble_tangent(external, state, *internal, constraints_);
+        assemble_tangent(external, state, *internal, solver_->new_tangent());
         if (iteration == 0)
-          solver_->prepare(matrix_);
+          solver_->prepare();
         else
-          solver_->prepare_near_last(matrix_);
+          solver_->prepare_near_last();
         step = own_tangents_step(state, residual, bordered);
       }
       if (bordered != nullptr) bordered->advance(step.amplitude);
@@ -215,7 +201,7 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
       if (use == Use::last_increment) {
         result.converged = true;
         result.external = 0;
-        external(state.displacement, result.external, constraints_, nullptr);
+        external(state.displacement, result.external, nullptr);
         return result;
       }
       result.linear_iterations.push_back(step.linear_iterations);

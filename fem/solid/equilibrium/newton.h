@@ -2,8 +2,6 @@
 #pragma once
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/sparsity_pattern.h>
 #include <deal.II/lac/vector.h>
 
 #include <functional>
@@ -98,7 +96,7 @@ class Newton {
   void assemble_tangent(const loads::ExternalForces& external,
                         const discretisation::SolidState& state,
                         const discretisation::InternalForces& internal,
-                        const dealii::AffineConstraints<double>& constraints);
+                        discretisation::TangentMatrix& tangent);
   /// The increment by the tangent at the state, which the solver has.
   Step own_tangents_step(const discretisation::SolidState& state,
                          const dealii::Vector<double>& residual, BorderedSystem* bordered);
@@ -108,12 +106,9 @@ class Newton {
 
   const discretisation::SolidSpace& space_;
   dealii::AffineConstraints<double> constraints_;
-  dealii::SparsityPattern sparsity_;
-  dealii::SparseMatrix<double> matrix_;
   std::unique_ptr<solvers::LinearSolver> solver_;
   MPI_Comm communicator_;
-  std::vector<std::size_t> cells_;  ///< the cells that this rank assembles
-  double size_;                     ///< diameter of the body, m
+  double size_;  ///< diameter of the body, m
 };
 
 }  // namespace ciliaval::fem::solid::equilibrium

@@ -33,8 +33,7 @@ dealii::Vector<double> body_force(const SolidSpace& space,
 
 ExternalForces dead_forces(dealii::Vector<double> forces) {
   return [dead = std::move(forces)](const dealii::Vector<double>&, dealii::Vector<double>& total,
-                                    const dealii::AffineConstraints<double>&,
-                                    dealii::SparseMatrix<double>*) { total += dead; };
+                                    TangentMatrix*) { total += dead; };
 }
 
 Vector3 resultant(const SolidSpace& space, const dealii::Vector<double>& forces) {

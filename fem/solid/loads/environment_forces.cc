@@ -27,9 +27,9 @@ const Segment& segment_of(const SolidElement& element, const Cilium& cilium) {
 }
 
 /// F at a Gauss point of an element.
-Matrix3 deformation_gradient(const SolidElement& element,
+Matrix3 deformation_gradient(const ShapeGradients& gradients,
                              const Eigen::Matrix<double, element_nodes, 3>& u, int q) {
-  return Matrix3::Identity() + u.transpose() * element.gradients.middleCols<3>(Eigen::Index{3} * q);
+  return Matrix3::Identity() + u.transpose() * gradients.middleCols<3>(Eigen::Index{3} * q);
 }
 
 /// Weight, and the field by the law F, P = −B₀ ⊗ M.
@@ -41,10 +41,11 @@ dealii::Vector<double> dead_part(const SolidSpace& space, const Cilium& cilium,
     const Segment& segment = segment_of(element, cilium);
     const Vector3 weight = surroundings::weight_per_volume(environment, segment);
     const Vector3 M = has_poles ? magnetization(segment) : Vector3(Vector3::Zero());
+    const ShapeGradients gradients = element.gradients();
     Eigen::Matrix<double, element_nodes, 3> f =
         (space.shape_values() * element.weights) * weight.transpose();
     for (int q = 0; q < element_points; ++q)
-      f += element.weights[q] * element.gradients.middleCols<3>(Eigen::Index{3} * q) * M *
+      f += element.weights[q] * gradients.middleCols<3>(Eigen::Index{3} * q) * M *
            environment.uniform_field.transpose();
     for (unsigned int a = 0; a < element_nodes; ++a)
       for (unsigned int c = 0; c < 3; ++c) forces[element.dofs[c * element_nodes + a]] += f(a, c);
@@ -59,21 +60,20 @@ using Field = std::function<FieldJet(const Vector3& x)>;
 /// derivative.
 void add_magnet(const SolidSpace& space, const SolidElement& element, const Vector3& M,
                 const Field& field, MagneticEnergy law, const dealii::Vector<double>& displacement,
-                dealii::Vector<double>& forces,
-                const dealii::AffineConstraints<double>& constraints,
-                dealii::SparseMatrix<double>* matrix) {
+                dealii::Vector<double>& forces, TangentMatrix* tangent) {
   const auto u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, element_nodes, 3> f = Eigen::Matrix<double, element_nodes, 3>::Zero();
+  const ShapeGradients gradients = element.gradients();
   dealii::FullMatrix<double> K(element_dofs, element_dofs);
   for (int q = 0; q < element_points; ++q) {
-    const Eigen::Matrix<double, element_nodes, 3> dN =
-        element.gradients.middleCols<3>(Eigen::Index{3} * q);
+    const Eigen::Matrix<double, element_nodes, 3> dN = gradients.middleCols<3>(Eigen::Index{3} * q);
     const Eigen::Matrix<double, element_nodes, 1> N = space.shape_values().col(q);
     const Vector3 x = (element.nodes + u).transpose() * N;
-    const MagnetInField e = magnet_in_field(deformation_gradient(element, u, q), M, field(x), law);
+    const MagnetInField e =
+        magnet_in_field(deformation_gradient(gradients, u, q), M, field(x), law);
     const double w = element.weights[q];
     f += w * (dN * e.by_F.transpose() + N * e.by_x.transpose());
-    if (matrix == nullptr) continue;
+    if (tangent == nullptr) continue;
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) {
         Matrix3 T;  // over J and L
@@ -94,9 +94,7 @@ void add_magnet(const SolidSpace& space, const SolidElement& element, const Vect
   }
   for (unsigned int a = 0; a < element_nodes; ++a)
     for (unsigned int c = 0; c < 3; ++c) forces[element.dofs[c * element_nodes + a]] += f(a, c);
-  if (matrix == nullptr) return;
-  const std::vector<dealii::types::global_dof_index> dofs(element.dofs.begin(), element.dofs.end());
-  constraints.distribute_local_to_global(K, dofs, *matrix);
+  if (tangent != nullptr) tangent->add(K, element.dofs);
 }
 
 /// The field that acts on a deformed magnet other than by dead forces: that of the magnets and, by
@@ -181,13 +179,12 @@ ExternalForces environment_forces(const SolidSpace& space, const Cilium& cilium,
   return
       [&space, &cilium, dead, field = live_field(environment), law = environment.magnetic_energy](
           const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-          const dealii::AffineConstraints<double>& constraints,
-          dealii::SparseMatrix<double>* matrix) {
-        dead(displacement, forces, constraints, matrix);
+          TangentMatrix* tangent) {
+        dead(displacement, forces, tangent);
         for (const SolidElement& element : space.elements()) {
           const Vector3 M = magnetization(segment_of(element, cilium));
           if (!M.isZero(0))
-            add_magnet(space, element, M, field, law, displacement, forces, constraints, matrix);
+            add_magnet(space, element, M, field, law, displacement, forces, tangent);
         }
       };
 }
@@ -200,7 +197,7 @@ Vector3 force_of_magnets(const SolidSpace& space, const Cilium& cilium,
   magnets.magnets = environment.magnets;
   magnets.magnetic_energy = environment.magnetic_energy;
   dealii::Vector<double> forces(space.unknowns());
-  environment_forces(space, cilium, magnets)(displacement, forces, {}, nullptr);
+  environment_forces(space, cilium, magnets)(displacement, forces, nullptr);
   return resultant(space, forces);
 }
 

@@ -39,11 +39,9 @@ ExternalForces load_forces(const SolidSpace& space, const ExtrudedQuadrature& qu
     return dead_forces(body_force(space, b));
   }
   return [&space, &quadrature, spread](const dealii::Vector<double>& displacement,
-                                       dealii::Vector<double>& forces,
-                                       const dealii::AffineConstraints<double>& constraints,
-                                       dealii::SparseMatrix<double>* matrix) {
+                                       dealii::Vector<double>& forces, TangentMatrix* tangent) {
     add_height_forces(space, quadrature, *spread.per_height, spread.direction, displacement, forces,
-                      constraints, matrix);
+                      tangent);
   };
 }
 
@@ -80,10 +78,9 @@ ExternalForces external_forces(const SolidSpace& space, const ExtrudedQuadrature
   if (surroundings::is_empty(environment)) return own;
   return [own, around = environment_forces(space, cilium, environment)](
              const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-             const dealii::AffineConstraints<double>& constraints,
-             dealii::SparseMatrix<double>* matrix) {
-    own(displacement, forces, constraints, matrix);
-    around(displacement, forces, constraints, matrix);
+             TangentMatrix* tangent) {
+    own(displacement, forces, tangent);
+    around(displacement, forces, tangent);
   };
 }
 

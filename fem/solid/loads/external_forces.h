@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <functional>
 
 #include "fem/solid/discretisation/extruded_quadrature.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/discretisation/tangent_matrix.h"
 #include "fem/solid/loads/height_loads.h"
 #include "problem/cilium.h"
 #include "problem/load.h"
 
 namespace ciliaval::fem::solid::loads {
 
-/// External forces f(u): adds them to `forces` and, where `matrix` is not null, −∂f/∂u to it.
-using ExternalForces = std::function<void(
-    const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-    const dealii::AffineConstraints<double>& constraints, dealii::SparseMatrix<double>* matrix)>;
+/// External forces f(u): adds them to `forces` and, where `tangent` is not null, −∂f/∂u to it.
+using ExternalForces =
+    std::function<void(const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+                       discretisation::TangentMatrix* tangent)>;
 
 /// A force F f(u) whose amplitude F is one more unknown, and the condition g(u) = 0 that determines
 /// it.

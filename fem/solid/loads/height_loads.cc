@@ -104,20 +104,15 @@ Eigen::Matrix<double, 9, 3> vertical_displacements(const SolidElement& element,
 }
 
 void subtract_derivative(const SolidElement& element, const HeightForceShare& share,
-                         const Vector3& direction,
-                         const dealii::AffineConstraints<double>& constraints,
-                         dealii::SparseMatrix<double>& matrix) {
-  using dealii::types::global_dof_index;
-  const auto& dofs = element.dofs;
-  const std::vector<global_dof_index> columns(dofs.begin() + 2 * element_nodes, dofs.end());
+                         const Vector3& direction, TangentMatrix& tangent) {
+  const Dofs dofs(element.dofs);
   dealii::FullMatrix<double> local(element_nodes, element_nodes);
   for (unsigned int c = 0; c < 2; ++c) {
-    const auto first = dofs.begin() + c * element_nodes;
-    const std::vector<global_dof_index> rows(first, first + element_nodes);
     for (unsigned int a = 0; a < element_nodes; ++a)
       for (unsigned int b = 0; b < element_nodes; ++b)
         local(a, b) = -direction[c] * share.derivative(a, b);
-    constraints.distribute_local_to_global(local, rows, columns, matrix);
+    tangent.add(local, dofs.subspan(std::size_t{c} * element_nodes, element_nodes),
+                dofs.subspan(std::size_t{2} * element_nodes, element_nodes));
   }
 }
 
@@ -180,20 +175,19 @@ std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,
 void add_height_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                        const HeightDensity& density, const Vector3& direction,
                        const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-                       const dealii::AffineConstraints<double>& constraints,
-                       dealii::SparseMatrix<double>* matrix) {
+                       TangentMatrix* tangent) {
   const QuadratureRule rule = gauss_legendre(density.support ? 10 : 3, 0, 1);
   for (std::size_t e = 0; e < space.elements().size(); ++e) {
     const SolidElement& element = space.elements()[e];
     const HeightForceShare share = height_force_share(quadrature, quadrature.cells()[e],
                                                       vertical_displacements(element, displacement),
-                                                      density, rule, matrix != nullptr);
+                                                      density, rule, tangent != nullptr);
     if (share.force.isZero(0)) continue;
     for (std::size_t c = 0; c < 2; ++c)
       for (std::size_t a = 0; a < element_nodes; ++a)
         forces[element.dofs[c * element_nodes + a]] +=
             direction[static_cast<Eigen::Index>(c)] * share.force[static_cast<Eigen::Index>(a)];
-    if (matrix != nullptr) subtract_derivative(element, share, direction, constraints, *matrix);
+    if (tangent != nullptr) subtract_derivative(element, share, direction, *tangent);
   }
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <Eigen/Core>
@@ -13,6 +11,7 @@
 
 #include "fem/solid/discretisation/extruded_quadrature.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/discretisation/tangent_matrix.h"
 #include "problem/surroundings/magnets/magnet.h"
 
 namespace ciliaval::fem::solid::loads {
@@ -66,7 +65,7 @@ void integrate_in_support(const Eigen::Vector3d& z, const HeightDensity& density
 std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,
                                                  const HeightDensity& density);
 
-/// Adds the nodal forces of g(z) F_zz e to `forces` and, where `matrix` is not null, minus their
+/// Adds the nodal forces of g(z) F_zz e to `forces` and, where `tangent` is not null, minus their
 /// derivative:
 ///   ∂f_a/∂u_z,b = ∫ dA ∫ [g'(z) z_ζ N_b + g(z) ∂N_b/∂ζ] N_a dζ e,
 /// unsymmetric: rows x, y, columns z. A ten-point Gauss rule on the part of each line inside the
@@ -75,8 +74,7 @@ void add_height_forces(const discretisation::SolidSpace& space,
                        const discretisation::ExtrudedQuadrature& quadrature,
                        const HeightDensity& density, const Vector3& direction,
                        const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-                       const dealii::AffineConstraints<double>& constraints,
-                       dealii::SparseMatrix<double>* matrix);
+                       discretisation::TangentMatrix* tangent);
 
 /// Nodal forces of (F/A) e, dead, evenly over the plane Z = S. Throws InputError if the mesh has no
 /// plane there.

@@ -125,9 +125,10 @@ void Extraction::add_across(std::size_t index, Eigen::Index first, Wrench& wrenc
   if (M.isZero(0)) return;
   const Eigen::Matrix<double, element_nodes, 3> x =
       element.nodes + nodal_displacements(element, state.displacement);
+  const ShapeGradients gradients = element.gradients();
   for (int q = 0; q < element_points; ++q) {
     const Eigen::Matrix<double, element_nodes, 1> along_M =
-        element.gradients.middleCols<3>(Eigen::Index{3} * q) * M;
+        gradients.middleCols<3>(Eigen::Index{3} * q) * M;
     const Eigen::Matrix<double, element_nodes, 1> N = space.shape_values().col(q);
     const auto jet = surroundings::magnets::jet(load.magnets, x.transpose() * N);
     const Vector3 B = load.uniform_field + jet.B;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solvers/linear_solver.h"
 
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/solver_control.h>
 #include <deal.II/lac/solver_gmres.h>
 
@@ -23,16 +25,18 @@ constexpr unsigned int max_with_old_factors = 20;
 /// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
 constexpr dealii::types::global_dof_index direct_unknowns = 100000;
 
-/// The matrix on one rank, block CSR of the rank's rows on several.
-struct Product {
+/// This rank's rows of a matrix.
+struct OwnRows {
   const dealii::SparseMatrix<double>& matrix;
-  const BlockCsr<double>& own;
-  bool several_ranks;
+  RowRange rows;
+  MPI_Comm communicator;
   void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const {
-    if (several_ranks)
-      own.vmult(y, x);
-    else
-      matrix.vmult(y, x);
+    for (Row row = rows.begin; row < rows.end; ++row) {
+      y[row] = 0;
+      for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
+        y[row] += entry->value() * x[entry->column()];
+    }
+    gather_over_ranks(communicator, {y.begin(), y.size()});
   }
 };
 
@@ -46,42 +50,48 @@ struct Factors {
 }  // namespace
 
 LinearSolver::LinearSolver(const SolidSpace& space,
-                           const dealii::AffineConstraints<double>& constraints,
-                           const dealii::SparsityPattern& pattern, SolverKind kind,
+                           const dealii::AffineConstraints<double>& constraints, SolverKind kind,
                            MPI_Comm communicator)
-    : communicator_(communicator),
-      rows_(own_range(communicator, space.unknowns())),
-      own_(rows_, communicator) {
+    : communicator_(communicator), rows_(own_range(communicator, space.unknowns())) {
+  for (std::size_t e = 0; e < space.elements().size(); ++e)
+    if (std::ranges::any_of(space.elements()[e].dofs,
+                            [this](Row dof) { return rows_.contains(dof); }))
+      cells_.push_back(e);
   if (kind == SolverKind::iterative ||
-      (kind == SolverKind::automatic && space.unknowns() > direct_unknowns))
-    multigrid_ = std::make_unique<Multigrid>(space, constraints, rows_, communicator);
-  else
-    direct_ =
-        std::make_unique<DirectSolver>(pattern, DirectSolver::Kind::general, rows_, communicator);
+      (kind == SolverKind::automatic && space.unknowns() > direct_unknowns)) {
+    blocks_ = std::make_unique<BlockCsr>(space, constraints, rows_, communicator);
+    multigrid_ = std::make_unique<Multigrid>(space, constraints, *blocks_, rows_, communicator);
+    return;
+  }
+  dealii::DynamicSparsityPattern pattern(space.unknowns());
+  dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), pattern);
+  pattern_.copy_from(pattern);
+  matrix_.reinit(pattern_);
+  assembled_ = std::make_unique<AssembledTangent>(constraints, matrix_);
+  direct_ =
+      std::make_unique<DirectSolver>(pattern_, DirectSolver::Kind::general, rows_, communicator);
 }
 
-void LinearSolver::take(const dealii::SparseMatrix<double>& matrix) {
-  matrix_ = &matrix;
+TangentMatrix& LinearSolver::new_tangent() {
   current_ = false;
-  if (rank_count(communicator_) > 1) own_.update(matrix);
+  if (blocks_) {
+    blocks_->clear();
+    return *blocks_;
+  }
+  matrix_ = 0;
+  return *assembled_;
 }
 
-void LinearSolver::prepare(const dealii::SparseMatrix<double>& matrix) {
-  take(matrix);
-  update();
+void LinearSolver::prepare_near_last() {
+  if (!is_prepared_) prepare();
 }
 
-void LinearSolver::prepare_near_last(const dealii::SparseMatrix<double>& matrix) {
-  const bool is_first = matrix_ == nullptr;
-  take(matrix);
-  if (is_first) update();
-}
-
-void LinearSolver::update() {
+void LinearSolver::prepare() {
   if (multigrid_)
-    multigrid_->update(*matrix_);
+    multigrid_->update();
   else
-    direct_->factorize(*matrix_);
+    direct_->factorize(matrix_);
+  is_prepared_ = true;
   current_ = true;
   usual_ = 0;
 }
@@ -94,13 +104,14 @@ std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
   using Solver = dealii::SolverFGMRES<Vector>;
   dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
   Solver solver(control, Solver::AdditionalData(restart));
-  const Product matrix{*matrix_, own_, rank_count(communicator_) > 1};
   solution.reinit(rhs.size());
   try {
     if (multigrid_)
-      solver.solve(matrix, solution, rhs, *multigrid_);
+      solver.solve(*blocks_, solution, rhs, *multigrid_);
+    else if (rank_count(communicator_) == 1)
+      solver.solve(matrix_, solution, rhs, Factors{*direct_});
     else
-      solver.solve(matrix, solution, rhs, Factors{*direct_});
+      solver.solve(OwnRows{matrix_, rows_, communicator_}, solution, rhs, Factors{*direct_});
   } catch (const dealii::SolverControl::NoConvergence&) {
     return std::nullopt;
   }
@@ -113,7 +124,7 @@ int LinearSolver::solve(const dealii::Vector<double>& rhs, dealii::Vector<double
   if (!current_) {
     const unsigned int limit = direct_ ? max_with_old_factors : 2 * usual_;
     iterations = gmres(rhs, solution, reduction, limit);
-    if (!iterations) update();
+    if (!iterations) prepare();
   }
   if (!iterations && direct_) {
     direct_->solve(rhs, solution);

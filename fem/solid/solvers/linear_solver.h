@@ -8,9 +8,12 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "fem/parallel.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/discretisation/tangent_matrix.h"
+#include "fem/solid/solvers/block_csr.h"
 #include "fem/solid/solvers/direct_solver.h"
 #include "fem/solid/solvers/multigrid.h"
 #include "fem/solid/solvers/solver_kind.h"
@@ -18,43 +21,53 @@
 namespace ciliaval::fem::solid::solvers {
 
 /// Solves systems with the solid's unsymmetric tangent: by sparse LU (MUMPS), or by GMRES
-/// preconditioned from the right by one multigrid cycle. Vectors are whole on every rank; the ranks
-/// share the work by rows. All functions are collective and throw SolverError on all ranks.
+/// preconditioned from the right by one multigrid cycle. It keeps the tangent as it needs it.
+/// Vectors are whole on every rank; the ranks share the work by rows. All functions are collective
+/// and throw SolverError on all ranks.
 class LinearSolver {
  public:
-  /// The pattern must outlive it. The constraints may only set unknowns to zero.
+  /// The constraints may only set unknowns to zero; they and the space must outlive it.
   LinearSolver(const discretisation::SolidSpace& space,
-               const dealii::AffineConstraints<double>& constraints,
-               const dealii::SparsityPattern& pattern, SolverKind kind, MPI_Comm communicator);
+               const dealii::AffineConstraints<double>& constraints, SolverKind kind,
+               MPI_Comm communicator);
 
-  /// This rank's rows: the only ones in which the matrix must be complete. The cells that have a
-  /// degree of freedom among them must be assembled.
-  const RowRange& rows() const { return rows_; }
   bool is_direct() const { return direct_ != nullptr; }
+  /// The cells at this rank's rows: those that it has to assemble.
+  const std::vector<std::size_t>& cells() const { return cells_; }
 
-  /// Factorises, or prepares the multigrid. The matrix must stay as it is until the next call.
-  void prepare(const dealii::SparseMatrix<double>& matrix);
-  /// For a matrix near the last one, as in an iteration of Newton's method: its factors or its
-  /// multigrid precondition GMRES, as long as that converges fast.
-  void prepare_near_last(const dealii::SparseMatrix<double>& matrix);
+  /// Zeros, to be assembled.
+  discretisation::TangentMatrix& new_tangent();
+  /// After the assembly: factorises, or prepares the multigrid.
+  void prepare();
+  /// For a tangent near the last one, as in an iteration of Newton's method: its factors or its
+  /// patches precondition GMRES, as long as that converges fast.
+  void prepare_near_last();
 
   /// Any number of right-hand sides with the matrix last prepared. GMRES ends with
   /// ‖b − Ax‖₂ ≤ reduction ‖b‖₂. Returns the number of iterations; 1 for the matrix's own LU.
   int solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution, double reduction);
 
+  /// Of the direct solver, for others than its own uses: the matrix, and this rank's rows of it.
+  dealii::SparseMatrix<double>& matrix() { return matrix_; }
+  const RowRange& rows() const { return rows_; }
+
  private:
-  void take(const dealii::SparseMatrix<double>& matrix);
-  void update();
   /// Empty if GMRES does not get there in max_iterations.
   std::optional<int> gmres(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution,
                            double reduction, unsigned int max_iterations) const;
 
   MPI_Comm communicator_;
   RowRange rows_;
-  const dealii::SparseMatrix<double>* matrix_ = nullptr;
-  BlockCsr<double> own_;  ///< this rank's rows of the matrix, on several ranks
+  std::vector<std::size_t> cells_;
+  // The direct one's.
+  dealii::SparsityPattern pattern_;
+  dealii::SparseMatrix<double> matrix_;
+  std::unique_ptr<discretisation::AssembledTangent> assembled_;
   std::unique_ptr<DirectSolver> direct_;
+  // Of its rows in blocks GMRES makes its products, on several ranks, too.
+  std::unique_ptr<BlockCsr> blocks_;
   std::unique_ptr<Multigrid> multigrid_;
+  bool is_prepared_ = false;
   bool current_ = false;    ///< factors or multigrid belong to the matrix
   unsigned int usual_ = 0;  ///< iterations that the multigrid took with its own matrix
 };

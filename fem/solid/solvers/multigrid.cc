@@ -13,7 +13,6 @@ namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
 namespace {
 
-using dealii::SparseMatrix;
 using dealii::Vector;
 using dealii::types::global_dof_index;
 
@@ -37,11 +36,11 @@ std::map<global_dof_index, global_dof_index> number_vertices(const SolidSpace& s
 }  // namespace
 
 Multigrid::Multigrid(const SolidSpace& space, const dealii::AffineConstraints<double>& constraints,
-                     RowRange rows, MPI_Comm communicator)
-    : rows_(rows),
+                     const BlockCsr& matrix, RowRange rows, MPI_Comm communicator)
+    : matrix_(matrix),
+      rows_(rows),
       communicator_(communicator),
-      schwarz_(space, constraints, rows, communicator),
-      matrix_(rows, communicator) {
+      schwarz_(space, constraints, rows, communicator) {
   make_prolongation(space, constraints);
 }
 
@@ -99,34 +98,42 @@ RowRange Multigrid::own_coarse_rows() const {
   return {std::min(result.begin, result.end), result.end};
 }
 
-void Multigrid::add_coarse_row(const SparseMatrix<double>& matrix, Row row) {
+void Multigrid::add_coarse_rows(BlockCsr::Node node) {
   const auto weights = [&](Row i) {
     return std::span(prolongation_)
         .subspan(prolongation_starts_[i], prolongation_starts_[i + 1] - prolongation_starts_[i]);
   };
-  if (weights(row).empty()) return;
+  const std::span neighbours = matrix_.columns(node);
   std::vector<global_dof_index> columns;
-  for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
-    for (const Weight& weight : weights(entry->column())) {
-      if (work_[weight.column] == 0) columns.push_back(weight.column);
-      work_[weight.column] += weight.value * entry->value();
-      if (work_[weight.column] == 0)  // keeps the column marked
-        work_[weight.column] = std::numeric_limits<double>::min();
-    }
   std::vector<double> values;
-  for (const Weight& weight : weights(row)) {
-    values.clear();
-    for (const global_dof_index column : columns) values.push_back(weight.value * work_[column]);
-    coarse_matrix_.add(weight.column, columns, values);
+  for (Row k = 0; k < node_unknowns; ++k) {
+    const std::span own = weights(node_unknowns * Row{node} + k);
+    if (own.empty()) continue;
+    columns.clear();
+    for (std::size_t position = 0; position < neighbours.size(); ++position) {
+      const Matrix3 block = matrix_.block(node, position);
+      for (Row l = 0; l < node_unknowns; ++l)
+        for (const Weight& weight : weights(node_unknowns * Row{neighbours[position]} + l)) {
+          if (work_[weight.column] == 0) columns.push_back(weight.column);
+          work_[weight.column] += weight.value * block(k, l);
+          if (work_[weight.column] == 0)  // keeps the column marked
+            work_[weight.column] = std::numeric_limits<double>::min();
+        }
+    }
+    for (const Weight& weight : own) {
+      values.clear();
+      for (const global_dof_index column : columns) values.push_back(weight.value * work_[column]);
+      coarse_matrix_.add(weight.column, columns, values);
+    }
+    for (const global_dof_index column : columns) work_[column] = 0;
   }
-  for (const global_dof_index column : columns) work_[column] = 0;
 }
 
-void Multigrid::update(const SparseMatrix<double>& matrix) {
-  matrix_.update(matrix);
-  schwarz_.update(matrix);
+void Multigrid::update() {
+  schwarz_.update(matrix_);
   coarse_matrix_ = 0;
-  for (Row row = rows_.begin; row < rows_.end; ++row) add_coarse_row(matrix, row);
+  for (Row row = rows_.begin; row < rows_.end; row += node_unknowns)
+    add_coarse_rows(static_cast<BlockCsr::Node>(row / node_unknowns));
   if (rank(communicator_) == 0)
     for (const Row dof : fixed_) coarse_matrix_.add(dof, dof, 1);
   coarse_solver_->factorize(coarse_matrix_);

@@ -22,13 +22,14 @@ namespace ciliaval::fem::solid::solvers {
 /// inclusion.
 class Multigrid {
  public:
-  /// The pattern of the coarse matrix follows from the cells. `rows` are this rank's.
+  /// The pattern of the coarse matrix follows from the cells. `rows` are this rank's. The matrix,
+  /// whose present values the smoother takes, must outlive it.
   Multigrid(const discretisation::SolidSpace& space,
-            const dealii::AffineConstraints<double>& constraints, RowRange rows,
-            MPI_Comm communicator);
+            const dealii::AffineConstraints<double>& constraints, const BlockCsr& matrix,
+            RowRange rows, MPI_Comm communicator);
 
-  /// For a matrix that is complete in this rank's rows. Throws SolverError.
-  void update(const dealii::SparseMatrix<double>& matrix);
+  /// The patches and the coarse matrix of the present values. Throws SolverError.
+  void update();
 
   /// One cycle from zero. Collective.
   void vmult(dealii::Vector<double>& x, const dealii::Vector<double>& b) const;
@@ -42,16 +43,16 @@ class Multigrid {
                          const dealii::AffineConstraints<double>& constraints);
   /// The coarse rows that this rank adds to; on rank 0 also the constrained ones.
   RowRange own_coarse_rows() const;
-  void add_coarse_row(const dealii::SparseMatrix<double>& matrix, Row row);
+  void add_coarse_rows(BlockCsr::Node node);
   void smooth(dealii::Vector<double>& x, const dealii::Vector<double>& b, bool from_zero) const;
   void correct(dealii::Vector<double>& x, const dealii::Vector<double>& b) const;
   void residual(dealii::Vector<double>& r, const dealii::Vector<double>& x,
                 const dealii::Vector<double>& b) const;
 
+  const BlockCsr& matrix_;
   RowRange rows_;
   MPI_Comm communicator_;
   VertexPatchSchwarz schwarz_;
-  BlockCsr<float> matrix_;
   std::vector<std::size_t> prolongation_starts_;
   std::vector<Weight> prolongation_;  ///< row by row
   std::vector<Row> fixed_;            ///< coarse degrees of freedom that are constrained

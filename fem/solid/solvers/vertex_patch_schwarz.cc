@@ -9,14 +9,12 @@
 #include <cstdlib>
 #include <map>
 #include <set>
-
-#include "fem/solid/solvers/block_csr.h"
+#include <span>
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
 namespace {
 
-using dealii::SparseMatrix;
 using dealii::Vector;
 using dealii::types::global_dof_index;
 
@@ -66,7 +64,7 @@ VertexPatchSchwarz::VertexPatchSchwarz(const SolidSpace& space,
   for (const auto& [vertex, patch] : patches) {
     dofs_.insert(dofs_.end(), patch.begin(), patch.end());
     starts_.push_back(dofs_.size());
-    matrix_starts_.push_back(matrix_starts_.back() + patch.size() * patch.size());
+    matrix_starts_.push_back(matrix_starts_.back() + patch.size() * (patch.size() + 1) / 2);
     for (const Index dof : patch) ++uses[dof + 1];
   }
   for (std::size_t i = 1; i < uses.size(); ++i) uses[i] += uses[i - 1];
@@ -77,26 +75,30 @@ VertexPatchSchwarz::VertexPatchSchwarz(const SolidSpace& space,
   corrections_.resize(dofs_.size());
 }
 
-void VertexPatchSchwarz::update(const SparseMatrix<double>& matrix) {
+void VertexPatchSchwarz::update(const BlockCsr& matrix) {
   for_each(starts_.size() - 1, 16, [&](std::size_t patch) {
-    const auto first = dofs_.begin() + static_cast<std::ptrdiff_t>(starts_[patch]);
-    const auto last = dofs_.begin() + static_cast<std::ptrdiff_t>(starts_[patch + 1]);
-    const auto size = last - first;
-    Eigen::MatrixXd block = Eigen::MatrixXd::Zero(size, size);
-    for (auto row = first; row != last; ++row) {
-      auto column = first;  // both are sorted; deal.II stores the diagonal first
-      for (auto entry = matrix.begin(*row); entry != matrix.end(*row); ++entry) {
-        if (entry->column() == *row) {
-          block(row - first, row - first) = entry->value();
-          continue;
-        }
-        while (column != last && *column < entry->column()) ++column;
-        if (column == last) break;
-        if (*column == entry->column()) block(row - first, column - first) = entry->value();
+    const std::span dofs =
+        std::span(dofs_).subspan(starts_[patch], starts_[patch + 1] - starts_[patch]);
+    const auto size = static_cast<Eigen::Index>(dofs.size());
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+    for (std::size_t row = 0; row < dofs.size(); ++row) {
+      const BlockCsr::Node node = dofs[row] / node_unknowns;
+      const std::span columns = matrix.columns(node);
+      std::size_t column = 0;  // both are sorted
+      for (std::size_t position = 0; position < columns.size(); ++position) {
+        while (column < dofs.size() && dofs[column] / node_unknowns < columns[position]) ++column;
+        if (column == dofs.size()) break;
+        if (dofs[column] / node_unknowns != columns[position]) continue;
+        const Matrix3 block = matrix.block(node, position);
+        for (; column < dofs.size() && dofs[column] / node_unknowns == columns[position]; ++column)
+          dense(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+              block(dofs[row] % node_unknowns, dofs[column] % node_unknowns);
       }
     }
-    Eigen::Map<Eigen::MatrixXf>(inverses_.data() + matrix_starts_[patch], size, size) =
-        block.inverse().cast<float>();
+    const Eigen::MatrixXd inverse = (0.5 * (dense + dense.transpose())).inverse();
+    float* at = inverses_.data() + matrix_starts_[patch];
+    for (Eigen::Index j = 0; j < size; ++j)
+      for (Eigen::Index i = j; i < size; ++i) *at++ = static_cast<float>(inverse(i, j));
   });
 }
 
@@ -111,9 +113,16 @@ void VertexPatchSchwarz::vmult(Vector<double>& z, const Vector<double>& r) const
       for (Eigen::Index i = 0; i < size; ++i)
         local[i] =
             static_cast<float>(r[dofs_[starts_[patch] + static_cast<std::size_t>(i)]] / scale);
-      Eigen::Map<Eigen::VectorXf>(corrections_.data() + starts_[patch], size).noalias() =
-          Eigen::Map<const Eigen::MatrixXf>(inverses_.data() + matrix_starts_[patch], size, size) *
-          local;
+      Eigen::Map<Eigen::VectorXf> result(corrections_.data() + starts_[patch], size);
+      result.setZero();
+      const float* column = inverses_.data() + matrix_starts_[patch];
+      for (Eigen::Index j = 0; j < size; ++j) {
+        const Eigen::Index below = size - j;  // the diagonal first
+        const Eigen::Map<const Eigen::VectorXf> lower(column, below);
+        result.tail(below) += local[j] * lower;
+        result[j] += lower.tail(below - 1).dot(local.tail(below - 1));
+        column += below;
+      }
     });
     for_each(r.size(), 1024, [&](std::size_t index) {
       const auto dof = static_cast<Row>(index);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <cstdint>
@@ -10,6 +9,7 @@
 
 #include "fem/parallel.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/solvers/block_csr.h"
 
 namespace ciliaval::fem::solid::solvers {
 
@@ -36,8 +36,8 @@ class VertexPatchSchwarz {
   VertexPatchSchwarz(const discretisation::SolidSpace& space,
                      const dealii::AffineConstraints<double>& constraints, RowRange rows,
                      MPI_Comm communicator);
-  /// Inverts the matrix on the patches of this rank's vertices, in single precision.
-  void update(const dealii::SparseMatrix<double>& matrix);
+  /// Inverts the symmetric part of the matrix on the patches of this rank's vertices.
+  void update(const BlockCsr& matrix);
   /// z = Σ Rᵀ A⁻¹ R r over the patches of all ranks. Collective.
   void vmult(dealii::Vector<double>& z, const dealii::Vector<double>& r) const;
 
@@ -47,7 +47,7 @@ class VertexPatchSchwarz {
   std::vector<std::size_t> starts_;         ///< of the patches' entries in dofs_
   std::vector<Index> dofs_;                 ///< of all patches, one after the other
   std::vector<std::size_t> matrix_starts_;  ///< of the patches' matrices in inverses_
-  std::vector<float> inverses_;             ///< column by column
+  std::vector<float> inverses_;             ///< lower triangles, column by column
   std::vector<std::size_t> user_starts_;    ///< for each degree of freedom: its entries in users_
   std::vector<std::size_t> users_;          ///< positions in dofs_
   mutable std::vector<float> corrections_;  ///< of all patches

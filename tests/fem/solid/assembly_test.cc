@@ -51,7 +51,9 @@ struct Assembled {
     dealii::SparsityPattern sparsity;
     sparsity.copy_from(pattern);
     dealii::SparseMatrix<double> matrix(sparsity);
-    add_stiffness(body.space, body.state, *internal, dealii::AffineConstraints<double>(), matrix);
+    const dealii::AffineConstraints<double> none;
+    AssembledTangent tangent(none, matrix);
+    add_stiffness(body.space, body.state, *internal, tangent);
     for (const auto& entry : matrix) stiffness.push_back(entry.value());
   }
 };

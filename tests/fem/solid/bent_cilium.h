@@ -67,8 +67,7 @@ struct BentCilium {
 
   dealii::Vector<double> forces(const Load& load, const dealii::Vector<double>& u) const {
     dealii::Vector<double> result(space->unknowns());
-    loads::external_forces(*space, *quadrature, cilium, load, 0.5e-3)(
-        u, result, dealii::AffineConstraints<double>(), nullptr);
+    loads::external_forces(*space, *quadrature, cilium, load, 0.5e-3)(u, result, nullptr);
     return result;
   }
 };

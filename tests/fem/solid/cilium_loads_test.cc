@@ -173,9 +173,10 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
   };
   for (const Load& load : all_loads_and_environments()) {
     dealii::SparseMatrix<double> matrix(sparsity);
+    AssembledTangent tangent(none, matrix);
     dealii::Vector<double> unused(space.unknowns());
     external_forces(space, *cilium.quadrature, cilium.cilium, load, 0.5e-3)(
-        cilium.state.displacement, unused, none, &matrix);
+        cilium.state.displacement, unused, &tangent);
     dealii::Vector<double> product(space.unknowns());
     matrix.vmult(product, direction);
     const double h = 1e-8;
@@ -198,7 +199,8 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
   const auto internal = internal_forces(space, cilium.state);
   ASSERT_TRUE(internal);
   dealii::SparseMatrix<double> matrix(sparsity);
-  add_stiffness(space, cilium.state, *internal, none, matrix);
+  AssembledTangent tangent(none, matrix);
+  add_stiffness(space, cilium.state, *internal, tangent);
   dealii::Vector<double> product(space.unknowns());
   matrix.vmult(product, direction);
   const auto forces = [&](double step) {

@@ -126,12 +126,13 @@ TEST(NodalContact, PutsTheDerivativeIntoTheMatrix) {
   dealii::SparseMatrix<double> matrix(sparsity);
   const ContactLaw law{0.3, 1e3};
   const dealii::AffineConstraints<double> none;
-  const auto forces_at = [&](const dealii::Vector<double>& u, dealii::SparseMatrix<double>* to) {
+  AssembledTangent tangent(none, matrix);
+  const auto forces_at = [&](const dealii::Vector<double>& u, TangentMatrix* to) {
     dealii::Vector<double> forces(u.size());
-    contact_forces(nodes, memory, surface, law)(u, forces, none, to);
+    contact_forces(nodes, memory, surface, law)(u, forces, to);
     return forces;
   };
-  forces_at(cilium.state.displacement, &matrix);
+  forces_at(cilium.state.displacement, &tangent);
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   dealii::Vector<double> direction(cilium.space->unknowns());

@@ -106,8 +106,9 @@ TEST(SolidMagnets, TangentIsTheDerivativeOfTheForces) {
     dealii::Vector<double> unused(bent.space->unknowns());
     dealii::AffineConstraints<double> none;
     none.close();
+    discretisation::AssembledTangent tangent(none, matrix);
     loads::environment_forces(*bent.space, bent.cilium, environment)(bent.state.displacement,
-                                                                     unused, none, &matrix);
+                                                                     unused, &tangent);
     dealii::Vector<double> exact(bent.space->unknowns());
     matrix.vmult(exact, direction);
     const auto forces = [&](double t) {

@@ -152,7 +152,7 @@ double strain_energy_above(const Mesh& mesh, const SolidState& state, double Z) 
     const auto u = nodal_displacements(element, state.displacement);
     for (int q = 0; q < element_points; ++q) {
       const Matrix3 F = Matrix3::Identity() +
-                        u.transpose() * element.gradients.middleCols<3>(Eigen::Index{3} * q);
+                        u.transpose() * element.gradients().middleCols<3>(Eigen::Index{3} * q);
       energy +=
           element.weights[q] *
           strain_energy(element.material, F, state.pressure[e].dot(element.pressure_values.col(q)));
