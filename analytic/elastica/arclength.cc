@@ -175,6 +175,23 @@ PlanarState descend(const PlanarProblem& problem, const Launch& from, const Accu
   return state;
 }
 
+/// Root of a smooth function by secants from a and b; nothing if they lead away. The error of a
+/// secant's root is about the product of the last two steps: it ends where that is rounding error.
+template <class Function>
+std::optional<double> secant_root(const Function& function, double a, double b, double f_a,
+                                  double f_b) {
+  for (int k = 0; k < 10; ++k) {
+    const double next = b - f_b * (b - a) / (f_b - f_a);
+    if (!(std::abs(next - b) <= 0.5)) return std::nullopt;
+    const double enough = epsilon * std::max(1.0, std::abs(next));
+    if (std::abs(next - b) * std::abs(b - a) <= enough / 4 || std::abs(next - b) <= enough)
+      return next;
+    a = std::exchange(b, next);
+    f_a = std::exchange(f_b, function(next));
+  }
+  return std::nullopt;
+}
+
 /// Solves θ(0) = 0 for x.
 double shoot(const PlanarProblem& problem, Launch from, const Accuracy& accuracy, int& iterations) {
   const auto base_angle = [&](double x) {

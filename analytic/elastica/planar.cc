@@ -256,20 +256,6 @@ double root(const std::function<double(double)>& function, double a, double b, d
   return std::midpoint(left, right);
 }
 
-std::optional<double> secant_root(const std::function<double(double)>& function, double a, double b,
-                                  double f_a, double f_b) {
-  for (int k = 0; k < 10; ++k) {
-    const double next = b - f_b * (b - a) / (f_b - f_a);
-    if (!(std::abs(next - b) <= 0.5)) return std::nullopt;
-    const double enough = epsilon * std::max(1.0, std::abs(next));
-    if (std::abs(next - b) * std::abs(b - a) <= enough / 4 || std::abs(next - b) <= enough)
-      return next;
-    a = std::exchange(b, next);
-    f_a = std::exchange(f_b, function(next));
-  }
-  return std::nullopt;
-}
-
 double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess) {
   double b = std::log(linear_slip_off_load(problem));
   double f_b = excess(b);
@@ -277,8 +263,6 @@ double slip_off_load(const PlanarProblem& problem, const std::function<double(do
   for (int k = 0; k < 60; ++k, step *= 2) {
     const double a = b + step;
     const double f_a = excess(a);
-    if (k == 0)
-      if (const auto found = secant_root(excess, a, b, f_a, f_b)) return std::exp(*found);
     if ((f_a > 0) != (f_b > 0)) return std::exp(root(excess, a, b, f_a, f_b));
     b = a;
     f_b = f_a;

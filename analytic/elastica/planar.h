@@ -31,6 +31,7 @@ struct PlanarLaw {
   double softening = 0;          ///< g
   double further_softening = 0;  ///< h
 
+  bool is_empty() const { return lengthening == 0 && softening == 0 && further_softening == 0; }
   double of_rotation(double M, double N) const {
     return M * (2 * lengthening * N + M * M * (softening + M * M * further_softening));
   }
@@ -53,7 +54,7 @@ struct Flexibility {
   double extension = 0;  ///< along its normal 1 + extension·N, N = H sin θ
   PlanarLaw law{};
 
-  bool is_rigid() const { return shear == 0 && extension == 0 && law.lengthening == 0; }
+  bool is_rigid() const { return shear == 0 && extension == 0 && law.is_empty(); }
 };
 
 struct PlanarProblem {
@@ -117,13 +118,9 @@ struct PlanarShape {
 double root(const std::function<double(double)>& function, double a, double b, double f_a,
             double f_b);
 
-/// Root of a smooth function by secants from a and b; nothing if they lead away. The error of a
-/// secant's root is about the product of the last two steps: it ends where that is rounding error.
-std::optional<double> secant_root(const std::function<double(double)>& function, double a, double b,
-                                  double f_a, double f_b);
-
-/// The load of a contact problem where `excess`, a decreasing function of its logarithm, changes
-/// sign, from where linear theory has it. Throws SolverError if it is not found.
+/// The load of a contact problem where `excess`, a function of its logarithm, changes sign from
+/// positive to negative, to the last digits: bracketed from where linear theory has it. Only the
+/// sign need have a meaning. Throws SolverError if it is not found.
 double slip_off_load(const PlanarProblem& problem, const std::function<double(double)>& excess);
 
 /// Shortest piece: it must have room for its nodes.

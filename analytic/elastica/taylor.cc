@@ -91,7 +91,7 @@ void TaylorStep::expand(ForceLaw law) {
   const double extension = flexibility_.extension;
   const PlanarLaw& law_of_bending = flexibility_.law;
   const bool is_rigid = flexibility_.is_rigid();
-  const bool has_law = law_of_bending.lengthening != 0 || law_of_bending.softening != 0;
+  const bool has_law = !law_of_bending.is_empty();
   Pairs direction;   // sin θ, cos θ
   Pairs beyond;      // M², and what the law adds to θ' over M
   Pairs factors;     // M², M

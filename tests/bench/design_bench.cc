@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analytic/elastica/elastica.h"
@@ -34,7 +35,7 @@ void evaluate(benchmark::State& state, const std::string& type_of_load,
   const analytic::rod::VolumeField volume;
   std::size_t next = 0;
   std::size_t solved = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const RandomCase& design = cases[next++ % designs];
     const MechanicsResult result = elastica.solve(design.cilium, {design.load});
     const MechanicsStep& step = result.steps.front();

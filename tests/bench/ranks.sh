@@ -26,13 +26,13 @@ write_case() {
     "$refinement" "$solver" "$([ "$mesh" = half ] && echo true || echo false)"
 }
 
-# Wall seconds of a command, and the largest memory of one of the program's processes in GB; what it prints stands in `log`.
+# Wall seconds of a command, and the largest memory of one of its processes in GB; what it prints stands in `log`.
 measured() {
   local start=$EPOCHREALTIME job peak=0 now
   "$@" >log 2>&1 &
   job=$!
   while kill -0 "$job" 2>/dev/null; do
-    now=$(for p in $(pgrep -x "$(basename "$program")"); do cat "/proc/$p/status" 2>/dev/null || true; done | awk '/VmHWM/ && $2 > m { m = $2 } END { print m + 0 }')
+    now=$(for p in "$job" $(pgrep -P "$job"); do cat "/proc/$p/status" 2>/dev/null || true; done | awk '/VmHWM/ && $2 > m { m = $2 } END { print m + 0 }')
     ((now <= peak)) || peak=$now
     sleep 0.1
   done
@@ -48,8 +48,11 @@ echo '|---|---|---|---|---|---|---|---|---|---|---|'
 for row in "${rows[@]}"; do
   IFS=: read -r mesh refinement solver loads <<< "$row"
   write_case "$mesh" "$refinement" "$solver" "$loads" > case.toml
-  read -r one one_memory <<< "$(DEAL_II_NUM_THREADS=1 measured "$program" run case.toml -o one)"
-  read -r two two_memory <<< "$(measured mpirun -np 2 "$program" run case.toml -o two)"
+  rm -rf one two
+  one=$(DEAL_II_NUM_THREADS=1 measured "$program" run case.toml -o one)
+  two=$(measured mpirun -np 2 "$program" run case.toml -o two)
+  read -r one one_memory <<< "$one"
+  read -r two two_memory <<< "$two"
   unknowns=$(tr -d ' \n' < one/ranks/summary.json | grep -o '"unknowns":[0-9]*' | head -1 | cut -d: -f2)
   apart=$(paste <(tips one) <(tips two) | awk '{ d = $1 - $2; d = d < 0 ? -d : d; m = d > m ? d : m } END { printf "%.1e", m }')
   awk -v a="$one" -v b="$two" -v row="| $mesh | $refinement | $solver | $loads | $unknowns |" -v apart="$apart" -v memory="$one_memory | $two_memory" \

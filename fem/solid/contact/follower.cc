@@ -2,10 +2,12 @@
 #include "fem/solid/contact/follower.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "fem/parallel.h"
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/height_loads.h"
@@ -134,12 +136,14 @@ std::optional<ContactState> Follower::attempt(const SweepPlace& place, const Con
     touch(u, forces, tangent);
     forces.add(place.hold, hold_);
     if (brake.damping == 0) return;
-    dealii::FullMatrix<double> diagonal(1, 1);
-    for (dealii::types::global_dof_index i = 0; i < u.size(); ++i) {
-      const double rate = brake.damping * volumes_[i];
-      forces[i] -= rate * (u[i] - from.solid.displacement[i]);
-      diagonal(0, 0) = rate;
-      if (tangent != nullptr) tangent->add(diagonal, std::array{i});
+    for (dealii::types::global_dof_index i = 0; i < u.size(); ++i)
+      forces[i] -= brake.damping * volumes_[i] * (u[i] - from.solid.displacement[i]);
+    if (tangent == nullptr) return;
+    dealii::FullMatrix<double> rates(node_unknowns, node_unknowns);
+    for (dealii::types::global_dof_index i = 0; i < u.size(); i += node_unknowns) {
+      for (unsigned int k = 0; k < node_unknowns; ++k)
+        rates(k, k) = brake.damping * volumes_[i + k];
+      tangent->add(rates, std::array{i, i + 1, i + 2});
     }
   };
   for (int update = 0;; ++update) {

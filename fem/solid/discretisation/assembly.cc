@@ -4,7 +4,6 @@
 #include <deal.II/base/work_stream.h>
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -17,7 +16,6 @@ namespace {
 
 using ElementVector = Eigen::Matrix<double, element_dofs, 1>;
 using NodalVectors = Eigen::Matrix<double, element_nodes, 3>;
-/// ∂N_a/∂X_J at all Gauss points, of a size that is known when compiling.
 
 /// One element's share, from the parallel worker to the serial copier.
 struct ForceShare {

@@ -131,7 +131,7 @@ std::optional<SecondVariation> Newton::second_variation(
   if (!solver_->is_direct()) return std::nullopt;
   const auto internal = internal_forces(space_, state);
   if (!internal) throw SolverError("det F is not positive at a quadrature point");
-  dealii::SparseMatrix<double> matrix(solver_->matrix().get_sparsity_pattern());
+  dealii::SparseMatrix<double> matrix(solver_->pattern());
   AssembledTangent tangent(constraints, matrix);
   assemble_tangent(external, state, *internal, tangent);
   return equilibrium::second_variation(space_, constraints, matrix, solver_->rows(), communicator_);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solvers/block_csr.h"
 
+#include <deal.II/base/exceptions.h>
+
 #include <algorithm>
 #include <array>
 
@@ -106,6 +108,7 @@ void BlockCsr::add(const dealii::FullMatrix<double>& local, Dofs rows, Dofs colu
     std::size_t block = starts_[index(node)];
     for (std::size_t j = 0; j < column_nodes.nodes.size(); ++j) {
       while (nodes_[block] < column_nodes.nodes[j]) ++block;
+      Assert(nodes_[block] == column_nodes.nodes[j], dealii::ExcInternalError());
       blocks[i * column_nodes.nodes.size() + j] = block;
     }
   }

@@ -87,6 +87,7 @@ void LinearSolver::prepare_near_last() {
 }
 
 void LinearSolver::prepare() {
+  is_prepared_ = false;
   if (multigrid_)
     multigrid_->update();
   else

@@ -31,6 +31,9 @@ class LinearSolver {
                const dealii::AffineConstraints<double>& constraints, SolverKind kind,
                MPI_Comm communicator);
 
+  LinearSolver(const LinearSolver&) = delete;
+  LinearSolver& operator=(const LinearSolver&) = delete;
+
   bool is_direct() const { return direct_ != nullptr; }
   /// The cells at this rank's rows: those that it has to assemble.
   const std::vector<std::size_t>& cells() const { return cells_; }
@@ -47,8 +50,8 @@ class LinearSolver {
   /// ‖b − Ax‖₂ ≤ reduction ‖b‖₂. Returns the number of iterations; 1 for the matrix's own LU.
   int solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution, double reduction);
 
-  /// Of the direct solver, for others than its own uses: the matrix, and this rank's rows of it.
-  dealii::SparseMatrix<double>& matrix() { return matrix_; }
+  /// Of the direct solver's matrix, and this rank's rows of it.
+  const dealii::SparsityPattern& pattern() const { return pattern_; }
   const RowRange& rows() const { return rows_; }
 
  private:
@@ -64,7 +67,7 @@ class LinearSolver {
   dealii::SparseMatrix<double> matrix_;
   std::unique_ptr<discretisation::AssembledTangent> assembled_;
   std::unique_ptr<DirectSolver> direct_;
-  // Of its rows in blocks GMRES makes its products, on several ranks, too.
+  // The iterative one's.
   std::unique_ptr<BlockCsr> blocks_;
   std::unique_ptr<Multigrid> multigrid_;
   bool is_prepared_ = false;

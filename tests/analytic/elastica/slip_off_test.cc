@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 
+#include "analytic/elastica/arclength.h"
+#include "analytic/elastica/planar.h"
 #include "cases.h"
 
 namespace ciliaval::analytic {
@@ -33,13 +36,37 @@ TEST(ElasticaSlipOff, IsTheSameInBothForms) {
 TEST(ElasticaSlipOff, OfOneMaterialFollowsLegendresIntegrals) {
   const Cilium cilium = uniform_cilium();
   const double length = cilium.length();
-  for (const double cosine : {0.99, 0.9, 0.5, 0.1, 1e-2, 2e-4}) {
+  for (const double cosine : {0.99, 0.9, 0.5, 0.1, 1e-2, 2e-4, 3e-5, 1e-5, 1e-6}) {
     const Real sine = sqrt(1 - Real(cosine) * cosine);
     const UniformSlipOff exact = uniform_slip_off(sine);
     const ContactLoad load{1e-12, static_cast<double>(exact.height) * length, 0};
     const auto force =
         static_cast<double>(exact.load * bending_stiffness(cilium) / (Real(length) * length));
     EXPECT_NEAR(*solve(cilium, load).slip_off_force, force, 2e-13 * force) << cosine;
+  }
+}
+
+// Oracle: the definition, on random cilia touched low, where the cilium lies nearly level before it
+// slips off: an equilibrium up to the stated force less what it is uncertain by, none beyond.
+TEST(ElasticaSlipOff, SeparatesEquilibriumFromNoneOnLowContacts) {
+  std::mt19937 engine(11);
+  std::uniform_real_distribution<double> uniform;
+  for (int n = 0; n < 200; ++n) {
+    Cilium cilium{2e-3, {}};
+    for (int i = 0; i <= n % 3; ++i)
+      cilium.segments.push_back({.name = "s" + std::to_string(i),
+                                 .length = (1 + 4 * uniform(engine)) * 2e-3,
+                                 .young_modulus = 1e5 * std::pow(100, uniform(engine)),
+                                 .poisson_ratio = 0.49});
+    const double height = (0.03 + 0.27 * uniform(engine)) * cilium.length();
+    const double limit = *solve(cilium, ContactLoad{0, height, 0}).slip_off_force;
+    // Of the force itself: with the limit known, the solver would not try beyond it.
+    const auto bears = [&](double force) {
+      auto problem = elastica::planar_problem(cilium, ContactLoad{force, height, 0});
+      return elastica::solve_arclength(problem, 1e-9).has_value();
+    };
+    EXPECT_TRUE(bears(limit * (1 - 1e-11))) << n;
+    EXPECT_FALSE(bears(limit * (1 + 1e-11))) << n;
   }
 }
 
