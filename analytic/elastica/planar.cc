@@ -154,6 +154,27 @@ PlanarLaw planar_law(const joints::BendingLaw& law, double F, double L, double p
                 M);
 }
 
+/// The load under which the tip sinks to h by linear theory, ∫ θ²/2 dS = 1 − h, but no more than
+/// brings the contact to an angle of 1 rad: sin θ there is the linear theory's angle.
+double linear_slip_off_load(const PlanarProblem& problem) {
+  static const QuadratureRule rule = gauss_legendre(3, 0, 1);  // θ² is of degree 4
+  const double h = problem.point;
+  double angle = 0;  // θ under the load 1, ∫ f (h − S) dS
+  double sum = 0;    // ∫ θ² dS
+  for (std::size_t i = 0; i < problem.compliance.size() && problem.ends[i] < h; ++i) {
+    const double begin = problem.ends[i];
+    const double length = std::min(problem.ends[i + 1], h) - begin;
+    const auto at = [&](double S) {
+      return angle + problem.compliance[i] * (S - begin) * (h - std::midpoint(begin, S));
+    };
+    for (std::size_t q = 0; q < rule.nodes.size(); ++q)
+      sum += length * rule.weights[q] * std::pow(at(begin + rule.nodes[q] * length), 2);
+    angle = at(begin + length);
+  }
+  sum += (1 - h) * angle * angle;
+  return std::min(std::sqrt(2 * (1 - h) / sum), 1 / angle);
+}
+
 }  // namespace
 
 Flexibility PlanarProblem::flexibility(std::size_t i, double under) const {
@@ -214,32 +235,6 @@ PlanarProblem planar_problem(const Cilium& cilium, const Load& load,
   }
   return problem;
 }
-
-namespace {
-
-/// The load under which the tip sinks to h by linear theory, ∫ θ²/2 dS = 1 − h, but no more than
-/// brings the contact to an angle of 1 rad: sin θ there is the linear theory's angle.
-double linear_slip_off_load(const PlanarProblem& problem) {
-  constexpr std::array<double, 3> points{0.1127016653792583, 0.5, 0.8872983346207417};
-  constexpr std::array<double, 3> weights{5. / 18, 8. / 18, 5. / 18};
-  const double h = problem.point;
-  double angle = 0;  // θ under the load 1, ∫ f (h − S) dS
-  double sum = 0;    // ∫ θ² dS
-  for (std::size_t i = 0; i < problem.compliance.size() && problem.ends[i] < h; ++i) {
-    const double begin = problem.ends[i];
-    const double length = std::min(problem.ends[i + 1], h) - begin;
-    const auto at = [&](double S) {
-      return angle + problem.compliance[i] * (S - begin) * (h - std::midpoint(begin, S));
-    };
-    for (std::size_t q = 0; q < points.size(); ++q)
-      sum += length * weights[q] * std::pow(at(begin + points[q] * length), 2);
-    angle = at(begin + length);
-  }
-  sum += (1 - h) * angle * angle;
-  return std::min(std::sqrt(2 * (1 - h) / sum), 1 / angle);
-}
-
-}  // namespace
 
 double root(const std::function<double(double)>& function, double a, double b, double f_a,
             double f_b) {
