@@ -72,11 +72,15 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
     inputs = _packed(study.files), tuple(study.fingerprint)
     waiting = batches[::-1]
     running: dict[Any, list[Task]] = {}
-    deadly = []
+    suspects: list[list[Task]] = []
+    deadly: list[list[Task]] = []
+    at_once = None  # twice the number of workers: each has what it is at and the next one
     try:
-        while waiting or running:
-            # A worker has what it is at and the next one, no more: its death says little of others.
-            while waiting and len(running) < 2 * max(_workers(client), 1):
+        while waiting or running or suspects:
+            if not waiting and not running:
+                # dask blames a worker's death on all that it had: only one that ran alone is guilty.
+                waiting, suspects, at_once = suspects, [], 1
+            while waiting and len(running) < (at_once or 2 * max(_workers(client), 1)):
                 batch = waiting.pop()
                 running[client.submit(_solve, *inputs, batch, key=_key(study, batch))] = batch
             done = [future for future in running if future.done()]
@@ -87,7 +91,7 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
                 try:
                     solutions = future.result()
                 except KilledWorker:
-                    deadly.append(batch)
+                    (deadly if at_once == 1 else suspects).append(batch)
                     continue
                 for (point, mechanics), solution in zip(batch, solutions):
                     store.keep(point, mechanics, solution)
@@ -99,8 +103,8 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
     if deadly:
         point, mechanics = deadly[0][0]
         raise SolverError(
-            f"each worker that solved {mechanics} at point {point} has died, too little memory may "
-            f"be why: {len(deadly)} of {len(batches)} batches are missing. All others are kept; the "
+            f"each worker that solved {mechanics} at point {point} has died, with nothing else to do; "
+            f"too little memory may be why: {len(deadly)} of {len(batches)} batches are missing. All others are kept; the "
             "same call tries these again"
         )
 

@@ -25,6 +25,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 HAS_DASK = importlib.util.find_spec("distributed") is not None
 if HAS_DASK:
+    import dask
     from distributed import Client, LocalCluster, WorkerPlugin
 
     from ciliaval import cluster
@@ -259,7 +260,9 @@ class Faults(ClusterTest):
         file, folder = self.study(STUDY), self.folder / "deadly"
         poison = self.folder / "poison.py"
         poison.write_text(POISON)
-        with self.workers(preload=[str(poison)]) as (client, _):
+        # At the first death dask gives up all that the worker had, the batch behind the deadly one too.
+        config = dask.config.set({"distributed.scheduler.allowed-failures": 0})
+        with config, self.workers(preload=[str(poison)]) as (client, _):
             with self.assertRaisesRegex(cv.SolverError, "solved solid at point 3 has died.* 1 of 18"):
                 cv.study(file, folder, client)
         with contextlib.closing(StudyStore(StudyFile(str(file)), str(folder))) as store:
