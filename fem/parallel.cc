@@ -110,6 +110,20 @@ RowRange own_range(MPI_Comm communicator, Row size) {
   return range_of(size, rank(communicator), rank_count(communicator));
 }
 
+void sum_over_ranks(MPI_Comm communicator, std::span<double> values) {
+  const dealii::ArrayView<double> view(values.data(), values.size());
+  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view), communicator, view);
+}
+
+std::string first_text(MPI_Comm communicator, const std::string& text) {
+  if (rank_count(communicator) == 1) return text;
+  const int ranks = rank_count(communicator);
+  const int first =
+      dealii::Utilities::MPI::min(text.empty() ? ranks : rank(communicator), communicator);
+  if (first == ranks) return {};
+  return dealii::Utilities::MPI::broadcast(communicator, text, static_cast<unsigned int>(first));
+}
+
 void gather_over_ranks(MPI_Comm communicator, std::span<double> values) {
   const int ranks = rank_count(communicator);
   if (ranks == 1) return;

@@ -47,6 +47,12 @@ struct RowRange {
 /// and begin at multiples of three: the unknowns of a node stay together.
 RowRange own_range(MPI_Comm communicator, Row size);
 
+/// The sums of the ranks' values, in their place, with the same bits on all ranks. Collective.
+void sum_over_ranks(MPI_Comm communicator, std::span<double> values);
+
+/// The first rank's text that is not empty. Collective.
+std::string first_text(MPI_Comm communicator, const std::string& text);
+
 /// Every rank holds its own_range() of the values; afterwards all of them. Collective.
 void gather_over_ranks(MPI_Comm communicator, std::span<double> values);
 

@@ -24,10 +24,12 @@ Checkpoint::Entries kept_entries(const Checkpoint& checkpoint, const std::string
 
 void save_entries(const Checkpoint& checkpoint, MPI_Comm communicator,
                   const std::function<Checkpoint::Entries()>& make) {
+  if (!broadcast(communicator, static_cast<bool>(checkpoint.save))) return;
+  const Checkpoint::Entries entries = make();
   std::string failure;
-  if (rank(communicator) == 0 && checkpoint.save) {
+  if (rank(communicator) == 0) {
     try {
-      checkpoint.save(make());
+      checkpoint.save(entries);
     } catch (const CheckpointError& error) {
       failure = error.what();
     }

@@ -15,7 +15,7 @@ namespace ciliaval::fem::solid {
 Checkpoint::Entries kept_entries(const Checkpoint& checkpoint, const std::string& always,
                                  MPI_Comm communicator);
 
-/// Rank 0 makes entries and keeps them. Throws CheckpointError on all ranks if it cannot.
+/// All ranks make entries, and rank 0 keeps its own. Throws CheckpointError on all ranks if it cannot.
 /// Collective.
 void save_entries(const Checkpoint& checkpoint, MPI_Comm communicator,
                   const std::function<Checkpoint::Entries()>& make);

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/level.h"
 
+#include <deal.II/base/mpi.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "fem/beam/beam.h"
+#include "fem/parallel.h"
 #include "fem/solid/equilibrium/initial_guess.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/postprocessing/body.h"
 #include "fem/solid/postprocessing/centreline.h"
 #include "meshes/gmsh/gmsh_mesh.h"
+#include "meshes/parts.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid {
@@ -94,25 +99,47 @@ std::vector<DirichletCondition> antisymmetric_supports() {
           {.boundary = meshes::symmetry_id, .components = {true, false, true}}};
 }
 
+[[noreturn]] void throw_other_meshes() {
+  throw CheckpointError(
+      "the checkpoint cannot be used: its states are those of other meshes; start anew with "
+      "--fresh, which deletes it");
+}
+
 }  // namespace
 
 Level::Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser)
     : cilium_(cilium), options_(options), coarser_(coarser) {
-  meshes::cylinder::make_cylinder(cilium, mesh, triangulation_);
-  mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, element_degree);
+  const double unknowns = 3 * static_cast<double>(meshes::cylinder::quadratic_nodes(cilium, mesh));
+  in_parts_ = options.may_be_in_parts && solvers::is_iterative(options.solver, unknowns);
+  const auto make = [&](dealii::Triangulation<3>& triangulation) {
+    meshes::cylinder::make_cylinder(cilium, mesh, triangulation);
+  };
+  if (in_parts_ && rank_count(options.communicator) > 1) {
+    auto parts = std::make_unique<dealii::parallel::fullydistributed::Triangulation<3>>(
+        options.communicator);
+    meshes::cylinder::attach_mantle(*parts);
+    meshes::make_in_parts(make, *parts);
+    triangulation_ = std::move(parts);
+  } else {
+    triangulation_ = std::make_unique<dealii::Triangulation<3>>();
+    make(*triangulation_);
+  }
+  mapping_ = meshes::cylinder::cylinder_mapping(*triangulation_, element_degree);
   discretise(mesh.half ? Extent::half : Extent::whole, materials);
 }
 
 Level::Level(const Cilium& cilium, const meshes::MeshFile& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options)
-    : cilium_(cilium), options_(options) {
-  mapping_ = meshes::gmsh::read_gmsh(mesh, cilium, triangulation_).mapping;
+    : cilium_(cilium),
+      options_(options),
+      triangulation_(std::make_unique<dealii::Triangulation<3>>()) {
+  mapping_ = meshes::gmsh::read_gmsh(mesh, cilium, *triangulation_).mapping;
   discretise(Extent::whole, materials);
 }
 
 void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
-  space_ = std::make_unique<SolidSpace>(triangulation_, *mapping_, materials);
+  space_ = std::make_unique<SolidSpace>(*triangulation_, *mapping_, materials);
   quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, extent);
 }
 
@@ -140,17 +167,77 @@ LoadPathOutcome Level::advance(const Load& load, const Progress& progress,
 void Level::require_own(const SolidState& state) const {
   if (state.displacement.size() != space_->unknowns() ||
       state.pressure.size() != space_->elements().size())
-    throw CheckpointError(
-        "the checkpoint cannot be used: its states are those of other meshes; start anew with "
-        "--fresh, which deletes it");
+    throw_other_meshes();
 }
 
-void Level::restore(std::optional<LoadPathState> state) {
-  if (!state) return solver_.reset();
-  require_own(state->current.state);
-  if (state->previous) require_own(state->previous->state);
-  start_from_rest(state->current.load);
-  solver_->restore(std::move(*state));
+void Level::restore(std::optional<LoadPathState> kept) {
+  if (!kept) return solver_.reset();
+  kept->current = restored(std::move(kept->current));
+  if (kept->previous) kept->previous = restored(std::move(*kept->previous));
+  start_from_rest(kept->current.load);
+  solver_->restore(std::move(*kept));
+}
+
+SolidState Level::to_keep(const SolidState& state) const {
+  if (!in_parts_) return state;
+  state.displacement.update_ghost_values();
+  std::vector<double> own;  // number, displacements and pressures of each cell
+  for (std::size_t e = 0; e < space_->own_elements().size(); ++e) {
+    const SolidElement& element = space_->elements()[e];
+    own.push_back(static_cast<double>(element.cell->id().get_coarse_cell_id()));
+    for (const auto dof : element.dofs) own.push_back(state.displacement.local_element(dof));
+    own.insert(own.end(), state.pressure[e].begin(), state.pressure[e].end());
+  }
+  const auto cells = static_cast<std::size_t>(triangulation_->n_global_active_cells());
+  SolidState kept;
+  const auto parts = dealii::Utilities::MPI::gather(space_->communicator(), own);
+  if (rank(space_->communicator()) != 0) return kept;
+  kept.displacement.reinit(static_cast<unsigned int>(element_dofs * cells));
+  kept.pressure.resize(cells);
+  for (const auto& part : parts)
+    for (auto value = part.begin(); value != part.end();) {
+      const auto cell = static_cast<std::size_t>(*value++);
+      std::copy_n(value, element_dofs, kept.displacement.begin() + element_dofs * cell);
+      value += element_dofs;
+      std::copy_n(value, element_pressures, kept.pressure[cell].begin());
+      value += element_pressures;
+    }
+  return kept;
+}
+
+LoadPathState Level::to_keep(const LoadPathState& state) const {
+  LoadPathState kept = state;
+  kept.current = to_keep(state.current);
+  if (state.previous) kept.previous = to_keep(*state.previous);
+  return kept;
+}
+
+Equilibrium Level::to_keep(const Equilibrium& equilibrium) const {
+  return {equilibrium.load, to_keep(equilibrium.state), equilibrium.applied_force};
+}
+
+Equilibrium Level::restored(Equilibrium kept) const {
+  return {kept.load, restored(std::move(kept.state)), kept.applied_force};
+}
+
+SolidState Level::restored(SolidState kept) const {
+  if (!in_parts_) {
+    require_own(kept);
+    return kept;
+  }
+  const auto cells = static_cast<std::size_t>(triangulation_->n_global_active_cells());
+  if (kept.displacement.size() != element_dofs * cells || kept.pressure.size() != cells)
+    throw_other_meshes();
+  SolidState state = space_->undeformed();
+  for (std::size_t e = 0; e < space_->elements().size(); ++e) {
+    const SolidElement& element = space_->elements()[e];
+    const std::size_t cell = element.cell->id().get_coarse_cell_id();
+    const double* value = kept.displacement.begin() + element_dofs * cell;
+    for (const auto dof : element.dofs) state.displacement.local_element(dof) = *value++;
+    state.pressure[e] = kept.pressure[cell];
+  }
+  state.displacement.update_ghost_values();
+  return state;
 }
 
 Guess Level::initial_guess(const Load& load, const Progress& progress) const {
@@ -244,9 +331,7 @@ std::optional<SecondVariation> Level::second_variation() {
   if (!result) return std::nullopt;
   if (!eigenvalue_at_rest_)
     eigenvalue_at_rest_ =
-        of(dead_forces(dealii::Vector<double>(space_->unknowns())), space_->undeformed())
-            .value()
-            .smallest_eigenvalue;
+        of(dead_forces(space_->vector()), space_->undeformed()).value().smallest_eigenvalue;
   result->smallest_eigenvalue /= *eigenvalue_at_rest_;
   return result;
 }

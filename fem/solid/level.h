@@ -27,7 +27,8 @@ struct LevelOptions {
   equilibrium::LoadPathOptions path{};
   solvers::SolverKind solver = solvers::SolverKind::automatic;
   MPI_Comm communicator = MPI_COMM_WORLD;
-  bool beam_guess = true;  ///< start the coarsest level from the beam's solution
+  bool beam_guess = true;       ///< start the coarsest level from the beam's solution
+  bool may_be_in_parts = true;  ///< where it is solved iteratively, each rank has a part of it
 };
 
 /// Equilibria of a level and of the coarser one under the same load.
@@ -59,9 +60,16 @@ class Level {
 
   /// The state of the load path; null before the first load.
   const equilibrium::LoadPathState* state() const { return solver_ ? &solver_->state() : nullptr; }
-  /// Without a state, goes back to before the first load. Throws CheckpointError if it is not the
-  /// state of a mesh of this size.
-  void restore(std::optional<equilibrium::LoadPathState> state);
+  /// States as a checkpoint keeps them, on the first rank: of a mesh that may be in parts, cell by
+  /// cell in the whole mesh's order, so that any number of ranks can take them up. Collective.
+  discretisation::SolidState to_keep(const discretisation::SolidState& state) const;
+  equilibrium::Equilibrium to_keep(const equilibrium::Equilibrium& equilibrium) const;
+  equilibrium::LoadPathState to_keep(const equilibrium::LoadPathState& state) const;
+  /// From what was kept, on all ranks. Throws CheckpointError if it is not of a mesh of this size.
+  discretisation::SolidState restored(discretisation::SolidState kept) const;
+  equilibrium::Equilibrium restored(equilibrium::Equilibrium kept) const;
+  /// Goes on from there; without a state, goes back to before the first load.
+  void restore(std::optional<equilibrium::LoadPathState> kept);
 
   /// The level's state, or another one of its mesh, in the frame of the cilium, turned by
   /// `azimuth`.
@@ -111,7 +119,8 @@ class Level {
   Cilium cilium_;
   LevelOptions options_;
   Level* coarser_ = nullptr;
-  dealii::Triangulation<3> triangulation_;
+  bool in_parts_ = false;
+  std::unique_ptr<dealii::Triangulation<3>> triangulation_;
   std::unique_ptr<dealii::MappingQCache<3>> mapping_;
   std::unique_ptr<discretisation::SolidSpace> space_;
   std::unique_ptr<discretisation::ExtrudedQuadrature> quadrature_;

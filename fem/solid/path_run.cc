@@ -180,11 +180,15 @@ void PathRun::go_on_from_checkpoint() {
     deserialize(kept.at(std::to_string(i)), step, state, companions);
     const double turn = mesh_azimuth(options_, step.load);
     if (state)
-      step.deformation = finest().deformation(
-          {in_mesh_frame(options_, step.load), *state, step.applied_force}, turn);
-    for (std::size_t c = 0; c < companions.size(); ++c)
+      step.deformation =
+          finest().deformation({in_mesh_frame(options_, step.load),
+                                finest().restored(std::move(*state)), step.applied_force},
+                               turn);
+    for (std::size_t c = 0; c < companions.size(); ++c) {
+      if (companions[c]) companions[c] = companion(c).restored(std::move(*companions[c]));
       result_.companions.at(c).steps.push_back(
           companion_step(companion(c), companions[c] ? &*companions[c] : nullptr, step.load, turn));
+    }
     result_.steps.push_back(std::move(step));
   }
   std::vector<std::optional<LoadPathState>> states;
@@ -196,16 +200,17 @@ void PathRun::save(const MechanicsStep* finished) const {
   save_entries(checkpoint_, communicator_, [&] {
     std::vector<std::optional<LoadPathState>> states;
     for (const auto& level : levels_.all)
-      states.push_back(level->state() != nullptr ? std::optional(*level->state()) : std::nullopt);
+      states.push_back(level->state() != nullptr ? std::optional(level->to_keep(*level->state()))
+                                                 : std::nullopt);
     Checkpoint::Entries entries{{state_name, serialized(states)}};
     if (finished != nullptr) {
       std::optional<SolidState> state;
       std::vector<std::optional<Equilibrium>> companions(levels_.companions.size());
       if (finished->status == Status::converged) {
-        state = finest().state()->current.state;
+        state = finest().to_keep(finest().state()->current.state);
         for (std::size_t i = 0; i < companions.size(); ++i)
           if (is_at(companion(i), in_mesh_frame(options_, finished->load)))
-            companions[i] = companion(i).state()->current;
+            companions[i] = companion(i).to_keep(companion(i).state()->current);
       }
       entries.emplace(std::to_string(result_.steps.size() + 1),
                       serialized(*finished, state, companions));

@@ -148,13 +148,14 @@ meshes::cylinder::CylinderMeshOptions path_mesh(unsigned int index, const SolidO
 }
 
 LevelOptions make_level_options(const Cilium& cilium, const SolidOptions& options,
-                                MPI_Comm communicator) {
+                                bool may_be_in_parts, MPI_Comm communicator) {
   return {{{options.newton_tolerance, options.max_iterations, least_force(cilium)},
            options.max_cutbacks,
            options.kernel_width},
           options.solver,
           communicator,
-          options.initial_guess == InitialGuess::beam};
+          options.initial_guess == InitialGuess::beam,
+          may_be_in_parts};
 }
 
 /// The meshes from the coarsest to the refinement asked for and that of the section's error; a
@@ -167,7 +168,8 @@ Levels make_levels(const Cilium& given, const LoadPath& path, SolidOptions optio
       });
   const bool in_load_frame = options.mesh.empty() && !path.empty();  // as PathRun solves it
   const Cilium cilium = turned(given, in_load_frame ? -azimuth(path.front()) : 0);
-  const LevelOptions level_options = make_level_options(cilium, options, communicator);
+  const LevelOptions level_options =
+      make_level_options(cilium, options, !is_sweep(path), communicator);
   Levels levels;
   if (!options.mesh.empty()) {
     levels.all.push_back(std::make_unique<Level>(cilium,

@@ -265,6 +265,19 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
       }
     }
   }
+  attach_mantle(triangulation);
+}
+
+std::size_t quadratic_nodes(const Cilium& cilium, const CylinderMeshOptions& options) {
+  const std::vector<double> planes = layer_planes(cilium, options);
+  Triangulation<2> section;
+  make_section(cilium, options, section);
+  const std::size_t in_plane =
+      section.n_used_vertices() + section.n_active_lines() + section.n_active_cells();
+  return in_plane * (2 * planes.size() - 1);
+}
+
+void attach_mantle(Triangulation<3>& triangulation) {
   triangulation.set_manifold(mantle_manifold, dealii::CylindricalManifold<3>(2));
 }
 

@@ -47,6 +47,12 @@ std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions
 void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
                    dealii::Triangulation<3>& triangulation);
 
+/// Number of the nodes of quadratic cells on it, without making it. Throws as make_cylinder().
+std::size_t quadratic_nodes(const Cilium& cilium, const CylinderMeshOptions& options);
+
+/// Makes the mantle of such a mesh a cylinder, if it was made without: by make_in_parts().
+void attach_mantle(dealii::Triangulation<3>& triangulation);
+
 /// Polynomial mapping of the curved cells, its support points computed once. Use the degree of the
 /// displacement's element (isoparametric): with a higher one, the element cannot represent linear
 /// fields, hence no rigid rotation. With

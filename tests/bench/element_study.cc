@@ -43,7 +43,6 @@ using namespace solvers;
 using namespace equilibrium;
 namespace {
 
-using dealii::Vector;
 using dealii::types::global_dof_index;
 
 constexpr SectionLoad load{.force = 2e-3, .arclength = 16e-3, .azimuth = 0};
@@ -151,7 +150,7 @@ class Study {
     constexpr int max_iterations = 15;
     constexpr double tolerance = 1e-9;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
-      Vector<double> residual(forces_);
+      Vector residual(forces_);
       residual *= part;
       if (!assemble(residual)) {
         outcome.trouble = "det F <= 0";
@@ -160,7 +159,7 @@ class Study {
       constraints_.set_zero(residual);
       solver.factorize(matrix_);
       ++outcome.iterations;
-      Vector<double> increment;
+      Vector increment;
       solver.solve(residual, increment);
       constraints_.distribute(increment);
       advance(increment);
@@ -170,11 +169,11 @@ class Study {
   }
 
   /// ∫ N_a dA / A of the x components over the plane Z = S.
-  Vector<double> section_integrals(double S) {
+  Vector section_integrals(double S) {
     const dealii::QGauss<2> quadrature(quadrature_.size() > 27 ? 4 : 3);
     dealii::FEFaceValues<3> values(*mapping_, element_, quadrature,
                                    dealii::update_values | dealii::update_JxW_values);
-    Vector<double> result(dof_handler_.n_dofs());
+    Vector result(dof_handler_.n_dofs());
     std::vector<global_dof_index> dofs(element_.n_dofs_per_cell());
     double area = 0;
     for (const auto& cell : dof_handler_.active_cell_iterators()) {
@@ -246,7 +245,7 @@ class Study {
   }
 
   /// Tangent into matrix_; internal forces off the residual. False if det F ≤ 0 somewhere.
-  bool assemble(Vector<double>& residual) {
+  bool assemble(Vector& residual) {
     matrix_ = 0;
     dealii::FEValues<3> values(
         *mapping_, element_, quadrature_,
@@ -254,7 +253,7 @@ class Study {
     const auto n = static_cast<Eigen::Index>(element_.n_dofs_per_cell());
     std::vector<global_dof_index> dofs(element_.n_dofs_per_cell());
     dealii::FullMatrix<double> share(element_.n_dofs_per_cell());
-    Vector<double> internal(element_.n_dofs_per_cell());
+    Vector internal(element_.n_dofs_per_cell());
     for (const auto& cell : dof_handler_.active_cell_iterators()) {
       values.reinit(cell);
       cell->get_dof_indices(dofs);
@@ -329,7 +328,7 @@ class Study {
     return true;
   }
 
-  void advance(const Vector<double>& increment) {
+  void advance(const Vector& increment) {
     std::vector<global_dof_index> dofs(element_.n_dofs_per_cell());
     if (kind_.pressure_degree >= 0)
       for (const auto& cell : dof_handler_.active_cell_iterators()) {
@@ -356,8 +355,8 @@ class Study {
   dealii::AffineConstraints<double> constraints_;
   dealii::SparsityPattern sparsity_;
   dealii::SparseMatrix<double> matrix_;
-  Vector<double> forces_;
-  Vector<double> displacement_;
+  Vector forces_;
+  Vector displacement_;
   std::vector<CellPressure> pressures_;
 };
 

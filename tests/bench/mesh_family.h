@@ -7,16 +7,18 @@
 #include <utility>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/equilibrium/load_path.h"
 #include "fem/solid/loads/external_forces.h"
 #include "fem/solid/solvers/linear_solver.h"
 #include "meshes/cylinder/cylinder_mesh.h"
+#include "meshes/parts.h"
 #include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem::solid {
 
-/// Whole meshes of the paper's cilium, from 20,000 to 1,000,000 unknowns, with cells of nearly the
+/// Whole meshes of the paper's cilium, from 20,000 to 5,000,000 unknowns, with cells of nearly the
 /// same shape.
 struct Mesh {
   unsigned int square_cells;
@@ -25,14 +27,14 @@ struct Mesh {
   double finest_layer;
   double coarsest_layer;
 };
-inline const std::vector<Mesh> mesh_family{{4, 1, 1, 0.11, 0.4},
-                                           {4, 3, 0.7, 0.07, 0.25},
-                                           {6, 4, 0.8, 0.05, 0.15},
-                                           {8, 5, 0.85, 0.036, 0.11},
-                                           {10, 7, 0.87, 0.025, 0.066}};
+inline const std::vector<Mesh> mesh_family{
+    {4, 1, 1, 0.11, 0.4},          {4, 3, 0.7, 0.07, 0.25},     {6, 4, 0.8, 0.05, 0.15},
+    {8, 5, 0.85, 0.036, 0.11},     {10, 7, 0.87, 0.025, 0.066}, {14, 9, 0.9, 0.0185, 0.05},
+    {18, 11, 0.92, 0.0145, 0.0385}};
+inline constexpr std::size_t million = 4;  ///< of 1,000,000 unknowns
 
 /// The tangent on such a mesh without load (ν = 0.49, E₂/E₁ = 30), the nodal forces of 1 mN at 16
-/// mm.
+/// mm; in parts, if there are several ranks.
 class Discretised {
  public:
   explicit Discretised(const Mesh& mesh) {
@@ -43,21 +45,32 @@ class Discretised {
     options.finest_layer = mesh.finest_layer;
     options.coarsest_layer = mesh.coarsest_layer;
     options.growth = 0.3;
-    meshes::cylinder::make_cylinder(paper_cilium(), options, triangulation_);
-    mapping_ = meshes::cylinder::cylinder_mapping(triangulation_, discretisation::element_degree);
+    const auto make = [&options](dealii::Triangulation<3>& triangulation) {
+      meshes::cylinder::make_cylinder(paper_cilium(), options, triangulation);
+    };
+    if (rank_count() > 1) {
+      auto parts =
+          std::make_unique<dealii::parallel::fullydistributed::Triangulation<3>>(MPI_COMM_WORLD);
+      meshes::cylinder::attach_mantle(*parts);
+      meshes::make_in_parts(make, *parts);
+      triangulation_ = std::move(parts);
+    } else {
+      triangulation_ = std::make_unique<dealii::Triangulation<3>>();
+      make(*triangulation_);
+    }
+    mapping_ = meshes::cylinder::cylinder_mapping(*triangulation_, discretisation::element_degree);
     std::vector<material::Hyperelastic> materials;
     for (const Segment& segment : paper_cilium().segments)
       materials.push_back(
           material::Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
-    space = std::make_unique<discretisation::SolidSpace>(triangulation_, *mapping_, materials);
+    space = std::make_unique<discretisation::SolidSpace>(*triangulation_, *mapping_, materials);
     const std::vector<discretisation::DirichletCondition> clamped{{.boundary = meshes::base_id}};
     constraints = increment_constraints(*space, clamped);
     quadrature_ = std::make_unique<discretisation::ExtrudedQuadrature>(*space);
     external_ =
         loads::external_forces(*space, *quadrature_, paper_cilium(),
                                ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = 0.5}, 0.5e-3);
-    forces.reinit(space->unknowns());
-    external_(space->undeformed().displacement, forces, nullptr);
+    forces = loads::forces_at(space->undeformed().displacement, *space, external_);
     constraints.set_zero(forces);
   }
 
@@ -66,16 +79,16 @@ class Discretised {
     const discretisation::SolidState state = space->undeformed();
     discretisation::TangentMatrix& tangent = solver.new_tangent();
     add_stiffness(*space, state, *internal_forces(*space, state), tangent, solver.cells());
-    dealii::Vector<double> unused(space->unknowns());
+    discretisation::Vector unused = space->vector();
     external_(state.displacement, unused, &tangent);
   }
 
   std::unique_ptr<discretisation::SolidSpace> space;
   dealii::AffineConstraints<double> constraints;
-  dealii::Vector<double> forces;
+  discretisation::Vector forces;
 
  private:
-  dealii::Triangulation<3> triangulation_;
+  std::unique_ptr<dealii::Triangulation<3>> triangulation_;
   std::unique_ptr<dealii::MappingQCache<3>> mapping_;
   std::unique_ptr<discretisation::ExtrudedQuadrature> quadrature_;
   loads::ExternalForces external_;

@@ -56,8 +56,8 @@ double way(const SweepPlace& a, const SweepPlace& b) {
   return std::abs(b.travel - a.travel) + std::abs(b.interference - a.interference);
 }
 
-double largest_difference(const dealii::Vector<double>& a, const dealii::Vector<double>& b) {
-  dealii::Vector<double> difference(a);
+double largest_difference(const Vector& a, const Vector& b) {
+  Vector difference(a);
   difference -= b;
   return difference.linfty_norm();
 }
@@ -131,7 +131,7 @@ std::optional<ContactState> Follower::attempt(const SweepPlace& place, const Con
   const RigidSurface surface = surface_at(place);
   ContactState state{place, start, from.memory, {}, 0, Vector3::Zero()};
   const loads::ExternalForces touch = contact_forces(nodes_, state.memory, surface, law_);
-  const auto external = [&](const dealii::Vector<double>& u, dealii::Vector<double>& forces,
+  const auto external = [&](const Vector& u, Vector& forces,
                             discretisation::TangentMatrix* tangent) {
     touch(u, forces, tangent);
     forces.add(place.hold, hold_);

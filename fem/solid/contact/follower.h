@@ -137,8 +137,8 @@ class Follower {
   std::vector<ContactNode> nodes_;
   std::vector<ContactFace> faces_;
   ContactLaw law_;
-  dealii::Vector<double> volumes_;  ///< of the nodes, m³
-  dealii::Vector<double> hold_;     ///< nodal forces of a unit holding force
+  discretisation::Vector volumes_;  ///< of the nodes, m³
+  discretisation::Vector hold_;     ///< nodal forces of a unit holding force
   double copies_;
   double volume_;
   double longest_;  ///< step of the surface, m

@@ -78,7 +78,7 @@ void subtract(const ContactNode& node, const Matrix3& derivative, TangentMatrix&
 
 }  // namespace
 
-Vector3 ContactNode::position(const dealii::Vector<double>& displacement) const {
+Vector3 ContactNode::position(const Vector& displacement) const {
   return X + Vector3(displacement[dofs[0]], displacement[dofs[1]], displacement[dofs[2]]);
 }
 
@@ -116,7 +116,7 @@ std::vector<ContactFace> contact_faces(const SolidSpace& space,
 
 double penetration_between(const std::vector<ContactNode>& nodes,
                            const std::vector<ContactFace>& faces, const RigidSurface& surface,
-                           const dealii::Vector<double>& displacement) {
+                           const Vector& displacement) {
   constexpr int intervals = 5;
   double deepest = 0;
   for (const ContactFace& face : faces)
@@ -203,7 +203,7 @@ bool correct_states(const std::vector<NodeForce>& forces, const ContactLaw& law,
 std::vector<NodeForce> node_forces(const std::vector<ContactNode>& nodes,
                                    const std::vector<NodeMemory>& memory,
                                    const RigidSurface& surface, const ContactLaw& law,
-                                   const dealii::Vector<double>& displacement) {
+                                   const Vector& displacement) {
   std::vector<NodeForce> forces;
   forces.reserve(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -216,8 +216,7 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
                                      const std::vector<NodeMemory>& memory,
                                      const RigidSurface& surface, const ContactLaw& law) {
   return [&nodes, &memory, surface, law, expected = std::vector<ExpectedNormal>(nodes.size())](
-             const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-             TangentMatrix* tangent) mutable {
+             const Vector& displacement, Vector& forces, TangentMatrix* tangent) mutable {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       const Vector3 x = nodes[i].position(displacement);
       const SurfacePoint point = surface_point(surface, x);
@@ -232,8 +231,7 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
 
 std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
                                    const std::vector<NodeForce>& forces,
-                                   const RigidSurface& surface,
-                                   const dealii::Vector<double>& displacement) {
+                                   const RigidSurface& surface, const Vector& displacement) {
   std::vector<NodeMemory> memory;
   memory.reserve(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -249,7 +247,7 @@ std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
 }
 
 double smallest_gap(const std::vector<ContactNode>& nodes, const RigidSurface& surface,
-                    const dealii::Vector<double>& displacement) {
+                    const Vector& displacement) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const ContactNode& node : nodes)
     smallest = std::min(smallest, surface_point(surface, node.position(displacement)).gap);

@@ -17,7 +17,7 @@ struct ContactNode {
   std::array<dealii::types::global_dof_index, 3> dofs;
   Vector3 X;  ///< reference position, m
 
-  Vector3 position(const dealii::Vector<double>& displacement) const;
+  Vector3 position(const discretisation::Vector& displacement) const;
 };
 
 /// The nodes of the tip's face and of the last segment's mantle, but for those on the base.
@@ -91,21 +91,21 @@ loads::ExternalForces contact_forces(const std::vector<ContactNode>& nodes,
 std::vector<NodeForce> node_forces(const std::vector<ContactNode>& nodes,
                                    const std::vector<NodeMemory>& memory,
                                    const RigidSurface& surface, const ContactLaw& law,
-                                   const dealii::Vector<double>& displacement);
+                                   const discretisation::Vector& displacement);
 
 /// What the nodes remember of an equilibrium with these forces.
 std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
                                    const std::vector<NodeForce>& forces,
                                    const RigidSurface& surface,
-                                   const dealii::Vector<double>& displacement);
+                                   const discretisation::Vector& displacement);
 
 /// The smallest gap of the nodes, m.
 double smallest_gap(const std::vector<ContactNode>& nodes, const RigidSurface& surface,
-                    const dealii::Vector<double>& displacement);
+                    const discretisation::Vector& displacement);
 
 /// How deep the faces penetrate, at 6 × 6 points of each, m: 0 or more.
 double penetration_between(const std::vector<ContactNode>& nodes,
                            const std::vector<ContactFace>& faces, const RigidSurface& surface,
-                           const dealii::Vector<double>& displacement);
+                           const discretisation::Vector& displacement);
 
 }  // namespace ciliaval::fem::solid::contact

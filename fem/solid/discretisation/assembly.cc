@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/discretisation/assembly.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/work_stream.h>
 
 #include <Eigen/LU>
@@ -33,8 +34,8 @@ struct StiffnessShare {
 struct NoScratch {};
 
 /// F = 1 + Σ u_a ⊗ ∂N_a/∂X at all Gauss points: columns 3q + J.
-Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(
-    const SolidElement& element, const dealii::Vector<double>& displacement) {
+Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(const SolidElement& element,
+                                                                   const Vector& displacement) {
   const NodalVectors u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, 3, 3 * element_points> F;
   // Eigen's blocked product is meant for large matrices and slower here.
@@ -165,9 +166,10 @@ Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& eleme
 
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state) {
   const auto& elements = space.elements();
-  InternalForces result{dealii::Vector<double>(space.unknowns()),
-                        dealii::Vector<double>(space.unknowns()),
+  InternalForces result{space.vector(), space.vector(),
                         std::vector<PressureEquation>(elements.size())};
+  state.displacement.update_ghost_values();
+  const std::size_t own = space.own_elements().size();
   bool admissible = true;
   using Iterator = std::vector<SolidElement>::const_iterator;
   const auto worker = [&](const Iterator& element, NoScratch&, ForceShare& share) {
@@ -176,15 +178,20 @@ std::optional<InternalForces> internal_forces(const SolidSpace& space, const Sol
   };
   const auto copier = [&](const ForceShare& share) {
     admissible = admissible && share.admissible;
+    if (share.index >= own) return;
     const auto& dofs = elements[share.index].dofs;
     for (std::size_t i = 0; i < element_dofs; ++i) {
-      result.forces[dofs[i]] += share.forces[static_cast<Eigen::Index>(i)];
-      result.condensed[dofs[i]] += share.condensed[static_cast<Eigen::Index>(i)];
+      result.forces.local_element(dofs[i]) += share.forces[static_cast<Eigen::Index>(i)];
+      result.condensed.local_element(dofs[i]) += share.condensed[static_cast<Eigen::Index>(i)];
     }
   };
   dealii::WorkStream::run(elements.begin(), elements.end(), worker, copier, NoScratch(),
                           ForceShare());
-  if (!admissible || !std::isfinite(result.condensed.l2_norm())) return std::nullopt;
+  result.forces.compress(dealii::VectorOperation::add);
+  result.condensed.compress(dealii::VectorOperation::add);
+  if (dealii::Utilities::MPI::min(admissible ? 1 : 0, space.communicator()) == 0 ||
+      !std::isfinite(result.condensed.l2_norm()))
+    return std::nullopt;
   return result;
 }
 
@@ -209,8 +216,9 @@ void add_stiffness(const SolidSpace& space, const SolidState& state, const Inter
                           StiffnessShare());
 }
 
-void advance(const SolidSpace& space, const InternalForces& internal,
-             const dealii::Vector<double>& increment, SolidState& state) {
+void advance(const SolidSpace& space, const InternalForces& internal, const Vector& increment,
+             SolidState& state) {
+  increment.update_ghost_values();
   const auto& elements = space.elements();
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const ElementVector du =
@@ -220,22 +228,25 @@ void advance(const SolidSpace& space, const InternalForces& internal,
         equation.correction + elements[e].inverse_compliance * (equation.gradient * du);
   }
   state.displacement += increment;
+  state.displacement.update_ghost_values();
 }
 
 double elastic_energy(const SolidSpace& space, const SolidState& state) {
   const auto& elements = space.elements();
+  state.displacement.update_ghost_values();
   double energy = 0;
-  for (std::size_t e = 0; e < elements.size(); ++e) {
+  for (std::size_t e = 0; e < space.own_elements().size(); ++e) {
     const auto F = deformation_gradients(elements[e], state.displacement);
     for (Eigen::Index q = 0; q < element_points; ++q)
       energy += elements[e].weights[q] *
                 strain_energy(elements[e].material, F.middleCols<3>(3 * q),
                               elements[e].pressure_values.col(q).dot(state.pressure[e]));
   }
-  return energy;
+  return dealii::Utilities::MPI::sum(energy, space.communicator());
 }
 
 void project_pressure(const SolidSpace& space, SolidState& state) {
+  state.displacement.update_ghost_values();
   const auto& elements = space.elements();
   for (std::size_t e = 0; e < elements.size(); ++e) {
     const auto F = deformation_gradients(elements[e], state.displacement);

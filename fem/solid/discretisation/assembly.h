@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
 
 #include <Eigen/Core>
 #include <optional>
@@ -25,8 +24,8 @@ struct PressureEquation {
 
 /// Internal forces of a state. The rows of constrained degrees of freedom hold the reactions.
 struct InternalForces {
-  dealii::Vector<double> forces;     ///< ∫ P : ∇N dV, N
-  dealii::Vector<double> condensed;  ///< forces + Gᵀ C⁻¹ R_p: with p eliminated, N
+  Vector forces;     ///< ∫ P : ∇N dV, N
+  Vector condensed;  ///< forces + Gᵀ C⁻¹ R_p: with p eliminated, N
   std::vector<PressureEquation> pressure;
 };
 
@@ -34,7 +33,7 @@ struct InternalForces {
 Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& element,
                                                        const SolidState& state, std::size_t index);
 
-/// Internal forces of the state; empty if det F ≤ 0 or not a number at a Gauss point.
+/// Internal forces of the state; empty if det F ≤ 0 or not a number at a Gauss point. Collective.
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state);
 
 /// The element's condensed stiffness K_uu + Gᵀ C⁻¹ G, symmetric, N/m, in the order of
@@ -44,16 +43,17 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
                        const PressureEquation& equation, dealii::FullMatrix<double>& matrix);
 
 /// Adds element_stiffness() of the given cells (indices of space.elements()) to the matrix, of all
-/// if none are given. As in internal_forces(), threads compute the cells and one adds them in their
-/// order, so that the result does not depend on the number of threads.
+/// the rank's if none are given. As in internal_forces(), threads compute the cells and one adds
+/// them in their order, so that the result does not depend on the number of threads.
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
                    TangentMatrix& matrix, std::span<const std::size_t> cells = {});
 
-/// u += Δu, p += C⁻¹ (R_p + G Δu), with the pressure equations of the state before.
-void advance(const SolidSpace& space, const InternalForces& internal,
-             const dealii::Vector<double>& increment, SolidState& state);
+/// u += Δu, p += C⁻¹ (R_p + G Δu), with the pressure equations of the state before. Collective.
+void advance(const SolidSpace& space, const InternalForces& internal, const Vector& increment,
+             SolidState& state);
 
-/// ∫ Ψ(F, p) dV of the mesh, J: where the pressure equation holds, the elastic energy.
+/// ∫ Ψ(F, p) dV of the whole mesh, J, collective: where the pressure equation holds, the elastic
+/// energy.
 double elastic_energy(const SolidSpace& space, const SolidState& state);
 
 /// Sets the pressure p = K π(J − 1) of a displacement, π the projection onto the element's linear

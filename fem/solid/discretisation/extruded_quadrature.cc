@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/discretisation/extruded_quadrature.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
@@ -60,12 +61,16 @@ ExtrudedQuadrature::ExtrudedQuadrature(const SolidSpace& space, Extent extent) :
       cell.area[q] = section.weight(q) * (by_xi[0] * by_eta[1] - by_eta[0] * by_xi[1]);
       cell.X[q] = at[0];
       cell.Y[q] = at[1];
-      volume += cell.area[q] * (cell.top - cell.bottom);
+      if (cells_.size() < space.own_elements().size())
+        volume += cell.area[q] * (cell.top - cell.bottom);
     }
     lowest = std::min(lowest, cell.bottom);
     height_ = std::max(height_, cell.top);
     cells_.push_back(cell);
   }
+  volume = dealii::Utilities::MPI::sum(volume, space.communicator());
+  lowest = dealii::Utilities::MPI::min(lowest, space.communicator());
+  height_ = dealii::Utilities::MPI::max(height_, space.communicator());
   area_ = volume / (height_ - lowest) * (extent == Extent::half ? 2 : 1);
 }
 

@@ -43,13 +43,13 @@ inline Eigen::Matrix<double, 9, 1> plane_product(const Eigen::Vector3d& of_xi,
 /// Whether the mesh is the whole body or the half Y ≥ 0 of one that its plane Y = 0 mirrors.
 enum class Extent { whole, half };
 
-/// The extruded quadrature of all cells of a mesh.
+/// The extruded quadrature of the rank's cells of a mesh.
 class ExtrudedQuadrature {
  public:
-  /// Throws InputError if a cell's ζ-lines are not parallel to Z to 1e-9 of its size.
+  /// Collective. Throws InputError if a cell's ζ-lines are not parallel to Z to 1e-9 of its size.
   explicit ExtrudedQuadrature(const SolidSpace& space, Extent extent = Extent::whole);
 
-  const std::vector<ExtrudedCell>& cells() const { return cells_; }
+  const std::vector<ExtrudedCell>& cells() const { return cells_; }  ///< of SolidSpace::elements()
   Extent extent() const { return extent_; }
   /// A of the body's whole section by the mesh's own quadrature, m².
   double area() const { return area_; }

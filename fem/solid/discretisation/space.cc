@@ -4,6 +4,7 @@
 #include <deal.II/base/function.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_renumbering.h>
+#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/component_mask.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/vector_tools_boundary.h>
@@ -13,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::discretisation {
@@ -84,9 +86,8 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
       scalar_element_(element_degree),
       element_(scalar_element_, 3),
       dof_handler_(triangulation) {
-  dof_handler_.distribute_dofs(element_);
-  // From the base to the tip: the rows of a rank then belong to one part of the cilium.
-  dealii::DoFRenumbering::downstream(dof_handler_, dealii::Tensor<1, 3>({0, 0, 1}));
+  start_mpi();
+  number_unknowns();
   const std::vector<unsigned int> inverse = scalar_element_.get_poly_space_numbering_inverse();
   lexicographic_.resize(inverse.size());
   for (unsigned int lex = 0; lex < inverse.size(); ++lex) lexicographic_[inverse[lex]] = lex;
@@ -99,40 +100,55 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
 
   dealii::FEValues<3> nodes(mapping_, scalar_element_, unit_nodes(),
                             dealii::update_quadrature_points);
-  std::vector<global_dof_index> dofs(element_dofs);
-  elements_.reserve(triangulation.n_active_cells());
-  for (const auto& cell : dof_handler_.active_cell_iterators()) {
-    SolidElement element;
-    element.cell = cell;
-    nodes.reinit(element.cell);
-    cell->get_dof_indices(dofs);
-    for (unsigned int i = 0; i < element_dofs; ++i) {
-      const auto [component, node] = element_.system_to_component_index(i);
-      element.dofs[component * element_nodes + lexicographic_[node]] = dofs[i];
-    }
-    element.weights.resize(element_points);
-    element.pressure_values.resize(element_pressures, element_points);
-    for (unsigned int a = 0; a < element_nodes; ++a)
-      for (unsigned int J = 0; J < 3; ++J) element.nodes(a, J) = nodes.quadrature_point(a)[J];
-    const Eigen::Matrix<double, element_points, 3> points =
-        shape_values_.transpose() * element.nodes;
-    const dealii::Point<3> centre = cell->center();
-    element.centre = Vector3(centre[0], centre[1], centre[2]);
-    element.size = cell->diameter();
-    for (Eigen::Index q = 0; q < element_points; ++q) {
-      const Matrix3 jacobian =
-          element.nodes.transpose() * unit_gradients().middleCols<3>(3 * q);  // ∂X/∂ξ
-      element.weights[q] = jacobian.determinant() * gauss.weight(static_cast<unsigned int>(q));
-      element.pressure_values.col(q) = element.pressure_basis(points.row(q).transpose());
-      element.inverse_jacobians.middleCols<3>(3 * q) = jacobian.inverse();
-    }
-    initialize(element, materials);
-    elements_.push_back(std::move(element));
+  for (const bool own : {true, false}) {
+    for (const auto& cell : dof_handler_.active_cell_iterators())
+      if (!cell->is_artificial() && cell->is_locally_owned() == own)
+        elements_.push_back(make_element(cell, nodes, materials));
+    if (own) own_ = elements_.size();
   }
 }
 
-void SolidSpace::initialize(SolidElement& element, std::span<const Hyperelastic> materials) const {
-  const auto id = element.cell->material_id();
+void SolidSpace::number_unknowns() {
+  dof_handler_.distribute_dofs(element_);
+  // From the base to the tip: neighbours are then near one another in memory.
+  if (dealii::Utilities::MPI::n_mpi_processes(communicator()) == 1)
+    dealii::DoFRenumbering::downstream(dof_handler_, dealii::Tensor<1, 3>({0, 0, 1}));
+  dealii::IndexSet relevant;
+  dealii::DoFTools::extract_locally_relevant_dofs(dof_handler_, relevant);
+  partitioner_ = std::make_shared<const dealii::Utilities::MPI::Partitioner>(
+      dof_handler_.locally_owned_dofs(), relevant, communicator());
+}
+
+SolidElement SolidSpace::make_element(const dealii::DoFHandler<3>::active_cell_iterator& cell,
+                                      dealii::FEValues<3>& nodes,
+                                      std::span<const Hyperelastic> materials) const {
+  SolidElement element;
+  element.cell = cell;
+  nodes.reinit(element.cell);
+  std::vector<global_dof_index> dofs(element_dofs);
+  cell->get_dof_indices(dofs);
+  for (unsigned int i = 0; i < element_dofs; ++i) {
+    const auto [component, node] = element_.system_to_component_index(i);
+    element.dofs[component * element_nodes + lexicographic_[node]] =
+        partitioner_->global_to_local(dofs[i]);
+  }
+  element.weights.resize(element_points);
+  element.pressure_values.resize(element_pressures, element_points);
+  for (unsigned int a = 0; a < element_nodes; ++a)
+    for (unsigned int J = 0; J < 3; ++J) element.nodes(a, J) = nodes.quadrature_point(a)[J];
+  const Eigen::Matrix<double, element_points, 3> points = shape_values_.transpose() * element.nodes;
+  const dealii::Point<3> centre = cell->center();
+  element.centre = Vector3(centre[0], centre[1], centre[2]);
+  element.size = cell->diameter();
+  const dealii::QGauss<3> gauss(element_degree + 1);
+  for (Eigen::Index q = 0; q < element_points; ++q) {
+    const Matrix3 jacobian =
+        element.nodes.transpose() * unit_gradients().middleCols<3>(3 * q);  // ∂X/∂ξ
+    element.weights[q] = jacobian.determinant() * gauss.weight(static_cast<unsigned int>(q));
+    element.pressure_values.col(q) = element.pressure_basis(points.row(q).transpose());
+    element.inverse_jacobians.middleCols<3>(3 * q) = jacobian.inverse();
+  }
+  const auto id = cell->material_id();
   if (id >= materials.size())
     throw InputError("the mesh has cells of material " + std::to_string(id) + ", but only " +
                      std::to_string(materials.size()) + " materials are given");
@@ -143,28 +159,37 @@ void SolidSpace::initialize(SolidElement& element, std::span<const Hyperelastic>
                                     element.pressure_values.transpose() /
                                     element.material.bulk_modulus;
   element.inverse_compliance = compliance.inverse();
+  return element;
 }
 
 SolidState SolidSpace::undeformed() const {
-  return {dealii::Vector<double>(dof_handler_.n_dofs()),
-          std::vector<PressureVector>(elements_.size(), PressureVector::Zero())};
+  return {vector(), std::vector<PressureVector>(elements_.size(), PressureVector::Zero())};
 }
 
-Eigen::Matrix<double, element_nodes, 3> nodal_displacements(
-    const SolidElement& element, const dealii::Vector<double>& displacement) {
+Eigen::Matrix<double, element_nodes, 3> nodal_displacements(const SolidElement& element,
+                                                            const Vector& displacement) {
   Eigen::Matrix<double, element_nodes, 3> u;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t a = 0; a < element_nodes; ++a)
       u(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(c)) =
-          displacement[element.dofs[c * element_nodes + a]];
+          displacement.local_element(element.dofs[c * element_nodes + a]);
   return u;
 }
 
 dealii::AffineConstraints<double> increment_constraints(
     const SolidSpace& space, std::span<const DirichletCondition> conditions) {
-  dealii::AffineConstraints<double> constraints;
+  // Of the unknowns of others their owners tell: the cells beside a rank's own end in faces that
+  // look like the body's surface.
+  Vector is_constrained = space.vector();
   for (const DirichletCondition& condition : conditions)
-    for (const auto& [dof, value] : boundary_values(space, condition)) constraints.add_line(dof);
+    for (const auto& [dof, value] : boundary_values(space, condition))
+      if (is_constrained.in_local_range(dof)) is_constrained[dof] = 1;
+  is_constrained.update_ghost_values();
+  dealii::IndexSet relevant = space.partitioner().locally_owned_range();
+  relevant.add_indices(space.partitioner().ghost_indices());
+  dealii::AffineConstraints<double> constraints(relevant);
+  for (const auto dof : relevant)
+    if (is_constrained[dof] != 0) constraints.add_line(dof);
   constraints.close();
   return constraints;
 }
@@ -173,7 +198,8 @@ void prescribe(const SolidSpace& space, std::span<const DirichletCondition> cond
                SolidState& state, double factor) {
   for (const DirichletCondition& condition : conditions)
     for (const auto& [dof, value] : boundary_values(space, condition))
-      state.displacement[dof] = factor * value;
+      if (state.displacement.in_local_range(dof)) state.displacement[dof] = factor * value;
+  state.displacement.update_ghost_values();
 }
 
 }  // namespace ciliaval::fem::solid::discretisation

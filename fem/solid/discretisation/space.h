@@ -4,17 +4,19 @@
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/fe_values.h>
 #include <deal.II/fe/mapping.h>
 #include <deal.II/grid/tria.h>
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/vector.h>
 
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "fem/solid/discretisation/vector.h"
 #include "fem/solid/material/hyperelastic.h"
 #include "problem/types.h"
 
@@ -38,7 +40,8 @@ const ShapeGradients& unit_gradients();
 /// The data of one cell for assembly, computed once in the reference configuration.
 struct SolidElement {
   dealii::Triangulation<3>::active_cell_iterator cell;
-  std::array<dealii::types::global_dof_index, element_dofs> dofs;
+  std::array<dealii::types::global_dof_index, element_dofs>
+      dofs;  ///< the unknowns by this rank's numbers: Vector::local_element()
   material::Hyperelastic material;
   Eigen::Matrix<double, element_nodes, 3> nodes;  ///< X of the nodes, m: row a
   Vector3 centre;                                 ///< origin of the pressure's linear basis, m
@@ -56,13 +59,16 @@ struct SolidElement {
   PressureVector pressure_basis(const Vector3& X) const;
 };
 
-/// Displacement and pressure of the whole body.
+/// Displacement and pressure of the body, or of a rank's part of it.
 struct SolidState {
-  dealii::Vector<double> displacement;   ///< nodal values, m
-  std::vector<PressureVector> pressure;  ///< coefficients of ψ, one vector for each element, Pa
+  Vector displacement;                   ///< nodal values, m
+  std::vector<PressureVector> pressure;  ///< coefficients of ψ, one vector for each of the rank's
+                                         ///< elements, Pa
 };
 
 /// Finite-element space of a hexahedral mesh. The triangulation and the mapping must outlive it.
+/// Of a triangulation in parts each rank has its own cells and those beside them, and the unknowns
+/// of both; of any other one, all.
 /// The mapping's degree must not exceed element_degree: X(ξ) is then the polynomial through the
 /// nodes, and linear fields are in the space.
 class SolidSpace {
@@ -74,18 +80,30 @@ class SolidSpace {
   const dealii::DoFHandler<3>& dof_handler() const { return dof_handler_; }
   const dealii::Mapping<3>& mapping() const { return mapping_; }
   const dealii::FE_Q<3>& scalar_element() const { return scalar_element_; }
+  /// The rank's own cells, then those beside them.
   const std::vector<SolidElement>& elements() const { return elements_; }
+  std::span<const SolidElement> own_elements() const { return std::span(elements_).first(own_); }
+  /// The ranks that share the mesh: this one alone if it is whole.
+  MPI_Comm communicator() const { return dof_handler_.get_communicator(); }
+  /// Of the unknowns: a rank's own ones and, behind them, those that others own.
+  const dealii::Utilities::MPI::Partitioner& partitioner() const { return *partitioner_; }
+  /// Zeros.
+  Vector vector() const { return Vector(partitioner_); }
   /// Lexicographic number of node a of deal.II's FE_Q<3>(2).
   const std::vector<unsigned int>& lexicographic() const { return lexicographic_; }
   /// N_a at the Gauss points: row a (lexicographic), column q.
   const Eigen::MatrixXd& shape_values() const { return shape_values_; }
+  /// On all ranks together.
   dealii::types::global_dof_index unknowns() const { return dof_handler_.n_dofs(); }
 
   /// u = 0, p = 0.
   SolidState undeformed() const;
 
  private:
-  void initialize(SolidElement& element, std::span<const material::Hyperelastic> materials) const;
+  void number_unknowns();
+  SolidElement make_element(const dealii::DoFHandler<3>::active_cell_iterator& cell,
+                            dealii::FEValues<3>& nodes,
+                            std::span<const material::Hyperelastic> materials) const;
 
   const dealii::Mapping<3>& mapping_;
   dealii::FE_Q<3> scalar_element_;
@@ -93,12 +111,15 @@ class SolidSpace {
   dealii::DoFHandler<3> dof_handler_;
   std::vector<unsigned int> lexicographic_;
   Eigen::MatrixXd shape_values_;
+  std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_;
   std::vector<SolidElement> elements_;
+  std::size_t own_ = 0;
 };
 
-/// Nodal displacements of an element: row a, column component, m.
-Eigen::Matrix<double, element_nodes, 3> nodal_displacements(
-    const SolidElement& element, const dealii::Vector<double>& displacement);
+/// Nodal displacements of an element: row a, column component, m. The vector needs the values that
+/// other ranks own.
+Eigen::Matrix<double, element_nodes, 3> nodal_displacements(const SolidElement& element,
+                                                            const Vector& displacement);
 
 /// Displacement prescribed on a part of the boundary.
 struct DirichletCondition {
@@ -107,11 +128,11 @@ struct DirichletCondition {
   std::function<Vector3(const Vector3& X)> displacement{};  ///< empty: zero
 };
 
-/// Homogeneous constraints of the increments.
+/// Homogeneous constraints of the increments, of all unknowns of the rank. Collective.
 dealii::AffineConstraints<double> increment_constraints(
     const SolidSpace& space, std::span<const DirichletCondition> conditions);
 
-/// Writes the prescribed values, times `factor`, into the state's displacement.
+/// Writes the prescribed values, times `factor`, into the state's displacement. Collective.
 void prescribe(const SolidSpace& space, std::span<const DirichletCondition> conditions,
                SolidState& state, double factor = 1);
 

@@ -6,24 +6,26 @@
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::equilibrium {
+using namespace discretisation;
 
-void BorderedSystem::prepare(const dealii::Vector<double>& u, const Solve& solve) {
-  gradient_.reinit(u.size());
+void BorderedSystem::prepare(const Vector& u, const Solve& solve) {
+  gradient_.reinit(u);
   force_.condition(u, &gradient_);
   constraints_.set_zero(gradient_);
-  dealii::Vector<double> unit(u.size());
+  Vector unit;
+  unit.reinit(u);
   force_.forces(1)(u, unit, nullptr);
+  unit.compress(dealii::VectorOperation::add);
   constraints_.set_zero(unit);
-  response_.reinit(u.size());
+  response_.reinit(u);
   solve(unit, response_);
-  constraints_.distribute(response_);
+  constraints_.set_zero(response_);
   pivot_ = gradient_ * response_;
   if (!std::isfinite(pivot_) || pivot_ == 0)
     throw SolverError("the displacement does not depend on the force that is sought");
 }
 
-double BorderedSystem::complete(const dealii::Vector<double>& u,
-                                dealii::Vector<double>& increment) const {
+double BorderedSystem::complete(const Vector& u, Vector& increment) const {
   const double amplitude = -(gap(u) + gradient_ * increment) / pivot_;
   increment.add(amplitude, response_);
   return amplitude;

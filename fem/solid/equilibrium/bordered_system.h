@@ -2,10 +2,10 @@
 #pragma once
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/vector.h>
 
 #include <functional>
 
+#include "fem/solid/discretisation/vector.h"
 #include "fem/solid/equilibrium/newton.h"
 
 namespace ciliaval::fem::solid::equilibrium {
@@ -21,7 +21,7 @@ class BorderedSystem {
  public:
   /// x = K⁻¹ rhs, the constrained components of both zero.
   using Solve =
-      std::function<void(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution)>;
+      std::function<void(const discretisation::Vector& rhs, discretisation::Vector& solution)>;
 
   /// The force must outlive the system.
   BorderedSystem(loads::UnknownForce& force, const dealii::AffineConstraints<double>& constraints)
@@ -29,20 +29,20 @@ class BorderedSystem {
 
   /// Takes the tangent at the displacement u, whose inverse is `solve`. Throws SolverError if the
   /// condition does not determine the force.
-  void prepare(const dealii::Vector<double>& u, const Solve& solve);
+  void prepare(const discretisation::Vector& u, const Solve& solve);
 
   /// Makes Δu at the displacement u out of a, with the tangent last prepared. Returns ΔF.
-  double complete(const dealii::Vector<double>& u, dealii::Vector<double>& increment) const;
+  double complete(const discretisation::Vector& u, discretisation::Vector& increment) const;
 
   /// g at the displacement u.
-  double gap(const dealii::Vector<double>& u) const { return force_.condition(u, nullptr); }
+  double gap(const discretisation::Vector& u) const { return force_.condition(u, nullptr); }
   void advance(double amplitude_increment) { force_.amplitude += amplitude_increment; }
 
  private:
   loads::UnknownForce& force_;
   const dealii::AffineConstraints<double>& constraints_;
-  dealii::Vector<double> gradient_;  ///< ∂g/∂u
-  dealii::Vector<double> response_;  ///< b
+  discretisation::Vector gradient_;  ///< ∂g/∂u
+  discretisation::Vector response_;  ///< b
   double pivot_ = 0;                 ///< ∂g/∂u·b
 };
 

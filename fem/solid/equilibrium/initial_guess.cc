@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/equilibrium/initial_guess.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::equilibrium {
@@ -16,6 +22,10 @@ using namespace discretisation;
 namespace {
 
 using PlaneNodes = Eigen::Matrix<double, 2, 9>;
+
+// How far a point may lie outside of a section's cell, in cells.
+constexpr double inside = 1e-9;   ///< as one that lies in it
+constexpr double farthest = 0.5;  ///< at all
 
 /// Values and derivatives of the nine plane polynomials at (ξ, η).
 struct PlaneBasis {
@@ -43,16 +53,21 @@ class Locator {
     }
   }
 
-  /// The element that holds X (the nearest one for points slightly outside) and (ξ, η, ζ) there.
-  std::pair<std::size_t, Vector3> find(const Vector3& X) const {
+  struct Place {
+    double outside = std::numeric_limits<double>::infinity();  ///< of the section's cell, in cells
+    std::size_t element = 0;
+    Vector3 local = Vector3::Zero();  ///< (ξ, η, ζ)
+  };
+  /// The element that holds X, or the nearest one for points slightly outside.
+  Place find(const Vector3& X) const {
     auto next = layers_.upper_bound(X.z());
     if (next != layers_.begin()) --next;
+    if (next == layers_.end()) return {};
     const auto& [bottom, layer] = *next;
     const double zeta = (X.z() - bottom) / (layer.top - bottom);
-    const auto [cell, at] = find_in(layer, X.head<2>());
-    if (!(zeta > -1e-6 && zeta < 1 + 1e-6))
-      throw InputError("a state was asked for at a height outside its mesh");
-    return {layer.elements[cell], Vector3(at[0], at[1], zeta)};
+    if (!(zeta > -1e-6 && zeta < 1 + 1e-6)) return {};
+    const auto [outside, cell, at] = find_in(layer, X.head<2>());
+    return {outside, layer.elements[cell], Vector3(at[0], at[1], zeta)};
   }
 
  private:
@@ -62,26 +77,23 @@ class Locator {
     std::vector<PlaneNodes> sections;
   };
 
-  /// The cell of the section, and (ξ, η) there.
-  static std::pair<std::size_t, Eigen::Vector2d> find_in(const Layer& layer,
-                                                         const Eigen::Vector2d& XY) {
+  struct InSection {
+    double outside = std::numeric_limits<double>::infinity();
+    std::size_t cell = 0;
+    Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  };
+  static InSection find_in(const Layer& layer, const Eigen::Vector2d& XY) {
     std::vector<std::pair<double, std::size_t>> order;
     for (std::size_t i = 0; i < layer.sections.size(); ++i)
       order.emplace_back((layer.sections[i].col(4) - XY).squaredNorm(), i);
     std::sort(order.begin(), order.end());
-    std::pair<std::size_t, Eigen::Vector2d> best;
-    double least = std::numeric_limits<double>::infinity();
+    InSection best;
     for (const auto& [distance, i] : order) {
       const Eigen::Vector2d at = local(layer.sections[i], XY);
       const double outside = (at.array() - 0.5).abs().maxCoeff() - 0.5;
-      if (outside < least) {
-        least = outside;
-        best = {i, at};
-      }
-      if (outside < 1e-9) break;
+      if (outside < best.outside) best = {outside, i, at};
+      if (outside < inside) break;
     }
-    constexpr double farthest = 0.5;  // of a cell
-    if (!(least < farthest)) throw InputError("a state was asked for at a point outside its mesh");
     return best;
   }
 
@@ -101,6 +113,80 @@ class Locator {
   std::map<double, Layer> layers_;  ///< by the Z of their lower planes
 };
 
+/// u and p at a point, and how far that lies outside the cell whose polynomials they are.
+struct PointValue {
+  double outside = std::numeric_limits<double>::infinity();
+  Vector3 displacement = Vector3::Zero();
+  double pressure = 0;
+};
+
+/// Values of a state anywhere on the cells that this rank has.
+class Interpolant {
+ public:
+  Interpolant(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
+              const SolidState& state)
+      : space_(space), state_(state), locator_(space, quadrature) {}
+
+  PointValue at(const Vector3& X) const {
+    const auto [outside, e, local] = locator_.find(X);
+    if (std::isinf(outside)) return {};
+    const SolidElement& element = space_.elements()[e];
+    const auto u = nodal_displacements(element, state_.displacement);
+    const Eigen::Matrix<double, 9, 1> section = PlaneBasis(local.head<2>()).values;
+    const Eigen::Vector3d along = quadratic_basis(local.z());
+    PointValue result{outside, Vector3::Zero(), state_.pressure[e].dot(element.pressure_basis(X))};
+    for (int k = 0; k < 3; ++k)
+      result.displacement += along[k] * u.middleRows<9>(Eigen::Index{9} * k).transpose() * section;
+    return result;
+  }
+
+ private:
+  const SolidSpace& space_;
+  const SolidState& state_;
+  Locator locator_;
+};
+
+/// Replaces values by those of a rank in whose cells the points lie, or nearer to them. Ranks ask
+/// those whose cells reach the point's height. Collective.
+void ask_others(const Interpolant& own, const SolidSpace& from, const std::vector<Vector3>& points,
+                std::vector<PointValue>& values) {
+  using Points = std::vector<std::array<double, 3>>;
+  using Values = std::vector<std::array<double, 5>>;
+  const MPI_Comm communicator = from.communicator();
+  std::array<double, 2> reach{std::numeric_limits<double>::infinity(), 0};
+  for (const SolidElement& element : from.own_elements())
+    reach = {std::min(reach[0], element.nodes.col(2).minCoeff()),
+             std::max(reach[1], element.nodes.col(2).maxCoeff())};
+  const auto reaches = dealii::Utilities::MPI::all_gather(communicator, reach);
+  std::map<unsigned int, Points> asked;
+  std::map<unsigned int, std::vector<std::size_t>> places;
+  const auto self = static_cast<unsigned int>(rank(communicator));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (values[i].outside < inside) continue;
+    const Vector3& X = points[i];
+    for (unsigned int other = 0; other < reaches.size(); ++other) {
+      const auto& [low, high] = reaches[other];
+      const double slack = 1e-6 * (high - low);
+      if (other == self || X.z() < low - slack || X.z() > high + slack) continue;
+      asked[other].push_back({X.x(), X.y(), X.z()});
+      places[other].push_back(i);
+    }
+  }
+  std::map<unsigned int, Values> answers;
+  for (const auto& [other, list] : dealii::Utilities::MPI::some_to_some(communicator, asked))
+    for (const auto& [x, y, z] : list) {
+      const PointValue value = own.at(Vector3(x, y, z));
+      const Vector3& u = value.displacement;
+      answers[other].push_back({value.outside, u.x(), u.y(), u.z(), value.pressure});
+    }
+  for (const auto& [other, list] : dealii::Utilities::MPI::some_to_some(communicator, answers))
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const auto& [outside, x, y, z, pressure] = list[i];
+      PointValue& value = values[places.at(other)[i]];
+      if (outside < value.outside) value = {outside, Vector3(x, y, z), pressure};
+    }
+}
+
 /// displacement(X, segment) at the nodes, pressure(X, segment) projected on each element's linear
 /// functions; `segment` is the element's.
 template <typename Displacement, typename Pressure>
@@ -113,7 +199,8 @@ SolidState filled(const SolidSpace& space, const Displacement& displacement,
     for (unsigned int a = 0; a < element_nodes; ++a) {
       const Vector3 u = displacement(element.nodes.row(a).transpose(), segment);
       for (std::size_t c = 0; c < 3; ++c)
-        state.displacement[element.dofs[c * element_nodes + a]] = u[static_cast<Eigen::Index>(c)];
+        state.displacement.local_element(element.dofs[c * element_nodes + a]) =
+            u[static_cast<Eigen::Index>(c)];
     }
     const Eigen::Matrix<double, element_points, 3> points =
         space.shape_values().transpose() * element.nodes;
@@ -123,6 +210,7 @@ SolidState filled(const SolidSpace& space, const Displacement& displacement,
                 pressure(points.row(q).transpose(), segment);
     state.pressure[e] = element.inverse_compliance * moment / element.material.bulk_modulus;
   }
+  state.displacement.update_ghost_values();
   return state;
 }
 
@@ -154,22 +242,26 @@ struct RodSection {
 
 SolidState interpolated(const SolidSpace& from, const ExtrudedQuadrature& quadrature,
                         const SolidState& state, const SolidSpace& to) {
-  const Locator locator(from, quadrature);
-  const auto displacement = [&](const Vector3& X, std::size_t) -> Vector3 {
-    const auto [e, local] = locator.find(X);
-    const auto u = nodal_displacements(from.elements()[e], state.displacement);
-    const Eigen::Matrix<double, 9, 1> section = PlaneBasis(local.head<2>()).values;
-    const Eigen::Vector3d along = quadratic_basis(local.z());
-    Vector3 result = Vector3::Zero();
-    for (int k = 0; k < 3; ++k)
-      result += along[k] * u.middleRows<9>(Eigen::Index{9} * k).transpose() * section;
-    return result;
+  state.displacement.update_ghost_values();
+  const Interpolant own(from, quadrature, state);
+  std::vector<Vector3> points;
+  std::vector<PointValue> values;
+  // filled() asks for the same points in the same order each time.
+  const auto add = [&](const Vector3& X, std::size_t) -> const PointValue& {
+    points.push_back(X);
+    return values.emplace_back(own.at(X));
   };
-  const auto pressure = [&](const Vector3& X, std::size_t) {
-    const std::size_t e = locator.find(X).first;
-    return state.pressure[e].dot(from.elements()[e].pressure_basis(X));
-  };
-  return filled(to, displacement, pressure);
+  filled(
+      to, [&](const Vector3& X, std::size_t e) { return add(X, e).displacement; },
+      [&](const Vector3& X, std::size_t e) { return add(X, e).pressure; });
+  if (rank_count(from.communicator()) > 1) ask_others(own, from, points, values);
+  for (const PointValue& value : values)
+    if (!(value.outside < farthest))
+      throw InputError("a state was asked for at a point outside its mesh");
+  auto value = values.begin();
+  return filled(
+      to, [&](const Vector3&, std::size_t) { return value++->displacement; },
+      [&](const Vector3&, std::size_t) { return value++->pressure; });
 }
 
 SolidState rod_guess(const Centreline& rod, const Cilium& cilium, const SolidSpace& to) {

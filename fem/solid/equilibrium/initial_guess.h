@@ -12,7 +12,8 @@ namespace ciliaval::fem::solid::equilibrium {
 
 /// The state of one mesh as a state of another of the same cilium: displacements interpolated at
 /// the nodes, pressures projected in each element. Where the sections differ at the mantle, the
-/// coarse cells' polynomials are continued. Throws InputError if a node lies outside `from`'s
+/// coarse cells' polynomials are continued. Both meshes are in parts, or the first is whole.
+/// Collective. Throws InputError if a node lies outside `from`'s
 /// layers or far outside its section.
 discretisation::SolidState interpolated(const discretisation::SolidSpace& from,
                                         const discretisation::ExtrudedQuadrature& quadrature,

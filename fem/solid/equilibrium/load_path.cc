@@ -142,8 +142,8 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   return attempt;
 }
 
-double LoadPathSolver::force_of_load(const Load& load, const dealii::Vector<double>& external,
-                                     const dealii::Vector<double>& displacement) const {
+double LoadPathSolver::force_of_load(const Load& load, const Vector& external,
+                                     const Vector& displacement) const {
   Vector3 force = resultant(space_, external);
   const surroundings::Environment environment = acting_environment(load);
   if (!surroundings::is_empty(environment))

@@ -116,8 +116,8 @@ class LoadPathSolver {
   LoadPathOutcome advance_magnitude(const Load& target, const Progress& progress,
                                     const std::function<void()>& on_equilibrium);
   /// The force of the load alone along e, of nodal forces that have the environment's, N.
-  double force_of_load(const Load& load, const dealii::Vector<double>& external,
-                       const dealii::Vector<double>& displacement) const;
+  double force_of_load(const Load& load, const discretisation::Vector& external,
+                       const discretisation::Vector& displacement) const;
 
   const discretisation::SolidSpace& space_;
   const discretisation::ExtrudedQuadrature& quadrature_;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/equilibrium/newton.h"
 
-#include <deal.II/grid/grid_tools.h>
+#include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/equilibrium/bordered_system.h"
 #include "problem/error.h"
@@ -18,8 +21,6 @@ using namespace loads;
 using namespace solvers;
 namespace {
 
-using dealii::Vector;
-
 /// Residual beyond which an iteration is given up, relative to the force scale.
 constexpr double divergence = 1e12;
 /// Residual below which the increment alone decides. u carries ε|u|, which the stiffness K/h of the
@@ -27,15 +28,19 @@ constexpr double divergence = 1e12;
 constexpr double rounding_level = 1e-4;
 
 /// The residual at the free degrees of freedom, relative to the force scale.
-double relative_residual(const InternalForces& internal, const Vector<double>& external,
+double relative_residual(const InternalForces& internal, const Vector& external,
                          const dealii::AffineConstraints<double>& constraints,
-                         const NewtonOptions& options, Vector<double>& residual,
-                         Vector<double>& reactions) {
+                         const NewtonOptions& options, Vector& residual, Vector& reactions) {
   reactions = internal.forces;
   reactions -= external;
   double reaction_norm = 0;
   for (const auto& line : constraints.get_lines())
-    reaction_norm = std::hypot(reaction_norm, reactions[line.index]);
+    if (reactions.in_local_range(line.index))
+      reaction_norm = std::hypot(reaction_norm, reactions[line.index]);
+  const MPI_Comm communicator = reactions.get_mpi_communicator();
+  if (rank_count(communicator) > 1)
+    reaction_norm =
+        std::sqrt(dealii::Utilities::MPI::sum(reaction_norm * reaction_norm, communicator));
   residual = external;
   residual -= internal.condensed;
   constraints.set_zero(residual);
@@ -72,6 +77,20 @@ bool may_use_last_tangent(const NewtonResult& result, const NewtonOptions& optio
                                          increments[n - 1] <= fast_reduction * increments[n - 2]);
 }
 
+/// Of the box around the body, m.
+double diagonal(const SolidSpace& space) {
+  std::array<double, 6> reach;  // −X and X at most
+  reach.fill(-std::numeric_limits<double>::infinity());
+  for (const SolidElement& element : space.own_elements())
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto X = element.nodes.col(static_cast<Eigen::Index>(k));
+      reach.at(2 * k) = std::max(reach.at(2 * k), -X.minCoeff());
+      reach.at(2 * k + 1) = std::max(reach.at(2 * k + 1), X.maxCoeff());
+    }
+  for (double& value : reach) value = dealii::Utilities::MPI::max(value, space.communicator());
+  return std::hypot(reach[0] + reach[1], reach[2] + reach[3], reach[4] + reach[5]);
+}
+
 }  // namespace
 
 Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constraints,
@@ -79,7 +98,7 @@ Newton::Newton(const SolidSpace& space, dealii::AffineConstraints<double> constr
     : space_(space),
       constraints_(std::move(constraints)),
       communicator_(communicator),
-      size_(dealii::GridTools::diameter(space.dof_handler().get_triangulation())) {
+      size_(diagonal(space)) {
   solver_ = std::make_unique<LinearSolver>(space, constraints_, solver, communicator);
 }
 
@@ -98,12 +117,12 @@ NewtonResult Newton::solve(UnknownForce& force, SolidState& state, const NewtonO
   return iterate(external, &bordered, state, options, progress);
 }
 
-Newton::Step Newton::last_tangents_step(const SolidState& state, const Vector<double>& residual,
+Newton::Step Newton::last_tangents_step(const SolidState& state, const Vector& residual,
                                         BorderedSystem* bordered) {
   Step step;
   step.linear_iterations = solver_->solve(residual, step.increment, estimate_reduction);
   if (bordered != nullptr) step.amplitude = bordered->complete(state.displacement, step.increment);
-  constraints_.distribute(step.increment);
+  constraints_.set_zero(step.increment);
   return step;
 }
 
@@ -121,7 +140,7 @@ Newton::Use Newton::use_of(const Step& step, const SolidState& state, const Newt
 void Newton::assemble_tangent(const ExternalForces& external, const SolidState& state,
                               const InternalForces& internal, TangentMatrix& tangent) {
   add_stiffness(space_, state, internal, tangent, solver_->cells());
-  Vector<double> unused(space_.unknowns());
+  Vector unused = space_.vector();
   external(state.displacement, unused, &tangent);
 }
 
@@ -137,7 +156,7 @@ std::optional<SecondVariation> Newton::second_variation(
   return equilibrium::second_variation(space_, constraints, matrix, solver_->rows(), communicator_);
 }
 
-Newton::Step Newton::own_tangents_step(const SolidState& state, const Vector<double>& residual,
+Newton::Step Newton::own_tangents_step(const SolidState& state, const Vector& residual,
                                        BorderedSystem* bordered) {
   Step step;
   step.linear_iterations = solver_->solve(residual, step.increment, step_reduction);
@@ -147,7 +166,7 @@ Newton::Step Newton::own_tangents_step(const SolidState& state, const Vector<dou
     });
     step.amplitude = bordered->complete(state.displacement, step.increment);
   }
-  constraints_.distribute(step.increment);
+  constraints_.set_zero(step.increment);
   return step;
 }
 
@@ -155,7 +174,7 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
                              SolidState& state, const NewtonOptions& options,
                              const NewtonProgress& progress) {
   NewtonResult result;
-  Vector<double> residual;
+  Vector residual;
   const auto fail = [&result](const std::string& reason) {
     result.reason = reason;
     return result;
@@ -164,9 +183,8 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
     const auto internal = internal_forces(space_, state);
     result.overshot = !internal && iteration == 1;
     if (!internal) return fail("det F is not positive at a quadrature point");
-    result.external.reinit(space_.unknowns());
     try {
-      external(state.displacement, result.external, nullptr);
+      result.external = forces_at(state.displacement, space_, external);
     } catch (const SolverError& error) {  // inside a magnet
       return fail(error.what());
     }
@@ -200,8 +218,7 @@ NewtonResult Newton::iterate(const ExternalForces& external, BorderedSystem* bor
       advance(space_, *internal, step.increment, state);
       if (use == Use::last_increment) {
         result.converged = true;
-        result.external = 0;
-        external(state.displacement, result.external, nullptr);
+        result.external = forces_at(state.displacement, space_, external);
         return result;
       }
       result.linear_iterations.push_back(step.linear_iterations);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/vector.h>
 
 #include <functional>
 #include <memory>
@@ -34,9 +33,9 @@ struct NewtonResult {
   bool overshot = false;             ///< det F was not positive after the very first iteration
   std::vector<double> residuals;     ///< relative, before each iteration and at the end
   std::vector<double> increments;    ///< ‖Δu‖_max of each iteration, m
-  dealii::Vector<double> reactions;  ///< internal − external forces before the last increment, all
+  discretisation::Vector reactions;  ///< internal − external forces before the last increment, all
                                      ///< rows, N
-  dealii::Vector<double> external;     ///< external forces at the end, N
+  discretisation::Vector external;     ///< external forces at the end, N
   std::vector<int> linear_iterations;  ///< of GMRES in each iteration; 1: solved directly
   int iterations() const { return static_cast<int>(increments.size()); }
 };
@@ -45,7 +44,7 @@ struct NewtonResult {
 using NewtonProgress = std::function<void(int, double)>;
 
 /// Newton's method for internal(u, p) = external(u), p condensed, with a LinearSolver for the
-/// unsymmetric tangent. All functions are collective; all ranks hold the same states, bit by bit.
+/// unsymmetric tangent. All functions are collective.
 ///
 /// The force scale of the residual is the l₂ norm of the nodal external forces or, if they vanish,
 /// of the reactions at the constrained degrees of freedom. Stopping rule: once the residual is
@@ -82,14 +81,14 @@ class Newton {
 
  private:
   struct Step {
-    dealii::Vector<double> increment;
+    discretisation::Vector increment;
     double amplitude = 0;  ///< increment of the unknown force's, if there is one
     int linear_iterations = 0;
     double size() const { return increment.linfty_norm(); }
   };
   /// The increment by the solver's last tangent, and its use.
   Step last_tangents_step(const discretisation::SolidState& state,
-                          const dealii::Vector<double>& residual, BorderedSystem* bordered);
+                          const discretisation::Vector& residual, BorderedSystem* bordered);
   enum class Use { last_increment, increment, none };
   Use use_of(const Step& step, const discretisation::SolidState& state, const NewtonResult& result,
              const NewtonOptions& options) const;
@@ -99,7 +98,7 @@ class Newton {
                         discretisation::TangentMatrix& tangent);
   /// The increment by the tangent at the state, which the solver has.
   Step own_tangents_step(const discretisation::SolidState& state,
-                         const dealii::Vector<double>& residual, BorderedSystem* bordered);
+                         const discretisation::Vector& residual, BorderedSystem* bordered);
   NewtonResult iterate(const loads::ExternalForces& external, BorderedSystem* bordered,
                        discretisation::SolidState& state, const NewtonOptions& options,
                        const NewtonProgress& progress);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/equilibrium/second_variation.h"
 
-#include <deal.II/lac/vector.h>
-
 #include <algorithm>
 
 #include "fem/lanczos.h"
@@ -12,26 +10,27 @@ namespace ciliaval::fem::solid::equilibrium {
 using namespace discretisation;
 namespace {
 
-using dealii::Vector;
-
 /// ∫ N_a u dV.
-Vector<double> weighed(const SolidSpace& space, const Vector<double>& u) {
-  Vector<double> result(u.size());
+Vector weighed(const SolidSpace& space, const Vector& u) {
+  Vector result = space.vector();
   for (const SolidElement& element : space.elements()) {
     const Eigen::Matrix<double, element_nodes, 3> f =
         space.shape_values() * (element.weights.asDiagonal() * (space.shape_values().transpose() *
                                                                 nodal_displacements(element, u)));
     for (unsigned int a = 0; a < element_nodes; ++a)
-      for (unsigned int c = 0; c < 3; ++c) result[element.dofs[c * element_nodes + a]] += f(a, c);
+      for (unsigned int c = 0; c < 3; ++c)
+        result.local_element(element.dofs[c * element_nodes + a]) += f(a, c);
   }
   return result;
 }
 
-Vector<double> to_dealii(const Eigen::VectorXd& v) {
-  return {v.begin(), v.end()};
+Vector to_dealii(const Eigen::VectorXd& v) {
+  Vector result(static_cast<dealii::types::global_dof_index>(v.size()));
+  std::ranges::copy(v, result.begin());
+  return result;
 }
 
-Eigen::VectorXd to_eigen(const Vector<double>& v) {
+Eigen::VectorXd to_eigen(const Vector& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.begin(), static_cast<Eigen::Index>(v.size()));
 }
 
@@ -48,8 +47,8 @@ SecondVariation second_variation(const SolidSpace& space,
   const EigenProblem problem{
       static_cast<Eigen::Index>(space.unknowns()),
       [&](const Eigen::VectorXd& f) {
-        Vector<double> free = to_dealii(f);
-        Vector<double> u(free.size());
+        Vector free = to_dealii(f);
+        Vector u(free.size());
         constraints.set_zero(free);
         factors.solve(free, u);
         return to_eigen(u);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/vector.h>
-
 #include <functional>
 
 #include "fem/solid/discretisation/space.h"
@@ -11,13 +9,13 @@
 namespace ciliaval::fem::solid::loads {
 
 /// Nodal forces ∫ N_a b(X) dV of a dead body force b, N/m³ of the reference volume.
-dealii::Vector<double> body_force(const discretisation::SolidSpace& space,
+discretisation::Vector body_force(const discretisation::SolidSpace& space,
                                   const std::function<Vector3(const Vector3& X)>& b);
 
 /// The given nodal forces at any displacement.
-ExternalForces dead_forces(dealii::Vector<double> forces);
+ExternalForces dead_forces(discretisation::Vector forces);
 
 /// Σ_a f_a: the resultant of nodal forces, N.
-Vector3 resultant(const discretisation::SolidSpace& space, const dealii::Vector<double>& forces);
+Vector3 resultant(const discretisation::SolidSpace& space, const discretisation::Vector& forces);
 
 }  // namespace ciliaval::fem::solid::loads

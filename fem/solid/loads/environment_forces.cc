@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "problem/cilium.h"
 
@@ -33,11 +34,10 @@ Matrix3 deformation_gradient(const ShapeGradients& gradients,
 }
 
 /// Weight, and the field by the law F, P = −B₀ ⊗ M.
-dealii::Vector<double> dead_part(const SolidSpace& space, const Cilium& cilium,
-                                 const Environment& environment) {
-  dealii::Vector<double> forces(space.unknowns());
+Vector dead_part(const SolidSpace& space, const Cilium& cilium, const Environment& environment) {
+  Vector forces = space.vector();
   const bool has_poles = environment.magnetic_energy == MagneticEnergy::F;
-  for (const SolidElement& element : space.elements()) {
+  for (const SolidElement& element : space.own_elements()) {
     const Segment& segment = segment_of(element, cilium);
     const Vector3 weight = surroundings::weight_per_volume(environment, segment);
     const Vector3 M = has_poles ? magnetization(segment) : Vector3(Vector3::Zero());
@@ -48,19 +48,21 @@ dealii::Vector<double> dead_part(const SolidSpace& space, const Cilium& cilium,
       f += element.weights[q] * gradients.middleCols<3>(Eigen::Index{3} * q) * M *
            environment.uniform_field.transpose();
     for (unsigned int a = 0; a < element_nodes; ++a)
-      for (unsigned int c = 0; c < 3; ++c) forces[element.dofs[c * element_nodes + a]] += f(a, c);
+      for (unsigned int c = 0; c < 3; ++c)
+        forces.local_element(element.dofs[c * element_nodes + a]) += f(a, c);
   }
+  forces.compress(dealii::VectorOperation::add);
   return forces;
 }
 
 /// B₀ and its derivatives at a point x.
 using Field = std::function<FieldJet(const Vector3& x)>;
 
-/// Adds the forces ∂(work)/∂u of an element's magnet in a field and, if asked for, minus their
-/// derivative.
+/// Adds the forces ∂(work)/∂u of an element's magnet in a field and minus their derivative, each if
+/// asked for.
 void add_magnet(const SolidSpace& space, const SolidElement& element, const Vector3& M,
-                const Field& field, MagneticEnergy law, const dealii::Vector<double>& displacement,
-                dealii::Vector<double>& forces, TangentMatrix* tangent) {
+                const Field& field, MagneticEnergy law, const Vector& displacement, Vector* forces,
+                TangentMatrix* tangent) {
   const auto u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, element_nodes, 3> f = Eigen::Matrix<double, element_nodes, 3>::Zero();
   const ShapeGradients gradients = element.gradients();
@@ -92,8 +94,9 @@ void add_magnet(const SolidSpace& space, const SolidElement& element, const Vect
               static_cast<unsigned int>(k * element_nodes + b)) -= block(a, b);
       }
   }
-  for (unsigned int a = 0; a < element_nodes; ++a)
-    for (unsigned int c = 0; c < 3; ++c) forces[element.dofs[c * element_nodes + a]] += f(a, c);
+  for (unsigned int a = 0; a < element_nodes && forces != nullptr; ++a)
+    for (unsigned int c = 0; c < 3; ++c)
+      forces->local_element(element.dofs[c * element_nodes + a]) += f(a, c);
   if (tangent != nullptr) tangent->add(K, element.dofs);
 }
 
@@ -178,34 +181,37 @@ ExternalForces environment_forces(const SolidSpace& space, const Cilium& cilium,
   if (!turns && environment.magnets.empty()) return dead;
   return
       [&space, &cilium, dead, field = live_field(environment), law = environment.magnetic_energy](
-          const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-          TangentMatrix* tangent) {
+          const Vector& displacement, Vector& forces, TangentMatrix* tangent) {
         dead(displacement, forces, tangent);
-        for (const SolidElement& element : space.elements()) {
+        displacement.update_ghost_values();
+        const std::size_t own = space.own_elements().size();
+        const std::size_t count = tangent != nullptr ? space.elements().size() : own;
+        for (std::size_t e = 0; e < count; ++e) {
+          const SolidElement& element = space.elements()[e];
           const Vector3 M = magnetization(segment_of(element, cilium));
           if (!M.isZero(0))
-            add_magnet(space, element, M, field, law, displacement, forces, tangent);
+            add_magnet(space, element, M, field, law, displacement, e < own ? &forces : nullptr,
+                       tangent);
         }
       };
 }
 
 Vector3 force_of_magnets(const SolidSpace& space, const Cilium& cilium,
-                         const Environment& environment,
-                         const dealii::Vector<double>& displacement) {
+                         const Environment& environment, const Vector& displacement) {
   if (environment.magnets.empty()) return Vector3::Zero();
   Environment magnets;
   magnets.magnets = environment.magnets;
   magnets.magnetic_energy = environment.magnetic_energy;
-  dealii::Vector<double> forces(space.unknowns());
-  environment_forces(space, cilium, magnets)(displacement, forces, nullptr);
-  return resultant(space, forces);
+  return resultant(space,
+                   forces_at(displacement, space, environment_forces(space, cilium, magnets)));
 }
 
 Vector3 weight_of(const SolidSpace& space, const Cilium& cilium, const Environment& environment) {
   Vector3 sum = Vector3::Zero();
-  for (const SolidElement& element : space.elements())
+  for (const SolidElement& element : space.own_elements())
     sum += element.weights.sum() *
            surroundings::weight_per_volume(environment, segment_of(element, cilium));
+  sum_over_ranks(space.communicator(), {sum.data(), 3});
   return sum;
 }
 

@@ -48,6 +48,6 @@ Vector3 weight_of(const discretisation::SolidSpace& space, const Cilium& cilium,
 /// Resultant of the magnets' forces on the deformed mesh, N.
 Vector3 force_of_magnets(const discretisation::SolidSpace& space, const Cilium& cilium,
                          const surroundings::Environment& environment,
-                         const dealii::Vector<double>& displacement);
+                         const discretisation::Vector& displacement);
 
 }  // namespace ciliaval::fem::solid::loads

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/loads/external_forces.h"
 
+#include <string>
+
+#include "fem/parallel.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/environment_forces.h"
 #include "problem/cilium.h"
+#include "problem/error.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
@@ -26,6 +30,21 @@ SpreadLoad spread_alone(const Load& load, double area, double kernel_width) {
 
 }  // namespace
 
+Vector forces_at(const Vector& displacement, const SolidSpace& space,
+                 const ExternalForces& external) {
+  Vector forces = space.vector();
+  std::string trouble;
+  try {
+    external(displacement, forces, nullptr);
+  } catch (const SolverError& error) {
+    trouble = error.what();
+  }
+  trouble = first_text(space.communicator(), trouble);
+  if (!trouble.empty()) throw SolverError(trouble);
+  forces.compress(dealii::VectorOperation::add);
+  return forces;
+}
+
 ExternalForces load_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                            const Load& load, double kernel_width) {
   const SpreadLoad spread = spread_alone(load, quadrature.area(), kernel_width);
@@ -38,8 +57,8 @@ ExternalForces load_forces(const SolidSpace& space, const ExtrudedQuadrature& qu
     };
     return dead_forces(body_force(space, b));
   }
-  return [&space, &quadrature, spread](const dealii::Vector<double>& displacement,
-                                       dealii::Vector<double>& forces, TangentMatrix* tangent) {
+  return [&space, &quadrature, spread](const Vector& displacement, Vector& forces,
+                                       TangentMatrix* tangent) {
     add_height_forces(space, quadrature, *spread.per_height, spread.direction, displacement, forces,
                       tangent);
   };
@@ -77,8 +96,7 @@ ExternalForces external_forces(const SolidSpace& space, const ExtrudedQuadrature
   const surroundings::Environment environment = acting_environment(load);
   if (surroundings::is_empty(environment)) return own;
   return [own, around = environment_forces(space, cilium, environment)](
-             const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-             TangentMatrix* tangent) {
+             const Vector& displacement, Vector& forces, TangentMatrix* tangent) {
     own(displacement, forces, tangent);
     around(displacement, forces, tangent);
   };

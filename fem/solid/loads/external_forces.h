@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/vector.h>
-
 #include <functional>
 
 #include "fem/solid/discretisation/extruded_quadrature.h"
@@ -14,17 +12,23 @@
 
 namespace ciliaval::fem::solid::loads {
 
-/// External forces f(u): adds them to `forces` and, where `tangent` is not null, −∂f/∂u to it.
+/// External forces f(u): adds this rank's shares of them to `forces`, whose compress(add) is left
+/// to the caller, and, where `tangent` is not null, −∂f/∂u to it.
 using ExternalForces =
-    std::function<void(const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+    std::function<void(const discretisation::Vector& displacement, discretisation::Vector& forces,
                        discretisation::TangentMatrix* tangent)>;
+
+/// All ranks' forces together. Collective. Throws SolverError on all ranks where one of them does.
+discretisation::Vector forces_at(const discretisation::Vector& displacement,
+                                 const discretisation::SolidSpace& space,
+                                 const ExternalForces& external);
 
 /// A force F f(u) whose amplitude F is one more unknown, and the condition g(u) = 0 that determines
 /// it.
 struct UnknownForce {
   std::function<ExternalForces(double amplitude)> forces;
   /// g; adds ∂g/∂u to `gradient` where that is not null.
-  std::function<double(const dealii::Vector<double>& u, dealii::Vector<double>* gradient)>
+  std::function<double(const discretisation::Vector& u, discretisation::Vector* gradient)>
       condition;
   double amplitude = 0;     ///< F: the guess, and the result
   ExternalForces others{};  ///< what acts besides; empty: nothing

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/loads/height_loads.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/lac/full_matrix.h>
 
 #include <algorithm>
@@ -97,7 +98,7 @@ HeightForceShare height_force_share(const ExtrudedQuadrature& quadrature, const 
 }
 
 Eigen::Matrix<double, 9, 3> vertical_displacements(const SolidElement& element,
-                                                   const dealii::Vector<double>& displacement) {
+                                                   const Vector& displacement) {
   const Eigen::Matrix<double, element_nodes, 1> u_z =
       nodal_displacements(element, displacement).col(2);
   return u_z.reshaped<Eigen::ColMajor>(9, 3);
@@ -174,28 +175,30 @@ std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,
 
 void add_height_forces(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                        const HeightDensity& density, const Vector3& direction,
-                       const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
-                       TangentMatrix* tangent) {
+                       const Vector& displacement, Vector& forces, TangentMatrix* tangent) {
   const QuadratureRule rule = gauss_legendre(density.support ? 10 : 3, 0, 1);
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+  displacement.update_ghost_values();
+  const std::size_t own = space.own_elements().size();
+  const std::size_t count = tangent != nullptr ? space.elements().size() : own;
+  for (std::size_t e = 0; e < count; ++e) {
     const SolidElement& element = space.elements()[e];
     const HeightForceShare share = height_force_share(quadrature, quadrature.cells()[e],
                                                       vertical_displacements(element, displacement),
                                                       density, rule, tangent != nullptr);
     if (share.force.isZero(0)) continue;
-    for (std::size_t c = 0; c < 2; ++c)
+    for (std::size_t c = 0; c < 2 && e < own; ++c)
       for (std::size_t a = 0; a < element_nodes; ++a)
-        forces[element.dofs[c * element_nodes + a]] +=
+        forces.local_element(element.dofs[c * element_nodes + a]) +=
             direction[static_cast<Eigen::Index>(c)] * share.force[static_cast<Eigen::Index>(a)];
     if (tangent != nullptr) subtract_derivative(element, share, direction, *tangent);
   }
 }
 
-dealii::Vector<double> section_force(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
-                                     double force, double arclength, const Vector3& direction) {
-  dealii::Vector<double> forces(space.unknowns());
+Vector section_force(const SolidSpace& space, const ExtrudedQuadrature& quadrature, double force,
+                     double arclength, const Vector3& direction) {
+  Vector forces = space.vector();
   double area = 0;
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+  for (std::size_t e = 0; e < space.own_elements().size(); ++e) {
     const ExtrudedCell& cell = quadrature.cells()[e];
     if (std::abs(cell.top - arclength) > 2e-9 * quadrature.height()) continue;
     const auto& dofs = space.elements()[e].dofs;
@@ -204,11 +207,13 @@ dealii::Vector<double> section_force(const SolidSpace& space, const ExtrudedQuad
       area += dA;
       for (std::size_t c = 0; c < 2; ++c)
         for (std::size_t a = 0; a < 9; ++a)
-          forces[dofs[c * element_nodes + 18 + a]] +=
+          forces.local_element(dofs[c * element_nodes + 18 + a]) +=
               force / quadrature.area() * dA * direction[static_cast<Eigen::Index>(c)] *
               quadrature.section_values()(static_cast<Eigen::Index>(a), q);
     }
   }
+  forces.compress(dealii::VectorOperation::add);
+  area = dealii::Utilities::MPI::sum(area, space.communicator());
   if (quadrature.extent() == Extent::half) area *= 2;
   if (std::abs(area - quadrature.area()) > 1e-9 * quadrature.area())
     throw InputError("the solid's mesh has no plane at the loaded section");

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/vector.h>
-
 #include <Eigen/Core>
 #include <array>
 #include <functional>
@@ -73,12 +71,12 @@ std::optional<std::array<double, 2>> loaded_part(const Eigen::Vector3d& z,
 void add_height_forces(const discretisation::SolidSpace& space,
                        const discretisation::ExtrudedQuadrature& quadrature,
                        const HeightDensity& density, const Vector3& direction,
-                       const dealii::Vector<double>& displacement, dealii::Vector<double>& forces,
+                       const discretisation::Vector& displacement, discretisation::Vector& forces,
                        discretisation::TangentMatrix* tangent);
 
 /// Nodal forces of (F/A) e, dead, evenly over the plane Z = S. Throws InputError if the mesh has no
 /// plane there.
-dealii::Vector<double> section_force(const discretisation::SolidSpace& space,
+discretisation::Vector section_force(const discretisation::SolidSpace& space,
                                      const discretisation::ExtrudedQuadrature& quadrature,
                                      double force, double arclength, const Vector3& direction);
 

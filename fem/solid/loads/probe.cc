@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/loads/probe.h"
 
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::loads {
@@ -64,12 +66,12 @@ KernelMeans kernel_means(const ExtrudedQuadrature& quadrature, const ExtrudedCel
 
 double mean_displacement(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                          const HeightDensity& kernel, const Vector3& direction,
-                         const dealii::Vector<double>& displacement,
-                         dealii::Vector<double>* gradient) {
-  double weight = 0;
-  double moment = 0;
+                         const Vector& displacement, Vector* gradient) {
+  displacement.update_ghost_values();
+  std::array<double, 2> sums{};
+  auto& [weight, moment] = sums;
   std::vector<std::pair<std::size_t, KernelMeans>> shares;
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+  for (std::size_t e = 0; e < space.own_elements().size(); ++e) {
     const auto u = nodal_displacements(space.elements()[e], displacement);
     const Eigen::Matrix<double, element_nodes, 1> along = u * direction;
     const Eigen::Matrix<double, element_nodes, 1> u_z = u.col(2);
@@ -81,6 +83,7 @@ double mean_displacement(const SolidSpace& space, const ExtrudedQuadrature& quad
     moment += share.displacement;
     shares.emplace_back(e, share);
   }
+  sum_over_ranks(space.communicator(), sums);
   if (!(weight > 0))
     throw SolverError("no part of the solid is at the height of the probe: the cilium has let go");
   const double mean = moment / weight;
@@ -90,12 +93,13 @@ double mean_displacement(const SolidSpace& space, const ExtrudedQuadrature& quad
     for (std::size_t a = 0; a < element_nodes; ++a) {
       const auto row = static_cast<Eigen::Index>(a);
       for (std::size_t c = 0; c < 2; ++c)
-        (*gradient)[dofs[c * element_nodes + a]] +=
+        gradient->local_element(dofs[c * element_nodes + a]) +=
             direction[static_cast<Eigen::Index>(c)] * share.displacement_by_along[row] / weight;
-      (*gradient)[dofs[2 * element_nodes + a]] +=
+      gradient->local_element(dofs[2 * element_nodes + a]) +=
           (share.displacement_by_z[row] - mean * share.weight_by_z[row]) / weight;
     }
   }
+  gradient->compress(dealii::VectorOperation::add);
   return mean;
 }
 
@@ -106,8 +110,7 @@ UnknownForce probe_force(const SolidSpace& space, const ExtrudedQuadrature& quad
                        kernel_width);
   };
   const HeightDensity kernel = contact_density(1, 1, load.height, kernel_width);
-  const auto condition = [&space, &quadrature, kernel, load](const dealii::Vector<double>& u,
-                                                             dealii::Vector<double>* gradient) {
+  const auto condition = [&space, &quadrature, kernel, load](const Vector& u, Vector* gradient) {
     return mean_displacement(space, quadrature, kernel, direction(load), u, gradient) -
            load.displacement;
   };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/vector.h>
-
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/loads/external_forces.h"
 #include "fem/solid/loads/height_loads.h"
@@ -26,8 +24,8 @@ namespace ciliaval::fem::solid::loads {
 double mean_displacement(const discretisation::SolidSpace& space,
                          const discretisation::ExtrudedQuadrature& quadrature,
                          const HeightDensity& kernel, const Vector3& direction,
-                         const dealii::Vector<double>& displacement,
-                         dealii::Vector<double>* gradient);
+                         const discretisation::Vector& displacement,
+                         discretisation::Vector* gradient);
 
 /// A probe as a force of unknown amplitude: the contact force, with ū = δ for its condition. The
 /// space and the quadrature must outlive it. `force` is the initial guess, N.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/postprocessing/body.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "meshes/boundary_ids.h"
@@ -35,7 +38,7 @@ Matrix3 local_gradient(const NodalVectors& v, Eigen::Index node) {
 }
 
 SolidCell patch(const Cilium& cilium, const SolidElement& element, const PressureVector& pressure,
-                const dealii::Vector<double>& displacement) {
+                const Vector& displacement) {
   const NodalVectors u = nodal_displacements(element, displacement);
   SolidCell cell;
   cell.segment = element.cell->material_id();
@@ -88,6 +91,74 @@ void append_mantle(const SolidElement& element, const SolidCell& cell,
       faces.push_back(face(cell, f, cell.magnetization));
 }
 
+/// Numbers one after the other, and the same taken off again.
+class Pack {
+ public:
+  Pack() = default;
+  explicit Pack(std::vector<double> values) : values_(std::move(values)) {}
+  const std::vector<double>& values() const { return values_; }
+  bool at_end() const { return read_ == values_.size(); }
+
+  void put(double value) { values_.push_back(value); }
+  void put(const auto& matrix) { values_.insert(values_.end(), matrix.begin(), matrix.end()); }
+  template <class Value>
+  void put_all(const std::vector<Value>& list) {
+    for (const Value& value : list) put(value.reshaped());
+  }
+  double take() { return values_[read_++]; }
+  template <class Value>
+  std::vector<Value> take_all(std::size_t count) {
+    std::vector<Value> list(count);
+    for (Value& value : list) {
+      value = Eigen::Map<const Value>(values_.data() + read_);
+      read_ += static_cast<std::size_t>(value.size());
+    }
+    return list;
+  }
+
+ private:
+  std::vector<double> values_;
+  std::size_t read_ = 0;
+};
+
+/// The parts of all ranks, on each of them.
+SolidBody gathered(const SolidBody& own, const Cilium& cilium, MPI_Comm communicator) {
+  Pack cells;
+  for (const SolidCell& cell : own.cells) {
+    cells.put(static_cast<double>(cell.segment));
+    cells.put_all(cell.reference);
+    cells.put_all(cell.current);
+    cells.put(cell.jacobian);
+    cells.put_all(cell.cauchy_stress);
+  }
+  Pack faces;
+  for (const ChargedFace& face : own.charged_faces) {
+    faces.put_all(std::vector{face.magnetization_jump});
+    faces.put_all(face.reference);
+    faces.put_all(face.current);
+  }
+  using dealii::Utilities::MPI::all_gather;
+  SolidBody body{own.nodes, {}, {}};
+  for (auto& values : all_gather(communicator, cells.values()))
+    for (Pack pack(std::move(values)); !pack.at_end();) {
+      SolidCell& cell = body.cells.emplace_back();
+      cell.segment = static_cast<std::size_t>(pack.take());
+      cell.magnetization = magnetization(cilium.segments[cell.segment]);
+      cell.reference = pack.take_all<Vector3>(element_nodes);
+      cell.current = pack.take_all<Vector3>(element_nodes);
+      for (int a = 0; a < element_nodes; ++a) cell.jacobian.push_back(pack.take());
+      cell.cauchy_stress = pack.take_all<Matrix3>(element_nodes);
+    }
+  for (auto& values : all_gather(communicator, faces.values()))
+    for (Pack pack(std::move(values)); !pack.at_end();) {
+      const Vector3 jump = pack.take_all<Vector3>(1).front();
+      auto reference = pack.take_all<Vector3>(edge_nodes * edge_nodes);
+      auto current = pack.take_all<Vector3>(edge_nodes * edge_nodes);
+      body.charged_faces.push_back({jump, std::move(reference), std::move(current)});
+    }
+  return body;
+}
+
 Vector3 mirrored(const Vector3& x) {
   return {x.x(), -x.y(), x.z()};
 }
@@ -137,7 +208,8 @@ SolidBody solid_body(const SolidSpace& space, const ExtrudedQuadrature& quadratu
   SolidBody body{LagrangeBasis({0, 0.5, 1}), {}, {}};
   const std::vector<double> interfaces = cilium.interfaces();
   const double tolerance = 1e-9 * quadrature.height();
-  for (std::size_t e = 0; e < space.elements().size(); ++e) {
+  state.displacement.update_ghost_values();
+  for (std::size_t e = 0; e < space.own_elements().size(); ++e) {
     const SolidElement& element = space.elements()[e];
     body.cells.push_back(patch(cilium, element, state.pressure[e], state.displacement));
     const SolidCell& cell = body.cells.back();
@@ -152,6 +224,8 @@ SolidBody solid_body(const SolidSpace& space, const ExtrudedQuadrature& quadratu
     const double outside = last ? 0.0 : cilium.segments[cell.segment + 1].magnetization;
     add_axial(5, inside - outside);
   }
+  if (dealii::Utilities::MPI::n_mpi_processes(space.communicator()) > 1)
+    body = gathered(body, cilium, space.communicator());
   if (quadrature.extent() == Extent::half) add_mirror_image(body);
   return body;
 }

@@ -13,6 +13,7 @@ namespace ciliaval::fem::solid::postprocessing {
 /// faces are the horizontal planes across which M₃ jumps, end faces and interfaces, and the mantle
 /// of segments that are magnetised across the axis. At an interface
 /// the lower segment is `inside`; its normal is +Z. A half body is completed by its image in y = 0.
+/// Collective; whole on each rank.
 SolidBody solid_body(const discretisation::SolidSpace& space,
                      const discretisation::ExtrudedQuadrature& quadrature, const Cilium& cilium,
                      const discretisation::SolidState& state);

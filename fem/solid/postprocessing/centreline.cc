@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/postprocessing/centreline.h"
 
+#include <deal.II/base/mpi.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "fem/solid/discretisation/assembly.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
@@ -64,6 +68,13 @@ struct Station {
   Eigen::Matrix<double, 3, 2> xX = Eigen::Matrix<double, 3, 2>::Zero();  ///< ∫ x (X, Y) dA
   Wrench load;
   Wrench poles;  ///< ∫ M B₀ dA, the field's stress (law F)
+  std::array<std::span<double>, 8> parts() {
+    const auto of = [](auto& matrix) {
+      return std::span(matrix.data(), static_cast<std::size_t>(matrix.size()));
+    };
+    return {std::span(&area, 1), of(XY),          of(x),           of(xX),
+            of(load.force),      of(load.moment), of(poles.force), of(poles.moment)};
+  }
   /// Adds the image in the plane y = 0.
   void add_mirror_image() {
     area *= 2;
@@ -75,19 +86,36 @@ struct Station {
   }
 };
 
+/// A plane of a layer.
+struct Cut {
+  std::size_t layer = 0;
+  double zeta = 0;
+};
+
+/// Each rank has the cells of its own in each layer.
 struct Extraction {
   const SolidSpace& space;
   const ExtrudedQuadrature& quadrature;
   const SolidState& state;
   const SpreadLoad& load;
 
+  // All are collective.
   /// The layers of the mesh from base to tip.
   std::vector<Layer> layers() const;
-  Station station(const Layer& layer, double zeta) const;
-  Wrench top_wrench(const Layer& layer) const;
-  std::vector<double> breaks(const Layer& layer) const;
+  std::vector<Station> stations(const std::vector<Layer>& layers,
+                                const std::vector<Cut>& cuts) const;
+  std::vector<Wrench> top_wrenches(const std::vector<Layer>& layers) const;
+  /// ζ of the ends of the layers' pieces. Where a contact kernel meets a line, pieces are at most
+  /// half its height; below and above it n is constant.
+  std::vector<std::vector<double>> breaks(const std::vector<Layer>& layers) const;
 
  private:
+  // The share of this rank's cells.
+  Station station(const Layer& layer, double zeta) const;
+  Wrench top_wrench(const Layer& layer) const;
+  /// Least and largest ζ at which the kernel meets a line; 1 and 0 if there is none.
+  std::array<double, 2> loaded(const Layer& layer) const;
+
   void add_cell(Layer& layer, std::size_t index) const;
   /// Adds the forces of the fields on M across the axis, by the law F, at the nodes of a cell from
   /// the given one on.
@@ -140,7 +168,16 @@ void Extraction::add_across(std::size_t index, Eigen::Index first, Wrench& wrenc
 
 std::vector<Layer> Extraction::layers() const {
   std::map<double, Layer> by_bottom;
-  for (std::size_t e = 0; e < space.elements().size(); ++e)
+  std::vector<std::array<double, 2>> own;  // bottom and top
+  for (std::size_t e = 0; e < space.own_elements().size(); ++e)
+    if (own.empty() || own.back()[0] != quadrature.cells()[e].bottom)
+      own.push_back({quadrature.cells()[e].bottom, quadrature.cells()[e].top});
+  for (const auto& ranks_own : dealii::Utilities::MPI::all_gather(space.communicator(), own))
+    for (const auto& [bottom, top] : ranks_own) {
+      by_bottom[bottom].bottom = bottom;
+      by_bottom[bottom].top = top;
+    }
+  for (std::size_t e = 0; e < space.own_elements().size(); ++e)
     add_cell(by_bottom[quadrature.cells()[e].bottom], e);
   for (auto& [bottom, layer] : by_bottom)
     for (const std::size_t e : layer.cells) add_across(e, 0, layer.across);
@@ -168,7 +205,23 @@ Station Extraction::station(const Layer& layer, double zeta) const {
   }
   result.load.force += (1 - zeta) * layer.across.force;
   result.load.moment += (1 - zeta) * layer.across.moment;
-  if (quadrature.extent() == Extent::half) result.add_mirror_image();
+  return result;
+}
+
+std::vector<Station> Extraction::stations(const std::vector<Layer>& layers,
+                                          const std::vector<Cut>& cuts) const {
+  std::vector<Station> result;
+  std::vector<double> values;
+  for (const auto& [layer, zeta] : cuts)
+    for (const auto part : result.emplace_back(station(layers[layer], zeta)).parts())
+      values.insert(values.end(), part.begin(), part.end());
+  sum_over_ranks(space.communicator(), values);
+  const double* value = values.data();
+  for (Station& station : result) {
+    for (const auto part : station.parts())
+      for (double& number : part) number = *value++;
+    if (quadrature.extent() == Extent::half) station.add_mirror_image();
+  }
   return result;
 }
 
@@ -212,15 +265,26 @@ Wrench Extraction::top_wrench(const Layer& layer) const {
   for (const std::size_t e : layer.cells) add_across(e, 18, across);
   result.force -= across.force;
   result.moment -= across.moment;
-  if (quadrature.extent() == Extent::half) result.add_mirror_image();
   return result;
 }
 
-/// ζ of the ends of the layer's pieces. Where a contact kernel meets a line, pieces are at most
-/// half its height; below and above it n is constant.
-std::vector<double> Extraction::breaks(const Layer& layer) const {
-  std::vector<double> result{0, 1};
-  if (!load.per_height || !load.per_height->support) return result;
+std::vector<Wrench> Extraction::top_wrenches(const std::vector<Layer>& layers) const {
+  std::vector<Wrench> result;
+  std::vector<double> values;
+  for (const Layer& layer : layers) {
+    const Wrench& wrench = result.emplace_back(top_wrench(layer));
+    values.insert(values.end(), wrench.force.begin(), wrench.force.end());
+    values.insert(values.end(), wrench.moment.begin(), wrench.moment.end());
+  }
+  sum_over_ranks(space.communicator(), values);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    result[i] = {Vector3(values.data() + 6 * i), Vector3(values.data() + 6 * i + 3)};
+    if (quadrature.extent() == Extent::half) result[i].add_mirror_image();
+  }
+  return result;
+}
+
+std::array<double, 2> Extraction::loaded(const Layer& layer) const {
   double low = 1;
   double high = 0;
   for (const DeformedLine& line : layer.lines) {
@@ -229,27 +293,44 @@ std::vector<double> Extraction::breaks(const Layer& layer) const {
     low = std::min(low, (*part)[0]);
     high = std::max(high, (*part)[1]);
   }
-  constexpr double shortest = 1e-3;  // a piece shorter than that is not worth its own
-  if (!(high - low > shortest)) return result;
-  if (low < shortest) low = 0;
-  if (high > 1 - shortest) high = 1;
-  const auto [lower, upper] = *load.per_height->support;
-  const double length = (high - low) * (layer.top - layer.bottom);
-  const auto count = static_cast<int>(std::ceil(length / ((upper - lower) / 2)));
-  for (int i = 0; i < count; ++i) result.push_back(low + (high - low) * i / count);
-  result.push_back(high);
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return {low, high};
+}
+
+std::vector<std::vector<double>> Extraction::breaks(const std::vector<Layer>& layers) const {
+  std::vector<std::vector<double>> result(layers.size(), {0, 1});
+  if (!load.per_height || !load.per_height->support) return result;
+  std::vector<double> ends;  // low and −high
+  for (const Layer& layer : layers) {
+    const auto [low, high] = loaded(layer);
+    ends.insert(ends.end(), {low, -high});
+  }
+  dealii::Utilities::MPI::min(ends, space.communicator(), ends);
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    double low = ends[2 * l];
+    double high = -ends[2 * l + 1];
+    constexpr double shortest = 1e-3;  // a piece shorter than that is not worth its own
+    if (!(high - low > shortest)) continue;
+    if (low < shortest) low = 0;
+    if (high > 1 - shortest) high = 1;
+    const auto [lower, upper] = *load.per_height->support;
+    const double length = (high - low) * (layers[l].top - layers[l].bottom);
+    const auto count = static_cast<int>(std::ceil(length / ((upper - lower) / 2)));
+    for (int i = 0; i < count; ++i) result[l].push_back(low + (high - low) * i / count);
+    result[l].push_back(high);
+    std::sort(result[l].begin(), result[l].end());
+    result[l].erase(std::unique(result[l].begin(), result[l].end()), result[l].end());
+  }
   return result;
 }
 
-Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const Wrench& top,
-                        double from, double to) {
+/// The piece through its stations and their cuts.
+Centreline::Piece piece(const Layer& layer, const Wrench& top, const Cut* cut,
+                        const Station* stations_of_piece) {
   const double bottom = layer.bottom;
   Centreline::Piece piece;
-  for (const double t : station_points) {
-    const double zeta = t == 1 ? to : from + t * (to - from);
-    const Station station = extraction.station(layer, zeta);
+  for (std::size_t i = 0; i < stations; ++i) {
+    const double zeta = cut[i].zeta;
+    const Station& station = stations_of_piece[i];
     SectionState state;
     state.position = station.x / station.area;
     state.rotation = section_rotation(station.xX - state.position * station.XY.transpose());
@@ -267,12 +348,19 @@ Centreline::Piece piece(const Extraction& extraction, const Layer& layer, const 
 /// The centreline, given force and moment on the upper plane of each layer.
 Centreline centreline(const Extraction& extraction, const std::vector<Layer>& layers,
                       const std::vector<Wrench>& tops) {
+  const auto breaks = extraction.breaks(layers);
+  std::vector<Cut> cuts;
+  for (std::size_t l = 0; l < layers.size(); ++l)
+    for (std::size_t i = 0; i + 1 < breaks[l].size(); ++i)
+      for (const double t : station_points) {
+        const auto [from, to] = std::pair(breaks[l][i], breaks[l][i + 1]);
+        cuts.push_back({l, t == 1 ? to : from + t * (to - from)});
+      }
+  const std::vector<Station> at = extraction.stations(layers, cuts);
   std::vector<Centreline::Piece> pieces;
-  for (std::size_t l = 0; l < layers.size(); ++l) {
-    const std::vector<double> breaks = extraction.breaks(layers[l]);
-    for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
-      pieces.push_back(piece(extraction, layers[l], tops[l], breaks[i], breaks[i + 1]));
-  }
+  for (std::size_t i = 0; i < cuts.size(); i += stations)
+    pieces.push_back(
+        piece(layers[cuts[i].layer], tops[cuts[i].layer], cuts.data() + i, at.data() + i));
   // Both sides of a break integrate the same plane in another order: make them equal to the bit.
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     pieces[i].S.front() = pieces[i - 1].S.back();
@@ -296,36 +384,40 @@ Quaternion section_rotation(const Eigen::Matrix<double, 3, 2>& B) {
 
 Centreline centreline(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                       const SolidState& state, const SpreadLoad& load) {
+  state.displacement.update_ghost_values();
   const Extraction extraction{space, quadrature, state, load};
   const std::vector<Layer> layers = extraction.layers();
-  std::vector<Wrench> tops;
-  tops.reserve(layers.size());
-  for (const Layer& layer : layers) tops.push_back(extraction.top_wrench(layer));
-  return centreline(extraction, layers, tops);
+  return centreline(extraction, layers, extraction.top_wrenches(layers));
 }
 
 Vector3 tip_position(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                      const SolidState& state) {
   const SpreadLoad none;
+  state.displacement.update_ghost_values();
   const Extraction extraction{space, quadrature, state, none};
-  const Station tip = extraction.station(extraction.layers().back(), 1);
+  const std::vector<Layer> layers = extraction.layers();
+  const Station tip = extraction.stations(layers, {{layers.size() - 1, 1}}).front();
   return tip.x / tip.area;
 }
 
 Centreline centreline_by_statics(const SolidSpace& space, const ExtrudedQuadrature& quadrature,
                                  const SolidState& state, const SpreadLoad& load,
                                  const std::optional<PlaneForce>& plane) {
+  state.displacement.update_ghost_values();
   const Extraction extraction{space, quadrature, state, load};
   const std::vector<Layer> layers = extraction.layers();
   std::vector<Wrench> tops(layers.size());
   Wrench above;
+  std::vector<Cut> cuts;
+  for (std::size_t i = 0; i < layers.size(); ++i) cuts.insert(cuts.end(), {{i, 0}, {i, 1}});
+  const std::vector<Station> stations = extraction.stations(layers, cuts);
   for (std::size_t i = layers.size(); i-- > 0;) {
     if (plane && std::abs(layers[i].top - plane->arclength) <= 1e-9 * quadrature.height()) {
-      const Station station = extraction.station(layers[i], 1);
+      const Station& station = stations[2 * i + 1];
       above.add(station.x / station.area, plane->force);
     }
     tops[i] = above;
-    const Wrench load_of_layer = extraction.station(layers[i], 0).load;
+    const Wrench& load_of_layer = stations[2 * i].load;
     above.force += load_of_layer.force;
     above.moment += load_of_layer.moment;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/postprocessing/mantle.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
@@ -8,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -46,7 +48,9 @@ MantleCompression mantle_compression(const SolidSpace& space, const Cilium& cili
   std::vector<dealii::Tensor<2, 3>> gradients(points.size());
   const std::vector<double> interfaces = cilium.interfaces();
   MantleCompression largest;
+  state.displacement.update_ghost_values();
   for (const auto& cell : space.dof_handler().active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
     const double bottom = interfaces.at(cell->material_id());
     const double top = interfaces.at(cell->material_id() + 1);
     const double margin = std::min(rim * cilium.thickness(), rim_of_short * (top - bottom));
@@ -69,6 +73,10 @@ MantleCompression mantle_compression(const SolidSpace& space, const Cilium& cili
       }
     }
   }
+  using Values = std::array<double, 3>;
+  for (const auto& [ratio, stretch, height] : dealii::Utilities::MPI::all_gather(
+           space.communicator(), Values{largest.ratio, largest.stretch, largest.height}))
+    if (ratio > largest.ratio) largest = {ratio, stretch, height};
   return largest;
 }
 

@@ -3,7 +3,6 @@
 
 #include <deal.II/base/parallel.h>
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/vector.h>
 
 #include <cstdint>
 #include <span>
@@ -12,6 +11,7 @@
 #include "fem/parallel.h"
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/discretisation/tangent_matrix.h"
+#include "fem/solid/discretisation/vector.h"
 #include "problem/types.h"
 
 namespace ciliaval::fem::solid::solvers {
@@ -26,45 +26,60 @@ void for_each(std::size_t count, std::size_t grain, const auto& work) {
       static_cast<unsigned int>(grain));
 }
 
-/// This rank's rows of the tangent, in blocks of 3 × 3, the unknowns of a node: one column index
-/// serves nine values. Constrained rows are those of the identity.
-///
-/// The rows of all nodes of the cells at the rank's rows are kept, complete in the rank's own ones,
-/// so that VertexPatchSchwarz has its patches.
+/// Nodes by this rank's numbers: its own ones, then those that other ranks own.
+using Node = std::uint32_t;
+
+/// The nodes of each of a list of cells.
+struct CellNodes {
+  std::size_t nodes_per_cell = 0;
+  std::vector<Node> nodes{};  ///< cell after cell
+  std::span<const Node> of(std::size_t cell) const {
+    return std::span(nodes).subspan(cell * nodes_per_cell, nodes_per_cell);
+  }
+  std::size_t cells() const { return nodes.size() / nodes_per_cell; }
+};
+
+/// Those of a space's elements, in their order. Throws SolverError if the unknowns of a node do not
+/// stand together.
+CellNodes element_cell_nodes(const discretisation::SolidSpace& space);
+
+/// Of each of this rank's unknowns, whether it is constrained.
+std::vector<bool> constrained_unknowns(const discretisation::SolidSpace& space,
+                                       const dealii::AffineConstraints<double>& constraints);
+
+/// The rows of a rank's nodes in blocks of 3 × 3, the unknowns of a node: one column index serves
+/// nine values. Constrained rows are those of the identity. The rows of nodes that other ranks own
+/// are complete where all cells around the node are this rank's.
 ///
 /// Single precision would halve its memory and take up to 1.3 times the iterations at ν = 0.49: it
 /// rounds forces of K times the whole displacement, which bending balances.
 class BlockCsr : public discretisation::TangentMatrix {
  public:
-  using Node = std::uint32_t;
+  /// Couples the nodes of each cell.
+  BlockCsr(const CellNodes& cells, std::vector<bool> constrained);
 
-  /// The rows of whole nodes. The constraints, which may only set unknowns to zero, must outlive
-  /// it. Throws SolverError if the unknowns of a node do not stand together.
-  BlockCsr(const discretisation::SolidSpace& space,
-           const dealii::AffineConstraints<double>& constraints, RowRange rows,
-           MPI_Comm communicator);
-
+  /// Zero; the identity in constrained rows.
   void clear();
   using TangentMatrix::add;
   void add(const dealii::FullMatrix<double>& local, discretisation::Dofs rows,
            discretisation::Dofs columns) override;
+  /// Adds a block at a position of columns(node); constrained rows and columns must be zero in it.
+  void add(Node node, std::size_t position, const Matrix3& block);
 
-  /// y = A x; vectors whole on every rank. Collective.
-  void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const;
+  /// y = A x. Collective.
+  void vmult(discretisation::Vector& y, const discretisation::Vector& x) const;
 
-  /// The nodes of the columns of a kept node's rows, ascending.
-  std::span<const Node> columns(Node node) const;
+  std::size_t nodes() const { return starts_.size() - 1; }
+  bool is_constrained(std::size_t unknown) const { return constrained_[unknown]; }
+  /// The nodes of the columns of a node's rows, ascending.
+  std::span<const Node> columns(Node node) const {
+    return std::span(nodes_).subspan(starts_[node], starts_[node + 1] - starts_[node]);
+  }
   /// The block at a position of columns(node).
   Matrix3 block(Node node, std::size_t position) const;
 
  private:
-  std::size_t index(Node node) const { return node - kept_.begin / node_unknowns; }
-  void make_pattern(const discretisation::SolidSpace& space);
-
-  const dealii::AffineConstraints<double>& constraints_;
-  RowRange rows_;
-  RowRange kept_;
-  MPI_Comm communicator_;
+  std::vector<bool> constrained_;
   std::vector<std::size_t> starts_;  ///< of the nodes' blocks
   std::vector<Node> nodes_;          ///< of the blocks' columns, ascending for each node
   std::vector<double> values_;       ///< of the blocks, each row by row

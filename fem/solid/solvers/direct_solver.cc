@@ -14,6 +14,7 @@
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::solvers {
+using namespace discretisation;
 namespace {
 
 using dealii::SparsityPattern;
@@ -174,8 +175,7 @@ int DirectSolver::negative_eigenvalues() const {
   return mumps_->data.infog[11];
 }
 
-void DirectSolver::solve(const dealii::Vector<double>& rhs,
-                         dealii::Vector<double>& solution) const {
+void DirectSolver::solve(const Vector& rhs, Vector& solution) const {
   Mumps& m = *mumps_;
   solution = rhs;
   if (rank(communicator_) == 0) {

@@ -3,11 +3,11 @@
 
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
-#include <deal.II/lac/vector.h>
 
 #include <memory>
 
 #include "fem/parallel.h"
+#include "fem/solid/discretisation/vector.h"
 
 namespace ciliaval::fem::solid::solvers {
 
@@ -35,7 +35,7 @@ class DirectSolver {
   int negative_eigenvalues() const;
 
   /// Throws if the solution is not finite.
-  void solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution) const;
+  void solve(const discretisation::Vector& rhs, discretisation::Vector& solution) const;
 
  private:
   struct Mumps;

@@ -23,46 +23,50 @@ constexpr unsigned int restart = 60;  ///< vectors of GMRES
 constexpr unsigned int max_with_old_factors = 20;
 
 /// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
-constexpr dealii::types::global_dof_index direct_unknowns = 100000;
+constexpr double direct_unknowns = 100000;
 
 /// This rank's rows of a matrix.
 struct OwnRows {
   const dealii::SparseMatrix<double>& matrix;
   RowRange rows;
   MPI_Comm communicator;
-  void vmult(dealii::Vector<double>& y, const dealii::Vector<double>& x) const {
+  void vmult(Vector& y, const Vector& x) const {
     for (Row row = rows.begin; row < rows.end; ++row) {
-      y[row] = 0;
+      y.local_element(row) = 0;
       for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
-        y[row] += entry->value() * x[entry->column()];
+        y.local_element(row) += entry->value() * x.local_element(entry->column());
     }
-    gather_over_ranks(communicator, {y.begin(), y.size()});
+    gather_over_ranks(communicator, {y.begin(), y.locally_owned_size()});
   }
 };
 
 struct Factors {
   const DirectSolver& solver;
-  void vmult(dealii::Vector<double>& x, const dealii::Vector<double>& b) const {
-    solver.solve(b, x);
-  }
+  void vmult(Vector& x, const Vector& b) const { solver.solve(b, x); }
 };
 
 }  // namespace
+
+bool is_iterative(SolverKind kind, double unknowns) {
+  return kind == SolverKind::iterative ||
+         (kind == SolverKind::automatic && unknowns > direct_unknowns);
+}
 
 LinearSolver::LinearSolver(const SolidSpace& space,
                            const dealii::AffineConstraints<double>& constraints, SolverKind kind,
                            MPI_Comm communicator)
     : communicator_(communicator), rows_(own_range(communicator, space.unknowns())) {
+  if (is_iterative(kind, space.unknowns())) {
+    for (std::size_t e = 0; e < space.elements().size(); ++e) cells_.push_back(e);
+    const CellNodes cells = element_cell_nodes(space);
+    blocks_ = std::make_unique<BlockCsr>(cells, constrained_unknowns(space, constraints));
+    multigrid_ = std::make_unique<Multigrid>(space, cells, *blocks_);
+    return;
+  }
   for (std::size_t e = 0; e < space.elements().size(); ++e)
     if (std::ranges::any_of(space.elements()[e].dofs,
                             [this](Row dof) { return rows_.contains(dof); }))
       cells_.push_back(e);
-  if (kind == SolverKind::iterative ||
-      (kind == SolverKind::automatic && space.unknowns() > direct_unknowns)) {
-    blocks_ = std::make_unique<BlockCsr>(space, constraints, rows_, communicator);
-    multigrid_ = std::make_unique<Multigrid>(space, constraints, *blocks_, rows_, communicator);
-    return;
-  }
   dealii::DynamicSparsityPattern pattern(space.unknowns());
   dealii::DoFTools::make_sparsity_pattern(space.dof_handler(), pattern);
   pattern_.copy_from(pattern);
@@ -97,15 +101,14 @@ void LinearSolver::prepare() {
   usual_ = 0;
 }
 
-std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
-                                       dealii::Vector<double>& solution, double reduction,
+std::optional<int> LinearSolver::gmres(const Vector& rhs, Vector& solution, double reduction,
                                        unsigned int max_iterations) const {
-  using Vector = dealii::Vector<double>;
+  using Vector = Vector;
   // Flexible, for the multigrid rounds to single precision and is not quite linear.
   using Solver = dealii::SolverFGMRES<Vector>;
   dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
   Solver solver(control, Solver::AdditionalData(restart));
-  solution.reinit(rhs.size());
+  solution.reinit(rhs);
   try {
     if (multigrid_)
       solver.solve(*blocks_, solution, rhs, *multigrid_);
@@ -119,8 +122,7 @@ std::optional<int> LinearSolver::gmres(const dealii::Vector<double>& rhs,
   return static_cast<int>(control.last_step());
 }
 
-int LinearSolver::solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution,
-                        double reduction) {
+int LinearSolver::solve(const Vector& rhs, Vector& solution, double reduction) {
   std::optional<int> iterations;
   if (!current_) {
     const unsigned int limit = direct_ ? max_with_old_factors : 2 * usual_;

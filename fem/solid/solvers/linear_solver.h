@@ -4,7 +4,6 @@
 #include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/sparsity_pattern.h>
-#include <deal.II/lac/vector.h>
 
 #include <memory>
 #include <optional>
@@ -20,10 +19,14 @@
 
 namespace ciliaval::fem::solid::solvers {
 
+/// Whether systems of so many unknowns are solved iteratively.
+bool is_iterative(SolverKind kind, double unknowns);
+
 /// Solves systems with the solid's unsymmetric tangent: by sparse LU (MUMPS), or by GMRES
-/// preconditioned from the right by one multigrid cycle. It keeps the tangent as it needs it.
-/// Vectors are whole on every rank; the ranks share the work by rows. All functions are collective
-/// and throw SolverError on all ranks.
+/// preconditioned from the right by one multigrid cycle. It keeps the tangent as it needs it. The
+/// direct one needs a space that is whole on every rank, and the ranks of the communicator share
+/// its rows; the iterative one works on the space's parts. All functions are collective and throw
+/// SolverError on all ranks.
 class LinearSolver {
  public:
   /// The constraints may only set unknowns to zero; they and the space must outlive it.
@@ -35,7 +38,7 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
 
   bool is_direct() const { return direct_ != nullptr; }
-  /// The cells at this rank's rows: those that it has to assemble.
+  /// The elements that this rank has to assemble.
   const std::vector<std::size_t>& cells() const { return cells_; }
 
   /// Zeros, to be assembled.
@@ -48,15 +51,16 @@ class LinearSolver {
 
   /// Any number of right-hand sides with the matrix last prepared. GMRES ends with
   /// ‖b − Ax‖₂ ≤ reduction ‖b‖₂. Returns the number of iterations; 1 for the matrix's own LU.
-  int solve(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution, double reduction);
+  int solve(const discretisation::Vector& rhs, discretisation::Vector& solution, double reduction);
 
-  /// Of the direct solver's matrix, and this rank's rows of it.
+  // Of the direct solver:
+  /// Of its matrix, and this rank's rows of it.
   const dealii::SparsityPattern& pattern() const { return pattern_; }
   const RowRange& rows() const { return rows_; }
 
  private:
   /// Empty if GMRES does not get there in max_iterations.
-  std::optional<int> gmres(const dealii::Vector<double>& rhs, dealii::Vector<double>& solution,
+  std::optional<int> gmres(const discretisation::Vector& rhs, discretisation::Vector& solution,
                            double reduction, unsigned int max_iterations) const;
 
   MPI_Comm communicator_;

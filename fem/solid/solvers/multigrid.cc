@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solvers/multigrid.h"
 
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
-#include <span>
+#include <utility>
+
+#include "fem/parallel.h"
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
 namespace {
 
-using dealii::Vector;
 using dealii::types::global_dof_index;
 
 /// Chebyshev iteration: polynomial degree, and the part of the spectrum that it damps, from the
@@ -22,131 +23,208 @@ constexpr int smoother_degree = 2;
 constexpr double smoother_range = 10;
 constexpr double safety = 1.05;  ///< tangents of compressed cells are not quite positive
 
-/// The vertices' first degrees of freedom, numbered 0, 1, …
-std::map<global_dof_index, global_dof_index> number_vertices(const SolidSpace& space) {
-  std::map<global_dof_index, global_dof_index> numbers;
-  for (const SolidElement& element : space.elements())
-    for (std::size_t c = 0; c < corners; ++c)
-      numbers.emplace(element.dofs[element_dof(0, corner_node(c))], 0);
-  global_dof_index count = 0;
-  for (auto& [dof, number] : numbers) number = count++;
-  return numbers;
-}
+constexpr Node none = std::numeric_limits<Node>::max();
 
 }  // namespace
 
-Multigrid::Multigrid(const SolidSpace& space, const dealii::AffineConstraints<double>& constraints,
-                     const BlockCsr& matrix, RowRange rows, MPI_Comm communicator)
+Multigrid::Multigrid(const SolidSpace& space, const CellNodes& cells, const BlockCsr& matrix)
     : matrix_(matrix),
-      rows_(rows),
-      communicator_(communicator),
-      schwarz_(space, constraints, rows, communicator) {
-  make_prolongation(space, constraints);
+      own_nodes_(space.partitioner().locally_owned_size() / static_cast<Node>(node_unknowns)),
+      schwarz_(cells, matrix, own_nodes_) {
+  const std::vector<Node> vertex_at = number_vertices(space, cells);
+  make_weights(cells, vertex_at);
+  make_coarse_level(space, cells, vertex_at);
 }
 
-void Multigrid::make_prolongation(const SolidSpace& space,
-                                  const dealii::AffineConstraints<double>& constraints) {
-  const auto vertices = number_vertices(space);
-  std::vector<std::vector<Weight>> rows(space.unknowns());
-  const auto coarse_size = 3 * static_cast<global_dof_index>(vertices.size());
-  dealii::DynamicSparsityPattern pattern(coarse_size);
-  for (const SolidElement& element : space.elements()) {
-    std::array<global_dof_index, 3 * corners> coarse{};
-    for (std::size_t c = 0; c < corners; ++c)
-      for (unsigned int k = 0; k < 3; ++k)
-        coarse[3 * c + k] = 3 * vertices.at(element.dofs[element_dof(0, corner_node(c))]) + k;
-    for (const global_dof_index i : coarse)
-      for (const global_dof_index j : coarse) pattern.add(i, j);
-    for (int node = 0; node < element_nodes; ++node)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto component = static_cast<int>(k);
-        const global_dof_index dof = element.dofs[element_dof(component, node)];
-        if (!rows[dof].empty() || constraints.is_constrained(dof)) continue;
-        for (std::size_t c = 0; c < corners; ++c)
-          if (trilinear(c, node) > 0 &&
-              !constraints.is_constrained(element.dofs[element_dof(component, corner_node(c))]))
-            rows[dof].push_back({coarse[3 * c + k], trilinear(c, node)});
-      }
-    for (std::size_t c = 0; c < corners; ++c)
-      for (std::size_t k = 0; k < 3; ++k)
-        if (constraints.is_constrained(
-                element.dofs[element_dof(static_cast<int>(k), corner_node(c))]))
-          fixed_.push_back(coarse[3 * c + k]);
+/// Of each node the vertex there, or `none`: first those whose node this rank owns.
+std::vector<Node> Multigrid::number_vertices(const SolidSpace& space, const CellNodes& cells) {
+  std::vector<Node> vertex_at(matrix_.nodes(), none);
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell)
+    for (std::size_t c = 0; c < corners; ++c) vertex_at[cells.of(cell)[corner_node(c)]] = 0;
+  Node count = 0;
+  Node own = 0;
+  for (Node node = 0; node < vertex_at.size(); ++node) {
+    if (vertex_at[node] != none) vertex_at[node] = count++;
+    if (node + 1 == own_nodes_) own = count;
   }
-  std::sort(fixed_.begin(), fixed_.end());
-  fixed_.erase(std::unique(fixed_.begin(), fixed_.end()), fixed_.end());
-  prolongation_starts_.push_back(0);
-  for (const auto& row : rows) {
-    prolongation_.insert(prolongation_.end(), row.begin(), row.end());
-    prolongation_starts_.push_back(prolongation_.size());
+  // Their unknowns' numbers on all ranks: each rank tells the others by a vector of the nodes.
+  const auto unknowns = static_cast<global_dof_index>(node_unknowns);
+  global_dof_index before = 0;
+  global_dof_index size = 0;
+  const auto counts =
+      dealii::Utilities::MPI::all_gather(space.communicator(), unknowns * global_dof_index{own});
+  for (std::size_t r = 0; r < counts.size(); ++r) {
+    if (r == static_cast<std::size_t>(rank(space.communicator()))) before = size;
+    size += counts[r];
   }
-  coarse_pattern_.copy_from(pattern);
-  coarse_matrix_.reinit(coarse_pattern_);
-  coarse_solver_ = std::make_unique<DirectSolver>(
-      coarse_pattern_, DirectSolver::Kind::symmetric_part, own_coarse_rows(), communicator_);
-  work_.resize(coarse_matrix_.m());
+  Vector numbers = space.vector();
+  for (Node node = 0; node < own_nodes_; ++node)
+    if (vertex_at[node] != none)
+      numbers.local_element(static_cast<unsigned int>(unknowns * node)) =
+          before + unknowns * vertex_at[node];
+  numbers.update_ghost_values();
+  std::vector<std::pair<global_dof_index, Node>> of_others;
+  for (Node node = own_nodes_; node < vertex_at.size(); ++node)
+    if (vertex_at[node] != none)
+      of_others.emplace_back(static_cast<global_dof_index>(
+                                 numbers.local_element(static_cast<unsigned int>(unknowns * node))),
+                             node);
+  std::ranges::sort(of_others);
+  dealii::IndexSet owned(size);
+  owned.add_range(before, before + unknowns * own);
+  dealii::IndexSet ghosts(size);
+  Node next = own;
+  for (const auto& [first, node] : of_others) {
+    ghosts.add_range(first, first + unknowns);
+    vertex_at[node] = next++;
+  }
+  coarse_unknowns_ = std::make_shared<const dealii::Utilities::MPI::Partitioner>(
+      owned, ghosts, space.communicator());
+  return vertex_at;
 }
 
-RowRange Multigrid::own_coarse_rows() const {
-  RowRange result{coarse_matrix_.m(), 0};
-  const auto add = [&result](Row row) {
-    result = {std::min(result.begin, row), std::max(result.end, row + 1)};
-  };
-  for (std::size_t k = prolongation_starts_[rows_.begin]; k < prolongation_starts_[rows_.end]; ++k)
-    add(prolongation_[k].column);
-  if (rank(communicator_) == 0) std::for_each(fixed_.begin(), fixed_.end(), add);
-  return {std::min(result.begin, result.end), result.end};
+void Multigrid::make_weights(const CellNodes& cells, std::span<const Node> vertex_at) {
+  std::vector<std::array<std::uint32_t, 2>> from(matrix_.nodes());  // a cell, and the place in it
+  for (std::uint32_t cell = 0; cell < cells.cells(); ++cell)
+    for (std::uint32_t a = 0; a < element_nodes; ++a) from[cells.of(cell)[a]] = {cell, a};
+  weight_starts_.push_back(0);
+  for (const auto& [cell, a] : from) {
+    for (std::size_t c = 0; c < corners; ++c)
+      if (const double value = trilinear(c, a); value > 0)
+        weights_.push_back({vertex_at[cells.of(cell)[corner_node(c)]], static_cast<float>(value)});
+    weight_starts_.push_back(static_cast<std::uint32_t>(weights_.size()));
+  }
 }
 
-void Multigrid::add_coarse_rows(BlockCsr::Node node) {
-  const auto weights = [&](Row i) {
-    return std::span(prolongation_)
-        .subspan(prolongation_starts_[i], prolongation_starts_[i + 1] - prolongation_starts_[i]);
+void Multigrid::make_coarse_level(const SolidSpace& space, const CellNodes& cells,
+                                  std::span<const Node> vertex_at) {
+  const std::size_t n = node_unknowns;
+  const std::size_t vertices =
+      (coarse_unknowns_->locally_owned_size() + coarse_unknowns_->n_ghost_indices()) / n;
+  CellNodes coarse_cells{corners};
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell)
+    for (std::size_t c = 0; c < corners; ++c)
+      coarse_cells.nodes.push_back(vertex_at[cells.of(cell)[corner_node(c)]]);
+  std::vector<bool> constrained(n * vertices);
+  for (Node node = 0; node < vertex_at.size(); ++node)
+    for (std::size_t k = 0; k < n && vertex_at[node] != none; ++k)
+      constrained[n * vertex_at[node] + k] = matrix_.is_constrained(n * node + k);
+  coarse_blocks_ = std::make_unique<BlockCsr>(coarse_cells, std::move(constrained));
+  sums_.assign(vertices, Matrix3::Zero());
+  is_touched_.assign(vertices, false);
+
+  const std::size_t own = coarse_unknowns_->locally_owned_size() / n;
+  std::vector<Vector3> positions(own);
+  for (std::size_t e = 0; e < cells.cells(); ++e)
+    for (std::size_t c = 0; c < corners; ++c)
+      if (const Node vertex = coarse_cells.of(e)[c]; vertex < own)
+        positions[vertex] =
+            space.elements()[e].nodes.row(static_cast<Eigen::Index>(corner_node(c))).transpose();
+  const auto fixed = std::make_unique<bool[]>(n * own);
+  for (std::size_t i = 0; i < n * own; ++i) fixed[i] = coarse_blocks_->is_constrained(i);
+  coarse_solver_ =
+      std::make_unique<RigidBodyAmg>(coarse_unknowns_->locally_owned_range(), positions,
+                                     std::span(fixed.get(), n * own), space.communicator());
+  dealii::TrilinosWrappers::SparsityPattern pattern(coarse_unknowns_->locally_owned_range(),
+                                                    space.communicator());
+  std::vector<global_dof_index> columns;
+  for (Node vertex = 0; vertex < vertices; ++vertex) {
+    columns.clear();
+    for (const Node other : coarse_blocks_->columns(vertex))
+      for (std::size_t k = 0; k < n; ++k)
+        columns.push_back(
+            coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * other + k)));
+    for (std::size_t k = 0; k < n; ++k)
+      pattern.add_entries(
+          coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * vertex + k)),
+          columns.begin(), columns.end());
+  }
+  pattern.compress();
+  coarse_solver_->matrix().reinit(pattern);
+}
+
+void Multigrid::add_galerkin_rows(Node node) {
+  const auto free_part = [](const BlockCsr& matrix, Node row, Node column, Matrix3 block) {
+    for (std::size_t k = 0; k < node_unknowns; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      if (matrix.is_constrained(node_unknowns * row + k)) block.row(i).setZero();
+      if (matrix.is_constrained(node_unknowns * column + k)) block.col(i).setZero();
+    }
+    return block;
   };
+  touched_.clear();
   const std::span neighbours = matrix_.columns(node);
+  for (std::size_t position = 0; position < neighbours.size(); ++position) {
+    const Matrix3 block =
+        free_part(matrix_, node, neighbours[position], matrix_.block(node, position));
+    for (const auto& [vertex, value] : weights(neighbours[position])) {
+      if (!is_touched_[vertex]) {
+        is_touched_[vertex] = true;
+        touched_.push_back(vertex);
+        sums_[vertex].setZero();
+      }
+      sums_[vertex] += static_cast<double>(value) * block;
+    }
+  }
+  std::ranges::sort(touched_);
+  for (const auto& [row, value] : weights(node)) {
+    const std::span columns = coarse_blocks_->columns(row);
+    std::size_t position = 0;
+    for (const Node column : touched_) {
+      while (columns[position] < column) ++position;
+      coarse_blocks_->add(
+          row, position,
+          free_part(*coarse_blocks_, row, column, static_cast<double>(value) * sums_[column]));
+    }
+  }
+  for (const Node vertex : touched_) is_touched_[vertex] = false;
+}
+
+void Multigrid::fill_coarse_matrix() {
+  auto& matrix = coarse_solver_->matrix();
+  matrix = 0.;
+  const std::size_t n = node_unknowns;
+  const std::size_t own = coarse_unknowns_->locally_owned_size() / n;
   std::vector<global_dof_index> columns;
   std::vector<double> values;
-  for (Row k = 0; k < node_unknowns; ++k) {
-    const std::span own = weights(node_unknowns * Row{node} + k);
-    if (own.empty()) continue;
+  for (Node vertex = 0; vertex < coarse_blocks_->nodes(); ++vertex) {
     columns.clear();
-    for (std::size_t position = 0; position < neighbours.size(); ++position) {
-      const Matrix3 block = matrix_.block(node, position);
-      for (Row l = 0; l < node_unknowns; ++l)
-        for (const Weight& weight : weights(node_unknowns * Row{neighbours[position]} + l)) {
-          if (work_[weight.column] == 0) columns.push_back(weight.column);
-          work_[weight.column] += weight.value * block(k, l);
-          if (work_[weight.column] == 0)  // keeps the column marked
-            work_[weight.column] = std::numeric_limits<double>::min();
-        }
-    }
-    for (const Weight& weight : own) {
+    const std::span others = coarse_blocks_->columns(vertex);
+    for (const Node other : others)
+      for (std::size_t k = 0; k < n; ++k)
+        columns.push_back(
+            coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * other + k)));
+    for (std::size_t k = 0; k < n; ++k) {
+      // The identity of a constrained row is its owner's.
+      if (vertex >= own && coarse_blocks_->is_constrained(n * vertex + k)) continue;
       values.clear();
-      for (const global_dof_index column : columns) values.push_back(weight.value * work_[column]);
-      coarse_matrix_.add(weight.column, columns, values);
+      for (std::size_t position = 0; position < others.size(); ++position) {
+        const Matrix3 block = coarse_blocks_->block(vertex, position);
+        for (Eigen::Index l = 0; l < 3; ++l)
+          values.push_back(block(static_cast<Eigen::Index>(k), l));
+      }
+      matrix.add(coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * vertex + k)),
+                 static_cast<global_dof_index>(columns.size()), columns.data(), values.data(),
+                 false);
     }
-    for (const global_dof_index column : columns) work_[column] = 0;
   }
+  matrix.compress(dealii::VectorOperation::add);
 }
 
 void Multigrid::update() {
   schwarz_.update(matrix_);
-  coarse_matrix_ = 0;
-  for (Row row = rows_.begin; row < rows_.end; row += node_unknowns)
-    add_coarse_rows(static_cast<BlockCsr::Node>(row / node_unknowns));
-  if (rank(communicator_) == 0)
-    for (const Row dof : fixed_) coarse_matrix_.add(dof, dof, 1);
-  coarse_solver_->factorize(coarse_matrix_);
+  coarse_blocks_->clear();
+  for (Node node = 0; node < own_nodes_; ++node) add_galerkin_rows(node);
+  fill_coarse_matrix();
+  coarse_solver_->update();
 }
 
-void Multigrid::residual(Vector<double>& r, const Vector<double>& x,
-                         const Vector<double>& b) const {
-  r.reinit(b.size(), true);
+void Multigrid::residual(Vector& r, const Vector& x, const Vector& b) const {
   matrix_.vmult(r, x);
   r.sadd(-1, 1, b);
 }
 
-void Multigrid::smooth(Vector<double>& x, const Vector<double>& b, bool from_zero) const {
+void Multigrid::smooth(Vector& x, const Vector& b, bool from_zero) const {
   // Chebyshev iteration on [lower, upper]: Saad, Iterative Methods for Sparse Linear Systems, 2nd
   // ed., algorithm 12.1.
   constexpr double upper = safety * VertexPatchSchwarz::largest_eigenvalue;
@@ -154,11 +232,12 @@ void Multigrid::smooth(Vector<double>& x, const Vector<double>& b, bool from_zer
   constexpr double centre = (upper + lower) / 2;
   constexpr double half_width = (upper - lower) / 2;
   constexpr double sigma = centre / half_width;
-  Vector<double> r(b);
-  Vector<double> z;
+  Vector r(b);
+  Vector z;
+  z.reinit(b, true);
   if (!from_zero) residual(r, x, b);
   schwarz_.vmult(z, r);
-  Vector<double> step(z);
+  Vector step(z);
   step /= centre;
   x += step;
   double rho = 1 / sigma;
@@ -172,22 +251,35 @@ void Multigrid::smooth(Vector<double>& x, const Vector<double>& b, bool from_zer
   }
 }
 
-void Multigrid::correct(Vector<double>& x, const Vector<double>& b) const {
-  Vector<double> r;
+void Multigrid::correct(Vector& x, const Vector& b) const {
+  Vector r;
+  r.reinit(b, true);
   residual(r, x, b);
-  Vector<double> coarse_residual(coarse_matrix_.m());
-  Vector<double> correction;
-  for (Row i = 0; i < r.size(); ++i)
-    for (std::size_t k = prolongation_starts_[i]; k < prolongation_starts_[i + 1]; ++k)
-      coarse_residual[prolongation_[k].column] += prolongation_[k].value * r[i];
-  coarse_solver_->solve(coarse_residual, correction);
-  for (Row i = 0; i < r.size(); ++i)
-    for (std::size_t k = prolongation_starts_[i]; k < prolongation_starts_[i + 1]; ++k)
-      x[i] += prolongation_[k].value * correction[prolongation_[k].column];
+  Vector coarse_residual(coarse_unknowns_);
+  Vector correction(coarse_unknowns_);
+  const auto for_weights = [this](const auto& visit) {
+    const auto n = static_cast<unsigned int>(node_unknowns);
+    for (Node node = 0; node < own_nodes_; ++node)
+      for (unsigned int k = 0; k < n; ++k) {
+        if (matrix_.is_constrained(n * node + k)) continue;
+        for (const auto& [vertex, value] : weights(node))
+          if (!coarse_blocks_->is_constrained(n * vertex + k))
+            visit(n * node + k, n * vertex + k, static_cast<double>(value));
+      }
+  };
+  for_weights([&](unsigned int fine, unsigned int coarse, double weight) {
+    coarse_residual.local_element(coarse) += weight * r.local_element(fine);
+  });
+  coarse_residual.compress(dealii::VectorOperation::add);
+  coarse_solver_->vmult(correction, coarse_residual);
+  correction.update_ghost_values();
+  for_weights([&](unsigned int fine, unsigned int coarse, double weight) {
+    x.local_element(fine) += weight * correction.local_element(coarse);
+  });
 }
 
-void Multigrid::vmult(Vector<double>& x, const Vector<double>& b) const {
-  x.reinit(b.size());
+void Multigrid::vmult(Vector& x, const Vector& b) const {
+  x = 0.;
   smooth(x, b, true);
   correct(x, b);
   smooth(x, b, false);

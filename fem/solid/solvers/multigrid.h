@@ -1,65 +1,71 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/sparsity_pattern.h>
-#include <deal.II/lac/vector.h>
+#include <deal.II/base/partitioner.h>
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "fem/parallel.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/discretisation/vector.h"
 #include "fem/solid/solvers/block_csr.h"
-#include "fem/solid/solvers/direct_solver.h"
+#include "fem/solid/solvers/rigid_body_amg.h"
 #include "fem/solid/solvers/vertex_patch_schwarz.h"
 
 namespace ciliaval::fem::solid::solvers {
 
 /// Two levels: a Chebyshev iteration over vertex-patch Schwarz on the Q2 space, before and after;
-/// the factorised Galerkin matrix PᵀAP on the trilinear functions of the same mesh, P the
-/// inclusion.
+/// the Galerkin matrix PᵀAP on the trilinear functions of the same mesh, P the inclusion, solved
+/// roughly by RigidBodyAmg.
 class Multigrid {
  public:
-  /// The pattern of the coarse matrix follows from the cells. `rows` are this rank's. The matrix,
-  /// whose present values the smoother takes, must outlive it.
-  Multigrid(const discretisation::SolidSpace& space,
-            const dealii::AffineConstraints<double>& constraints, const BlockCsr& matrix,
-            RowRange rows, MPI_Comm communicator);
+  /// The matrix, whose present values the smoother takes, must outlive it. Collective, as all its
+  /// functions.
+  Multigrid(const discretisation::SolidSpace& space, const CellNodes& cells,
+            const BlockCsr& matrix);
 
   /// The patches and the coarse matrix of the present values. Throws SolverError.
   void update();
 
-  /// One cycle from zero. Collective.
-  void vmult(dealii::Vector<double>& x, const dealii::Vector<double>& b) const;
+  /// One cycle from zero.
+  void vmult(discretisation::Vector& x, const discretisation::Vector& b) const;
 
  private:
+  /// A vertex, by this rank's numbers of the vertices, and the value of its function at a node.
   struct Weight {
-    dealii::types::global_dof_index column = 0;
-    double value = 0;
+    Node vertex = 0;
+    float value = 0;
   };
-  void make_prolongation(const discretisation::SolidSpace& space,
-                         const dealii::AffineConstraints<double>& constraints);
-  /// The coarse rows that this rank adds to; on rank 0 also the constrained ones.
-  RowRange own_coarse_rows() const;
-  void add_coarse_rows(BlockCsr::Node node);
-  void smooth(dealii::Vector<double>& x, const dealii::Vector<double>& b, bool from_zero) const;
-  void correct(dealii::Vector<double>& x, const dealii::Vector<double>& b) const;
-  void residual(dealii::Vector<double>& r, const dealii::Vector<double>& x,
-                const dealii::Vector<double>& b) const;
+  std::span<const Weight> weights(Node node) const {
+    return std::span(weights_).subspan(weight_starts_[node],
+                                       weight_starts_[node + 1] - weight_starts_[node]);
+  }
+  /// The vertices' numbers, and the nodes at which they are.
+  std::vector<Node> number_vertices(const discretisation::SolidSpace& space,
+                                    const CellNodes& cells);
+  void make_weights(const CellNodes& cells, std::span<const Node> vertex_at);
+  void make_coarse_level(const discretisation::SolidSpace& space, const CellNodes& cells,
+                         std::span<const Node> vertex_at);
+  void add_galerkin_rows(Node node);
+  void fill_coarse_matrix();
+  void smooth(discretisation::Vector& x, const discretisation::Vector& b, bool from_zero) const;
+  void correct(discretisation::Vector& x, const discretisation::Vector& b) const;
+  void residual(discretisation::Vector& r, const discretisation::Vector& x,
+                const discretisation::Vector& b) const;
 
   const BlockCsr& matrix_;
-  RowRange rows_;
-  MPI_Comm communicator_;
+  Node own_nodes_;
   VertexPatchSchwarz schwarz_;
-  std::vector<std::size_t> prolongation_starts_;
-  std::vector<Weight> prolongation_;  ///< row by row
-  std::vector<Row> fixed_;            ///< coarse degrees of freedom that are constrained
-  dealii::SparsityPattern coarse_pattern_;
-  dealii::SparseMatrix<double> coarse_matrix_;
-  std::unique_ptr<DirectSolver> coarse_solver_;
-  std::vector<double> work_;  ///< a row of A P
+  std::vector<std::uint32_t> weight_starts_;
+  std::vector<Weight> weights_;  ///< of P, node by node
+  std::shared_ptr<const dealii::Utilities::MPI::Partitioner> coarse_unknowns_;
+  std::unique_ptr<BlockCsr> coarse_blocks_;  ///< this rank's share of PᵀAP
+  std::unique_ptr<RigidBodyAmg> coarse_solver_;
+  std::vector<Matrix3> sums_;  ///< a row of A P, by vertices
+  std::vector<Node> touched_;  ///< those that are in it
+  std::vector<bool> is_touched_;
 };
 
 }  // namespace ciliaval::fem::solid::solvers

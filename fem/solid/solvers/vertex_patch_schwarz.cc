@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solvers/vertex_patch_schwarz.h"
 
-#include <deal.II/base/mpi.h>
-
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <array>
@@ -15,26 +13,19 @@ namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
 namespace {
 
-using dealii::Vector;
-using dealii::types::global_dof_index;
-
 /// Lexicographic coordinates 0 … 2 of a node of the element.
-std::array<int, 3> coordinates(int node) {
-  return {node % 3, node / 3 % 3, node / 9};
+std::array<int, 3> coordinates(std::size_t node) {
+  const int i = static_cast<int>(node);
+  return {i % 3, i / 3 % 3, i / 9};
 }
 
 }  // namespace
 
-int corner_node(std::size_t corner) {
-  const int c = static_cast<int>(corner);
-  return 2 * (c & 1) + 6 * (c >> 1 & 1) + 18 * (c >> 2);
+std::size_t corner_node(std::size_t corner) {
+  return 2 * (corner & 1) + 6 * (corner >> 1 & 1) + 18 * (corner >> 2);
 }
 
-std::size_t element_dof(int component, int node) {
-  return element_nodes * static_cast<std::size_t>(component) + static_cast<std::size_t>(node);
-}
-
-double trilinear(std::size_t corner, int node) {
+double trilinear(std::size_t corner, std::size_t node) {
   const auto at = coordinates(node);
   const auto of = coordinates(corner_node(corner));
   double value = 1;
@@ -42,25 +33,22 @@ double trilinear(std::size_t corner, int node) {
   return value;
 }
 
-VertexPatchSchwarz::VertexPatchSchwarz(const SolidSpace& space,
-                                       const dealii::AffineConstraints<double>& constraints,
-                                       RowRange rows, MPI_Comm communicator)
-    : communicator_(communicator) {
-  std::map<global_dof_index, std::set<Index>> patches;
-  for (const SolidElement& element : space.elements())
+VertexPatchSchwarz::VertexPatchSchwarz(const CellNodes& cells, const BlockCsr& matrix,
+                                       std::size_t own_nodes) {
+  std::map<Node, std::set<Index>> patches;
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell)
     for (std::size_t c = 0; c < corners; ++c) {
-      const global_dof_index vertex = element.dofs[element_dof(0, corner_node(c))];
-      if (!rows.contains(vertex)) continue;
-      for (int node = 0; node < element_nodes; ++node)
-        for (int k = 0; k < 3; ++k) {
-          const global_dof_index dof = element.dofs[element_dof(k, node)];
-          if (trilinear(c, node) > 0 && !constraints.is_constrained(dof))
-            patches[vertex].insert(static_cast<Index>(dof));
+      const Node vertex = cells.of(cell)[corner_node(c)];
+      if (vertex >= own_nodes) continue;
+      for (std::size_t a = 0; a < element_nodes; ++a)
+        for (Index k = 0; k < node_unknowns; ++k) {
+          const Index dof = static_cast<Index>(node_unknowns) * cells.of(cell)[a] + k;
+          if (trilinear(c, a) > 0 && !matrix.is_constrained(dof)) patches[vertex].insert(dof);
         }
     }
   starts_.push_back(0);
   matrix_starts_.push_back(0);
-  std::vector<std::size_t> uses(space.unknowns() + 1);
+  std::vector<std::size_t> uses(node_unknowns * matrix.nodes() + 1);
   for (const auto& [vertex, patch] : patches) {
     dofs_.insert(dofs_.end(), patch.begin(), patch.end());
     starts_.push_back(dofs_.size());
@@ -82,7 +70,7 @@ void VertexPatchSchwarz::update(const BlockCsr& matrix) {
     const auto size = static_cast<Eigen::Index>(dofs.size());
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
     for (std::size_t row = 0; row < dofs.size(); ++row) {
-      const BlockCsr::Node node = dofs[row] / node_unknowns;
+      const Node node = dofs[row] / node_unknowns;
       const std::span columns = matrix.columns(node);
       std::size_t column = 0;  // both are sorted
       for (std::size_t position = 0; position < columns.size(); ++position) {
@@ -102,39 +90,38 @@ void VertexPatchSchwarz::update(const BlockCsr& matrix) {
   });
 }
 
-void VertexPatchSchwarz::vmult(Vector<double>& z, const Vector<double>& r) const {
+void VertexPatchSchwarz::vmult(Vector& z, const Vector& r) const {
   // Entries of r below the least float would count as zero.
   const double scale = r.linfty_norm();
-  z.reinit(r.size());
-  if (scale > 0) {
-    for_each(starts_.size() - 1, 64, [&](std::size_t patch) {
-      const auto size = static_cast<Eigen::Index>(starts_[patch + 1] - starts_[patch]);
-      Eigen::VectorXf local(size);
-      for (Eigen::Index i = 0; i < size; ++i)
-        local[i] =
-            static_cast<float>(r[dofs_[starts_[patch] + static_cast<std::size_t>(i)]] / scale);
-      Eigen::Map<Eigen::VectorXf> result(corrections_.data() + starts_[patch], size);
-      result.setZero();
-      const float* column = inverses_.data() + matrix_starts_[patch];
-      for (Eigen::Index j = 0; j < size; ++j) {
-        const Eigen::Index below = size - j;  // the diagonal first
-        const Eigen::Map<const Eigen::VectorXf> lower(column, below);
-        result.tail(below) += local[j] * lower;
-        result[j] += lower.tail(below - 1).dot(local.tail(below - 1));
-        column += below;
-      }
-    });
-    for_each(r.size(), 1024, [&](std::size_t index) {
-      const auto dof = static_cast<Row>(index);
-      double sum = 0;
-      for (std::size_t i = user_starts_[dof]; i < user_starts_[dof + 1]; ++i)
-        sum += static_cast<double>(corrections_[users_[i]]);
-      z[dof] = scale * sum;
-    });
-  }
-  // MPI requires that a sum has the same bits on all ranks.
-  const dealii::ArrayView<double> values(z.begin(), z.size());
-  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(values), communicator_, values);
+  z = 0.;
+  if (!(scale > 0)) return;
+  r.update_ghost_values();
+  const double* const R = r.begin();
+  for_each(starts_.size() - 1, 64, [&](std::size_t patch) {
+    const auto size = static_cast<Eigen::Index>(starts_[patch + 1] - starts_[patch]);
+    Eigen::VectorXf local(size);
+    for (Eigen::Index i = 0; i < size; ++i)
+      local[i] = static_cast<float>(R[dofs_[starts_[patch] + static_cast<std::size_t>(i)]] / scale);
+    Eigen::Map<Eigen::VectorXf> result(corrections_.data() + starts_[patch], size);
+    result.setZero();
+    const float* column = inverses_.data() + matrix_starts_[patch];
+    for (Eigen::Index j = 0; j < size; ++j) {
+      const Eigen::Index below = size - j;  // the diagonal first
+      const Eigen::Map<const Eigen::VectorXf> lower(column, below);
+      result.tail(below) += local[j] * lower;
+      result[j] += lower.tail(below - 1).dot(local.tail(below - 1));
+      column += below;
+    }
+  });
+  r.zero_out_ghost_values();
+  double* const Z = z.begin();
+  for_each(user_starts_.size() - 1, 1024, [&](std::size_t dof) {
+    double sum = 0;
+    for (std::size_t i = user_starts_[dof]; i < user_starts_[dof + 1]; ++i)
+      sum += static_cast<double>(corrections_[users_[i]]);
+    Z[dof] = scale * sum;
+  });
+  z.compress(dealii::VectorOperation::add);
 }
 
 }  // namespace ciliaval::fem::solid::solvers

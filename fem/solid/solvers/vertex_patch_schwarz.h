@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/vector.h>
-
 #include <cstdint>
 #include <vector>
 
-#include "fem/parallel.h"
 #include "fem/solid/discretisation/space.h"
+#include "fem/solid/discretisation/vector.h"
 #include "fem/solid/solvers/block_csr.h"
 
 namespace ciliaval::fem::solid::solvers {
@@ -16,13 +13,10 @@ namespace ciliaval::fem::solid::solvers {
 inline constexpr std::size_t corners = 8;
 
 /// Lexicographic node of a corner of the element.
-int corner_node(std::size_t corner);
-
-/// Place of a node's component in SolidElement::dofs.
-std::size_t element_dof(int component, int node);
+std::size_t corner_node(std::size_t corner);
 
 /// Trilinear shape function of a corner at a node of the element.
-double trilinear(std::size_t corner, int node);
+double trilinear(std::size_t corner, std::size_t node);
 
 /// The additive Schwarz method on vertex patches. The patch of a vertex holds the nodes inside the
 /// cells around it (27 for an inner vertex of Q2); there the matrix is inverted exactly. A patch
@@ -33,22 +27,20 @@ class VertexPatchSchwarz {
  public:
   static constexpr double largest_eigenvalue = 8;
 
-  VertexPatchSchwarz(const discretisation::SolidSpace& space,
-                     const dealii::AffineConstraints<double>& constraints, RowRange rows,
-                     MPI_Comm communicator);
-  /// Inverts the symmetric part of the matrix on the patches of this rank's vertices.
+  /// The patches of the vertices that this rank owns, of whose cells it has all.
+  VertexPatchSchwarz(const CellNodes& cells, const BlockCsr& matrix, std::size_t own_nodes);
+  /// Inverts the symmetric part of the matrix on the patches.
   void update(const BlockCsr& matrix);
   /// z = Σ Rᵀ A⁻¹ R r over the patches of all ranks. Collective.
-  void vmult(dealii::Vector<double>& z, const dealii::Vector<double>& r) const;
+  void vmult(discretisation::Vector& z, const discretisation::Vector& r) const;
 
  private:
   using Index = std::uint32_t;
-  MPI_Comm communicator_;
   std::vector<std::size_t> starts_;         ///< of the patches' entries in dofs_
   std::vector<Index> dofs_;                 ///< of all patches, one after the other
   std::vector<std::size_t> matrix_starts_;  ///< of the patches' matrices in inverses_
   std::vector<float> inverses_;             ///< lower triangles, column by column
-  std::vector<std::size_t> user_starts_;    ///< for each degree of freedom: its entries in users_
+  std::vector<std::size_t> user_starts_;    ///< for each unknown: its entries in users_
   std::vector<std::size_t> users_;          ///< positions in dofs_
   mutable std::vector<float> corrections_;  ///< of all patches
 };

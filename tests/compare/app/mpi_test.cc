@@ -97,11 +97,20 @@ void expect_same_steps(const fs::path& results, const fs::path& reference, std::
   }
 }
 
+/// By each solver: the direct one's mesh is whole on all ranks, the iterative one's in parts.
+class MpiSolver : public testing::TestWithParam<std::string> {
+ protected:
+  std::string solver() const { return "solver = \"" + GetParam() + "\"\n"; }
+};
+class MpiSolverSlow : public MpiSolver {};
+INSTANTIATE_TEST_SUITE_P(Solvers, MpiSolverSlow, testing::Values("direct", "iterative"));
+INSTANTIATE_TEST_SUITE_P(Solvers, MpiSolver, testing::Values("direct", "iterative"));
+
 // Steps that converge, equal loads, another height, a slip-off and a step after it; more ranks than
 // two. Oracle: the run on one rank.
-TEST(Mpi, RanksFollowAnyLoadPathAsOneDoes) {
+TEST_P(MpiSolver, RanksFollowAnyLoadPathAsOneDoes) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "", R"(["2 mN", "2 mN", "3 mN", "1 mN", "7 mN", "2 mN"])");
+  write_case(folder.path(), solver(), R"(["2 mN", "2 mN", "3 mN", "1 mN", "7 mN", "2 mN"])");
   std::string text = read_text(folder.path() / "case.toml");
   const std::string height = "height = \"16 mm\"";
   text.replace(text.find(height), height.size(),
@@ -117,9 +126,9 @@ TEST(Mpi, RanksFollowAnyLoadPathAsOneDoes) {
 }
 
 // Oracle: the run on one rank.
-TEST(Mpi, TwoRanksFindTheForceOfAProbe) {
+TEST_P(MpiSolver, TwoRanksFindTheForceOfAProbe) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "", R"(["1 mm", "3 mm"])");
+  write_case(folder.path(), solver(), R"(["1 mm", "3 mm"])");
   std::string text = read_text(folder.path() / "case.toml");
   text.replace(text.find("\"contact\""), 9, "\"probe\"");
   text.replace(text.find("force ="), 7, "displacement =");
@@ -239,12 +248,12 @@ Outcome go_on(const fs::path& folder, int ranks) {
 }
 
 // Oracle: an undisturbed run on two ranks.
-TEST(MpiSlow, AKilledRunOfTwoRanksGoesOnOnTwoAndOnOne) {
+TEST_P(MpiSolverSlow, AKilledRunOfTwoRanksGoesOnOnAnyNumber) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "",
+  write_case(folder.path(), solver(),
              R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN", "2.5 mN", "3 mN", "3.5 mN", "4 mN"])");
   ASSERT_EQ(run(folder.path(), 2, "undisturbed").code, 0);
-  for (const int ranks : {2, 1}) {
+  for (const int ranks : {2, 1, 3}) {
     fs::remove_all(folder.path() / "out");
     interrupt_two_ranks(folder.path());
     ASSERT_EQ(go_on(folder.path(), ranks).code, 0) << read_text(folder.path() / "err.txt");
@@ -265,9 +274,9 @@ int count(const std::string& text, const std::string& part) {
 // Rank 1 or rank 0 alone runs out of memory, at several places of the solution: both end, with the
 // exit code of a solver's failure, and the one that failed says so, once. Oracle: the contract; a
 // minute's `timeout` stands for "waits forever" (code 124).
-TEST(MpiSlow, AFaultOfOneRankAloneEndsAllOfThem) {
+TEST_P(MpiSolverSlow, AFaultOfOneRankAloneEndsAllOfThem) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "");
+  write_case(folder.path(), solver());
   const std::string program = "'" CILIAVAL_PROGRAM "' run case.toml -o out";
   for (const int failing : {1, 0})
     for (const int allocation : {1, 20}) {

@@ -65,8 +65,8 @@ struct BentCilium {
     }
   }
 
-  dealii::Vector<double> forces(const Load& load, const dealii::Vector<double>& u) const {
-    dealii::Vector<double> result(space->unknowns());
+  discretisation::Vector forces(const Load& load, const discretisation::Vector& u) const {
+    discretisation::Vector result(space->unknowns());
     loads::external_forces(*space, *quadrature, cilium, load, 0.5e-3)(u, result, nullptr);
     return result;
   }

@@ -44,8 +44,8 @@ TEST(SolidBlock, PassesThePatchTestOnADistortedMesh) {
   for (const double nu : {0.3, 0.4999}) {
     const Block block(neo_hooke(1, nu), {3, 3, 3}, Vector3::Ones(), 0.25);
     const SolidSpace space(block.triangulation, block.mapping, block.materials);
-    const SolidState state = find_equilibrium(
-        space, on_all_faces(affine), dealii::Vector<double>(space.unknowns()), 1, nullptr, affine);
+    const SolidState state =
+        find_equilibrium(space, on_all_faces(affine), Vector(space.unknowns()), 1, nullptr, affine);
     EXPECT_LT(nodal_error(space, state, affine), 1e-10) << "nu " << nu;
   }
 }
@@ -76,8 +76,8 @@ TEST(SolidBlock, StretchesAsTheClosedForm) {
   const Block block(material, {2, 2, 2}, {1, 1, 1}, 0.2);
   const SolidSpace space(block.triangulation, block.mapping, block.materials);
   NewtonResult last;
-  const SolidState state = find_equilibrium(space, stretched_along_x(stretch - 1),
-                                            dealii::Vector<double>(space.unknowns()), 2, &last);
+  const SolidState state =
+      find_equilibrium(space, stretched_along_x(stretch - 1), Vector(space.unknowns()), 2, &last);
   const auto exact = [&](const Vector3& X) -> Vector3 {
     return {(stretch - 1) * X[0], (low - 1) * X[1], (low - 1) * X[2]};
   };
@@ -97,8 +97,8 @@ TEST(SolidBlock, ShearsAsTheClosedForm) {
   const Block block(material, {2, 2, 2}, {1, 1, 1}, 0.2);
   const SolidSpace space(block.triangulation, block.mapping, block.materials);
   NewtonResult last;
-  const SolidState state = find_equilibrium(space, on_all_faces(simple_shear),
-                                            dealii::Vector<double>(space.unknowns()), 8, &last);
+  const SolidState state =
+      find_equilibrium(space, on_all_faces(simple_shear), Vector(space.unknowns()), 8, &last);
   EXPECT_LT(nodal_error(space, state, simple_shear), 1e-11);
   for (const PressureVector& p : state.pressure) EXPECT_LT(p.norm(), 1e-9);
   for (const SolidElement& element : space.elements()) {

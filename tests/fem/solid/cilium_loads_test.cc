@@ -85,7 +85,7 @@ TEST(CiliumLoads, ApplyExactlyTheForceAsked) {
 TEST(CiliumLoads, WeightAndFieldHaveTheirResultants) {
   const BentCilium bent;
   const SolidSpace& space = *bent.space;
-  const dealii::Vector<double>& u = bent.state.displacement;
+  const Vector& u = bent.state.displacement;
   const surroundings::Environment weight{.gravity = {1, 2, -9.81}, .fluid_density = 998};
   const Vector3 expected =
       bent.quadrature->area() * (3e-3 * (1000 - 998) + 5e-3 * (1700 - 998)) * weight.gravity;
@@ -98,7 +98,7 @@ TEST(CiliumLoads, WeightAndFieldHaveTheirResultants) {
   for (const auto law : {surroundings::MagneticEnergy::F, surroundings::MagneticEnergy::R}) {
     const Load load =
         with_environment(EnvironmentLoad{}, {.uniform_field = field, .magnetic_energy = law});
-    const dealii::Vector<double> forces = bent.forces(load, u);
+    const Vector forces = bent.forces(load, u);
     const double scale = 75e3 * bent.quadrature->area() * field.norm();
     EXPECT_LT(resultant(space, forces).norm(), 1e-12 * scale);
     Vector3 moment = Vector3::Zero();
@@ -163,24 +163,24 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
 
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  dealii::Vector<double> direction(space.unknowns());
+  Vector direction(space.unknowns());
   for (double& d : direction) d = uniform(generator);
 
   const auto moved = [&](double step) {
-    dealii::Vector<double> u(cilium.state.displacement);
+    Vector u(cilium.state.displacement);
     u.add(step, direction);
     return u;
   };
   for (const Load& load : all_loads_and_environments()) {
     dealii::SparseMatrix<double> matrix(sparsity);
     AssembledTangent tangent(none, matrix);
-    dealii::Vector<double> unused(space.unknowns());
+    Vector unused(space.unknowns());
     external_forces(space, *cilium.quadrature, cilium.cilium, load, 0.5e-3)(
         cilium.state.displacement, unused, &tangent);
-    dealii::Vector<double> product(space.unknowns());
+    Vector product(space.unknowns());
     matrix.vmult(product, direction);
     const double h = 1e-8;
-    dealii::Vector<double> difference = cilium.forces(load, moved(-h));
+    Vector difference = cilium.forces(load, moved(-h));
     difference -= cilium.forces(load, moved(h));
     difference /= 2 * h;
     product -= difference;
@@ -201,7 +201,7 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
   dealii::SparseMatrix<double> matrix(sparsity);
   AssembledTangent tangent(none, matrix);
   add_stiffness(space, cilium.state, *internal, tangent);
-  dealii::Vector<double> product(space.unknowns());
+  Vector product(space.unknowns());
   matrix.vmult(product, direction);
   const auto forces = [&](double step) {
     SolidState state = cilium.state;
@@ -210,7 +210,7 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
     return internal_forces(space, state)->forces;
   };
   const double h = 1e-9;
-  dealii::Vector<double> difference = forces(h);
+  Vector difference = forces(h);
   difference -= forces(-h);
   difference /= 2 * h;
   product -= difference;
@@ -221,7 +221,7 @@ TEST(CiliumLoads, TangentIsTheDerivativeOfTheResidual) {
 // integral, ∫ k from s₀ to w = ½ − s₀/(2w) − sin(πs₀/w)/(2π), is not applied.
 TEST(CiliumLoads, ContactForceFallsShortWhereTheExtrusionLinesEnd) {
   const BentCilium cilium;
-  const dealii::Vector<double> straight(cilium.space->unknowns());
+  const Vector straight(cilium.space->unknowns());
   const double w = 0.5e-3;
   const double end = 0.2e-3;  // of the extrusion lines above h
   const Vector3 total =

@@ -127,28 +127,28 @@ TEST(NodalContact, PutsTheDerivativeIntoTheMatrix) {
   const ContactLaw law{0.3, 1e3};
   const dealii::AffineConstraints<double> none;
   AssembledTangent tangent(none, matrix);
-  const auto forces_at = [&](const dealii::Vector<double>& u, TangentMatrix* to) {
-    dealii::Vector<double> forces(u.size());
+  const auto forces_at = [&](const Vector& u, TangentMatrix* to) {
+    Vector forces(u.size());
     contact_forces(nodes, memory, surface, law)(u, forces, to);
     return forces;
   };
   forces_at(cilium.state.displacement, &tangent);
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  dealii::Vector<double> direction(cilium.space->unknowns());
+  Vector direction(cilium.space->unknowns());
   // Along the travel and upwards: slip must not turn.
   for (const ContactNode& node : nodes) {
     const Vector3 v = uniform(generator) * oblique + uniform(generator) * Vector3::UnitZ();
     for (unsigned int c = 0; c < 3; ++c) direction[node.dofs[c]] = v[c];
   }
   const double step = 1e-9;
-  dealii::Vector<double> u(cilium.state.displacement);
+  Vector u(cilium.state.displacement);
   u.add(step, direction);
-  dealii::Vector<double> difference = forces_at(u, nullptr);
+  Vector difference = forces_at(u, nullptr);
   u.add(-2 * step, direction);
   difference -= forces_at(u, nullptr);
   difference /= -2 * step;
-  dealii::Vector<double> product(direction.size());
+  Vector product(direction.size());
   matrix.vmult(product, direction);
   EXPECT_GT(product.l2_norm(), 0);
   difference -= product;

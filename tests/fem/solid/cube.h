@@ -56,7 +56,7 @@ void for_each_node(const discretisation::SolidSpace& space, const Visit& visit) 
 
 /// Nodal forces ∫ N_a t(X, N) dA of a traction t, N/m², on a part of the boundary with the outward
 /// normal N.
-inline dealii::Vector<double> traction(
+inline discretisation::Vector traction(
     const discretisation::SolidSpace& space, dealii::types::boundary_id boundary,
     const std::function<Vector3(const Vector3& X, const Vector3& N)>& t) {
   const dealii::QGauss<2> gauss(discretisation::element_degree + 2);
@@ -65,7 +65,7 @@ inline dealii::Vector<double> traction(
                                      dealii::update_quadrature_points |
                                      dealii::update_normal_vectors);
   const auto vector = [](const dealii::Tensor<1, 3>& x) { return Vector3(x[0], x[1], x[2]); };
-  dealii::Vector<double> forces(space.unknowns());
+  discretisation::Vector forces(space.unknowns());
   for (const discretisation::SolidElement& element : space.elements()) {
     for (const unsigned int face : element.cell->face_indices()) {
       if (!element.cell->face(face)->at_boundary() ||
@@ -90,7 +90,7 @@ inline dealii::Vector<double> traction(
 inline discretisation::SolidState find_equilibrium(
     const discretisation::SolidSpace& space,
     const std::vector<discretisation::DirichletCondition>& conditions,
-    const dealii::Vector<double>& forces, int steps, equilibrium::NewtonResult* last = nullptr,
+    const discretisation::Vector& forces, int steps, equilibrium::NewtonResult* last = nullptr,
     const std::function<Vector3(const Vector3&)>& guess = {}) {
   equilibrium::Newton newton(space, increment_constraints(space, conditions),
                              solvers::SolverKind::automatic, MPI_COMM_SELF);
@@ -106,7 +106,7 @@ inline discretisation::SolidState find_equilibrium(
   for (int step = 1; step <= steps; ++step) {
     const double factor = static_cast<double>(step) / steps;
     prescribe(space, conditions, state, factor);
-    dealii::Vector<double> scaled(forces);
+    discretisation::Vector scaled(forces);
     scaled *= factor;
     const equilibrium::NewtonResult result =
         newton.solve(loads::dead_forces(scaled), state, {.tolerance = 1e-11});

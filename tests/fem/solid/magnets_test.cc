@@ -20,6 +20,7 @@
 namespace ciliaval::fem::solid {
 namespace {
 
+using discretisation::Vector;
 using loads::magnet_in_field;
 using loads::MagnetInField;
 using oracle::record;
@@ -97,33 +98,33 @@ TEST(SolidMagnets, TangentIsTheDerivativeOfTheForces) {
   sparsity.copy_from(pattern);
   std::mt19937 generator(5);
   std::uniform_real_distribution<double> uniform(-1e-4, 1e-4);
-  dealii::Vector<double> direction(bent.space->unknowns());
+  Vector direction(bent.space->unknowns());
   for (double& value : direction) value = uniform(generator);
   for (const MagneticEnergy law : laws) {
     Environment environment{.uniform_field = {0.02, -0.03, 0.01}, .magnetic_energy = law};
     environment.magnets = {cuboid({8e-3, 2e-3, 12e-3})};
     dealii::SparseMatrix<double> matrix(sparsity);
-    dealii::Vector<double> unused(bent.space->unknowns());
+    Vector unused(bent.space->unknowns());
     dealii::AffineConstraints<double> none;
     none.close();
     discretisation::AssembledTangent tangent(none, matrix);
     loads::environment_forces(*bent.space, bent.cilium, environment)(bent.state.displacement,
                                                                      unused, &tangent);
-    dealii::Vector<double> exact(bent.space->unknowns());
+    Vector exact(bent.space->unknowns());
     matrix.vmult(exact, direction);
     const auto forces = [&](double t) {
-      dealii::Vector<double> u = bent.state.displacement;
+      Vector u = bent.state.displacement;
       u.add(t, direction);
       return bent.forces(in(environment), u);
     };
     const double h = 0.02;
-    dealii::Vector<double> slope = forces(h);
+    Vector slope = forces(h);
     slope -= forces(-h);
     slope *= -1 / (2 * h);  // the matrix has −∂f/∂u
     slope -= exact;
     record("tangent against differences, relative", slope.l2_norm() / exact.l2_norm());
     EXPECT_LT(slope.l2_norm(), 1e-4 * exact.l2_norm());
-    dealii::Vector<double> fine = forces(h / 4);
+    Vector fine = forces(h / 4);
     fine -= forces(-h / 4);
     fine *= -1 / (2 * h / 4);
     fine -= exact;

@@ -28,11 +28,11 @@ Cilium stub_and_magnet() {
 
 /// Gives each node the displacement that belongs to its place X.
 template <typename Field>
-dealii::Vector<double> displaced(const BentCilium& cilium, const Field& field) {
+Vector displaced(const BentCilium& cilium, const Field& field) {
   std::vector<dealii::Point<3>> support(cilium.space->unknowns());
   dealii::DoFTools::map_dofs_to_support_points<3, 3>(*cilium.mapping, cilium.space->dof_handler(),
                                                      support);
-  dealii::Vector<double> u(cilium.space->unknowns());
+  Vector u(cilium.space->unknowns());
   for (const SolidElement& element : cilium.space->elements())
     for (std::size_t a = 0; a < element_nodes; ++a) {
       const auto X = support[element.dofs[a]];
@@ -43,8 +43,8 @@ dealii::Vector<double> displaced(const BentCilium& cilium, const Field& field) {
   return u;
 }
 
-double mean(const BentCilium& cilium, const dealii::Vector<double>& u, double height,
-            const Vector3& e, dealii::Vector<double>* gradient = nullptr) {
+double mean(const BentCilium& cilium, const Vector& u, double height, const Vector3& e,
+            Vector* gradient = nullptr) {
   return mean_displacement(*cilium.space, *cilium.quadrature, contact_density(1, 1, height, width),
                            e, u, gradient);
 }
@@ -85,13 +85,13 @@ TEST(ProbeMean, HasItsOwnDerivative) {
   const Vector3 e = direction(Load{ProbeLoad{0, 0, 0.4}});
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  dealii::Vector<double> change(cilium.space->unknowns());
+  Vector change(cilium.space->unknowns());
   for (double& d : change) d = uniform(generator);
   for (const double height : {5.3e-3, 7.6e-3}) {
-    dealii::Vector<double> gradient(cilium.space->unknowns());
+    Vector gradient(cilium.space->unknowns());
     mean(cilium, cilium.state.displacement, height, e, &gradient);
     const auto moved = [&](double step) {
-      dealii::Vector<double> u(cilium.state.displacement);
+      Vector u(cilium.state.displacement);
       u.add(step, change);
       return mean(cilium, u, height, e);
     };
@@ -137,7 +137,7 @@ struct Bench {
 };
 
 double distance(const SolidState& a, const SolidState& b) {
-  dealii::Vector<double> difference(a.displacement);
+  Vector difference(a.displacement);
   difference -= b.displacement;
   return difference.linfty_norm() / a.displacement.linfty_norm();
 }

@@ -67,7 +67,7 @@ TEST(Transfer, ToTheSameMeshIsTheIdentity) {
   const Mesh mesh(two_materials(), 2, 2, 0.3);
   const SolidState state = random_state(*mesh.space);
   const SolidState same = interpolated(*mesh.space, *mesh.quadrature, state, *mesh.space);
-  dealii::Vector<double> difference(same.displacement);
+  Vector difference(same.displacement);
   difference -= state.displacement;
   EXPECT_LT(difference.linfty_norm(), 1e-12);
   // Nodes on a face belong to two cells with different pressures, Gauss points to one.
@@ -105,7 +105,7 @@ TEST(Transfer, KeepsLinearFieldsFromAnyMeshToAnyOther) {
     const SolidState given = field(*from);
     const SolidState expected = field(*to);
     const SolidState state = interpolated(*from->space, *from->quadrature, given, *to->space);
-    dealii::Vector<double> difference(state.displacement);
+    Vector difference(state.displacement);
     difference -= expected.displacement;
     EXPECT_LT(difference.linfty_norm(), 1e-13);
     for (std::size_t e = 0; e < state.pressure.size(); ++e)

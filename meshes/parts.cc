@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "meshes/parts.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/grid/tria_description.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace ciliaval::meshes {
+namespace {
+
+using dealii::Triangulation;
+
+/// Equal numbers of cells to each rank, by height, so that few cells meet those of another rank.
+void partition_by_height(Triangulation<3>& mesh, std::size_t ranks) {
+  std::vector<std::pair<std::array<double, 2>, Triangulation<3>::active_cell_iterator>> cells;
+  for (const auto& cell : mesh.active_cell_iterators())
+    cells.push_back({{cell->vertex(0)[2], cell->center()[0]}, cell});
+  std::stable_sort(cells.begin(), cells.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    cells[i].second->set_subdomain_id(
+        static_cast<dealii::types::subdomain_id>(i * ranks / cells.size()));
+}
+
+/// Ranks of the machine that has the most of them.
+int ranks_of_a_machine(MPI_Comm communicator) {
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  const auto count = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(machine));
+  MPI_Comm_free(&machine);
+  return dealii::Utilities::MPI::max(count, communicator);
+}
+
+}  // namespace
+
+void make_in_parts(const std::function<void(Triangulation<3>&)>& make,
+                   dealii::parallel::fullydistributed::Triangulation<3>& parts) {
+  const MPI_Comm communicator = parts.get_communicator();
+  const std::size_t ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
+  using dealii::TriangulationDescription::Utilities::
+      create_description_from_triangulation_in_groups;
+  parts.create_triangulation(create_description_from_triangulation_in_groups<3, 3>(
+      make,
+      [ranks](Triangulation<3>& whole, const MPI_Comm&, unsigned int) {
+        partition_by_height(whole, ranks);
+      },
+      communicator, ranks_of_a_machine(communicator)));
+}
+
+}  // namespace ciliaval::meshes
