@@ -15,8 +15,8 @@ namespace ciliaval::fem::solid {
 Checkpoint::Entries kept_entries(const Checkpoint& checkpoint, const std::string& always,
                                  MPI_Comm communicator);
 
-/// All ranks make entries, and rank 0 keeps its own. Throws CheckpointError on all ranks if it cannot.
-/// Collective.
+/// All ranks make entries, and rank 0 keeps its own. Throws CheckpointError on all ranks if it
+/// cannot. Collective.
 void save_entries(const Checkpoint& checkpoint, MPI_Comm communicator,
                   const std::function<Checkpoint::Entries()>& make);
 

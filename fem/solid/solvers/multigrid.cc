@@ -2,6 +2,8 @@
 #include "fem/solid/solvers/multigrid.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparsity_tools.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <algorithm>
@@ -22,6 +24,9 @@ using dealii::types::global_dof_index;
 constexpr int smoother_degree = 2;
 constexpr double smoother_range = 10;
 constexpr double safety = 1.05;  ///< tangents of compressed cells are not quite positive
+
+/// Rows of the coarse matrix up to which it is factorised (docs/theory/solid.md).
+constexpr global_dof_index direct_rows = 100000;
 
 constexpr Node none = std::numeric_limits<Node>::max();
 
@@ -113,34 +118,77 @@ void Multigrid::make_coarse_level(const SolidSpace& space, const CellNodes& cell
   sums_.assign(vertices, Matrix3::Zero());
   is_touched_.assign(vertices, false);
 
-  const std::size_t own = coarse_unknowns_->locally_owned_size() / n;
-  std::vector<Vector3> positions(own);
-  for (std::size_t e = 0; e < cells.cells(); ++e)
-    for (std::size_t c = 0; c < corners; ++c)
-      if (const Node vertex = coarse_cells.of(e)[c]; vertex < own)
-        positions[vertex] =
-            space.elements()[e].nodes.row(static_cast<Eigen::Index>(corner_node(c))).transpose();
-  const auto fixed = std::make_unique<bool[]>(n * own);
-  for (std::size_t i = 0; i < n * own; ++i) fixed[i] = coarse_blocks_->is_constrained(i);
-  coarse_solver_ =
-      std::make_unique<RigidBodyAmg>(coarse_unknowns_->locally_owned_range(), positions,
-                                     std::span(fixed.get(), n * own), space.communicator());
-  dealii::TrilinosWrappers::SparsityPattern pattern(coarse_unknowns_->locally_owned_range(),
-                                                    space.communicator());
+  if (coarse_unknowns_->size() <= direct_rows)
+    make_coarse_direct(space.communicator());
+  else
+    make_coarse_amg(space, coarse_cells);
+}
+
+void Multigrid::for_coarse_rows(const auto& visit) const {
+  const auto n = static_cast<unsigned int>(node_unknowns);
   std::vector<global_dof_index> columns;
-  for (Node vertex = 0; vertex < vertices; ++vertex) {
+  for (Node vertex = 0; vertex < coarse_blocks_->nodes(); ++vertex) {
     columns.clear();
     for (const Node other : coarse_blocks_->columns(vertex))
-      for (std::size_t k = 0; k < n; ++k)
-        columns.push_back(
-            coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * other + k)));
-    for (std::size_t k = 0; k < n; ++k)
-      pattern.add_entries(
-          coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * vertex + k)),
-          columns.begin(), columns.end());
+      for (unsigned int k = 0; k < n; ++k)
+        columns.push_back(coarse_unknowns_->local_to_global(n * other + k));
+    for (unsigned int k = 0; k < n; ++k) visit(n * vertex + k, columns);
   }
+}
+
+void Multigrid::for_coarse_values(const auto& add) const {
+  std::vector<double> values;
+  for_coarse_rows([&](unsigned int row, const std::vector<global_dof_index>& columns) {
+    // The identity of a constrained row is its owner's.
+    if (row >= coarse_unknowns_->locally_owned_size() && coarse_blocks_->is_constrained(row))
+      return;
+    const auto vertex = static_cast<Node>(row / node_unknowns);
+    const auto k = static_cast<Eigen::Index>(row % node_unknowns);
+    values.clear();
+    for (std::size_t i = 0; i < columns.size() / node_unknowns; ++i) {
+      const Matrix3 block = coarse_blocks_->block(vertex, i);
+      values.insert(values.end(), {block(k, 0), block(k, 1), block(k, 2)});
+    }
+    add(coarse_unknowns_->local_to_global(row), columns, values);
+  });
+}
+
+void Multigrid::make_coarse_direct(MPI_Comm communicator) {
+  dealii::DynamicSparsityPattern pattern(coarse_unknowns_->size());
+  RowRange rows{coarse_unknowns_->size(), 0};
+  for_coarse_rows([&](unsigned int local, const std::vector<global_dof_index>& columns) {
+    const global_dof_index row = coarse_unknowns_->local_to_global(local);
+    pattern.add_entries(row, columns.begin(), columns.end());
+    rows = {std::min(rows.begin, row), std::max(rows.end, row + 1)};
+  });
+  dealii::SparsityTools::gather_sparsity_pattern(
+      pattern, coarse_unknowns_->locally_owned_range(), communicator,
+      dealii::complete_index_set(coarse_unknowns_->size()));
+  coarse_pattern_.copy_from(pattern);
+  coarse_matrix_.reinit(coarse_pattern_);
+  coarse_direct_ = std::make_unique<DirectSolver>(
+      coarse_pattern_, DirectSolver::Kind::symmetric_part, rows, communicator);
+}
+
+void Multigrid::make_coarse_amg(const SolidSpace& space, const CellNodes& coarse_cells) {
+  const std::size_t rows = coarse_unknowns_->locally_owned_size();
+  std::vector<Vector3> positions(rows / node_unknowns);
+  for (std::size_t e = 0; e < coarse_cells.cells(); ++e)
+    for (std::size_t c = 0; c < corners; ++c)
+      if (const Node vertex = coarse_cells.of(e)[c]; vertex < positions.size())
+        positions[vertex] =
+            space.elements()[e].nodes.row(static_cast<Eigen::Index>(corner_node(c))).transpose();
+  const auto fixed = std::make_unique<bool[]>(rows);
+  for (std::size_t i = 0; i < rows; ++i) fixed[i] = coarse_blocks_->is_constrained(i);
+  coarse_amg_ = std::make_unique<RigidBodyAmg>(coarse_unknowns_->locally_owned_range(), positions,
+                                               std::span(fixed.get(), rows), space.communicator());
+  dealii::TrilinosWrappers::SparsityPattern pattern(coarse_unknowns_->locally_owned_range(),
+                                                    space.communicator());
+  for_coarse_rows([&](unsigned int row, const std::vector<global_dof_index>& columns) {
+    pattern.add_entries(coarse_unknowns_->local_to_global(row), columns.begin(), columns.end());
+  });
   pattern.compress();
-  coarse_solver_->matrix().reinit(pattern);
+  coarse_amg_->matrix().reinit(pattern);
 }
 
 void Multigrid::add_galerkin_rows(Node node) {
@@ -180,43 +228,36 @@ void Multigrid::add_galerkin_rows(Node node) {
   for (const Node vertex : touched_) is_touched_[vertex] = false;
 }
 
-void Multigrid::fill_coarse_matrix() {
-  auto& matrix = coarse_solver_->matrix();
-  matrix = 0.;
-  const std::size_t n = node_unknowns;
-  const std::size_t own = coarse_unknowns_->locally_owned_size() / n;
-  std::vector<global_dof_index> columns;
-  std::vector<double> values;
-  for (Node vertex = 0; vertex < coarse_blocks_->nodes(); ++vertex) {
-    columns.clear();
-    const std::span others = coarse_blocks_->columns(vertex);
-    for (const Node other : others)
-      for (std::size_t k = 0; k < n; ++k)
-        columns.push_back(
-            coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * other + k)));
-    for (std::size_t k = 0; k < n; ++k) {
-      // The identity of a constrained row is its owner's.
-      if (vertex >= own && coarse_blocks_->is_constrained(n * vertex + k)) continue;
-      values.clear();
-      for (std::size_t position = 0; position < others.size(); ++position) {
-        const Matrix3 block = coarse_blocks_->block(vertex, position);
-        for (Eigen::Index l = 0; l < 3; ++l)
-          values.push_back(block(static_cast<Eigen::Index>(k), l));
-      }
-      matrix.add(coarse_unknowns_->local_to_global(static_cast<unsigned int>(n * vertex + k)),
-                 static_cast<global_dof_index>(columns.size()), columns.data(), values.data(),
-                 false);
-    }
-  }
-  matrix.compress(dealii::VectorOperation::add);
-}
-
 void Multigrid::update() {
   schwarz_.update(matrix_);
   coarse_blocks_->clear();
   for (Node node = 0; node < own_nodes_; ++node) add_galerkin_rows(node);
-  fill_coarse_matrix();
-  coarse_solver_->update();
+  const auto fill = [this](auto& matrix) {
+    matrix = 0.;
+    for_coarse_values([&matrix](global_dof_index row, const auto& columns, const auto& values) {
+      matrix.add(row, static_cast<global_dof_index>(columns.size()), columns.data(), values.data(),
+                 false);
+    });
+  };
+  if (coarse_direct_) {
+    fill(coarse_matrix_);
+    coarse_direct_->factorize(coarse_matrix_);
+  } else {
+    fill(coarse_amg_->matrix());
+    coarse_amg_->matrix().compress(dealii::VectorOperation::add);
+    coarse_amg_->update();
+  }
+}
+
+void Multigrid::solve_coarse(Vector& x, const Vector& b) const {
+  if (coarse_amg_) return coarse_amg_->vmult(x, b);
+  const auto first = static_cast<std::ptrdiff_t>(coarse_unknowns_->local_range().first);
+  Vector whole(coarse_unknowns_->size());
+  std::copy(b.begin(), b.end(), whole.begin() + first);
+  sum_over_ranks(x.get_mpi_communicator(), {whole.begin(), whole.locally_owned_size()});
+  Vector solution;
+  coarse_direct_->solve(whole, solution);
+  std::copy_n(solution.begin() + first, x.locally_owned_size(), x.begin());
 }
 
 void Multigrid::residual(Vector& r, const Vector& x, const Vector& b) const {
@@ -271,7 +312,7 @@ void Multigrid::correct(Vector& x, const Vector& b) const {
     coarse_residual.local_element(coarse) += weight * r.local_element(fine);
   });
   coarse_residual.compress(dealii::VectorOperation::add);
-  coarse_solver_->vmult(correction, coarse_residual);
+  solve_coarse(correction, coarse_residual);
   correction.update_ghost_values();
   for_weights([&](unsigned int fine, unsigned int coarse, double weight) {
     x.local_element(fine) += weight * correction.local_element(coarse);
