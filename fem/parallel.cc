@@ -50,6 +50,9 @@ RowRange range_of(Row size, int part, int parts) {
 
 void start_mpi() {
   if (running()) return;
+  // Alone it needs no daemon, whose program it might not find.
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr && std::getenv("PMIX_RANK") == nullptr)
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   int provided = 0;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     throw SolverError("MPI cannot be started");

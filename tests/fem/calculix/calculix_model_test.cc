@@ -15,6 +15,7 @@
 #include <numbers>
 #include <string>
 
+#include "fem/parallel.h"
 #include "fem/solid/solid.h"
 #include "problem/error.h"
 #include "tests/support/temporary_folder.h"
@@ -44,6 +45,7 @@ class CalculixModel : public testing::Test {
  protected:
   void SetUp() override {
     fs::create_directories(temporary_);
+    start_mpi();  // before, so that its files are elsewhere
     setenv("TMPDIR", temporary_.c_str(), 1);
   }
   void TearDown() override {
