@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -46,13 +47,24 @@ RowRange range_of(Row size, int part, int parts) {
   return {bound(part), bound(part + 1)};
 }
 
+/// Spares Open MPI a daemon to start other ranks and the search for fast networks, which one rank,
+/// or ranks on one machine, do not need. What the user has set stands; other MPI libraries do not
+/// know these names.
+void spare_open_mpi_the_network() {
+  constexpr int keep_what_is_set = 0;
+  const char* all = std::getenv("OMPI_COMM_WORLD_SIZE");
+  const char* here = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+  const bool single = all == nullptr && !launched_on_several_ranks();
+  if (single) setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_what_is_set);
+  if (single || (all != nullptr && here != nullptr && std::string_view(all) == here))
+    setenv("OMPI_MCA_pml", "ob1", keep_what_is_set);
+}
+
 }  // namespace
 
 void start_mpi() {
   if (running()) return;
-  // Alone it needs no daemon, whose program it might not find.
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr && std::getenv("PMIX_RANK") == nullptr)
-    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  spare_open_mpi_the_network();
   int provided = 0;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     throw SolverError("MPI cannot be started");

@@ -173,19 +173,6 @@ ExitCode execute(int argc, char** argv) {
 /// The stderr of a rank that keeps silent.
 int silenced_stderr = STDERR_FILENO;
 
-/// Spares Open MPI a daemon to start other ranks and the search for fast networks, which one rank,
-/// or ranks on one machine, do not need. What the user has set stands; other MPI libraries do not
-/// know these names.
-void spare_open_mpi_the_network() {
-  constexpr int keep_what_is_set = 0;
-  const char* all = std::getenv("OMPI_COMM_WORLD_SIZE");
-  const char* here = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
-  const bool single = all == nullptr && !ciliaval::fem::launched_on_several_ranks();
-  if (single) setenv("OMPI_MCA_ess_singleton_isolated", "1", keep_what_is_set);
-  if (single || (all != nullptr && here != nullptr && std::string_view(all) == here))
-    setenv("OMPI_MCA_pml", "ob1", keep_what_is_set);
-}
-
 /// Under mpirun: rank 0 alone reads, writes and prints.
 void start_ranks() {
   ciliaval::fem::start_mpi();
@@ -225,7 +212,6 @@ int main(int argc, char** argv) {
   bool alone = false;
   try {
     open_standard_streams();
-    spare_open_mpi_the_network();
     if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
     ciliaval::compare::output::set_line_width(ciliaval::compare::app::terminal_columns());
     code = execute(argc, argv);

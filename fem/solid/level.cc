@@ -2,7 +2,6 @@
 #include "fem/solid/level.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/distributed/fully_distributed_tria.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +15,6 @@
 #include "fem/solid/postprocessing/body.h"
 #include "fem/solid/postprocessing/centreline.h"
 #include "meshes/gmsh/gmsh_mesh.h"
-#include "meshes/parts.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid {
@@ -111,20 +109,9 @@ Level::Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& 
              std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser)
     : cilium_(cilium), options_(options), coarser_(coarser) {
   const double unknowns = 3 * static_cast<double>(meshes::cylinder::quadratic_nodes(cilium, mesh));
-  in_parts_ = options.may_be_in_parts && solvers::is_iterative(options.solver, unknowns);
-  const auto make = [&](dealii::Triangulation<3>& triangulation) {
-    meshes::cylinder::make_cylinder(cilium, mesh, triangulation);
-  };
-  if (in_parts_ && rank_count(options.communicator) > 1) {
-    auto parts = std::make_unique<dealii::parallel::fullydistributed::Triangulation<3>>(
-        options.communicator);
-    meshes::cylinder::attach_mantle(*parts);
-    meshes::make_in_parts(make, *parts);
-    triangulation_ = std::move(parts);
-  } else {
-    triangulation_ = std::make_unique<dealii::Triangulation<3>>();
-    make(*triangulation_);
-  }
+  may_be_in_parts_ = options.may_be_in_parts && solvers::is_iterative(options.solver, unknowns);
+  triangulation_ = meshes::cylinder::make_cylinder(
+      cilium, mesh, may_be_in_parts_ ? options.communicator : MPI_COMM_SELF);
   mapping_ = meshes::cylinder::cylinder_mapping(*triangulation_, element_degree);
   discretise(mesh.half ? Extent::half : Extent::whole, materials);
 }
@@ -179,7 +166,7 @@ void Level::restore(std::optional<LoadPathState> kept) {
 }
 
 SolidState Level::to_keep(const SolidState& state) const {
-  if (!in_parts_) return state;
+  if (!may_be_in_parts_) return state;
   state.displacement.update_ghost_values();
   std::vector<double> own;  // number, displacements and pressures of each cell
   for (std::size_t e = 0; e < space_->own_elements().size(); ++e) {
@@ -221,7 +208,7 @@ Equilibrium Level::restored(Equilibrium kept) const {
 }
 
 SolidState Level::restored(SolidState kept) const {
-  if (!in_parts_) {
+  if (!may_be_in_parts_) {
     require_own(kept);
     return kept;
   }

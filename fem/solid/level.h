@@ -119,7 +119,7 @@ class Level {
   Cilium cilium_;
   LevelOptions options_;
   Level* coarser_ = nullptr;
-  bool in_parts_ = false;
+  bool may_be_in_parts_ = false;
   std::unique_ptr<dealii::Triangulation<3>> triangulation_;
   std::unique_ptr<dealii::MappingQCache<3>> mapping_;
   std::unique_ptr<discretisation::SolidSpace> space_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "meshes/cylinder/cylinder_mesh.h"
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
@@ -11,6 +12,7 @@
 #include <numbers>
 #include <string>
 
+#include "meshes/parts.h"
 #include "problem/error.h"
 
 namespace ciliaval::meshes::cylinder {
@@ -210,6 +212,10 @@ void append_layers(double a, double b, const Size& size, std::vector<double>& pl
   planes.push_back(b);
 }
 
+void attach_mantle(Triangulation<3>& triangulation) {
+  triangulation.set_manifold(mantle_manifold, dealii::CylindricalManifold<3>(2));
+}
+
 }  // namespace
 
 std::vector<double> layer_planes(const Cilium& cilium, const CylinderMeshOptions& options) {
@@ -268,6 +274,21 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
   attach_mantle(triangulation);
 }
 
+std::unique_ptr<Triangulation<3>> make_cylinder(const Cilium& cilium,
+                                                const CylinderMeshOptions& options,
+                                                MPI_Comm communicator) {
+  const auto make = [&](Triangulation<3>& whole) { make_cylinder(cilium, options, whole); };
+  if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1) {
+    auto whole = std::make_unique<Triangulation<3>>();
+    make(*whole);
+    return whole;
+  }
+  auto parts = std::make_unique<dealii::parallel::fullydistributed::Triangulation<3>>(communicator);
+  attach_mantle(*parts);
+  make_in_parts(make, *parts);
+  return parts;
+}
+
 std::size_t quadratic_nodes(const Cilium& cilium, const CylinderMeshOptions& options) {
   const std::vector<double> planes = layer_planes(cilium, options);
   Triangulation<2> section;
@@ -275,10 +296,6 @@ std::size_t quadratic_nodes(const Cilium& cilium, const CylinderMeshOptions& opt
   const std::size_t in_plane =
       section.n_used_vertices() + section.n_active_lines() + section.n_active_cells();
   return in_plane * (2 * planes.size() - 1);
-}
-
-void attach_mantle(Triangulation<3>& triangulation) {
-  triangulation.set_manifold(mantle_manifold, dealii::CylindricalManifold<3>(2));
 }
 
 std::unique_ptr<dealii::MappingQCache<3>> cylinder_mapping(const Triangulation<3>& triangulation,

@@ -50,8 +50,11 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
 /// Number of the nodes of quadratic cells on it, without making it. Throws as make_cylinder().
 std::size_t quadratic_nodes(const Cilium& cilium, const CylinderMeshOptions& options);
 
-/// Makes the mantle of such a mesh a cylinder, if it was made without: by make_in_parts().
-void attach_mantle(dealii::Triangulation<3>& triangulation);
+/// The same in parts, one for each rank (make_in_parts()), or whole if there is one rank alone.
+/// Collective.
+std::unique_ptr<dealii::Triangulation<3>> make_cylinder(const Cilium& cilium,
+                                                        const CylinderMeshOptions& options,
+                                                        MPI_Comm communicator);
 
 /// Polynomial mapping of the curved cells, its support points computed once. Use the degree of the
 /// displacement's element (isoparametric): with a higher one, the element cannot represent linear

@@ -74,13 +74,14 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
     running: dict[Any, list[Task]] = {}
     suspects: list[list[Task]] = []
     deadly: list[list[Task]] = []
-    at_once = None  # twice the number of workers: each has what it is at and the next one
+    alone = False
     try:
         while waiting or running or suspects:
             if not waiting and not running:
                 # dask blames a worker's death on all that it had: only one that ran alone is guilty.
-                waiting, suspects, at_once = suspects, [], 1
-            while waiting and len(running) < (at_once or 2 * max(_workers(client), 1)):
+                waiting, suspects, alone = suspects, [], True
+            # A worker has what it is at and the next one.
+            while waiting and len(running) < (1 if alone else 2 * max(_workers(client), 1)):
                 batch = waiting.pop()
                 running[client.submit(_solve, *inputs, batch, key=_key(study, batch))] = batch
             done = [future for future in running if future.done()]
@@ -91,7 +92,7 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
                 try:
                     solutions = future.result()
                 except KilledWorker:
-                    (deadly if at_once == 1 else suspects).append(batch)
+                    (deadly if alone else suspects).append(batch)
                     continue
                 for (point, mechanics), solution in zip(batch, solutions):
                     store.keep(point, mechanics, solution)

@@ -73,10 +73,6 @@ void add(const std::string& label, const std::string& name, const Change& change
 
 int main(int argc, char** argv) {
   using ciliaval::compare::add;
-  // As the program does for itself: a single process needs neither Open MPI's daemon nor its
-  // network.
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  setenv("OMPI_MCA_pml", "ob1", 0);
   add("rods", "fig3b", {.mechanics = {"elastica", "beam"}, .last = {}});
   for (const unsigned int refinement : {0U, 1U, 2U}) {
     const std::string label = "/refinement:" + std::to_string(refinement);

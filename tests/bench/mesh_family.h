@@ -13,7 +13,6 @@
 #include "fem/solid/loads/external_forces.h"
 #include "fem/solid/solvers/linear_solver.h"
 #include "meshes/cylinder/cylinder_mesh.h"
-#include "meshes/parts.h"
 #include "tests/bench/paper_cilium.h"
 
 namespace ciliaval::fem::solid {
@@ -45,19 +44,7 @@ class Discretised {
     options.finest_layer = mesh.finest_layer;
     options.coarsest_layer = mesh.coarsest_layer;
     options.growth = 0.3;
-    const auto make = [&options](dealii::Triangulation<3>& triangulation) {
-      meshes::cylinder::make_cylinder(paper_cilium(), options, triangulation);
-    };
-    if (rank_count() > 1) {
-      auto parts =
-          std::make_unique<dealii::parallel::fullydistributed::Triangulation<3>>(MPI_COMM_WORLD);
-      meshes::cylinder::attach_mantle(*parts);
-      meshes::make_in_parts(make, *parts);
-      triangulation_ = std::move(parts);
-    } else {
-      triangulation_ = std::make_unique<dealii::Triangulation<3>>();
-      make(*triangulation_);
-    }
+    triangulation_ = meshes::cylinder::make_cylinder(paper_cilium(), options, MPI_COMM_WORLD);
     mapping_ = meshes::cylinder::cylinder_mapping(*triangulation_, discretisation::element_degree);
     std::vector<material::Hyperelastic> materials;
     for (const Segment& segment : paper_cilium().segments)

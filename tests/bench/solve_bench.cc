@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Seconds, iterations and memory of one linear solution of the solid: the tangent of the paper's
 // cilium (ν = 0.49, E₂/E₁ = 30) without load, the nodal forces of 1 mN at 16 mm. Under mpirun in
-// parts: seconds and memory are those of the rank that has the most.
+// parts: the seconds of the first rank, the memory of the rank that has the most.
 #include <benchmark/benchmark.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/multithread_info.h>

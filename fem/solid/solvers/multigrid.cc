@@ -41,7 +41,6 @@ Multigrid::Multigrid(const SolidSpace& space, const CellNodes& cells, const Bloc
   make_coarse_level(space, cells, vertex_at);
 }
 
-/// Of each node the vertex there, or `none`: first those whose node this rank owns.
 std::vector<Node> Multigrid::number_vertices(const SolidSpace& space, const CellNodes& cells) {
   std::vector<Node> vertex_at(matrix_.nodes(), none);
   for (std::size_t cell = 0; cell < cells.cells(); ++cell)
@@ -178,10 +177,10 @@ void Multigrid::make_coarse_amg(const SolidSpace& space, const CellNodes& coarse
       if (const Node vertex = coarse_cells.of(e)[c]; vertex < positions.size())
         positions[vertex] =
             space.elements()[e].nodes.row(static_cast<Eigen::Index>(corner_node(c))).transpose();
-  const auto fixed = std::make_unique<bool[]>(rows);
+  std::vector<bool> fixed(rows);
   for (std::size_t i = 0; i < rows; ++i) fixed[i] = coarse_blocks_->is_constrained(i);
   coarse_amg_ = std::make_unique<RigidBodyAmg>(coarse_unknowns_->locally_owned_range(), positions,
-                                               std::span(fixed.get(), rows), space.communicator());
+                                               fixed, space.communicator());
   dealii::TrilinosWrappers::SparsityPattern pattern(coarse_unknowns_->locally_owned_range(),
                                                     space.communicator());
   for_coarse_rows([&](unsigned int row, const std::vector<global_dof_index>& columns) {

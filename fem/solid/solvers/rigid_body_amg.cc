@@ -8,9 +8,7 @@
 #include <Epetra_MultiVector.h>
 #include <Teuchos_ParameterList.hpp>
 #include <algorithm>
-#include <array>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -31,25 +29,15 @@ constexpr std::size_t motion_count = 6;
 }  // namespace
 
 RigidBodyAmg::RigidBodyAmg(const dealii::IndexSet& own, std::span<const Vector3> positions,
-                           std::span<const bool> fixed, MPI_Comm communicator)
+                           const std::vector<bool>& fixed, MPI_Comm communicator)
     : motions_(motion_count * own.n_elements()) {
-  // About the middle and in the body's own length, so that all six are of one size.
-  std::array<double, 6> reach;
-  reach.fill(-std::numeric_limits<double>::infinity());
-  for (const Vector3& X : positions)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double x = X[static_cast<Eigen::Index>(k)];
-      reach.at(2 * k) = std::max(reach.at(2 * k), -x);
-      reach.at(2 * k + 1) = std::max(reach.at(2 * k + 1), x);
-    }
-  for (double& value : reach) value = dealii::Utilities::MPI::max(value, communicator);
-  const Vector3 middle =
-      0.5 * Vector3(reach[1] - reach[0], reach[3] - reach[2], reach[5] - reach[4]);
-  const double size =
-      0.5 * std::max({reach[0] + reach[1], reach[2] + reach[3], reach[4] + reach[5]});
+  // In the body's own length, so that all six are of one size.
+  double size = 0;
+  for (const Vector3& X : positions) size = std::max(size, X.norm());
+  size = dealii::Utilities::MPI::max(size, communicator);
   const std::size_t rows = own.n_elements();
   for (std::size_t node = 0; node < positions.size(); ++node) {
-    const Vector3 x = (positions[node] - middle) / size;
+    const Vector3 x = positions[node] / size;
     for (Eigen::Index k = 0; k < 3; ++k) {
       const Vector3 turned = Vector3::Unit(k).cross(x);
       for (Eigen::Index component = 0; component < 3; ++component) {

@@ -23,7 +23,7 @@ class RigidBodyAmg {
   /// `own` are this rank's rows, three for each of its nodes, which lie at `positions`; `fixed`
   /// says which of the rows are constrained.
   RigidBodyAmg(const dealii::IndexSet& own, std::span<const Vector3> positions,
-               std::span<const bool> fixed, MPI_Comm communicator);
+               const std::vector<bool>& fixed, MPI_Comm communicator);
 
   /// The matrix, to be given its pattern once and its values before each update().
   dealii::TrilinosWrappers::SparseMatrix& matrix() { return matrix_; }
