@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "meshes/parts.h"
 
-#include <deal.II/base/mpi.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/grid/tria_description.h>
 
 #include <algorithm>
@@ -37,18 +37,28 @@ int ranks_of_a_machine(MPI_Comm communicator) {
 
 }  // namespace
 
-void make_in_parts(const std::function<void(Triangulation<3>&)>& make,
-                   dealii::parallel::fullydistributed::Triangulation<3>& parts) {
-  const MPI_Comm communicator = parts.get_communicator();
-  const std::size_t ranks = dealii::Utilities::MPI::n_mpi_processes(communicator);
+std::unique_ptr<Triangulation<3>> make_in_parts(
+    const std::function<void(Triangulation<3>&)>& make, MPI_Comm communicator,
+    const std::function<void(Triangulation<3>&)>& attach_manifolds) {
+  // A mesh alone does not need MPI to have been started.
+  const std::size_t ranks =
+      communicator == MPI_COMM_SELF ? 1 : dealii::Utilities::MPI::n_mpi_processes(communicator);
+  if (ranks == 1) {
+    auto whole = std::make_unique<Triangulation<3>>();
+    make(*whole);
+    return whole;
+  }
+  auto parts = std::make_unique<dealii::parallel::fullydistributed::Triangulation<3>>(communicator);
+  attach_manifolds(*parts);
   using dealii::TriangulationDescription::Utilities::
       create_description_from_triangulation_in_groups;
-  parts.create_triangulation(create_description_from_triangulation_in_groups<3, 3>(
+  parts->create_triangulation(create_description_from_triangulation_in_groups<3, 3>(
       make,
       [ranks](Triangulation<3>& whole, const MPI_Comm&, unsigned int) {
         partition_by_height(whole, ranks);
       },
       communicator, ranks_of_a_machine(communicator)));
+  return parts;
 }
 
 }  // namespace ciliaval::meshes

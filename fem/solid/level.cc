@@ -108,21 +108,26 @@ std::vector<DirichletCondition> antisymmetric_supports() {
 Level::Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options, Level* coarser)
     : cilium_(cilium), options_(options), coarser_(coarser) {
-  const double unknowns = 3 * static_cast<double>(meshes::cylinder::quadratic_nodes(cilium, mesh));
-  may_be_in_parts_ = options.may_be_in_parts && solvers::is_iterative(options.solver, unknowns);
-  triangulation_ = meshes::cylinder::make_cylinder(
-      cilium, mesh, may_be_in_parts_ ? options.communicator : MPI_COMM_SELF);
+  const auto nodes = static_cast<double>(meshes::cylinder::quadratic_nodes(cilium, mesh));
+  triangulation_ = meshes::cylinder::make_cylinder(cilium, mesh, ranks_of_mesh(3 * nodes));
   mapping_ = meshes::cylinder::cylinder_mapping(*triangulation_, element_degree);
   discretise(mesh.half ? Extent::half : Extent::whole, materials);
 }
 
 Level::Level(const Cilium& cilium, const meshes::MeshFile& mesh,
              std::span<const Hyperelastic> materials, const LevelOptions& options)
-    : cilium_(cilium),
-      options_(options),
-      triangulation_(std::make_unique<dealii::Triangulation<3>>()) {
-  mapping_ = meshes::gmsh::read_gmsh(mesh, cilium, *triangulation_).mapping;
+    : cilium_(cilium), options_(options) {
+  meshes::gmsh::GmshMesh read = meshes::gmsh::read_gmsh(mesh, cilium, [this](std::size_t nodes) {
+    return ranks_of_mesh(3 * static_cast<double>(nodes));
+  });
+  triangulation_ = std::move(read.triangulation);
+  mapping_ = std::move(read.mapping);
   discretise(Extent::whole, materials);
+}
+
+MPI_Comm Level::ranks_of_mesh(double unknowns) {
+  may_be_in_parts_ = options_.may_be_in_parts && solvers::is_iterative(options_.solver, unknowns);
+  return may_be_in_parts_ ? options_.communicator : MPI_COMM_SELF;
 }
 
 void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {

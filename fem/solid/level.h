@@ -46,8 +46,7 @@ class Level {
   Level(const Cilium& cilium, const meshes::cylinder::CylinderMeshOptions& mesh,
         std::span<const material::Hyperelastic> materials, const LevelOptions& options,
         Level* coarser);
-  /// On the user's mesh, which is whole and has no coarser level. Throws as
-  /// meshes::gmsh::read_gmsh().
+  /// On the user's mesh, which has no coarser level. Throws as meshes::gmsh::read_gmsh().
   Level(const Cilium& cilium, const meshes::MeshFile& mesh,
         std::span<const material::Hyperelastic> materials, const LevelOptions& options);
   Level(const Level&) = delete;
@@ -100,6 +99,8 @@ class Level {
   void require_own(const discretisation::SolidState& state) const;
 
  private:
+  /// Those on which a mesh of so many unknowns is in parts.
+  MPI_Comm ranks_of_mesh(double unknowns);
   /// The space on the triangulation and its mapping.
   void discretise(discretisation::Extent extent, std::span<const material::Hyperelastic> materials);
   void start_from_rest(const Load& first);

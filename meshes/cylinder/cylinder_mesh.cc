@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "meshes/cylinder/cylinder_mesh.h"
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
@@ -277,16 +276,8 @@ void make_cylinder(const Cilium& cilium, const CylinderMeshOptions& options,
 std::unique_ptr<Triangulation<3>> make_cylinder(const Cilium& cilium,
                                                 const CylinderMeshOptions& options,
                                                 MPI_Comm communicator) {
-  const auto make = [&](Triangulation<3>& whole) { make_cylinder(cilium, options, whole); };
-  if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1) {
-    auto whole = std::make_unique<Triangulation<3>>();
-    make(*whole);
-    return whole;
-  }
-  auto parts = std::make_unique<dealii::parallel::fullydistributed::Triangulation<3>>(communicator);
-  attach_mantle(*parts);
-  make_in_parts(make, *parts);
-  return parts;
+  return make_in_parts([&](Triangulation<3>& whole) { make_cylinder(cilium, options, whole); },
+                       communicator, attach_mantle);
 }
 
 std::size_t quadratic_nodes(const Cilium& cilium, const CylinderMeshOptions& options) {

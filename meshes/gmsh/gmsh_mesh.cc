@@ -8,6 +8,7 @@
 
 #include "meshes/boundary_ids.h"
 #include "meshes/gmsh/gmsh_section.h"
+#include "meshes/parts.h"
 #include "problem/error.h"
 
 namespace ciliaval::meshes::gmsh {
@@ -67,7 +68,7 @@ std::unique_ptr<dealii::MappingQCache<3>> mapping(const Extrusion& extrusion,
   const std::vector<Point<3>> unit_points = dealii::FE_Q<3>(2).get_unit_support_points();
   auto result = std::make_unique<dealii::MappingQCache<3>>(2);
   result->initialize(triangulation, [&](const Triangulation<3>::cell_iterator& iterator) {
-    const Extrusion::Cell& cell = extrusion.cells[static_cast<std::size_t>(iterator->index())];
+    const Extrusion::Cell& cell = extrusion.cells[iterator->id().get_coarse_cell_id()];
     const auto nodes = section.nodes(extrusion, cell.quad, quads[cell.quad]);
     const double bottom = extrusion.planes[cell.layer];
     const double top = extrusion.planes[cell.layer + 1];
@@ -84,7 +85,8 @@ std::unique_ptr<dealii::MappingQCache<3>> mapping(const Extrusion& extrusion,
 
 }  // namespace
 
-GmshMesh read_gmsh(const MeshFile& source, const Cilium& cilium, Triangulation<3>& triangulation) {
+GmshMesh read_gmsh(const MeshFile& source, const Cilium& cilium,
+                   const std::function<MPI_Comm(std::size_t nodes)>& ranks) {
   require_valid(cilium);
   if (!(std::isfinite(source.unit) && source.unit > 0))
     throw InputError(source.path.string() + ": the unit of a mesh must be finite and positive");
@@ -95,8 +97,14 @@ GmshMesh read_gmsh(const MeshFile& source, const Cilium& cilium, Triangulation<3
   check_boundaries(mesh, extrusion, section);
 
   const std::vector<Extrusion::Quad> quads = ordered_quads(extrusion);
-  triangulate(mesh, extrusion, quads, triangulation);
-  return {mapping(extrusion, section, quads, triangulation), std::move(mesh.remarks)};
+  const std::size_t in_plane = extrusion.columns.size() + section.middles.size() + quads.size();
+  GmshMesh result;
+  result.triangulation =
+      make_in_parts([&](Triangulation<3>& whole) { triangulate(mesh, extrusion, quads, whole); },
+                    ranks(in_plane * (2 * extrusion.planes.size() - 1)));
+  result.mapping = mapping(extrusion, section, quads, *result.triangulation);
+  result.remarks = std::move(mesh.remarks);
+  return result;
 }
 
 }  // namespace ciliaval::meshes::gmsh

@@ -37,6 +37,7 @@ inline constexpr std::size_t million = 4;  ///< of 1,000,000 unknowns
 class Discretised {
  public:
   explicit Discretised(const Mesh& mesh) {
+    start_mpi();
     meshes::cylinder::CylinderMeshOptions options;
     options.square_cells = mesh.square_cells;
     options.rings = mesh.rings;

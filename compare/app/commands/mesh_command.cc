@@ -39,8 +39,8 @@ struct CaseMesh {
 
 CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refinement) {
   auto options = problem.options.of<fem::solid::SolidOptions>();
-  dealii::Triangulation<3> triangulation;
   if (options.mesh.empty()) {
+    dealii::Triangulation<3> triangulation;
     options.symmetry = false;
     if (refinement) options.refinement = *refinement;
     meshes::cylinder::make_cylinder(problem.cilium,
@@ -57,9 +57,9 @@ CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refin
                     "leave out --refinement",
                     options.mesh.string()));
   meshes::gmsh::GmshMesh mesh =
-      meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium, triangulation);
-  return {meshes::mesh_nodes(triangulation, *mesh.mapping),
-          meshes::base_section(triangulation, *mesh.mapping), std::move(mesh.remarks)};
+      meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium);
+  return {meshes::mesh_nodes(*mesh.triangulation, *mesh.mapping),
+          meshes::base_section(*mesh.triangulation, *mesh.mapping), std::move(mesh.remarks)};
 }
 
 /// The meshed section against the exact one, whose sides are along x and y if it has any.

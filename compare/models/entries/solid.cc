@@ -90,10 +90,8 @@ void check(const input::CaseCheck& check) {
 std::vector<std::string> remarks(const input::Case& problem) {
   const auto& options = problem.options.of<SolidOptions>();
   if (options.mesh.empty()) return {};
-  dealii::Triangulation<3> triangulation;
   std::vector<std::string> remarks =
-      meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium, triangulation)
-          .remarks;
+      meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium).remarks;
   for (std::string& remark : remarks) remark = fmt::format("{}: {}", options.mesh.string(), remark);
   return remarks;
 }

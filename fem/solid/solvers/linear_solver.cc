@@ -19,7 +19,8 @@ namespace {
 
 constexpr unsigned int max_iterations = 300;
 constexpr unsigned int restart = 60;  ///< vectors of GMRES
-/// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
+/// Iterations with the factors or patches of another matrix, beyond which those of the own one are
+/// cheaper.
 constexpr unsigned int max_with_old_factors = 20;
 
 /// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
@@ -98,7 +99,6 @@ void LinearSolver::prepare() {
     direct_->factorize(matrix_);
   is_prepared_ = true;
   current_ = true;
-  usual_ = 0;
 }
 
 std::optional<int> LinearSolver::gmres(const Vector& rhs, Vector& solution, double reduction,
@@ -108,7 +108,6 @@ std::optional<int> LinearSolver::gmres(const Vector& rhs, Vector& solution, doub
   using Solver = dealii::SolverFGMRES<Vector>;
   dealii::SolverControl control(max_iterations, reduction * rhs.l2_norm());
   Solver solver(control, Solver::AdditionalData(restart));
-  solution.reinit(rhs);
   try {
     if (multigrid_)
       solver.solve(*blocks_, solution, rhs, *multigrid_);
@@ -124,22 +123,22 @@ std::optional<int> LinearSolver::gmres(const Vector& rhs, Vector& solution, doub
 
 int LinearSolver::solve(const Vector& rhs, Vector& solution, double reduction) {
   std::optional<int> iterations;
+  solution.reinit(rhs);
   if (!current_) {
-    const unsigned int limit = direct_ ? max_with_old_factors : 2 * usual_;
-    iterations = gmres(rhs, solution, reduction, limit);
-    if (!iterations) prepare();
+    iterations = gmres(rhs, solution, reduction, max_with_old_factors);
+    if (!iterations) {
+      prepare();
+      if (!std::isfinite(solution.l2_norm())) solution = 0.;
+    }
   }
   if (!iterations && direct_) {
     direct_->solve(rhs, solution);
     return 1;
   }
-  if (!iterations) {
-    iterations = gmres(rhs, solution, reduction, max_iterations);
-    if (!iterations)
-      throw SolverError("GMRES did not converge in " + std::to_string(max_iterations) +
-                        " iterations");
-    usual_ = std::max(usual_, static_cast<unsigned int>(*iterations));
-  }
+  if (!iterations) iterations = gmres(rhs, solution, reduction, max_iterations);
+  if (!iterations)
+    throw SolverError("GMRES did not converge in " + std::to_string(max_iterations) +
+                      " iterations");
   if (!std::isfinite(solution.l2_norm())) throw SolverError("the stiffness matrix is singular");
   return *iterations;
 }

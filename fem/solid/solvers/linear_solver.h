@@ -59,7 +59,8 @@ class LinearSolver {
   const RowRange& rows() const { return rows_; }
 
  private:
-  /// Empty if GMRES does not get there in max_iterations.
+  /// From the solution given. Empty if GMRES does not get there in max_iterations; the solution is
+  /// then what it came to.
   std::optional<int> gmres(const discretisation::Vector& rhs, discretisation::Vector& solution,
                            double reduction, unsigned int max_iterations) const;
 
@@ -75,8 +76,7 @@ class LinearSolver {
   std::unique_ptr<BlockCsr> blocks_;
   std::unique_ptr<Multigrid> multigrid_;
   bool is_prepared_ = false;
-  bool current_ = false;    ///< factors or multigrid belong to the matrix
-  unsigned int usual_ = 0;  ///< iterations that the multigrid took with its own matrix
+  bool current_ = false;  ///< factors or multigrid belong to the matrix
 };
 
 }  // namespace ciliaval::fem::solid::solvers

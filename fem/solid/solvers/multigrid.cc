@@ -21,8 +21,8 @@ using dealii::types::global_dof_index;
 
 /// Chebyshev iteration: polynomial degree, and the part of the spectrum that it damps, from the
 /// largest eigenvalue down (docs/theory/solid.md).
-constexpr int smoother_degree = 2;
-constexpr double smoother_range = 10;
+constexpr int smoother_degree = 3;
+constexpr double smoother_range = 25;
 constexpr double safety = 1.05;  ///< tangents of compressed cells are not quite positive
 
 /// Rows of the coarse matrix up to which it is factorised (docs/theory/solid.md).
@@ -35,7 +35,7 @@ constexpr Node none = std::numeric_limits<Node>::max();
 Multigrid::Multigrid(const SolidSpace& space, const CellNodes& cells, const BlockCsr& matrix)
     : matrix_(matrix),
       own_nodes_(space.partitioner().locally_owned_size() / static_cast<Node>(node_unknowns)),
-      schwarz_(cells, matrix, own_nodes_) {
+      schwarz_(space, cells, matrix, own_nodes_) {
   const std::vector<Node> vertex_at = number_vertices(space, cells);
   make_weights(cells, vertex_at);
   make_coarse_level(space, cells, vertex_at);

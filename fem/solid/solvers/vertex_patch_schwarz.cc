@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdlib>
 #include <map>
 #include <set>
@@ -17,6 +19,94 @@ namespace {
 std::array<int, 3> coordinates(std::size_t node) {
   const int i = static_cast<int>(node);
   return {i % 3, i / 3 % 3, i / 9};
+}
+
+/// Edges shorter than this part of the cell's longest direction join the vertices at their ends.
+constexpr double thin = 0.25;
+/// Vertices of a patch at most: 459 unknowns, if they stand in a line.
+constexpr std::size_t most_vertices = 10;
+
+/// An edge between two vertices that this rank owns.
+struct Edge {
+  double thinness = 0;  ///< its length over that of the cell's longest direction
+  Node a = 0;
+  Node b = 0;
+  auto operator<=>(const Edge&) const = default;
+};
+
+/// The thin edges of all cells, the thinnest first.
+std::vector<Edge> thin_edges(const SolidSpace& space, const CellNodes& cells, Node own_nodes) {
+  std::vector<Edge> result;
+  for (std::size_t cell = 0; cell < cells.cells(); ++cell) {
+    const auto position = [&](std::size_t corner) -> Vector3 {
+      return space.elements()[cell].nodes.row(static_cast<Eigen::Index>(corner_node(corner)));
+    };
+    std::array<double, 3> lengths{};  // of a direction the mean of its four edges
+    const auto for_edges = [](std::size_t direction, const auto& visit) {
+      for (std::size_t c = 0; c < corners; ++c)
+        if (const std::size_t step = std::size_t{1} << direction; (c & step) == 0)
+          visit(c, c + step);
+    };
+    for (std::size_t d = 0; d < lengths.size(); ++d)
+      for_edges(d, [&](std::size_t c, std::size_t e) {
+        lengths.at(d) += 0.25 * (position(e) - position(c)).norm();
+      });
+    for (std::size_t d = 0; d < lengths.size(); ++d) {
+      const double thinness = lengths.at(d) / std::ranges::max(lengths);
+      if (thinness >= thin) continue;
+      for_edges(d, [&](std::size_t c, std::size_t e) {
+        const Node a = cells.of(cell)[corner_node(c)];
+        const Node b = cells.of(cell)[corner_node(e)];
+        if (a < own_nodes && b < own_nodes) result.push_back({thinness, a, b});
+      });
+    }
+  }
+  std::ranges::sort(result);
+  return result;
+}
+
+/// Of each vertex the one that stands for its group: the vertices joined by edges.
+std::vector<Node> group_of_vertices(const std::vector<Edge>& edges, Node vertices) {
+  std::vector<Node> group(vertices);
+  std::vector<std::vector<Node>> members(vertices);
+  for (Node vertex = 0; vertex < vertices; ++vertex) {
+    group[vertex] = vertex;
+    members[vertex] = {vertex};
+  }
+  for (const Edge& edge : edges) {
+    const Node a = group[edge.a];
+    const Node b = group[edge.b];
+    if (a == b || members[a].size() + members[b].size() > most_vertices) continue;
+    for (const Node vertex : members[b]) {
+      group[vertex] = a;
+      members[a].push_back(vertex);
+    }
+    members[b].clear();
+  }
+  return group;
+}
+
+/// Inverts a symmetric matrix in place by its Schur complements: half the operations of an LU, in
+/// products of matrices. (LAPACK's potri is no slower, but OpenBLAS's threads get in the way of
+/// for_each's.) Eigenvalues of both signs, as of compressed cells, may cost digits.
+void invert_symmetric(Eigen::Ref<Eigen::MatrixXd> matrix) {
+  constexpr Eigen::Index smallest = 32;
+  const Eigen::Index size = matrix.rows();
+  if (size <= smallest) {
+    matrix = Eigen::MatrixXd(matrix.inverse());
+    return;
+  }
+  const Eigen::Index half = size / 2;
+  auto first = matrix.topLeftCorner(half, half);
+  auto coupling = matrix.bottomLeftCorner(size - half, half);
+  auto second = matrix.bottomRightCorner(size - half, size - half);
+  invert_symmetric(first);
+  const Eigen::MatrixXd product = coupling * first;
+  second.noalias() -= product * coupling.transpose();
+  invert_symmetric(second);
+  coupling.noalias() = -second * product;
+  first.noalias() -= product.transpose() * coupling;
+  matrix.topRightCorner(half, size - half) = coupling.transpose();
 }
 
 }  // namespace
@@ -33,8 +123,9 @@ double trilinear(std::size_t corner, std::size_t node) {
   return value;
 }
 
-VertexPatchSchwarz::VertexPatchSchwarz(const CellNodes& cells, const BlockCsr& matrix,
-                                       std::size_t own_nodes) {
+VertexPatchSchwarz::VertexPatchSchwarz(const SolidSpace& space, const CellNodes& cells,
+                                       const BlockCsr& matrix, Node own_nodes) {
+  const std::vector<Node> group = group_of_vertices(thin_edges(space, cells, own_nodes), own_nodes);
   std::map<Node, std::set<Index>> patches;
   for (std::size_t cell = 0; cell < cells.cells(); ++cell)
     for (std::size_t c = 0; c < corners; ++c) {
@@ -43,7 +134,8 @@ VertexPatchSchwarz::VertexPatchSchwarz(const CellNodes& cells, const BlockCsr& m
       for (std::size_t a = 0; a < element_nodes; ++a)
         for (Index k = 0; k < node_unknowns; ++k) {
           const Index dof = static_cast<Index>(node_unknowns) * cells.of(cell)[a] + k;
-          if (trilinear(c, a) > 0 && !matrix.is_constrained(dof)) patches[vertex].insert(dof);
+          if (trilinear(c, a) > 0 && !matrix.is_constrained(dof))
+            patches[group[vertex]].insert(dof);
         }
     }
   starts_.push_back(0);
@@ -83,7 +175,8 @@ void VertexPatchSchwarz::update(const BlockCsr& matrix) {
               block(dofs[row] % node_unknowns, dofs[column] % node_unknowns);
       }
     }
-    const Eigen::MatrixXd inverse = (0.5 * (dense + dense.transpose())).inverse();
+    Eigen::MatrixXd inverse = 0.5 * (dense + dense.transpose());
+    invert_symmetric(inverse);
     float* at = inverses_.data() + matrix_starts_[patch];
     for (Eigen::Index j = 0; j < size; ++j)
       for (Eigen::Index i = j; i < size; ++i) *at++ = static_cast<float>(inverse(i, j));

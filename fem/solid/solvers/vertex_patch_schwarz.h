@@ -21,14 +21,18 @@ double trilinear(std::size_t corner, std::size_t node);
 /// The additive Schwarz method on vertex patches. The patch of a vertex holds the nodes inside the
 /// cells around it (27 for an inner vertex of Q2); there the matrix is inverted exactly. A patch
 /// can hold displacements that keep the volume, so that the method does not slow down with K/μ
-/// (Schöberl, Numer. Math. 84, 1999). Every cell meets eight patches: the preconditioned matrix, if
-/// it is positive definite, has no eigenvalue beyond 8.
+/// (Schöberl, Numer. Math. 84, 1999). Vertices joined by edges that are much shorter than the cell
+/// is long share one patch, up to eight: along its short directions a thin cell couples its nodes
+/// so strongly that patches of single vertices cannot move them along the others. Every cell meets
+/// eight patches: the preconditioned matrix, if it is positive definite, has no eigenvalue
+/// beyond 8.
 class VertexPatchSchwarz {
  public:
   static constexpr double largest_eigenvalue = 8;
 
   /// The patches of the vertices that this rank owns, of whose cells it has all.
-  VertexPatchSchwarz(const CellNodes& cells, const BlockCsr& matrix, std::size_t own_nodes);
+  VertexPatchSchwarz(const discretisation::SolidSpace& space, const CellNodes& cells,
+                     const BlockCsr& matrix, Node own_nodes);
   /// Inverts the symmetric part of the matrix on the patches.
   void update(const BlockCsr& matrix);
   /// z = Σ Rᵀ A⁻¹ R r over the patches of all ranks. Collective.

@@ -143,6 +143,25 @@ TEST_P(MpiSolver, TwoRanksFindTheForceOfAProbe) {
   }
 }
 
+// Oracle: the run on one rank, with the field of the gathered body.
+TEST_P(MpiSolver, RanksShareAUsersMesh) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), "");
+  ASSERT_EQ(execute(folder.path(), "'" CILIAVAL_PROGRAM "' mesh case.toml -o cilium.msh").code, 0);
+  write_case(folder.path(), "mesh = \"cilium.msh\"\n" + solver());
+  std::vector<double> field;
+  for (const int ranks : {1, 2, 3}) {
+    const std::string results = std::to_string(ranks);
+    ASSERT_EQ(run(folder.path(), ranks, results).code, 0) << read_text(folder.path() / "err.txt");
+    expect_same_steps(folder.path() / results, folder.path() / "1", 1);
+    const auto summary =
+        nlohmann::json::parse(read_text(folder.path() / results / "mpi" / "summary.json"));
+    field.push_back(summary.at("steps").at(0).at("fields").at("solid/mesh").at("B").at(0).at(2));
+  }
+  EXPECT_NEAR(field[1], field[0], 1e-9 * std::abs(field[0]));
+  EXPECT_NEAR(field[2], field[0], 1e-9 * std::abs(field[0]));
+}
+
 // Oracle: the run on one rank. The meshes are the same, the sums are in another order, and the
 // algebraic multigrid is another one: what is left is the residual of 1e-8 of conjugate gradients.
 TEST(Mpi, TwoRanksGiveThePotentialsFieldOfOne) {

@@ -26,16 +26,17 @@ using dealii::Triangulation;
 
 /// A mesh with its mapping, wherever it comes from.
 struct Mesh {
-  Triangulation<3> triangulation;
+  std::unique_ptr<Triangulation<3>> triangulation = std::make_unique<Triangulation<3>>();
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
   std::vector<std::string> remarks;
 
   void make(const Cilium& cilium, const cylinder::CylinderMeshOptions& options) {
-    cylinder::make_cylinder(cilium, options, triangulation);
-    mapping = cylinder::cylinder_mapping(triangulation);
+    cylinder::make_cylinder(cilium, options, *triangulation);
+    mapping = cylinder::cylinder_mapping(*triangulation);
   }
   void read(const MeshFile& file, const Cilium& cilium) {
-    GmshMesh result = read_gmsh(file, cilium, triangulation);
+    GmshMesh result = read_gmsh(file, cilium);
+    triangulation = std::move(result.triangulation);
     mapping = std::move(result.mapping);
     remarks = std::move(result.remarks);
   }
@@ -53,7 +54,7 @@ Integrals integrals(const Mesh& mesh) {
   dealii::FEValues<3> values(*mesh.mapping, element, gauss,
                              dealii::update_JxW_values | dealii::update_quadrature_points);
   Integrals result;
-  for (const auto& cell : mesh.triangulation.active_cell_iterators()) {
+  for (const auto& cell : mesh.triangulation->active_cell_iterators()) {
     values.reinit(cell);
     for (unsigned int q = 0; q < gauss.size(); ++q) {
       result.volume += values.JxW(q);
@@ -74,8 +75,8 @@ std::array<long long, 3> key(const Point<3>& x) {
 /// Every cell of one mesh is, by its nodes and its material, at the same place in the other, every
 /// boundary face with its id too. Returns the largest distance of a node.
 double expect_same(const Mesh& a, const Mesh& b) {
-  const MeshNodes first = mesh_nodes(a.triangulation, *a.mapping);
-  const MeshNodes second = mesh_nodes(b.triangulation, *b.mapping);
+  const MeshNodes first = mesh_nodes(*a.triangulation, *a.mapping);
+  const MeshNodes second = mesh_nodes(*b.triangulation, *b.mapping);
   EXPECT_EQ(first.nodes.size(), second.nodes.size());
   EXPECT_EQ(first.cells.size(), second.cells.size());
   EXPECT_EQ(first.faces.size(), second.faces.size());
@@ -128,7 +129,7 @@ TEST(GmshRoundTrip, KeepsCellsMaterialsBoundariesAndVolume) {
     for (const bool binary : {false, true}) {
       for (const double unit : {1.0, 1e-3}) {
         const MeshFile file{folder.path() / "cilium.msh", unit};
-        write_gmsh(mesh_nodes(made.triangulation, *made.mapping), cilium, file.path,
+        write_gmsh(mesh_nodes(*made.triangulation, *made.mapping), cilium, file.path,
                    {version, binary, unit});
         Mesh back;
         back.read(file, cilium);
@@ -139,7 +140,7 @@ TEST(GmshRoundTrip, KeepsCellsMaterialsBoundariesAndVolume) {
         EXPECT_NEAR(after.second_moment / before.second_moment, 1, 1e-11);
         EXPECT_GT(after.least_jacobian, 0);
 
-        write_gmsh(mesh_nodes(back.triangulation, *back.mapping), cilium, file.path,
+        write_gmsh(mesh_nodes(*back.triangulation, *back.mapping), cilium, file.path,
                    {version, binary, unit});
         Mesh again;
         again.read(file, cilium);
@@ -158,7 +159,7 @@ TEST(GmshRoundTrip, CurvesAFirstOrderMeshAsTheBuiltInOne) {
   Mesh made;
   made.make(cilium, small());
   const MeshFile file{folder.path() / "linear.msh"};
-  write_gmsh(mesh_nodes(made.triangulation, *made.mapping), cilium, file.path,
+  write_gmsh(mesh_nodes(*made.triangulation, *made.mapping), cilium, file.path,
              {.quadratic = false});
   Mesh back;
   back.read(file, cilium);
@@ -224,7 +225,7 @@ TEST(GmshMeshes, HonourSecondOrderNodesAndTellTheirArea) {
   options.equal_area = false;
   Mesh made;
   made.make(cilium, options);
-  write_gmsh(mesh_nodes(made.triangulation, *made.mapping), cilium, folder.path() / "on_R.msh");
+  write_gmsh(mesh_nodes(*made.triangulation, *made.mapping), cilium, folder.path() / "on_R.msh");
   Mesh back;
   back.read({folder.path() / "on_R.msh"}, cilium);
   EXPECT_LT(expect_same(made, back), 1e-16);
@@ -237,7 +238,7 @@ TEST(GmshMeshes, RefuseCurvedNodesThatAreNotExtruded) {
   const Cilium cilium = test::stub_and_magnet();
   Mesh made;
   made.make(cilium, small());
-  MeshNodes nodes = mesh_nodes(made.triangulation, *made.mapping);
+  MeshNodes nodes = mesh_nodes(*made.triangulation, *made.mapping);
   nodes.nodes[nodes.cells[40].nodes[12]][0] += 1e-5;
   write_gmsh(nodes, cilium, folder.path() / "bulge.msh");
   Mesh back;
@@ -277,7 +278,7 @@ TEST(GmshWriter, TellsWhatItCannotWrite) {
   const Cilium cilium = test::stub_and_magnet();
   Mesh made;
   made.make(cilium, small());
-  MeshNodes nodes = mesh_nodes(made.triangulation, *made.mapping);
+  MeshNodes nodes = mesh_nodes(*made.triangulation, *made.mapping);
   EXPECT_THROW(write_gmsh(nodes, cilium, folder.path() / "none" / "x.msh"), FileError);
   EXPECT_THROW(write_gmsh(nodes, cilium, folder.path() / "x.mesh"), InputError);
   nodes.cells.front().material = 7;
