@@ -40,9 +40,9 @@ int ranks_of_a_machine(MPI_Comm communicator) {
 std::unique_ptr<Triangulation<3>> make_in_parts(
     const std::function<void(Triangulation<3>&)>& make, MPI_Comm communicator,
     const std::function<void(Triangulation<3>&)>& attach_manifolds) {
-  // A mesh alone does not need MPI to have been started.
-  const std::size_t ranks =
-      communicator == MPI_COMM_SELF ? 1 : dealii::Utilities::MPI::n_mpi_processes(communicator);
+  const std::size_t ranks = dealii::Utilities::MPI::job_supports_mpi()  // once it is started
+                                ? dealii::Utilities::MPI::n_mpi_processes(communicator)
+                                : 1;
   if (ranks == 1) {
     auto whole = std::make_unique<Triangulation<3>>();
     make(*whole);

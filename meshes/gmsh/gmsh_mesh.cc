@@ -68,7 +68,9 @@ std::unique_ptr<dealii::MappingQCache<3>> mapping(const Extrusion& extrusion,
   const std::vector<Point<3>> unit_points = dealii::FE_Q<3>(2).get_unit_support_points();
   auto result = std::make_unique<dealii::MappingQCache<3>>(2);
   result->initialize(triangulation, [&](const Triangulation<3>::cell_iterator& iterator) {
-    const Extrusion::Cell& cell = extrusion.cells[iterator->id().get_coarse_cell_id()];
+    const auto number = iterator->id().get_coarse_cell_id();
+    if (number >= extrusion.cells.size()) return unit_points;  // what a rank without cells has
+    const Extrusion::Cell& cell = extrusion.cells[number];
     const auto nodes = section.nodes(extrusion, cell.quad, quads[cell.quad]);
     const double bottom = extrusion.planes[cell.layer];
     const double top = extrusion.planes[cell.layer + 1];

@@ -19,9 +19,11 @@ namespace {
 
 constexpr unsigned int max_iterations = 300;
 constexpr unsigned int restart = 60;  ///< vectors of GMRES
-/// Iterations with the factors or patches of another matrix, beyond which those of the own one are
-/// cheaper.
+/// Iterations with the LU of another matrix, beyond which the LU of the own one is cheaper.
 constexpr unsigned int max_with_old_factors = 20;
+
+/// Those that cost as much as the multigrid's preparation (docs/measurements/solid.md).
+constexpr unsigned int preparation = 10;
 
 /// Unknowns beyond which `automatic` is `iterative` (docs/measurements/solid.md).
 constexpr double direct_unknowns = 100000;
@@ -123,11 +125,15 @@ std::optional<int> LinearSolver::gmres(const Vector& rhs, Vector& solution, doub
 
 int LinearSolver::solve(const Vector& rhs, Vector& solution, double reduction) {
   std::optional<int> iterations;
+  int abandoned = 0;
   solution.reinit(rhs);
   if (!current_) {
-    iterations = gmres(rhs, solution, reduction, max_with_old_factors);
+    // As long as it can be cheaper than to prepare and to start anew.
+    const unsigned int limit = direct_ ? max_with_old_factors : usual_ + preparation;
+    iterations = gmres(rhs, solution, reduction, limit);
     if (!iterations) {
       prepare();
+      abandoned = static_cast<int>(limit);
       if (!std::isfinite(solution.l2_norm())) solution = 0.;
     }
   }
@@ -135,12 +141,15 @@ int LinearSolver::solve(const Vector& rhs, Vector& solution, double reduction) {
     direct_->solve(rhs, solution);
     return 1;
   }
-  if (!iterations) iterations = gmres(rhs, solution, reduction, max_iterations);
-  if (!iterations)
-    throw SolverError("GMRES did not converge in " + std::to_string(max_iterations) +
-                      " iterations");
+  if (!iterations) {
+    iterations = gmres(rhs, solution, reduction, max_iterations);
+    if (!iterations)
+      throw SolverError("GMRES did not converge in " + std::to_string(max_iterations) +
+                        " iterations");
+    usual_ = std::max(usual_, static_cast<unsigned int>(*iterations));
+  }
   if (!std::isfinite(solution.l2_norm())) throw SolverError("the stiffness matrix is singular");
-  return *iterations;
+  return abandoned + *iterations;
 }
 
 }  // namespace ciliaval::fem::solid::solvers

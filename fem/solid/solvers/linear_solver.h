@@ -76,7 +76,8 @@ class LinearSolver {
   std::unique_ptr<BlockCsr> blocks_;
   std::unique_ptr<Multigrid> multigrid_;
   bool is_prepared_ = false;
-  bool current_ = false;  ///< factors or multigrid belong to the matrix
+  bool current_ = false;    ///< factors or multigrid belong to the matrix
+  unsigned int usual_ = 0;  ///< most iterations that the multigrid took with its own matrix
 };
 
 }  // namespace ciliaval::fem::solid::solvers

@@ -23,7 +23,7 @@ std::array<int, 3> coordinates(std::size_t node) {
 
 /// Edges shorter than this part of the cell's longest direction join the vertices at their ends.
 constexpr double thin = 0.25;
-/// Vertices of a patch at most: 459 unknowns, if they stand in a line.
+/// Vertices of a patch at most: 567 unknowns, if they stand in a line.
 constexpr std::size_t most_vertices = 10;
 
 /// An edge between two vertices that this rank owns.

@@ -22,7 +22,7 @@ double trilinear(std::size_t corner, std::size_t node);
 /// cells around it (27 for an inner vertex of Q2); there the matrix is inverted exactly. A patch
 /// can hold displacements that keep the volume, so that the method does not slow down with K/μ
 /// (Schöberl, Numer. Math. 84, 1999). Vertices joined by edges that are much shorter than the cell
-/// is long share one patch, up to eight: along its short directions a thin cell couples its nodes
+/// is long share one patch, up to ten: along its short directions a thin cell couples its nodes
 /// so strongly that patches of single vertices cannot move them along the others. Every cell meets
 /// eight patches: the preconditioned matrix, if it is positive definite, has no eigenvalue
 /// beyond 8.

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -118,13 +119,13 @@ double largest_eigenvalue_with_patches(const System& system) {
 }
 
 // Oracle: Schwarz theory. A cell meets eight patches, so that λ_max ≤ 8; on a mesh with cells that
-// have eight free patches it comes near. Vertices of thin cells share patches, so that a cell meets
-// fewer. Power iteration, from below.
+// have eight free patches it comes near. In two layers of thin cells the vertices of
+// a line share a patch, so that a cell meets four. Power iteration, from below.
 TEST(SolidLinearSolver, VertexPatchesHaveNoEigenvalueBeyondEight) {
   const double thick = largest_eigenvalue_with_patches(System(0.49));
   EXPECT_LE(thick, VertexPatchSchwarz::largest_eigenvalue * (1 + 1e-5));  // single precision
   EXPECT_GE(thick, 0.5 * VertexPatchSchwarz::largest_eigenvalue);
-  EXPECT_LE(largest_eigenvalue_with_patches(System(0.49, 0.2)), 0.9 * thick);
+  EXPECT_LE(largest_eigenvalue_with_patches(System(0.49, 0.2)), 4 * (1 + 1e-5));
 }
 
 // Oracle: deal.II's product. Sums in another order.
@@ -155,7 +156,8 @@ TEST(SolidLinearSolver, IterationsGrowLittleWithTheBulkModulus) {
   EXPECT_LE(iterations(0.49), 3 * compressible);
 }
 
-// Oracle: the purpose of patches of several vertices. With one vertex each it took 18 and 76.
+// Oracle: the purpose of patches of several vertices. Measured 15 and 18; with patches of one
+// vertex three more rings took the iterations from 18 to 77 (docs/measurements/solid.md).
 TEST(SolidLinearSolver, IterationsHardlyGrowInThinRings) {
   const auto iterations = [](const Mesh& mesh) {
     const Discretised problem(mesh);
@@ -173,7 +175,7 @@ TEST(SolidLinearSolver, IterationsHardlyGrowInThinRings) {
 }
 
 // Oracle: the aim: at most twice the iterations from 20,000 to 1,000,000 unknowns, in 16 GB.
-// Measured 21 and 23.
+// Measured 15 and 20.
 TEST(SolidLinearSolverSlow, AMillionUnknownsTakeNoMoreThanTwiceTheIterations) {
   std::vector<int> iterations;
   for (const Mesh& mesh : {mesh_family.front(), mesh_family[million]}) {
@@ -191,6 +193,42 @@ TEST(SolidLinearSolverSlow, AMillionUnknownsTakeNoMoreThanTwiceTheIterations) {
   }
   EXPECT_LE(iterations.back(), 2 * iterations.front());
   EXPECT_LT(gigabytes(), 16);
+}
+
+// The patches of the straight cilium for the tangent of a far bent one: GMRES gives them up, and
+// goes on with new ones. Oracle: the definition of the residual.
+TEST(SolidLinearSolver, GivesUpPatchesThatDoNotServe) {
+  const Discretised problem(mesh_family.front());
+  LinearSolver solver(*problem.space, problem.constraints, SolverKind::iterative, MPI_COMM_SELF);
+  problem.assemble(solver);
+  solver.prepare();
+  Vector solution;
+  const int usual = solver.solve(problem.forces, solution, 1e-6);
+  constexpr double curvature = 40;  // 1/m: the tip turns by 46°
+  SolidState bent = problem.space->undeformed();
+  for (const SolidElement& element : problem.space->elements())
+    for (std::size_t a = 0; a < element_nodes; ++a) {
+      const Vector3 X = element.nodes.row(static_cast<Eigen::Index>(a));
+      const double angle = curvature * X.z();
+      bent.displacement[element.dofs[a]] =
+          (1 - std::cos(angle)) / curvature + X.x() * (std::cos(angle) - 1);
+      bent.displacement[element.dofs[2 * element_nodes + a]] =
+          std::sin(angle) / curvature - X.z() - X.x() * std::sin(angle);
+    }
+  const auto assemble = [&](TangentMatrix& tangent) {
+    add_stiffness(*problem.space, bent, *internal_forces(*problem.space, bent), tangent);
+  };
+  assemble(solver.new_tangent());
+  solver.prepare_near_last();
+  EXPECT_GT(solver.solve(problem.forces, solution, 1e-6), usual + 10);
+  BlockCsr matrix(element_cell_nodes(*problem.space),
+                  constrained_unknowns(*problem.space, problem.constraints));
+  matrix.clear();
+  assemble(matrix);
+  Vector residual = problem.space->vector();
+  matrix.vmult(residual, solution);
+  residual -= problem.forces;
+  EXPECT_LE(residual.l2_norm(), 1e-6 * problem.forces.l2_norm());
 }
 
 // Oracle: linear algebra; nothing can be solved with a matrix of zeros. The next matrix can.

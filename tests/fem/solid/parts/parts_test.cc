@@ -20,6 +20,10 @@
 #include "fem/solid/postprocessing/mantle.h"
 #include "fem/solid/solvers/linear_solver.h"
 #include "meshes/cylinder/cylinder_mesh.h"
+#include "meshes/gmsh/gmsh_mesh.h"
+#include "meshes/gmsh/write_gmsh.h"
+#include "meshes/mesh_nodes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::fem::solid {
 using namespace discretisation;
@@ -41,6 +45,9 @@ Vector3 displacement(const Vector3& X) {
 /// A mesh of the cilium with the displacement above.
 struct Meshed {
   Cilium cilium = two_segments();
+  std::vector<material::Hyperelastic> materials{
+      material::Hyperelastic::mooney_rivlin(3.4e4, 1.7e6, 0.25),
+      material::Hyperelastic::yeoh(1e5, 5e6, -0.1, 0.01)};
   std::unique_ptr<dealii::Triangulation<3>> triangulation;
   std::unique_ptr<dealii::MappingQCache<3>> mapping;
   std::unique_ptr<SolidSpace> space;
@@ -57,8 +64,6 @@ struct Meshed {
     triangulation =
         meshes::cylinder::make_cylinder(cilium, options, in_parts ? MPI_COMM_WORLD : MPI_COMM_SELF);
     mapping = meshes::cylinder::cylinder_mapping(*triangulation);
-    const std::vector materials{material::Hyperelastic::mooney_rivlin(3.4e4, 1.7e6, 0.25),
-                                material::Hyperelastic::yeoh(1e5, 5e6, -0.1, 0.01)};
     space = std::make_unique<SolidSpace>(*triangulation, *mapping, materials);
     quadrature = std::make_unique<ExtrudedQuadrature>(*space, half ? Extent::half : Extent::whole);
     state = space->undeformed();
@@ -96,6 +101,37 @@ class Parts : public testing::TestWithParam<bool> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Extents, Parts, testing::Bool());
+
+// Oracle: the same file, read whole.
+TEST(UserMeshInParts, HasTheCellsOfTheFile) {
+  const test::TemporaryFolder folder;
+  const Meshed written{false, false};
+  const Cilium cilium = two_segments();
+  const auto file = folder.path() / "cilium.msh";
+  meshes::gmsh::write_gmsh(meshes::mesh_nodes(*written.triangulation, *written.mapping), cilium,
+                           file);
+  const meshes::gmsh::GmshMesh all = meshes::gmsh::read_gmsh({file}, cilium);
+  const SolidSpace whole(*all.triangulation, *all.mapping, written.materials);
+  std::size_t nodes = 0;
+  const meshes::gmsh::GmshMesh mesh =
+      meshes::gmsh::read_gmsh({file}, cilium, [&nodes](std::size_t count) {
+        nodes = count;
+        return MPI_COMM_WORLD;
+      });
+  const SolidSpace space(*mesh.triangulation, *mesh.mapping, written.materials);
+  EXPECT_EQ(node_unknowns * nodes, whole.unknowns());
+  EXPECT_EQ(space.unknowns(), whole.unknowns());
+  const std::size_t own = space.own_elements().size();
+  EXPECT_EQ(dealii::Utilities::MPI::sum(own, MPI_COMM_WORLD), whole.elements().size());
+  if (rank_count() > 1) {
+    EXPECT_LT(own, whole.elements().size());
+  }
+  for (const SolidElement& element : space.elements()) {
+    const SolidElement& twin = whole.elements()[element.cell->id().get_coarse_cell_id()];
+    EXPECT_EQ(element.cell->material_id(), twin.cell->material_id());
+    EXPECT_LE((element.nodes - twin.nodes).norm(), 1e-15);
+  }
+}
 
 TEST_P(Parts, HaveEachCellOnceAndTheWholesArea) {
   const std::size_t own = parts.space->own_elements().size();
