@@ -69,7 +69,8 @@ std::unique_ptr<dealii::MappingQCache<3>> mapping(const Extrusion& extrusion,
   auto result = std::make_unique<dealii::MappingQCache<3>>(2);
   result->initialize(triangulation, [&](const Triangulation<3>::cell_iterator& iterator) {
     const auto number = iterator->id().get_coarse_cell_id();
-    if (number >= extrusion.cells.size()) return unit_points;  // what a rank without cells has
+    if (number >= extrusion.cells.size())  // what a rank without cells has
+      return std::vector<Point<3>>(unit_points);
     const Extrusion::Cell& cell = extrusion.cells[number];
     const auto nodes = section.nodes(extrusion, cell.quad, quads[cell.quad]);
     const double bottom = extrusion.planes[cell.layer];

@@ -45,6 +45,7 @@ void study(const std::vector<unsigned int>& square_cells) {
   options.path.newton.tolerance = defaults.newton_tolerance;
   options.path.kernel_width = defaults.kernel_width;
   std::vector<material::Hyperelastic> materials;
+  materials.reserve(cilium.segments.size());
   for (const Segment& segment : cilium.segments)
     materials.push_back(
         material::Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));

@@ -5,11 +5,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <compare>
 #include <cstdlib>
 #include <map>
 #include <set>
 #include <span>
+#include <tuple>
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
@@ -31,7 +31,6 @@ struct Edge {
   double thinness = 0;  ///< its length over that of the cell's longest direction
   Node a = 0;
   Node b = 0;
-  auto operator<=>(const Edge&) const = default;
 };
 
 /// The thin edges of all cells, the thinnest first.
@@ -61,7 +60,7 @@ std::vector<Edge> thin_edges(const SolidSpace& space, const CellNodes& cells, No
       });
     }
   }
-  std::ranges::sort(result);
+  std::ranges::sort(result, {}, [](const Edge& e) { return std::tuple(e.thinness, e.a, e.b); });
   return result;
 }
 
