@@ -45,12 +45,12 @@ void study(const std::vector<unsigned int>& square_cells) {
   options.path.newton.tolerance = defaults.newton_tolerance;
   options.path.kernel_width = defaults.kernel_width;
   std::vector<material::Hyperelastic> materials;
-  materials.reserve(cilium.segments.size());
   for (const Segment& segment : cilium.segments)
     materials.push_back(
         material::Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::unique_ptr<Level>> levels;  // coarsest first
+  levels.reserve(square_cells.size());
   for (const unsigned int cells : square_cells)
     levels.push_back(std::make_unique<Level>(cilium, mesh(cells), materials, options,
                                              levels.empty() ? nullptr : levels.back().get()));
