@@ -99,7 +99,7 @@ class Level {
   void require_own(const discretisation::SolidState& state) const;
 
  private:
-  /// Those on which a mesh of so many unknowns is in parts.
+  /// Decides whether a mesh of so many unknowns may be in parts, and on which ranks.
   MPI_Comm ranks_of_mesh(double unknowns);
   /// The space on the triangulation and its mapping.
   void discretise(discretisation::Extent extent, std::span<const material::Hyperelastic> materials);

@@ -50,7 +50,8 @@ class LinearSolver {
   void prepare_near_last();
 
   /// Any number of right-hand sides with the matrix last prepared. GMRES ends with
-  /// ‖b − Ax‖₂ ≤ reduction ‖b‖₂. Returns the number of iterations; 1 for the matrix's own LU.
+  /// ‖b − Ax‖₂ ≤ reduction ‖b‖₂. Returns the number of iterations, with those
+  /// of patches that were given up; 1 for the matrix's own LU.
   int solve(const discretisation::Vector& rhs, discretisation::Vector& solution, double reduction);
 
   // Of the direct solver:
