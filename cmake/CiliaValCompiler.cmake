@@ -3,7 +3,9 @@ add_library(ciliaval_compiler INTERFACE)
 target_compile_options(ciliaval_compiler INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion
   # deal.II 9.4 and Boost 1.74 use features that C++20 deprecates; -Wno-psabi: a note about GCC 4.6.
-  -Wno-deprecated-declarations -Wno-psabi)
+  -Wno-deprecated-declarations -Wno-psabi
+  # A precompiled header that does not fit would be passed over.
+  -Werror=invalid-pch)
 if(CILIAVAL_ODR)
   # Intermediate code beside the machine code, for the test odr.EveryTypeIsDefinedOnce alone: programs are linked without it.
   add_compile_options(-flto -ffat-lto-objects)
