@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <string_view>
 #include <thread>
-#include <vector>
 
 #include "problem/error.h"
 
@@ -37,14 +36,6 @@ bool running() {
 
 void end_mpi() {
   if (running()) MPI_Finalize();
-}
-
-RowRange range_of(Row size, int part, int parts) {
-  const auto bound = [&](int i) {
-    const auto exact = static_cast<Row>(static_cast<long long>(size) * i / parts);
-    return i == parts ? size : exact - exact % node_unknowns;
-  };
-  return {bound(part), bound(part + 1)};
 }
 
 /// Spares Open MPI a daemon to start other ranks and the search for fast networks, which one rank,
@@ -121,10 +112,6 @@ int from_first_rank(int value) {
   return value;
 }
 
-RowRange own_range(MPI_Comm communicator, Row size) {
-  return range_of(size, rank(communicator), rank_count(communicator));
-}
-
 void sum_over_ranks(MPI_Comm communicator, std::span<double> values) {
   const dealii::ArrayView<double> view(values.data(), values.size());
   dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view), communicator, view);
@@ -137,20 +124,6 @@ std::string first_text(MPI_Comm communicator, const std::string& text) {
       dealii::Utilities::MPI::min(text.empty() ? ranks : rank(communicator), communicator);
   if (first == ranks) return {};
   return dealii::Utilities::MPI::broadcast(communicator, text, static_cast<unsigned int>(first));
-}
-
-void gather_over_ranks(MPI_Comm communicator, std::span<double> values) {
-  const int ranks = rank_count(communicator);
-  if (ranks == 1) return;
-  std::vector<int> counts;
-  std::vector<int> starts;
-  for (int r = 0; r < ranks; ++r) {
-    const RowRange part = range_of(static_cast<Row>(values.size()), r, ranks);
-    starts.push_back(static_cast<int>(part.begin));
-    counts.push_back(static_cast<int>(part.end - part.begin));
-  }
-  MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values.data(), counts.data(), starts.data(),
-                 MPI_DOUBLE, communicator);
 }
 
 }  // namespace ciliaval::fem

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/base/types.h>
 #include <mpi.h>
 
 #include <span>
@@ -32,28 +31,10 @@ void require_failure_of_all_ranks(const std::string& message);
 /// Rank 0's value, on all ranks of the program, which sleep until it comes. Collective.
 int from_first_rank(int value);
 
-using Row = dealii::types::global_dof_index;
-
-inline constexpr Row node_unknowns = 3;  ///< of a node of the solid, numbered one after the other
-
-/// A contiguous part of a range of rows.
-struct RowRange {
-  Row begin = 0;
-  Row end = 0;
-  bool contains(Row index) const { return index >= begin && index < end; }
-};
-
-/// This rank's part of 0 … size − 1; the ranks' parts are contiguous, in order and nearly equal,
-/// and begin at multiples of three: the unknowns of a node stay together.
-RowRange own_range(MPI_Comm communicator, Row size);
-
 /// The sums of the ranks' values, in their place, with the same bits on all ranks. Collective.
 void sum_over_ranks(MPI_Comm communicator, std::span<double> values);
 
 /// The first rank's text that is not empty. Collective.
 std::string first_text(MPI_Comm communicator, const std::string& text);
-
-/// Every rank holds its own_range() of the values; afterwards all of them. Collective.
-void gather_over_ranks(MPI_Comm communicator, std::span<double> values);
 
 }  // namespace ciliaval::fem

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "meshes/parts.h"
 
+#include <deal.II/base/utilities.h>
 #include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/grid/tria_description.h>
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -28,11 +30,10 @@ void partition_by_height(Triangulation<3>& mesh, std::size_t ranks) {
 
 /// Ranks of the machine that has the most of them.
 int ranks_of_a_machine(MPI_Comm communicator) {
-  MPI_Comm machine = MPI_COMM_NULL;
-  MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-  const auto count = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(machine));
-  MPI_Comm_free(&machine);
-  return dealii::Utilities::MPI::max(count, communicator);
+  const std::string own = dealii::Utilities::System::get_hostname();
+  const auto names = dealii::Utilities::MPI::all_gather(communicator, own);
+  return dealii::Utilities::MPI::max(static_cast<int>(std::ranges::count(names, own)),
+                                     communicator);
 }
 
 }  // namespace

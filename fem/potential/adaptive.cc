@@ -90,14 +90,14 @@ Layout lay_out(const PotentialProblem& problem) {
   return layout;
 }
 
-/// Moves all ranks' leaves to rank 0. Collective.
-void gather_leaves(std::vector<FieldMesh::Leaf>& leaves) {
-  if (rank_count() == 1) return;
+/// Moves all ranks' leaves to the first one. Collective.
+void gather_leaves(MPI_Comm communicator, std::vector<FieldMesh::Leaf>& leaves) {
+  if (rank_count(communicator) == 1) return;
   constexpr std::size_t doubles = sizeof(FieldMesh::Leaf) / sizeof(double);
   static_assert(sizeof(FieldMesh::Leaf) == doubles * sizeof(double));
   const auto* const own = reinterpret_cast<const double*>(leaves.data());
   const auto all = dealii::Utilities::MPI::gather(
-      MPI_COMM_WORLD, std::vector<double>(own, own + doubles * leaves.size()));
+      communicator, std::vector<double>(own, own + doubles * leaves.size()));
   leaves.clear();
   for (const std::vector<double>& part : all) {
     const std::size_t first = leaves.size();
@@ -188,7 +188,7 @@ class Adaptive {
         layout_(lay_out(problem)),
         half_width_(control.box * layout_.radius),
         source_(source_of(problem.magnet, layout_.centre, half_width_)),
-        octree_(layout_.centre, half_width_) {
+        octree_(layout_.centre, half_width_, control.communicator) {
     induced_.centre = layout_.centre;
   }
 
@@ -269,7 +269,7 @@ void Adaptive::update_induced() {
   std::copy_n(sum.dipole.data(), 3, values.begin());
   std::copy_n(sum.moments.data(), 9, values.begin() + 3);
   const dealii::ArrayView<double> view(values.data(), values.size());
-  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view), MPI_COMM_WORLD, view);
+  dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view), octree_.communicator(), view);
   std::copy_n(values.begin(), 3, sum.dipole.data());
   std::copy_n(values.begin() + 3, 9, sum.moments.data());
   induced_change_ = (sum.dipole - induced_.dipole).norm();
@@ -357,7 +357,7 @@ std::shared_ptr<const FieldMesh> Adaptive::mesh() const {
     leaf.magnetization = bodies_->mean_magnetization(cell);
     leaf.relative_permeability = bodies_->mean_permeability(cell);
   }
-  gather_leaves(result->leaves);
+  gather_leaves(control_.communicator, result->leaves);
   return result;
 }
 

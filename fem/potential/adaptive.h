@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <mpi.h>
+
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -23,6 +25,7 @@ struct PotentialControl {
   double tolerance = 2e-3;            ///< uncertainty of B at each point, relative to |B|
   std::size_t max_unknowns = 600000;  ///< of the solution that B is taken from
   double box = 16;  ///< half-width of the octree over the radius of all bodies and points
+  MPI_Comm communicator = MPI_COMM_WORLD;  ///< of the ranks that share the work
 };
 
 /// One mesh of the sequence.

@@ -141,7 +141,7 @@ void CutCells::add(const Magnet& magnet, double relative_permeability, const Sam
         add_permeability(place.cell, place.unit, relative_permeability - 1, point.volume);
     }
   }
-  if (dealii::Utilities::MPI::sum(outside, MPI_COMM_WORLD) != 0)
+  if (dealii::Utilities::MPI::sum(outside, octree_.communicator()) != 0)
     throw InputError("the magnet reaches beyond the octree of the potential");
 }
 

@@ -69,7 +69,7 @@ std::vector<Vector3> SensorFunctional::gradients(const PotentialVector& complete
     });
     sums.insert(sums.end(), gradient.begin(), gradient.end());
   }
-  dealii::Utilities::MPI::sum(sums, MPI_COMM_WORLD, sums);
+  dealii::Utilities::MPI::sum(sums, space_.octree().communicator(), sums);
   std::vector<Vector3> result;
   for (std::size_t s = 0; s < balls_.size(); ++s)
     result.emplace_back(sums[3 * s], sums[3 * s + 1], sums[3 * s + 2]);

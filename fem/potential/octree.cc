@@ -3,7 +3,6 @@
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/grid/grid_generator.h>
-#include <mpi.h>
 #include <p4est_base.h>
 #include <sc.h>
 
@@ -19,13 +18,13 @@ namespace {
 constexpr int finest_level = 19;  ///< three indices of 19 bits and the level fill a key
 
 /// p4est's own state; without it, p4est writes to the console.
-MPI_Comm start_p4est() {
+MPI_Comm start_p4est(MPI_Comm communicator) {
   start_mpi();
   if (sc_package_id < 0) {
     sc_init(MPI_COMM_WORLD, 0, 0, nullptr, SC_LP_SILENT);
     p4est_init(nullptr, SC_LP_SILENT);
   }
-  return MPI_COMM_WORLD;
+  return communicator;
 }
 
 dealii::Point<3> to_point(const Vector3& x) {
@@ -34,9 +33,9 @@ dealii::Point<3> to_point(const Vector3& x) {
 
 }  // namespace
 
-Octree::Octree(const Vector3& centre, double half_width)
+Octree::Octree(const Vector3& centre, double half_width, MPI_Comm communicator)
     : root_{centre - Vector3::Constant(half_width), 2 * half_width},
-      triangulation_(start_p4est(), Triangulation::none) {
+      triangulation_(start_p4est(communicator), Triangulation::none) {
   if (!centre.allFinite() || !(half_width > 0) || !std::isfinite(half_width))
     throw InputError("the octree needs a finite centre and a positive half-width");
   dealii::GridGenerator::hyper_rectangle(triangulation_, to_point(root_.lower),
@@ -80,8 +79,8 @@ void Octree::update() {
     own.push_back(key(node));
   }
   for (std::size_t c = 0; c < own.size(); ++c) directory_.emplace(own[c], static_cast<int>(c));
-  if (rank_count() == 1) return;
-  for (const std::vector<Key>& keys : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, own))
+  if (rank_count(communicator()) == 1) return;
+  for (const std::vector<Key>& keys : dealii::Utilities::MPI::all_gather(communicator(), own))
     for (const Key k : keys) directory_.emplace(k, other_rank);  // leaves the own as they are
 }
 
@@ -89,7 +88,7 @@ bool Octree::refine(const std::function<bool(const Cube&)>& cut) {
   std::vector<bool> flags;
   for (const Cube& leaf : cubes_) flags.push_back(cut(leaf));
   const int any = std::find(flags.begin(), flags.end(), true) != flags.end() ? 1 : 0;
-  if (dealii::Utilities::MPI::max(any, MPI_COMM_WORLD) == 0) return false;
+  if (dealii::Utilities::MPI::max(any, communicator()) == 0) return false;
   refine(flags);
   return true;
 }
@@ -110,7 +109,7 @@ void Octree::refine_largest(const std::vector<double>& indicators, double fracti
     double sum = 0;
     for (const double value : indicators)
       if (value > threshold) sum += value;
-    return dealii::Utilities::MPI::sum(sum, MPI_COMM_WORLD);
+    return dealii::Utilities::MPI::sum(sum, communicator());
   };
   const double total = sum_above(0);
   // The largest threshold that leaves the fraction above it, by bisection of its logarithm.
@@ -168,7 +167,7 @@ double Octree::smallest_size(const Eigen::AlignedBox3d& box) const {
 }
 
 bool Octree::meets_own(const Eigen::AlignedBox3d& box) const {
-  if (rank_count() == 1) return root_.box().intersects(box);
+  if (rank_count(communicator()) == 1) return root_.box().intersects(box);
   bool any = false;
   descend(Node{}, box, [&](int cell, double) { any = any || cell != other_rank; });
   return any;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deal.II/distributed/tria.h>
+#include <mpi.h>
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -31,7 +32,7 @@ class Octree {
   using CellIterator = Triangulation::active_cell_iterator;
 
   /// One cube with faces at centre ± half_width (m).
-  Octree(const Vector3& centre, double half_width);
+  Octree(const Vector3& centre, double half_width, MPI_Comm communicator = MPI_COMM_WORLD);
 
   /// Cuts every own leaf for which `cut` holds into eight. Returns whether any was, on any rank.
   /// Collective.
@@ -47,6 +48,7 @@ class Octree {
 
   const Triangulation& triangulation() const { return triangulation_; }
   const Cube& root() const { return root_; }
+  MPI_Comm communicator() const { return triangulation_.get_communicator(); }
 
   /// This rank's leaves, in deal.II's order.
   const std::vector<CellIterator>& cells() const { return cells_; }

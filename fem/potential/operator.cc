@@ -99,7 +99,8 @@ PotentialMultigrid::Coarse::Coarse(const Octree& octree, const CutCells& bodies)
   const dealii::DoFHandler<3>& dofs = space_.dofs();
   const dealii::FE_Q<3> element(1);
   const dealii::AffineConstraints<double>& constraints = space_.constraints();
-  dealii::TrilinosWrappers::SparsityPattern pattern(dofs.locally_owned_dofs(), MPI_COMM_WORLD);
+  dealii::TrilinosWrappers::SparsityPattern pattern(dofs.locally_owned_dofs(),
+                                                    octree.communicator());
   dealii::DoFTools::make_sparsity_pattern(dofs, pattern, constraints, false,
                                           dofs.get_triangulation().locally_owned_subdomain());
   pattern.compress();

@@ -7,7 +7,8 @@
 
 namespace ciliaval::fem::potential {
 
-Potential::Potential(PotentialOptions options) : options_(std::move(options)) {}
+Potential::Potential(PotentialOptions options, MPI_Comm communicator)
+    : options_(std::move(options)), communicator_(communicator) {}
 
 Field Potential::field(const Cilium& cilium, const Deformation& deformation,
                        std::span<const Vector3> points) const {
@@ -20,6 +21,7 @@ Field Potential::field(const Cilium& cilium, const Deformation& deformation,
   PotentialControl control;
   control.tolerance = options_.tolerance;
   control.max_unknowns = options_.max_unknowns;
+  control.communicator = communicator_;
   PotentialResult result = solve_potential(problem, control);
   return {std::move(result.B), std::move(result.uncertainty), std::move(result.mesh)};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <mpi.h>
+
 #include <vector>
 
 #include "fem/potential/magnet.h"
@@ -24,7 +26,7 @@ struct PotentialOptions {
 /// collective; it starts MPI. Throws as solve_potential().
 class Potential : public FieldModel {
  public:
-  explicit Potential(PotentialOptions options = {});
+  explicit Potential(PotentialOptions options = {}, MPI_Comm communicator = MPI_COMM_WORLD);
 
   bool pointwise() const override { return false; }
   Field field(const Cilium& cilium, const Deformation& deformation,
@@ -32,6 +34,7 @@ class Potential : public FieldModel {
 
  private:
   PotentialOptions options_;
+  MPI_Comm communicator_;
 };
 
 }  // namespace ciliaval::fem::potential

@@ -4,7 +4,6 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
-#include <mpi.h>
 
 #include <array>
 
@@ -98,7 +97,7 @@ PotentialSpace::PotentialSpace(const Octree& octree, unsigned int degree)
   dealii::DoFTools::make_zero_boundary_constraints(dofs_, constraints_);
   constraints_.close();
   partitioner_ = std::make_shared<const dealii::Utilities::MPI::Partitioner>(
-      dofs_.locally_owned_dofs(), relevant, MPI_COMM_WORLD);
+      dofs_.locally_owned_dofs(), relevant, octree.communicator());
 
   const std::vector<unsigned int> hierarchic = element.get_poly_space_numbering_inverse();
   std::vector<dealii::types::global_dof_index> indices(static_cast<std::size_t>(nodes_));

@@ -17,47 +17,53 @@
 
 namespace ciliaval::fem::solid {
 
+inline meshes::cylinder::CylinderMeshOptions mesh_options(unsigned int square_cells,
+                                                          unsigned int rings, double ring_ratio,
+                                                          double finest_layer,
+                                                          double coarsest_layer) {
+  meshes::cylinder::CylinderMeshOptions options;
+  options.square_cells = square_cells;
+  options.rings = rings;
+  options.ring_ratio = ring_ratio;
+  options.finest_layer = finest_layer;
+  options.coarsest_layer = coarsest_layer;
+  options.growth = 0.3;
+  return options;
+}
+
 /// Whole meshes of the paper's cilium, from 20,000 to 5,000,000 unknowns, with cells of nearly the
 /// same shape.
-struct Mesh {
-  unsigned int square_cells;
-  unsigned int rings;
-  double ring_ratio;
-  double finest_layer;
-  double coarsest_layer;
-};
-inline const std::vector<Mesh> mesh_family{
-    {4, 1, 1, 0.11, 0.4},          {4, 3, 0.7, 0.07, 0.25},     {6, 4, 0.8, 0.05, 0.15},
-    {8, 5, 0.85, 0.036, 0.11},     {10, 7, 0.87, 0.025, 0.066}, {14, 9, 0.9, 0.0185, 0.05},
-    {18, 11, 0.92, 0.0145, 0.0385}};
+inline const std::vector<meshes::cylinder::CylinderMeshOptions> mesh_family{
+    mesh_options(4, 1, 1, 0.11, 0.4),          mesh_options(4, 3, 0.7, 0.07, 0.25),
+    mesh_options(6, 4, 0.8, 0.05, 0.15),       mesh_options(8, 5, 0.85, 0.036, 0.11),
+    mesh_options(10, 7, 0.87, 0.025, 0.066),   mesh_options(14, 9, 0.9, 0.0185, 0.05),
+    mesh_options(18, 11, 0.92, 0.0145, 0.0385)};
 inline constexpr std::size_t million = 4;  ///< of 1,000,000 unknowns
 
-/// The tangent on such a mesh without load (ν = 0.49, E₂/E₁ = 30), the nodal forces of 1 mN at 16
-/// mm; in parts, if there are several ranks.
+/// The tangent on such a mesh without load (E₂/E₁ = 30), the nodal forces of 1 mN at 16 mm; in
+/// parts, if there are several ranks.
 class Discretised {
  public:
-  explicit Discretised(const Mesh& mesh) {
+  Discretised(const meshes::cylinder::CylinderMeshOptions& mesh, double poisson_ratio) {
     start_mpi();
-    meshes::cylinder::CylinderMeshOptions options;
-    options.square_cells = mesh.square_cells;
-    options.rings = mesh.rings;
-    options.ring_ratio = mesh.ring_ratio;
-    options.finest_layer = mesh.finest_layer;
-    options.coarsest_layer = mesh.coarsest_layer;
-    options.growth = 0.3;
-    triangulation_ = meshes::cylinder::make_cylinder(paper_cilium(), options, MPI_COMM_WORLD);
+    const Cilium cilium = paper_cilium(poisson_ratio);
+    triangulation_ = meshes::cylinder::make_cylinder(cilium, mesh, MPI_COMM_WORLD);
     mapping_ = meshes::cylinder::cylinder_mapping(*triangulation_, discretisation::element_degree);
     std::vector<material::Hyperelastic> materials;
-    for (const Segment& segment : paper_cilium().segments)
+    for (const Segment& segment : cilium.segments)
       materials.push_back(
           material::Hyperelastic::neo_hooke(segment.shear_modulus(), segment.bulk_modulus()));
     space = std::make_unique<discretisation::SolidSpace>(*triangulation_, *mapping_, materials);
-    const std::vector<discretisation::DirichletCondition> clamped{{.boundary = meshes::base_id}};
-    constraints = increment_constraints(*space, clamped);
-    quadrature_ = std::make_unique<discretisation::ExtrudedQuadrature>(*space);
-    external_ =
-        loads::external_forces(*space, *quadrature_, paper_cilium(),
-                               ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = 0.5}, 0.5e-3);
+    std::vector<discretisation::DirichletCondition> conditions{{.boundary = meshes::base_id}};
+    if (mesh.half)
+      conditions.push_back({.boundary = meshes::symmetry_id, .components = {false, true, false}});
+    constraints = increment_constraints(*space, conditions);
+    using discretisation::Extent;
+    quadrature_ = std::make_unique<discretisation::ExtrudedQuadrature>(
+        *space, mesh.half ? Extent::half : Extent::whole);
+    external_ = loads::external_forces(
+        *space, *quadrature_, cilium,
+        ContactLoad{.force = 1e-3, .height = 16e-3, .azimuth = mesh.half ? 0 : 0.5}, 0.5e-3);
     forces = loads::forces_at(space->undeformed().displacement, *space, external_);
     constraints.set_zero(forces);
   }

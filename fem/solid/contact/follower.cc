@@ -9,6 +9,7 @@
 
 #include "fem/parallel.h"
 #include "fem/solid/discretisation/assembly.h"
+#include "fem/solid/discretisation/row_range.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/height_loads.h"
 #include "problem/error.h"

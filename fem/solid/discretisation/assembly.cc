@@ -35,6 +35,7 @@ struct NoScratch {};
 
 /// F = 1 + Σ u_a ⊗ ∂N_a/∂X at all Gauss points: columns 3q + J.
 Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(const SolidElement& element,
+                                                                   const GaussPoints& points,
                                                                    const Vector& displacement) {
   const NodalVectors u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, 3, 3 * element_points> F;
@@ -43,7 +44,7 @@ Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(const SolidEl
   for (Eigen::Index q = 0; q < element_points; ++q) {
     const Matrix3 by_unit = F.middleCols<3>(3 * q);
     F.middleCols<3>(3 * q).noalias() =
-        by_unit.lazyProduct(element.inverse_jacobians.middleCols<3>(3 * q));
+        by_unit.lazyProduct(points.inverse_jacobians.middleCols<3>(3 * q));
     F.middleCols<3>(3 * q) += Matrix3::Identity();
   }
   return F;
@@ -52,11 +53,11 @@ Eigen::Matrix<double, 3, 3 * element_points> deformation_gradients(const SolidEl
 /// Fluxes by ξ from fluxes by X, row 3q + J.
 template <int columns>
 Eigen::Matrix<double, 3 * element_points, columns> to_unit_cell(
-    const SolidElement& element, Eigen::Matrix<double, 3 * element_points, columns> fluxes) {
+    const GaussPoints& points, Eigen::Matrix<double, 3 * element_points, columns> fluxes) {
   for (Eigen::Index q = 0; q < element_points; ++q) {
     const Eigen::Matrix<double, 3, columns> by_X = fluxes.template middleRows<3>(3 * q);
     fluxes.template middleRows<3>(3 * q).noalias() =
-        element.inverse_jacobians.middleCols<3>(3 * q).lazyProduct(by_X);
+        points.inverse_jacobians.middleCols<3>(3 * q).lazyProduct(by_X);
   }
   return fluxes;
 }
@@ -75,7 +76,8 @@ Matrix3 cofactor(const Matrix3& F) {
 /// holds w ψ_m J F⁻ᵀ_cJ.
 void force_share(const SolidElement& element, const SolidState& state, std::size_t index,
                  ForceShare& share, PressureEquation& equation) {
-  const auto F_all = deformation_gradients(element, state.displacement);
+  const GaussPoints points = element.gauss_points();
+  const auto F_all = deformation_gradients(element, points, state.displacement);
   const PressureVector& pressure = state.pressure[index];
   PressureVector residual = PressureVector::Zero();
   Eigen::Matrix<double, 3 * element_points, 3 + 3 * element_pressures> fluxes;
@@ -86,8 +88,8 @@ void force_share(const SolidElement& element, const SolidState& state, std::size
     const Matrix3 cof = cofactor(F);
     const double J = F.row(0).dot(cof.row(0));
     if (!(J > 0)) return;
-    const double weight = element.weights[q];
-    const PressureVector psi = element.pressure_values.col(q);
+    const double weight = points.weights[q];
+    const PressureVector psi = points.pressure_values.col(q);
     const double p = psi.dot(pressure);
     residual += weight * (J - 1 - p / element.material.bulk_modulus) * psi;
     fluxes.block<3, 3>(3 * q, 0) = weight * first_piola_stress(element.material, F, p).transpose();
@@ -97,7 +99,7 @@ void force_share(const SolidElement& element, const SolidState& state, std::size
   }
   share.admissible = true;
   Eigen::Matrix<double, element_nodes, 3 + 3 * element_pressures> sums;
-  sums.noalias() = unit_gradients() * to_unit_cell(element, fluxes);
+  sums.noalias() = unit_gradients() * to_unit_cell(points, fluxes);
   share.forces = sums.leftCols<3>().reshaped();
   for (Eigen::Index c = 0; c < 3; ++c)
     equation.gradient.middleCols<element_nodes>(c * element_nodes) =
@@ -112,13 +114,14 @@ void force_share(const SolidElement& element, const SolidState& state, std::size
 void element_stiffness(const SolidElement& element, const SolidState& state, std::size_t index,
                        const PressureEquation& equation, dealii::FullMatrix<double>& matrix) {
   using Block = Eigen::Matrix<double, element_nodes, element_nodes>;
-  const auto F = deformation_gradients(element, state.displacement);
-  const ShapeGradients gradients = element.gradients();
+  const GaussPoints points = element.gauss_points();
+  const auto F = deformation_gradients(element, points, state.displacement);
+  const ShapeGradients gradients = points.gradients();
   std::array<StressTangent, element_points> tangents;
   for (Eigen::Index q = 0; q < element_points; ++q) {
-    const double p = element.pressure_values.col(q).dot(state.pressure[index]);
+    const double p = points.pressure_values.col(q).dot(state.pressure[index]);
     tangents[static_cast<std::size_t>(q)] =
-        element.weights[q] * stress_tangent(element.material, F.middleCols<3>(3 * q), p);
+        points.weights[q] * stress_tangent(element.material, F.middleCols<3>(3 * q), p);
   }
   const Eigen::Matrix<double, element_pressures, element_dofs> pressure =
       element.inverse_compliance * equation.gradient;
@@ -152,16 +155,17 @@ void element_stiffness(const SolidElement& element, const SolidState& state, std
 
 Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& element,
                                                        const SolidState& state, std::size_t index) {
-  const auto F_all = deformation_gradients(element, state.displacement);
+  const GaussPoints points = element.gauss_points();
+  const auto F_all = deformation_gradients(element, points, state.displacement);
   Eigen::Matrix<double, 3 * element_points, 3> fluxes;
   for (Eigen::Index q = 0; q < element_points; ++q) {
     const Matrix3 F = F_all.middleCols<3>(3 * q);
     if (!(F.determinant() > 0)) throw SolverError("det F of the solid is not positive");
-    const double p = element.pressure_values.col(q).dot(state.pressure[index]);
+    const double p = points.pressure_values.col(q).dot(state.pressure[index]);
     fluxes.middleRows<3>(3 * q) =
-        element.weights[q] * first_piola_stress(element.material, F, p).transpose();
+        points.weights[q] * first_piola_stress(element.material, F, p).transpose();
   }
-  return unit_gradients().lazyProduct(to_unit_cell(element, fluxes));
+  return unit_gradients().lazyProduct(to_unit_cell(points, fluxes));
 }
 
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state) {
@@ -236,11 +240,12 @@ double elastic_energy(const SolidSpace& space, const SolidState& state) {
   state.displacement.update_ghost_values();
   double energy = 0;
   for (std::size_t e = 0; e < space.own_elements().size(); ++e) {
-    const auto F = deformation_gradients(elements[e], state.displacement);
+    const GaussPoints points = elements[e].gauss_points();
+    const auto F = deformation_gradients(elements[e], points, state.displacement);
     for (Eigen::Index q = 0; q < element_points; ++q)
-      energy += elements[e].weights[q] *
-                strain_energy(elements[e].material, F.middleCols<3>(3 * q),
-                              elements[e].pressure_values.col(q).dot(state.pressure[e]));
+      energy +=
+          points.weights[q] * strain_energy(elements[e].material, F.middleCols<3>(3 * q),
+                                            points.pressure_values.col(q).dot(state.pressure[e]));
   }
   return dealii::Utilities::MPI::sum(energy, space.communicator());
 }
@@ -249,10 +254,11 @@ void project_pressure(const SolidSpace& space, SolidState& state) {
   state.displacement.update_ghost_values();
   const auto& elements = space.elements();
   for (std::size_t e = 0; e < elements.size(); ++e) {
-    const auto F = deformation_gradients(elements[e], state.displacement);
+    const GaussPoints points = elements[e].gauss_points();
+    const auto F = deformation_gradients(elements[e], points, state.displacement);
     PressureVector moment = PressureVector::Zero();
     for (int q = 0; q < element_points; ++q)
-      moment += elements[e].weights[q] * elements[e].pressure_values.col(q) *
+      moment += points.weights[q] * points.pressure_values.col(q) *
                 (F.middleCols<3>(Eigen::Index{3} * q).determinant() - 1);
     state.pressure[e] = elements[e].inverse_compliance * moment;
   }

@@ -66,11 +66,43 @@ const ShapeGradients& unit_gradients() {
   return result;
 }
 
-ShapeGradients SolidElement::gradients() const {
+const ShapeValues& unit_values() {
+  static const ShapeValues result = [] {
+    const dealii::FE_Q<3> element(element_degree);
+    const dealii::QGauss<3> gauss(element_degree + 1);
+    const std::vector<unsigned int> nodes = element.get_poly_space_numbering_inverse();
+    ShapeValues values;
+    for (unsigned int a = 0; a < element_nodes; ++a)
+      for (unsigned int q = 0; q < element_points; ++q)
+        values(a, q) = element.shape_value(nodes[a], gauss.point(q));
+    return values;
+  }();
+  return result;
+}
+
+ShapeGradients GaussPoints::gradients() const {
   ShapeGradients result;
   for (Eigen::Index q = 0; q < element_points; ++q)
     result.middleCols<3>(3 * q) =
         unit_gradients().middleCols<3>(3 * q).lazyProduct(inverse_jacobians.middleCols<3>(3 * q));
+  return result;
+}
+
+GaussPoints SolidElement::gauss_points() const {
+  static const std::vector<double> unit_weights =
+      dealii::QGauss<3>(element_degree + 1).get_weights();
+  GaussPoints result;
+  // Eigen's blocked product is meant for large matrices and slower here.
+  const Eigen::Matrix<double, 3, 3 * element_points> jacobians =
+      nodes.transpose().lazyProduct(unit_gradients());  // ∂X/∂ξ
+  const Eigen::Matrix<double, 3, element_points> points =
+      nodes.transpose().lazyProduct(unit_values());
+  for (Eigen::Index q = 0; q < element_points; ++q) {
+    const Matrix3 jacobian = jacobians.middleCols<3>(3 * q);
+    result.weights[q] = jacobian.determinant() * unit_weights[static_cast<std::size_t>(q)];
+    result.inverse_jacobians.middleCols<3>(3 * q) = jacobian.inverse();
+    result.pressure_values.col(q) = pressure_basis(points.col(q));
+  }
   return result;
 }
 
@@ -91,12 +123,6 @@ SolidSpace::SolidSpace(const dealii::Triangulation<3>& triangulation,
   const std::vector<unsigned int> inverse = scalar_element_.get_poly_space_numbering_inverse();
   lexicographic_.resize(inverse.size());
   for (unsigned int lex = 0; lex < inverse.size(); ++lex) lexicographic_[inverse[lex]] = lex;
-
-  const dealii::QGauss<3> gauss(element_degree + 1);
-  shape_values_.resize(element_nodes, element_points);
-  for (unsigned int q = 0; q < gauss.size(); ++q)
-    for (unsigned int a = 0; a < element_nodes; ++a)
-      shape_values_(lexicographic_[a], q) = scalar_element_.shape_value(a, gauss.point(q));
 
   dealii::FEValues<3> nodes(mapping_, scalar_element_, unit_nodes(),
                             dealii::update_quadrature_points);
@@ -132,31 +158,21 @@ SolidElement SolidSpace::make_element(const dealii::DoFHandler<3>::active_cell_i
     element.dofs[component * element_nodes + lexicographic_[node]] =
         partitioner_->global_to_local(dofs[i]);
   }
-  element.weights.resize(element_points);
-  element.pressure_values.resize(element_pressures, element_points);
   for (unsigned int a = 0; a < element_nodes; ++a)
     for (unsigned int J = 0; J < 3; ++J) element.nodes(a, J) = nodes.quadrature_point(a)[J];
-  const Eigen::Matrix<double, element_points, 3> points = shape_values_.transpose() * element.nodes;
   const dealii::Point<3> centre = cell->center();
   element.centre = Vector3(centre[0], centre[1], centre[2]);
   element.size = cell->diameter();
-  const dealii::QGauss<3> gauss(element_degree + 1);
-  for (Eigen::Index q = 0; q < element_points; ++q) {
-    const Matrix3 jacobian =
-        element.nodes.transpose() * unit_gradients().middleCols<3>(3 * q);  // ∂X/∂ξ
-    element.weights[q] = jacobian.determinant() * gauss.weight(static_cast<unsigned int>(q));
-    element.pressure_values.col(q) = element.pressure_basis(points.row(q).transpose());
-    element.inverse_jacobians.middleCols<3>(3 * q) = jacobian.inverse();
-  }
   const auto id = cell->material_id();
   if (id >= materials.size())
     throw InputError("the mesh has cells of material " + std::to_string(id) + ", but only " +
                      std::to_string(materials.size()) + " materials are given");
   element.material = materials[id];
-  if (!(element.weights.minCoeff() > 0))
+  const GaussPoints points = element.gauss_points();
+  if (!(points.weights.minCoeff() > 0))
     throw InputError("the mesh has a cell whose Jacobian is not positive");
-  const PressureMatrix compliance = element.pressure_values * element.weights.asDiagonal() *
-                                    element.pressure_values.transpose() /
+  const PressureMatrix compliance = points.pressure_values * points.weights.asDiagonal() *
+                                    points.pressure_values.transpose() /
                                     element.material.bulk_modulus;
   element.inverse_compliance = compliance.inverse();
   return element;

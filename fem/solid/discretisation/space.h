@@ -37,6 +37,21 @@ using ShapeGradients = Eigen::Matrix<double, element_nodes, 3 * element_points>;
 /// ∂N_a/∂ξ_j at Gauss point q: row a, column 3q + j.
 const ShapeGradients& unit_gradients();
 
+using ShapeValues = Eigen::Matrix<double, element_nodes, element_points>;
+/// N_a at Gauss point q: row a, column q.
+const ShapeValues& unit_values();
+
+/// What a cell has at its Gauss points, in the reference configuration.
+struct GaussPoints {
+  Eigen::Matrix<double, 3, 3 * element_points>
+      inverse_jacobians;                             ///< ∂ξ_j/∂X_J: column 3q + J, 1/m
+  Eigen::Matrix<double, element_points, 1> weights;  ///< det(∂X/∂ξ) w_q, m³
+  Eigen::Matrix<double, element_pressures, element_points> pressure_values;  ///< ψ_m
+
+  /// ∂N_a/∂X_J at Gauss point q: row a, column 3q + J, 1/m.
+  ShapeGradients gradients() const;
+};
+
 /// The data of one cell for assembly, computed once in the reference configuration.
 struct SolidElement {
   dealii::Triangulation<3>::active_cell_iterator cell;
@@ -46,15 +61,10 @@ struct SolidElement {
   Eigen::Matrix<double, element_nodes, 3> nodes;  ///< X of the nodes, m: row a
   Vector3 centre;                                 ///< origin of the pressure's linear basis, m
   double size = 1;                                ///< its unit of length, m
-  Eigen::Matrix<double, 3, 3 * element_points>
-      inverse_jacobians;    ///< ∂ξ_j/∂X_J: column 3q + J, 1/m
-  Eigen::VectorXd weights;  ///< det(∂X/∂ξ) w_q, m³
-  Eigen::Matrix<double, element_pressures, Eigen::Dynamic> pressure_values;  ///< ψ_m at the points
-  PressureMatrix inverse_compliance;  ///< (∫ ψψᵀ/K dV)⁻¹, Pa/m³
+  PressureMatrix inverse_compliance;              ///< (∫ ψψᵀ/K dV)⁻¹, Pa/m³
 
-  /// ∂N_a/∂X_J at Gauss point q: row a, column 3q + J, 1/m. Kept, they would be the largest part of
-  /// the element.
-  ShapeGradients gradients() const;
+  /// Computed from the nodes: kept, they would be three quarters of the element.
+  GaussPoints gauss_points() const;
   /// ψ(X) = (1, (X − centre)/size).
   PressureVector pressure_basis(const Vector3& X) const;
 };
@@ -91,8 +101,6 @@ class SolidSpace {
   Vector vector() const { return Vector(partitioner_); }
   /// Lexicographic number of node a of deal.II's FE_Q<3>(2).
   const std::vector<unsigned int>& lexicographic() const { return lexicographic_; }
-  /// N_a at the Gauss points: row a (lexicographic), column q.
-  const Eigen::MatrixXd& shape_values() const { return shape_values_; }
   /// On all ranks together.
   dealii::types::global_dof_index unknowns() const { return dof_handler_.n_dofs(); }
 
@@ -110,7 +118,6 @@ class SolidSpace {
   dealii::FESystem<3> element_;
   dealii::DoFHandler<3> dof_handler_;
   std::vector<unsigned int> lexicographic_;
-  Eigen::MatrixXd shape_values_;
   std::shared_ptr<const dealii::Utilities::MPI::Partitioner> partitioner_;
   std::vector<SolidElement> elements_;
   std::size_t own_ = 0;

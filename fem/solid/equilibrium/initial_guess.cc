@@ -202,12 +202,13 @@ SolidState filled(const SolidSpace& space, const Displacement& displacement,
         state.displacement.local_element(element.dofs[c * element_nodes + a]) =
             u[static_cast<Eigen::Index>(c)];
     }
-    const Eigen::Matrix<double, element_points, 3> points =
-        space.shape_values().transpose() * element.nodes;
+    const GaussPoints points = element.gauss_points();
+    const Eigen::Matrix<double, 3, element_points> positions =
+        element.nodes.transpose() * unit_values();
     PressureVector moment = PressureVector::Zero();
     for (unsigned int q = 0; q < element_points; ++q)
-      moment += element.weights[q] * element.pressure_values.col(q) *
-                pressure(points.row(q).transpose(), segment);
+      moment +=
+          points.weights[q] * points.pressure_values.col(q) * pressure(positions.col(q), segment);
     state.pressure[e] = element.inverse_compliance * moment / element.material.bulk_modulus;
   }
   state.displacement.update_ghost_values();

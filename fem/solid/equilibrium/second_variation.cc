@@ -15,8 +15,8 @@ Vector weighed(const SolidSpace& space, const Vector& u) {
   Vector result = space.vector();
   for (const SolidElement& element : space.elements()) {
     const Eigen::Matrix<double, element_nodes, 3> f =
-        space.shape_values() * (element.weights.asDiagonal() * (space.shape_values().transpose() *
-                                                                nodal_displacements(element, u)));
+        unit_values() * (element.gauss_points().weights.asDiagonal() *
+                         (unit_values().transpose() * nodal_displacements(element, u)));
     for (unsigned int a = 0; a < element_nodes; ++a)
       for (unsigned int c = 0; c < 3; ++c)
         result.local_element(element.dofs[c * element_nodes + a]) += f(a, c);

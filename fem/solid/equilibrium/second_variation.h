@@ -5,7 +5,7 @@
 #include <deal.II/lac/sparse_matrix.h>
 #include <mpi.h>
 
-#include "fem/parallel.h"
+#include "fem/solid/discretisation/row_range.h"
 #include "fem/solid/discretisation/space.h"
 
 namespace ciliaval::fem::solid::equilibrium {
@@ -23,7 +23,7 @@ struct SecondVariation {
 /// Collective. Throws SolverError if K is singular or the memory does not suffice.
 SecondVariation second_variation(const discretisation::SolidSpace& space,
                                  const dealii::AffineConstraints<double>& constraints,
-                                 const dealii::SparseMatrix<double>& tangent, RowRange rows,
-                                 MPI_Comm communicator);
+                                 const dealii::SparseMatrix<double>& tangent,
+                                 discretisation::RowRange rows, MPI_Comm communicator);
 
 }  // namespace ciliaval::fem::solid::equilibrium

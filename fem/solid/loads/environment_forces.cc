@@ -41,11 +41,12 @@ Vector dead_part(const SolidSpace& space, const Cilium& cilium, const Environmen
     const Segment& segment = segment_of(element, cilium);
     const Vector3 weight = surroundings::weight_per_volume(environment, segment);
     const Vector3 M = has_poles ? magnetization(segment) : Vector3(Vector3::Zero());
-    const ShapeGradients gradients = element.gradients();
+    const GaussPoints points = element.gauss_points();
+    const ShapeGradients gradients = points.gradients();
     Eigen::Matrix<double, element_nodes, 3> f =
-        (space.shape_values() * element.weights) * weight.transpose();
+        (unit_values() * points.weights) * weight.transpose();
     for (int q = 0; q < element_points; ++q)
-      f += element.weights[q] * gradients.middleCols<3>(Eigen::Index{3} * q) * M *
+      f += points.weights[q] * gradients.middleCols<3>(Eigen::Index{3} * q) * M *
            environment.uniform_field.transpose();
     for (unsigned int a = 0; a < element_nodes; ++a)
       for (unsigned int c = 0; c < 3; ++c)
@@ -65,15 +66,16 @@ void add_magnet(const SolidSpace& space, const SolidElement& element, const Vect
                 TangentMatrix* tangent) {
   const auto u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, element_nodes, 3> f = Eigen::Matrix<double, element_nodes, 3>::Zero();
-  const ShapeGradients gradients = element.gradients();
+  const GaussPoints points = element.gauss_points();
+  const ShapeGradients gradients = points.gradients();
   dealii::FullMatrix<double> K(element_dofs, element_dofs);
   for (int q = 0; q < element_points; ++q) {
     const Eigen::Matrix<double, element_nodes, 3> dN = gradients.middleCols<3>(Eigen::Index{3} * q);
-    const Eigen::Matrix<double, element_nodes, 1> N = space.shape_values().col(q);
+    const Eigen::Matrix<double, element_nodes, 1> N = unit_values().col(q);
     const Vector3 x = (element.nodes + u).transpose() * N;
     const MagnetInField e =
         magnet_in_field(deformation_gradient(gradients, u, q), M, field(x), law);
-    const double w = element.weights[q];
+    const double w = points.weights[q];
     f += w * (dN * e.by_F.transpose() + N * e.by_x.transpose());
     if (tangent == nullptr) continue;
     for (int i = 0; i < 3; ++i)
@@ -209,7 +211,7 @@ Vector3 force_of_magnets(const SolidSpace& space, const Cilium& cilium,
 Vector3 weight_of(const SolidSpace& space, const Cilium& cilium, const Environment& environment) {
   Vector3 sum = Vector3::Zero();
   for (const SolidElement& element : space.own_elements())
-    sum += element.weights.sum() *
+    sum += element.gauss_points().weights.sum() *
            surroundings::weight_per_volume(environment, segment_of(element, cilium));
   sum_over_ranks(space.communicator(), {sum.data(), 3});
   return sum;

@@ -153,16 +153,17 @@ void Extraction::add_across(std::size_t index, Eigen::Index first, Wrench& wrenc
   if (M.isZero(0)) return;
   const Eigen::Matrix<double, element_nodes, 3> x =
       element.nodes + nodal_displacements(element, state.displacement);
-  const ShapeGradients gradients = element.gradients();
+  const GaussPoints points = element.gauss_points();
+  const ShapeGradients gradients = points.gradients();
   for (int q = 0; q < element_points; ++q) {
     const Eigen::Matrix<double, element_nodes, 1> along_M =
         gradients.middleCols<3>(Eigen::Index{3} * q) * M;
-    const Eigen::Matrix<double, element_nodes, 1> N = space.shape_values().col(q);
+    const Eigen::Matrix<double, element_nodes, 1> N = unit_values().col(q);
     const auto jet = surroundings::magnets::jet(load.magnets, x.transpose() * N);
     const Vector3 B = load.uniform_field + jet.B;
     const Vector3 force = jet.gradient.transpose() * (x.transpose() * along_M);
     for (Eigen::Index a = first; a < element_nodes; ++a)
-      wrench.add(x.row(a).transpose(), element.weights[q] * (along_M[a] * B + N[a] * force));
+      wrench.add(x.row(a).transpose(), points.weights[q] * (along_M[a] * B + N[a] * force));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::solvers {

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "fem/parallel.h"
+#include "fem/solid/discretisation/row_range.h"
 #include "fem/solid/discretisation/vector.h"
 
 namespace ciliaval::fem::solid::solvers {
@@ -22,7 +22,7 @@ class DirectSolver {
   };
   /// Each rank gives the rows `rows` of its matrix; equal rows add up. The pattern must be
   /// symmetric and couple whole nodes (node_unknowns). Starts MPI if need be.
-  DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, RowRange rows,
+  DirectSolver(const dealii::SparsityPattern& pattern, Kind kind, discretisation::RowRange rows,
                MPI_Comm communicator);
   ~DirectSolver();
   DirectSolver(const DirectSolver&) = delete;
@@ -42,7 +42,7 @@ class DirectSolver {
   void analyse(const dealii::SparsityPattern& pattern);
 
   Kind kind_;
-  RowRange rows_;
+  discretisation::RowRange rows_;
   MPI_Comm communicator_;
   std::unique_ptr<Mumps> mumps_;
 };

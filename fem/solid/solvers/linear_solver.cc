@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "fem/parallel.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::solvers {
@@ -34,12 +35,11 @@ struct OwnRows {
   RowRange rows;
   MPI_Comm communicator;
   void vmult(Vector& y, const Vector& x) const {
-    for (Row row = rows.begin; row < rows.end; ++row) {
-      y.local_element(row) = 0;
+    y = 0.;
+    for (Row row = rows.begin; row < rows.end; ++row)
       for (auto entry = matrix.begin(row); entry != matrix.end(row); ++entry)
         y.local_element(row) += entry->value() * x.local_element(entry->column());
-    }
-    gather_over_ranks(communicator, {y.begin(), y.locally_owned_size()});
+    sum_over_ranks(communicator, {y.begin(), y.locally_owned_size()});
   }
 };
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "fem/parallel.h"
+#include "fem/solid/discretisation/row_range.h"
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/discretisation/tangent_matrix.h"
 #include "fem/solid/solvers/block_csr.h"
@@ -57,7 +57,7 @@ class LinearSolver {
   // Of the direct solver:
   /// Of its matrix, and this rank's rows of it.
   const dealii::SparsityPattern& pattern() const { return pattern_; }
-  const RowRange& rows() const { return rows_; }
+  const discretisation::RowRange& rows() const { return rows_; }
 
  private:
   /// From the solution given. Empty if GMRES does not get there in max_iterations; the solution is
@@ -66,7 +66,7 @@ class LinearSolver {
                            double reduction, unsigned int max_iterations) const;
 
   MPI_Comm communicator_;
-  RowRange rows_;
+  discretisation::RowRange rows_;
   std::vector<std::size_t> cells_;
   // The direct one's.
   dealii::SparsityPattern pattern_;

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solvers/vertex_patch_schwarz.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <map>
-#include <set>
+#include <limits>
 #include <span>
 #include <tuple>
+
+#include "problem/error.h"
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
@@ -85,27 +87,62 @@ std::vector<Node> group_of_vertices(const std::vector<Edge>& edges, Node vertice
   return group;
 }
 
-/// Inverts a symmetric matrix in place by its Schur complements: half the operations of an LU, in
-/// products of matrices. (LAPACK's potri is no slower, but OpenBLAS's threads get in the way of
-/// for_each's.) Eigenvalues of both signs, as of compressed cells, may cost digits.
-void invert_symmetric(Eigen::Ref<Eigen::MatrixXd> matrix) {
+/// A corner of a cell, of which the patch of its vertex has the nodes inside the cell.
+struct PatchCell {
+  Node group = 0;
+  std::uint32_t cell = 0;
+  std::uint32_t corner = 0;
+};
+
+/// In the order of their groups; of the vertices that have one.
+std::vector<PatchCell> cells_of_patches(const CellNodes& cells, const std::vector<Node>& group) {
+  std::vector<PatchCell> result;
+  for (std::uint32_t cell = 0; cell < cells.cells(); ++cell)
+    for (std::uint32_t corner = 0; corner < corners; ++corner)
+      if (const Node vertex = cells.of(cell)[corner_node(corner)]; vertex < group.size())
+        result.push_back({group[vertex], cell, corner});
+  std::ranges::sort(result, {}, &PatchCell::group);
+  return result;
+}
+
+/// L⁻¹ in place of a lower triangle L, by halves: nearly all of it in products of matrices.
+void invert_triangle(Eigen::Ref<Eigen::MatrixXd> L) {
   constexpr Eigen::Index smallest = 32;
-  const Eigen::Index size = matrix.rows();
+  const Eigen::Index size = L.rows();
   if (size <= smallest) {
-    matrix = Eigen::MatrixXd(matrix.inverse());
+    L = Eigen::MatrixXd(
+        L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(size, size)));
     return;
   }
   const Eigen::Index half = size / 2;
-  auto first = matrix.topLeftCorner(half, half);
-  auto coupling = matrix.bottomLeftCorner(size - half, half);
-  auto second = matrix.bottomRightCorner(size - half, size - half);
-  invert_symmetric(first);
-  const Eigen::MatrixXd product = coupling * first;
-  second.noalias() -= product * coupling.transpose();
-  invert_symmetric(second);
-  coupling.noalias() = -second * product;
-  first.noalias() -= product.transpose() * coupling;
-  matrix.topRightCorner(half, size - half) = coupling.transpose();
+  auto first = L.topLeftCorner(half, half);
+  auto coupling = L.bottomLeftCorner(size - half, half);
+  auto second = L.bottomRightCorner(size - half, size - half);
+  invert_triangle(first);
+  invert_triangle(second);
+  const Eigen::MatrixXd product = second.triangularView<Eigen::Lower>() * coupling;
+  coupling.noalias() = -product * first.triangularView<Eigen::Lower>();
+}
+
+/// The lower triangle of the inverse of a symmetric matrix: A⁻¹ = L⁻ᵀL⁻¹ by Cholesky's factor, a
+/// third of the work of an LU. Schur complements by explicit inverses lose all digits at
+/// K/μ = 5000. (LAPACK's potri is no slower, but OpenBLAS's threads get in the way of for_each's.)
+Eigen::MatrixXd inverted(const Eigen::MatrixXd& matrix) {
+  const Eigen::LLT<Eigen::MatrixXd> factors(matrix);
+  // Not positive definite: the tangent of compressed cells.
+  if (factors.info() != Eigen::Success) return matrix.inverse();
+  Eigen::MatrixXd L = factors.matrixL();
+  invert_triangle(L);
+  constexpr Eigen::Index width = 48;  // of the columns that are computed at once
+  Eigen::MatrixXd result(L.rows(), L.cols());
+  for (Eigen::Index j = 0; j < L.cols(); j += width) {
+    const Eigen::Index rest = L.rows() - j;
+    const Eigen::Index columns = std::min(width, rest);
+    result.block(j, j, rest, columns).noalias() =
+        L.bottomRightCorner(rest, rest).triangularView<Eigen::Lower>().transpose() *
+        L.block(j, j, rest, columns);
+  }
+  return result;
 }
 
 }  // namespace
@@ -125,31 +162,33 @@ double trilinear(std::size_t corner, std::size_t node) {
 VertexPatchSchwarz::VertexPatchSchwarz(const SolidSpace& space, const CellNodes& cells,
                                        const BlockCsr& matrix, Node own_nodes) {
   const std::vector<Node> group = group_of_vertices(thin_edges(space, cells, own_nodes), own_nodes);
-  std::map<Node, std::set<Index>> patches;
-  for (std::size_t cell = 0; cell < cells.cells(); ++cell)
-    for (std::size_t c = 0; c < corners; ++c) {
-      const Node vertex = cells.of(cell)[corner_node(c)];
-      if (vertex >= own_nodes) continue;
-      for (std::size_t a = 0; a < element_nodes; ++a)
-        for (Index k = 0; k < node_unknowns; ++k) {
-          const Index dof = static_cast<Index>(node_unknowns) * cells.of(cell)[a] + k;
-          if (trilinear(c, a) > 0 && !matrix.is_constrained(dof))
-            patches[group[vertex]].insert(dof);
-        }
-    }
+  const std::vector<PatchCell> patch_cells = cells_of_patches(cells, group);
   starts_.push_back(0);
   matrix_starts_.push_back(0);
-  std::vector<std::size_t> uses(node_unknowns * matrix.nodes() + 1);
-  for (const auto& [vertex, patch] : patches) {
+  std::vector<Index> uses(node_unknowns * matrix.nodes() + 1);
+  std::vector<Index> patch;
+  for (auto next = patch_cells.begin(); next != patch_cells.end();) {
+    patch.clear();
+    for (const Node group_of_patch = next->group;
+         next != patch_cells.end() && next->group == group_of_patch; ++next)
+      for (std::size_t a = 0; a < element_nodes; ++a)
+        for (Index k = 0; k < node_unknowns && trilinear(next->corner, a) > 0; ++k) {
+          const Index dof = static_cast<Index>(node_unknowns) * cells.of(next->cell)[a] + k;
+          if (!matrix.is_constrained(dof)) patch.push_back(dof);
+        }
+    std::ranges::sort(patch);
+    patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
     dofs_.insert(dofs_.end(), patch.begin(), patch.end());
     starts_.push_back(dofs_.size());
     matrix_starts_.push_back(matrix_starts_.back() + patch.size() * (patch.size() + 1) / 2);
     for (const Index dof : patch) ++uses[dof + 1];
   }
+  if (dofs_.size() > std::numeric_limits<Index>::max())
+    throw SolverError("a rank's part of the mesh is too large for its patches' numbers");
   for (std::size_t i = 1; i < uses.size(); ++i) uses[i] += uses[i - 1];
   user_starts_ = uses;
   users_.resize(dofs_.size());
-  for (std::size_t i = 0; i < dofs_.size(); ++i) users_[uses[dofs_[i]]++] = i;
+  for (std::size_t i = 0; i < dofs_.size(); ++i) users_[uses[dofs_[i]]++] = static_cast<Index>(i);
   inverses_.resize(matrix_starts_.back());
   corrections_.resize(dofs_.size());
 }
@@ -174,8 +213,7 @@ void VertexPatchSchwarz::update(const BlockCsr& matrix) {
               block(dofs[row] % node_unknowns, dofs[column] % node_unknowns);
       }
     }
-    Eigen::MatrixXd inverse = 0.5 * (dense + dense.transpose());
-    invert_symmetric(inverse);
+    const Eigen::MatrixXd inverse = inverted(0.5 * (dense + dense.transpose()));
     float* at = inverses_.data() + matrix_starts_[patch];
     for (Eigen::Index j = 0; j < size; ++j)
       for (Eigen::Index i = j; i < size; ++i) *at++ = static_cast<float>(inverse(i, j));

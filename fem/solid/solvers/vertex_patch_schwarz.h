@@ -44,8 +44,8 @@ class VertexPatchSchwarz {
   std::vector<Index> dofs_;                 ///< of all patches, one after the other
   std::vector<std::size_t> matrix_starts_;  ///< of the patches' matrices in inverses_
   std::vector<float> inverses_;             ///< lower triangles, column by column
-  std::vector<std::size_t> user_starts_;    ///< for each unknown: its entries in users_
-  std::vector<std::size_t> users_;          ///< positions in dofs_
+  std::vector<Index> user_starts_;          ///< for each unknown: its entries in users_
+  std::vector<Index> users_;                ///< positions in dofs_
   mutable std::vector<float> corrections_;  ///< of all patches
 };
 

@@ -103,7 +103,8 @@ TEST(SolidBlock, ShearsAsTheClosedForm) {
   for (const PressureVector& p : state.pressure) EXPECT_LT(p.norm(), 1e-9);
   for (const SolidElement& element : space.elements()) {
     const auto u = nodal_displacements(element, state.displacement);
-    const Matrix3 F = Matrix3::Identity() + u.transpose() * element.gradients().leftCols<3>();
+    const Matrix3 F =
+        Matrix3::Identity() + u.transpose() * element.gauss_points().gradients().leftCols<3>();
     const Matrix3 sigma = cauchy_stress(material, F, 0);
     EXPECT_NEAR(sigma(0, 1), material.shear_modulus() * shear, 1e-9);
   }

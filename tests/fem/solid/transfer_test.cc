@@ -150,12 +150,13 @@ double strain_energy_above(const Mesh& mesh, const SolidState& state, double Z) 
     const SolidElement& element = mesh.space->elements()[e];
     if (mesh.quadrature->cells()[e].bottom < Z) continue;
     const auto u = nodal_displacements(element, state.displacement);
+    const GaussPoints points = element.gauss_points();
     for (int q = 0; q < element_points; ++q) {
       const Matrix3 F = Matrix3::Identity() +
-                        u.transpose() * element.gradients().middleCols<3>(Eigen::Index{3} * q);
+                        u.transpose() * points.gradients().middleCols<3>(Eigen::Index{3} * q);
       energy +=
-          element.weights[q] *
-          strain_energy(element.material, F, state.pressure[e].dot(element.pressure_values.col(q)));
+          points.weights[q] *
+          strain_energy(element.material, F, state.pressure[e].dot(points.pressure_values.col(q)));
     }
   }
   return energy;

@@ -10,6 +10,7 @@
 
 #include "fem/parallel.h"
 #include "fem/solid/discretisation/assembly.h"
+#include "fem/solid/discretisation/row_range.h"
 #include "fem/solid/equilibrium/initial_guess.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/external_forces.h"
