@@ -5,7 +5,6 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
-#include <mpi.h>
 
 #include <algorithm>
 #include <string>

@@ -23,7 +23,8 @@ struct PotentialOptions {
 /// The field of the deformed magnet, with its recoil permeability, and of permeable plates, by a
 /// scalar potential in all of space (docs/theory/potential.md): finite elements on an octree,
 /// refined for B at the sensors. Field::uncertainty is twice the estimate of the error. field() is
-/// collective; it starts MPI. Throws as solve_potential().
+/// collective on the communicator's ranks, which share the work; it starts MPI. Throws as
+/// solve_potential().
 class Potential : public FieldModel {
  public:
   explicit Potential(PotentialOptions options = {}, MPI_Comm communicator = MPI_COMM_WORLD);

@@ -20,7 +20,7 @@ echo '|---|---|---|---|---|---|---|'
 for row in "${rows[@]}"; do
   IFS=: read -r mesh ranks <<< "$row"
   said=$(mpirun -n "$ranks" --mca pml ^cm --mca pml_monitoring_enable 2 --mca pml_monitoring_enable_output 3 --mca pml_monitoring_filename "$folder/sent" \
-    "$program" --benchmark_color=false --benchmark_filter="iterative/mesh:$mesh/" 2>/dev/null | tail -1)
+    "$program" --benchmark_color=false --benchmark_filter="iterative/mesh:$mesh/" | tail -1)
   unknowns=$(sed 's/.*unknowns=\([^ ]*\).*/\1/' <<< "$said")
   iterations=$(sed 's/.*iterations=\([0-9]*\).*/\1/' <<< "$said")
   for file in "$folder"/sent.*.prof; do

@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "fem/parallel.h"
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/discretisation/row_range.h"
 #include "fem/solid/loads/dead_forces.h"

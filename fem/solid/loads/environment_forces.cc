@@ -61,8 +61,8 @@ using Field = std::function<FieldJet(const Vector3& x)>;
 
 /// Adds the forces ∂(work)/∂u of an element's magnet in a field and minus their derivative, each if
 /// asked for.
-void add_magnet(const SolidSpace& space, const SolidElement& element, const Vector3& M,
-                const Field& field, MagneticEnergy law, const Vector& displacement, Vector* forces,
+void add_magnet(const SolidElement& element, const Vector3& M, const Field& field,
+                MagneticEnergy law, const Vector& displacement, Vector* forces,
                 TangentMatrix* tangent) {
   const auto u = nodal_displacements(element, displacement);
   Eigen::Matrix<double, element_nodes, 3> f = Eigen::Matrix<double, element_nodes, 3>::Zero();
@@ -192,8 +192,7 @@ ExternalForces environment_forces(const SolidSpace& space, const Cilium& cilium,
           const SolidElement& element = space.elements()[e];
           const Vector3 M = magnetization(segment_of(element, cilium));
           if (!M.isZero(0))
-            add_magnet(space, element, M, field, law, displacement, e < own ? &forces : nullptr,
-                       tangent);
+            add_magnet(element, M, field, law, displacement, e < own ? &forces : nullptr, tangent);
         }
       };
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "fem/solid/discretisation/row_range.h"
 #include "problem/error.h"
 
 namespace ciliaval::fem::solid::solvers {

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "fem/solid/discretisation/row_range.h"
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/discretisation/tangent_matrix.h"
 #include "fem/solid/discretisation/vector.h"

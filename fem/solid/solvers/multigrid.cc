@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "fem/parallel.h"
+#include "fem/solid/discretisation/row_range.h"
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fem/solid/solvers/vertex_patch_schwarz.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <limits>
 #include <span>
 #include <tuple>
 
-#include "problem/error.h"
+#include "fem/solid/discretisation/row_range.h"
+#include "fem/solid/solvers/symmetric_inverse.h"
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
@@ -105,46 +103,6 @@ std::vector<PatchCell> cells_of_patches(const CellNodes& cells, const std::vecto
   return result;
 }
 
-/// L⁻¹ in place of a lower triangle L, by halves: nearly all of it in products of matrices.
-void invert_triangle(Eigen::Ref<Eigen::MatrixXd> L) {
-  constexpr Eigen::Index smallest = 32;
-  const Eigen::Index size = L.rows();
-  if (size <= smallest) {
-    L = Eigen::MatrixXd(
-        L.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(size, size)));
-    return;
-  }
-  const Eigen::Index half = size / 2;
-  auto first = L.topLeftCorner(half, half);
-  auto coupling = L.bottomLeftCorner(size - half, half);
-  auto second = L.bottomRightCorner(size - half, size - half);
-  invert_triangle(first);
-  invert_triangle(second);
-  const Eigen::MatrixXd product = second.triangularView<Eigen::Lower>() * coupling;
-  coupling.noalias() = -product * first.triangularView<Eigen::Lower>();
-}
-
-/// The lower triangle of the inverse of a symmetric matrix: A⁻¹ = L⁻ᵀL⁻¹ by Cholesky's factor, a
-/// third of the work of an LU. Schur complements by explicit inverses lose all digits at
-/// K/μ = 5000. (LAPACK's potri is no slower, but OpenBLAS's threads get in the way of for_each's.)
-Eigen::MatrixXd inverted(const Eigen::MatrixXd& matrix) {
-  const Eigen::LLT<Eigen::MatrixXd> factors(matrix);
-  // Not positive definite: the tangent of compressed cells.
-  if (factors.info() != Eigen::Success) return matrix.inverse();
-  Eigen::MatrixXd L = factors.matrixL();
-  invert_triangle(L);
-  constexpr Eigen::Index width = 48;  // of the columns that are computed at once
-  Eigen::MatrixXd result(L.rows(), L.cols());
-  for (Eigen::Index j = 0; j < L.cols(); j += width) {
-    const Eigen::Index rest = L.rows() - j;
-    const Eigen::Index columns = std::min(width, rest);
-    result.block(j, j, rest, columns).noalias() =
-        L.bottomRightCorner(rest, rest).triangularView<Eigen::Lower>().transpose() *
-        L.block(j, j, rest, columns);
-  }
-  return result;
-}
-
 }  // namespace
 
 std::size_t corner_node(std::size_t corner) {
@@ -183,8 +141,6 @@ VertexPatchSchwarz::VertexPatchSchwarz(const SolidSpace& space, const CellNodes&
     matrix_starts_.push_back(matrix_starts_.back() + patch.size() * (patch.size() + 1) / 2);
     for (const Index dof : patch) ++uses[dof + 1];
   }
-  if (dofs_.size() > std::numeric_limits<Index>::max())
-    throw SolverError("a rank's part of the mesh is too large for its patches' numbers");
   for (std::size_t i = 1; i < uses.size(); ++i) uses[i] += uses[i - 1];
   user_starts_ = uses;
   users_.resize(dofs_.size());
@@ -213,7 +169,7 @@ void VertexPatchSchwarz::update(const BlockCsr& matrix) {
               block(dofs[row] % node_unknowns, dofs[column] % node_unknowns);
       }
     }
-    const Eigen::MatrixXd inverse = inverted(0.5 * (dense + dense.transpose()));
+    const Eigen::MatrixXd inverse = symmetric_inverse(0.5 * (dense + dense.transpose()));
     float* at = inverses_.data() + matrix_starts_[patch];
     for (Eigen::Index j = 0; j < size; ++j)
       for (Eigen::Index i = j; i < size; ++i) *at++ = static_cast<float>(inverse(i, j));

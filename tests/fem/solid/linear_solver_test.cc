@@ -6,16 +6,19 @@
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <random>
 #include <vector>
 
 #include "cube.h"
 #include "fem/solid/solid.h"
 #include "fem/solid/solvers/multigrid.h"
+#include "fem/solid/solvers/symmetric_inverse.h"
 #include "problem/error.h"
 #include "tests/bench/mesh_family.h"
 
@@ -99,6 +102,32 @@ TEST(SolidLinearSolver, SolvesToTheReductionAskedFor) {
   }
 }
 
+// Oracle: the definition of the inverse, whose rounding errors are the condition times epsilon;
+// matrices smaller and larger than the blocks of the algorithm, positive definite and not. Measured
+// up to 0.75 of that; Schur complements by explicit inverses reach 4e5 of it.
+TEST(SolidLinearSolver, SymmetricInverseIsAccurateToTheCondition) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (const Eigen::Index size : {1, 5, 33, 49, 81, 150, 257})
+    for (const double condition : {1e1, 1e10})
+      for (const bool is_positive : {true, false}) {
+        const Eigen::MatrixXd columns =
+            Eigen::MatrixXd::NullaryExpr(size, size, [&] { return normal(random); });
+        const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ();
+        Eigen::VectorXd eigenvalues(size);
+        for (Eigen::Index i = 0; i < size; ++i)
+          eigenvalues[i] = std::pow(condition, static_cast<double>(i) / static_cast<double>(size));
+        if (!is_positive) eigenvalues[0] *= -1;
+        const Eigen::MatrixXd A = Q * eigenvalues.asDiagonal() * Q.transpose();
+        const Eigen::MatrixXd lower = symmetric_inverse(0.5 * (A + A.transpose()));
+        const Eigen::MatrixXd inverse = lower.selfadjointView<Eigen::Lower>();
+        const Eigen::MatrixXd expected =
+            Q * eigenvalues.cwiseInverse().asDiagonal() * Q.transpose();
+        EXPECT_LE((inverse - expected).norm(), 2 * condition * 2.2e-16 * expected.norm())
+            << size << ' ' << condition << ' ' << is_positive;
+      }
+}
+
 double largest_eigenvalue_with_patches(const System& system) {
   const auto blocks = system.blocks();
   VertexPatchSchwarz patches(system.space, system.cells(), *blocks,
@@ -145,7 +174,7 @@ TEST(SolidLinearSolver, RowsInBlocksMultiplyAsTheMatrix) {
 }
 
 // Oracle: the purpose of the vertex patches. A point or cell smoother would need √(K/μ) times as
-// many iterations: 17 times at ν = 0.4999 against 0.3 …
+// many iterations: five times at ν = 0.49 against 0.3.
 TEST(SolidLinearSolver, IterationsGrowLittleWithTheBulkModulus) {
   const auto iterations = [](double poisson_ratio) {
     const System system(poisson_ratio);
@@ -175,15 +204,15 @@ TEST(SolidLinearSolver, IterationsHardlyGrowInThinRings) {
   EXPECT_LE(thin, 2 * thick);
 }
 
-// Oracle: the purpose of the vertex patches, at K/μ = 5000, where a point smoother would take 17
-// times as many. Measured 11 and 38. Where the patches' matrices are inverted by Schur
-// complements, GMRES does not converge at all on the graded mesh.
+// Oracle: the purpose of the vertex patches: a point smoother would take √(K/μ), ten times as many
+// iterations at ν = 0.4999 as at 0.49. Half of that is allowed; measured 14 and 38. Where the
+// patches' matrices are inverted by Schur complements, GMRES does not converge on this graded mesh.
 TEST(SolidLinearSolver, ConvergesNearlyIncompressibleOnAGradedMesh) {
-  const int compressible = iterations_of({cylinder_mesh_options(0), 0.3});
+  const int usual = iterations_of({cylinder_mesh_options(0), 0.49});
   const int incompressible = iterations_of({cylinder_mesh_options(0), 0.4999});
-  RecordProperty("compressible", compressible);
+  RecordProperty("usual", usual);
   RecordProperty("incompressible", incompressible);
-  EXPECT_LE(incompressible, 5 * compressible);
+  EXPECT_LE(incompressible, 5 * usual);
 }
 
 // Oracle: the aim: at most twice the iterations from 20,000 to 1,000,000 unknowns, in 16 GB.
