@@ -28,7 +28,8 @@ void partition_by_height(Triangulation<3>& mesh, std::size_t ranks) {
         static_cast<dealii::types::subdomain_id>(i * ranks / cells.size()));
 }
 
-/// Ranks of the machine that has the most of them, by the machines' names.
+/// Ranks of the machine that has the most of them, by the machines' names. Where names do not tell
+/// machines apart, another number of ranks makes the whole mesh; the parts are the same.
 int ranks_of_a_machine(MPI_Comm communicator) {
   const std::string own = dealii::Utilities::System::get_hostname();
   const auto names = dealii::Utilities::MPI::all_gather(communicator, own);

@@ -17,6 +17,7 @@
 
 namespace ciliaval::fem::solid {
 
+/// Layers in diameters; they grow by 0.3 with the distance.
 inline meshes::cylinder::CylinderMeshOptions mesh_options(unsigned int square_cells,
                                                           unsigned int rings, double ring_ratio,
                                                           double finest_layer,

@@ -32,6 +32,16 @@ dealii::Quadrature<3> unit_nodes() {
   return dealii::Quadrature<3>(points);
 }
 
+/// Calls act(a, q, element, node, point) for each lexicographic node a, which is deal.II's `node`,
+/// and each Gauss point q of the unit cell.
+void for_nodes_and_points(const auto& act) {
+  const dealii::FE_Q<3> element(element_degree);
+  const dealii::QGauss<3> gauss(element_degree + 1);
+  const std::vector<unsigned int> nodes = element.get_poly_space_numbering_inverse();
+  for (unsigned int a = 0; a < element_nodes; ++a)
+    for (unsigned int q = 0; q < element_points; ++q) act(a, q, element, nodes[a], gauss.point(q));
+}
+
 std::map<global_dof_index, double> boundary_values(const SolidSpace& space,
                                                    const DirichletCondition& condition) {
   dealii::ComponentMask mask(3, false);
@@ -53,14 +63,12 @@ std::map<global_dof_index, double> boundary_values(const SolidSpace& space,
 
 const ShapeGradients& unit_gradients() {
   static const ShapeGradients result = [] {
-    const dealii::FE_Q<3> element(element_degree);
-    const dealii::QGauss<3> gauss(element_degree + 1);
-    const std::vector<unsigned int> nodes = element.get_poly_space_numbering_inverse();
     ShapeGradients gradients;
-    for (unsigned int a = 0; a < element_nodes; ++a)
-      for (unsigned int q = 0; q < element_points; ++q)
-        for (unsigned int j = 0; j < 3; ++j)
-          gradients(a, 3 * q + j) = element.shape_grad(nodes[a], gauss.point(q))[j];
+    for_nodes_and_points([&](unsigned int a, unsigned int q, const auto& element, unsigned int node,
+                             const dealii::Point<3>& point) {
+      for (unsigned int j = 0; j < 3; ++j)
+        gradients(a, 3 * q + j) = element.shape_grad(node, point)[j];
+    });
     return gradients;
   }();
   return result;
@@ -68,13 +76,10 @@ const ShapeGradients& unit_gradients() {
 
 const ShapeValues& unit_values() {
   static const ShapeValues result = [] {
-    const dealii::FE_Q<3> element(element_degree);
-    const dealii::QGauss<3> gauss(element_degree + 1);
-    const std::vector<unsigned int> nodes = element.get_poly_space_numbering_inverse();
     ShapeValues values;
-    for (unsigned int a = 0; a < element_nodes; ++a)
-      for (unsigned int q = 0; q < element_points; ++q)
-        values(a, q) = element.shape_value(nodes[a], gauss.point(q));
+    for_nodes_and_points(
+        [&](unsigned int a, unsigned int q, const auto& element, unsigned int node,
+            const dealii::Point<3>& point) { values(a, q) = element.shape_value(node, point); });
     return values;
   }();
   return result;

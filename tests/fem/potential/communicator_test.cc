@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include "bodies.h"
 #include "fem/parallel.h"
 #include "fem/potential/potential.h"

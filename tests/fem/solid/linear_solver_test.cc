@@ -106,6 +106,7 @@ TEST(SolidLinearSolver, SolvesToTheReductionAskedFor) {
 // matrices smaller and larger than the blocks of the algorithm, positive definite and not. Measured
 // up to 0.75 of that; Schur complements by explicit inverses reach 4e5 of it.
 TEST(SolidLinearSolver, SymmetricInverseIsAccurateToTheCondition) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   for (const Eigen::Index size : {1, 5, 33, 49, 81, 150, 257})
@@ -123,7 +124,7 @@ TEST(SolidLinearSolver, SymmetricInverseIsAccurateToTheCondition) {
         const Eigen::MatrixXd inverse = lower.selfadjointView<Eigen::Lower>();
         const Eigen::MatrixXd expected =
             Q * eigenvalues.cwiseInverse().asDiagonal() * Q.transpose();
-        EXPECT_LE((inverse - expected).norm(), 2 * condition * 2.2e-16 * expected.norm())
+        EXPECT_LE((inverse - expected).norm(), 2 * condition * epsilon * expected.norm())
             << size << ' ' << condition << ' ' << is_positive;
       }
 }
