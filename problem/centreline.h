@@ -21,7 +21,7 @@ struct SectionState {
   Quaternion rotation = Quaternion::Identity();  ///< Λ: section directors d_i = Λ e_i; identity in
                                                  ///< the straight cilium
   Vector3 curvature = Vector3::Zero();  ///< κ with dΛ/dS = [κ]× Λ, 1/m, spatial components
-  SectionForces forces;
+  SectionForces forces{};
 };
 
 /// A point of the centreline between nodes: the section's state and dr/dS.

@@ -4,8 +4,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-# clang cannot read GCC's precompiled headers, and without them each file must include what it uses.
-cmake --preset release -B build/lint -D CMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
+# clang cannot read GCC's precompiled headers; without them, and alone, each file must include what it uses.
+cmake --preset release -B build/lint -D CMAKE_DISABLE_PRECOMPILE_HEADERS=ON -D CMAKE_UNITY_BUILD=OFF >/dev/null
 cmake --build build/lint --target ciliaval_version >/dev/null
 if [ $# -eq 0 ]; then
   mapfile -t sources < <(git ls-files '*.cc' ':!tests/consumer')

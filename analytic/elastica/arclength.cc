@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -13,12 +12,12 @@
 #include "analytic/elastica/jumps/jump.h"
 #include "analytic/elastica/taylor.h"
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::elastica {
 namespace {
 
 constexpr double right_angle = std::numbers::pi / 2;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Accuracy of the Taylor steps.
 struct Accuracy {

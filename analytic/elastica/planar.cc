@@ -6,13 +6,13 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "problem/error.h"
 #include "problem/joints/shear_coefficient.h"
 #include "problem/lagrange.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::elastica {
 namespace {
@@ -20,7 +20,6 @@ namespace {
 constexpr std::size_t node_count = 16;
 constexpr std::size_t check_count = 4;
 constexpr int max_bisections = 40;
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Values of the nodes' Lagrange polynomials at points between nodes near both ends and the middle,
 /// where interpolation errs most.

@@ -5,15 +5,13 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::elastica {
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// Where an increasing function of the order of 1 changes sign between a and b, with f(a) = f_a and
 /// f(b) = f_b, to the last digits: the end on the negative side.

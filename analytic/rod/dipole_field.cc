@@ -10,11 +10,6 @@
 namespace ciliaval::analytic::rod {
 namespace {
 
-struct Dipole {
-  Vector3 position;  ///< m
-  Vector3 moment;    ///< A·m²
-};
-
 /// ∫ r dS and ∫ (M₁ d₁ + M₂ d₂) dS + M₃ ∫ dr or ∫ d₃ dS over a stretch. r is a polynomial, on which
 /// Gauss–Legendre is exact; dᵢ is a normalised one, to which twice the nodes and eight more bring
 /// it to rounding error.
@@ -44,9 +39,9 @@ StretchIntegrals integrate(const RodMagnet& magnet, const RodStretch& stretch,
   return integrals;
 }
 
-std::vector<Dipole> dipoles(const Cilium& cilium, const RodMagnet& magnet,
-                            sources::PushForward push_forward) {
-  std::vector<Dipole> result;
+std::vector<sources::Dipole> dipoles(const Cilium& cilium, const RodMagnet& magnet,
+                                     sources::PushForward push_forward) {
+  std::vector<sources::Dipole> result;
   for (std::size_t i = 0; i < magnet.stretches.size(); ++i) {
     const RodStretch& stretch = magnet.stretches[i];
     if (i == 0 || magnet.stretches[i - 1].segment != stretch.segment)
@@ -63,10 +58,10 @@ std::vector<Dipole> dipoles(const Cilium& cilium, const RodMagnet& magnet,
 std::vector<Matrix3> DipoleField::gradient(const Cilium& cilium, const Deformation& deformation,
                                            std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);
-  const std::vector<Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
+  const std::vector<sources::Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
   return sources::gradient_at(points, [&](const Vector3& x) {
     Matrix3 sum = Matrix3::Zero();
-    for (const Dipole& dipole : sources)
+    for (const sources::Dipole& dipole : sources)
       sum += sources::dipole_gradient(dipole.moment, x - dipole.position);
     return sum;
   });
@@ -75,10 +70,10 @@ std::vector<Matrix3> DipoleField::gradient(const Cilium& cilium, const Deformati
 Field DipoleField::field(const Cilium& cilium, const Deformation& deformation,
                          std::span<const Vector3> points) const {
   const RodMagnet magnet = rod_magnet(cilium, deformation);
-  const std::vector<Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
+  const std::vector<sources::Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
   return sources::field_at(points, 4096, [&](const Vector3& x) {
     sources::FieldValue sum;
-    for (const Dipole& dipole : sources) {
+    for (const sources::Dipole& dipole : sources) {
       const Vector3 offset = x - dipole.position;
       if (offset.norm() <= 1e-12 * cilium.length())
         throw InputError("the field of the dipole diverges at its own position " +

@@ -2,15 +2,13 @@
 #include "analytic/rod/end_discs.h"
 
 #include <cmath>
-#include <limits>
 
 #include "analytic/sources/charged_disc.h"
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::rod {
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 [[noreturn]] void throw_on_the_rim(const Vector3& x) {
   throw InputError("the field diverges on the rim of the magnet's end face, at " +

@@ -2,15 +2,14 @@
 #include "analytic/rod/end_rectangles.h"
 
 #include <cmath>
-#include <limits>
 
 #include "analytic/sources/charged_rectangle.h"
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::rod {
 
 sources::FieldValue field_of_end_rectangles(std::span<const RodEnd> ends, const Vector3& x) {
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   sources::FieldValue sum;
   for (const RodEnd& end : ends) {
     const RodRectangle& rectangle = end.rectangle.value();

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <mutex>
 #include <numeric>
 #include <span>
@@ -15,11 +14,11 @@
 #include "analytic/sources/adaptive_order.h"
 #include "analytic/sources/current_loop.h"
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::rod {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Lengths in radii.
 struct Loop {
   Vector3 centre;  ///< from the middle of its part

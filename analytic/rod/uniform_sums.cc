@@ -79,15 +79,10 @@ std::size_t other_count(std::size_t n) {
   return n == 1 ? 2 : n / 2;
 }
 
-struct Dipole {
-  Vector3 position;  ///< m
-  Vector3 moment;    ///< A·m²
-};
-
-std::vector<Dipole> line_dipoles(const RodMagnet& magnet, const LineOptions& options,
-                                 std::size_t n) {
+std::vector<sources::Dipole> line_dipoles(const RodMagnet& magnet, const LineOptions& options,
+                                          std::size_t n) {
   const double area = std::numbers::pi * magnet.radius * magnet.radius;
-  std::vector<Dipole> dipoles;
+  std::vector<sources::Dipole> dipoles;
   for (const UniformSlice& slice : uniform_slices(magnet, n)) {
     const Vector3 axis = options.push_forward == sources::PushForward::F ? slice.point.derivative
                                                                          : slice.point.normal();
@@ -160,7 +155,7 @@ Field field_of_uniform_line(const RodMagnet& magnet, const LineOptions& options,
   const auto sum_of = [&](std::size_t n) {
     return [dipoles = line_dipoles(magnet, options, n)](const Vector3& x) {
       Vector3 B = Vector3::Zero();
-      for (const Dipole& dipole : dipoles)
+      for (const sources::Dipole& dipole : dipoles)
         B += sources::dipole_field(dipole.moment, x - dipole.position);
       return B;
     };

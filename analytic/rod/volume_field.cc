@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <array>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,11 +14,10 @@
 #include "analytic/sources/adaptive_order.h"
 #include "analytic/sources/field_points.h"
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::rod {
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// B = μ₀ Σ σ H(disc or rectangle) + μ₀ m of the wedge's reference charge on the end sections, and
 /// by quadrature of what is on the mantle.

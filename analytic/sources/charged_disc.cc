@@ -12,7 +12,7 @@
 namespace ciliaval::analytic::sources {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// One term of the series. With y_n = P_n(u)/u and z_n = P'_n(u) for odd n = 2k − 1, both even in
 /// u, three-term recurrences over two degrees (from Bonnet's, and for z from Gegenbauer's

@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "problem/types.h"
+
 namespace ciliaval::analytic::sources {
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// asinh(v₂/ρ) − asinh(v₁/ρ), v₁ < v₂, which is finite beside the edge's line where ρ = 0.
 double difference_of_asinh(double v1, double v2, double rho) {

@@ -5,6 +5,11 @@
 
 namespace ciliaval::analytic::sources {
 
+struct Dipole {
+  Vector3 position;  ///< m
+  Vector3 moment;    ///< A·m²
+};
+
 /// Flux density (T) of a dipole of moment m (A·m²) at the offset a (m) from it, paper's Eq. 5:
 ///   B = μ₀/4π [3(m·a)a/a⁵ − m/a³].  Not finite at a = 0.
 Vector3 dipole_field(const Vector3& moment, const Vector3& offset);

@@ -6,18 +6,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <limits>
 #include <vector>
 
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::sources {
-namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-
-}  // namespace
-
 void for_ranges(std::size_t count, std::size_t longest,
                 const std::function<void(std::size_t begin, std::size_t end)>& work) {
   if (count <= longest) {

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -14,11 +13,10 @@
 
 #include "compare/budget/sensitivity.h"
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::compare::budget {
 namespace {
-
-const std::array<std::string, 3> axis_names{"x", "y", "z"};
 
 /// The fields of one stage: with dB/dF on the surrounded path, else at the steps of the case only.
 struct StageFields {
@@ -202,7 +200,7 @@ void add_fields(const Chain& chain, const Computed& computed, std::size_t step, 
       numbers.uncertainty = [&](std::size_t a, std::size_t b) {
         return component(uncertainty(computed.fields[a], computed.fields[b]));
       };
-      const std::string& name = axis_names[static_cast<std::size_t>(axis)];
+      const std::string name = axis_names[static_cast<std::size_t>(axis)];
       add_row({step, sensor, quantity, name, unit, 0, 0, {}, {}, {}}, numbers, chain, rows);
     }
   };

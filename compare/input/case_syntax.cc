@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "compare/input/case_toml.h"
+#include "compare/input/units.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::input {
@@ -83,10 +84,6 @@ void refuse_deep_keys(std::string_view text, std::string_view file) {
     }
     i = c == '"' || c == '\'' ? end_of_string(text, i) : i + 1;
   }
-}
-
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
 }
 
 /// A letter as a unit starts with one: also % and every character beyond ASCII (µ, °).

@@ -43,12 +43,8 @@ ut_system* unit_system() {
   return system;
 }
 
-bool is_digit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// A letter of a unit's name; '_', '%' and bytes of UTF-8 sequences (µ, Ω, °, ²) count as such.
-bool is_letter(char c) {
+bool is_unit_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%' ||
          static_cast<unsigned char>(c) >= 0x80;
 }
@@ -109,7 +105,7 @@ struct UnitReader {
   std::string_view take_name() {
     const std::string_view before = rest;
     if (next() == '_') return {};  // the rest of a number such as 1_000
-    return before.substr(0, take_all(is_letter));
+    return before.substr(0, take_all(is_unit_letter));
   }
   /// Nothing, "2", "-2", "^2", "^-2" or "**-2". Returns whether that is so.
   bool take_exponent() {
@@ -158,8 +154,8 @@ std::string with_degrees(std::string_view unit) {
   constexpr std::string_view word = "deg";
   std::string result;
   for (std::size_t i = 0; i < unit.size();) {
-    const bool starts = i == 0 || !is_letter(unit[i - 1]);
-    const bool ends = i + word.size() >= unit.size() || !is_letter(unit[i + word.size()]);
+    const bool starts = i == 0 || !is_unit_letter(unit[i - 1]);
+    const bool ends = i + word.size() >= unit.size() || !is_unit_letter(unit[i + word.size()]);
     if (unit.substr(i, word.size()) == word && starts && ends) {
       result += "degree";
       i += word.size();
@@ -300,6 +296,15 @@ std::string format_number(double value) {
 std::string format_quantity(double value, const Quantity& quantity) {
   if (quantity.unit.empty()) return format_number(value);
   return fmt::format("{} {}", format_number(value), quantity.unit);
+}
+
+std::string format_vector(const Vector3& v, const Quantity& quantity) {
+  return fmt::format("[\"{}\", \"{}\", \"{}\"]", format_quantity(v.x(), quantity),
+                     format_quantity(v.y(), quantity), format_quantity(v.z(), quantity));
+}
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
 }
 
 std::string in_quotes(std::string_view text) {

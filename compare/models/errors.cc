@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "problem/types.h"
+
 namespace ciliaval::compare::models {
 namespace {
 
@@ -16,8 +18,6 @@ constexpr double vanishing_deflection = 1e-9;
 constexpr double vanishing_field = 1e-9;
 /// Two computations of the same deformation differ by rounding: B by so much of itself.
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
-
-const std::array<std::string, 3> axis_names{"x", "y", "z"};
 
 std::optional<double> sum(std::optional<double> a, std::optional<double> b) {
   if (!a || !b) return std::nullopt;

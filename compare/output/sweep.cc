@@ -14,13 +14,13 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/results.h"
 #include "compare/output/text_table.h"
+#include "problem/types.h"
 
 namespace ciliaval::compare::output {
 namespace {
 
 constexpr std::size_t most_jumps = 8;  ///< of a model that a terminal shows
 constexpr std::size_t most_messages = 3;
-constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 
 SweepLoad sweep_of(const Load& load) {
   return load.as<SweepLoad>().value();

@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include "compare/output/results.h"
 #include "compare/output/sweep.h"
 #include "compare/output/text_table.h"
+#include "problem/types.h"
 
 namespace ciliaval::compare::output {
 namespace {
@@ -102,8 +102,6 @@ std::string mechanics_errors(const models::CaseResult& result,
     }
   return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>>>>>><"));
 }
-
-constexpr std::array<const char*, 3> axis_names{"x", "y", "z"};
 
 std::optional<double> component(const std::optional<Vector3>& v, Eigen::Index axis) {
   return v ? std::optional((*v)[axis]) : std::nullopt;

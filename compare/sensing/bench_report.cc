@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
@@ -13,8 +12,6 @@ namespace ciliaval::compare::sensing {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double degree = std::numbers::pi / 180;
 
 Json errors_json(const BenchErrors& errors) {
   return {{"magnitude_rms", errors.magnitude_rms},

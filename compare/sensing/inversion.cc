@@ -54,10 +54,6 @@ bool minimise(Misfit& misfit, Eigen::VectorXd& x) {
   }
 }
 
-Vector2 polar(double magnitude, double azimuth) {
-  return {magnitude * std::cos(azimuth), magnitude * std::sin(azimuth)};
-}
-
 /// Loads over the whole range, the zero load first.
 std::vector<Vector2> loads_over(double largest, int magnitudes, int azimuths) {
   std::vector<Vector2> loads{Vector2::Zero()};

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +16,12 @@
 namespace ciliaval::compare::sensing {
 
 using Vector2 = Eigen::Vector2d;
+
+inline constexpr double degree = std::numbers::pi / 180;
+
+inline Vector2 polar(double magnitude, double azimuth) {
+  return {magnitude * std::cos(azimuth), magnitude * std::sin(azimuth)};
+}
 
 /// The pair that a text names. Throws InputError if it is none, or the models do not go together.
 models::ModelPair parse_pair(const std::string& text);

@@ -20,7 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double unlikely = 1e-3;
 
 /// The velocity of q, and those at the ends of its interval.

@@ -73,7 +73,7 @@ SectionStiffness rectangular_section(double a, double b, double young_modulus,
   const double G = young_modulus / (2 * (1 + poisson_ratio));
   const double kGA = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio) * G * a * b;
   const auto [s, l] = std::minmax(a, b);
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   double sum = 0;
   for (int n = 399; n > 0; n -= 2) sum += std::tanh(n * pi * l / (2 * s)) / std::pow(n, 5);
   const double J = l * std::pow(s, 3) * (1.0 / 3 - 64 / std::pow(pi, 5) * s / l * sum);

@@ -30,7 +30,7 @@
 namespace ciliaval::fem::end_problem {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double R = 0.5;
 constexpr double area = pi * R * R;
 constexpr double second_moment = pi * R * R * R * R / 4;

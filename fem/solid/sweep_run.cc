@@ -28,7 +28,7 @@ constexpr double remarkable_penetration = 0.01;  ///< between nodes, in d
 constexpr unsigned int most_iterations = 10;     ///< of Newton's method: more is a step to be cut
 
 /// Of the entry of a checkpoint with the levels' states.
-constexpr const char* state_name = "sweep";
+constexpr const char* sweep_state_name = "sweep";
 
 /// 3EI/L³ of a slender cilium of the softest segment.
 double tip_stiffness(const Cilium& cilium) {
@@ -191,7 +191,7 @@ MechanicsStep SweepRun::step_of(const Way& way, std::size_t i,
 }
 
 void SweepRun::go_on_from_checkpoint() {
-  const Checkpoint::Entries kept = kept_entries(checkpoint_, state_name, communicator_);
+  const Checkpoint::Entries kept = kept_entries(checkpoint_, sweep_state_name, communicator_);
   if (kept.empty()) return;
   const auto restore = [this](const Way& way, MechanicsResult& result, MechanicsStep step,
                               const std::optional<SolidState>& state) {
@@ -209,7 +209,7 @@ void SweepRun::go_on_from_checkpoint() {
               states.at(c + 1));
   }
   std::vector<std::pair<FollowerState, bool>> states;
-  deserialize(kept.at(state_name), states);
+  deserialize(kept.at(sweep_state_name), states);
   for (std::size_t w = 0; w < ways_.size(); ++w) {
     auto& [state, lost] = states.at(w);
     ways_[w].level->require_own(state.now.solid);
@@ -233,7 +233,7 @@ void SweepRun::save() const {
       add(result_.companions[c].steps.back(), ways_[companions_[c]]);
     std::vector<std::pair<FollowerState, bool>> ways;
     for (const Way& way : ways_) ways.emplace_back(way.follower->state(), way.lost);
-    return Checkpoint::Entries{{state_name, serialized(ways)},
+    return Checkpoint::Entries{{sweep_state_name, serialized(ways)},
                                {std::to_string(result_.steps.size()), serialized(steps, states)}};
   });
 }

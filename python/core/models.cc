@@ -28,7 +28,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// One step of a bent cilium, with its companions, from which errors of fields follow.
-struct Shape {
+struct BentShape {
   input::Case problem;  ///< cilium, this step's load, the mechanics model's options
   models::MechanicsRun run;
 
@@ -57,8 +57,8 @@ MechanicsResult step_of(const MechanicsResult& result, std::size_t i) {
   return one;
 }
 
-std::vector<Shape> bend(const Cilium& cilium, const LoadPath& path, const std::string& model,
-                        const py::object& callback, const py::kwargs& options) {
+std::vector<BentShape> bend(const Cilium& cilium, const LoadPath& path, const std::string& model,
+                            const py::object& callback, const py::kwargs& options) {
   const input::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), model);
   for (const Load& load : path)
     if (!entry.takes_environment && !surroundings::is_empty(load.environment()))
@@ -74,7 +74,7 @@ std::vector<Shape> bend(const Cilium& cilium, const LoadPath& path, const std::s
     const py::gil_scoped_release released;
     result = entry.make(problem.options)->solve(cilium, path, shown);
   }
-  std::vector<Shape> shapes;
+  std::vector<BentShape> shapes;
   for (std::size_t i = 0; i < path.size(); ++i) {
     input::Case one = problem;
     one.load_path = {path[i]};
@@ -100,7 +100,7 @@ py::object with_mechanics(const models::AtSensors& own,
   return array(all);
 }
 
-py::dict field(const Shape& shape, const py::object& where, const std::string& model,
+py::dict field(const BentShape& shape, const py::object& where, const std::string& model,
                const py::kwargs& options) {
   const input::FieldEntry& entry = models::entry_of(models::field_models(), model);
   input::Case problem = shape.problem;
@@ -215,7 +215,7 @@ py::dict batch(const std::vector<Cilium>& cilia, const std::vector<Load>& loads,
 
 /// One number for each material point at which a centreline is written.
 template <class Number>
-py::object along(const Shape& shape, const Number& number) {
+py::object along(const BentShape& shape, const Number& number) {
   const Centreline& centreline = shape.deformation().centreline;
   std::vector<double> values;
   for (const double S : output::output_points(centreline))
@@ -224,7 +224,7 @@ py::object along(const Shape& shape, const Number& number) {
   return array(std::move(values), {n});
 }
 
-py::object positions(const Shape& shape) {
+py::object positions(const BentShape& shape) {
   const Centreline& centreline = shape.deformation().centreline;
   std::vector<Vector3> all;
   for (const double S : output::output_points(centreline)) all.push_back(centreline.at(S).position);
@@ -248,42 +248,43 @@ py::dict described(const Entries& entries) {
 }  // namespace
 
 void bind_models(py::module_& module) {
-  using ShapeClass = py::class_<Shape>;
+  using ShapeClass = py::class_<BentShape>;
   ShapeClass(module, "Shape", "A bent cilium: one model's answer to one load. SI units.")
-      .def_property_readonly("model", [](const Shape& s) { return s.run.model; })
-      .def_property_readonly("cilium", [](const Shape& s) { return s.problem.cilium; })
-      .def_property_readonly("load", [](const Shape& s) { return s.step().load; })
+      .def_property_readonly("model", [](const BentShape& s) { return s.run.model; })
+      .def_property_readonly("cilium", [](const BentShape& s) { return s.problem.cilium; })
+      .def_property_readonly("load", [](const BentShape& s) { return s.step().load; })
       .def_property_readonly(
-          "status", [](const Shape& s) { return std::string(output::to_string(s.step().status)); },
+          "status",
+          [](const BentShape& s) { return std::string(output::to_string(s.step().status)); },
           "'converged', 'slipped_off' (the load is larger than any equilibrium bears) or 'failed'.")
-      .def_property_readonly("message", [](const Shape& s) { return s.step().message; })
+      .def_property_readonly("message", [](const BentShape& s) { return s.step().message; })
       .def_property_readonly(
-          "tip", [](const Shape& s) { return array(s.tip().position); }, "(3,), m.")
+          "tip", [](const BentShape& s) { return array(s.tip().position); }, "(3,), m.")
       .def_property_readonly(
-          "tip_angle", [](const Shape& s) { return s.tip().theta(); },
+          "tip_angle", [](const BentShape& s) { return s.tip().theta(); },
           "Angle of the tip's section from the upright one, rad.")
       .def_property_readonly(
-          "tip_uncertainty", [](const Shape& s) { return s.step().tip_uncertainty; },
+          "tip_uncertainty", [](const BentShape& s) { return s.step().tip_uncertainty; },
           "Estimate of the numerical error of the tip's position, m; None: not known.")
       .def_property_readonly("tip_angle_uncertainty",
-                             [](const Shape& s) { return s.step().tip_angle_uncertainty; })
+                             [](const BentShape& s) { return s.step().tip_angle_uncertainty; })
       .def_property_readonly(
-          "applied_force", [](const Shape& s) { return s.step().applied_force; },
+          "applied_force", [](const BentShape& s) { return s.step().applied_force; },
           "Horizontal force that the model really applied, N.")
       .def_property_readonly(
-          "slip_off", [](const Shape& s) { return slip_off_limit(s.step()); },
+          "slip_off", [](const BentShape& s) { return slip_off_limit(s.step()); },
           "Largest load that an equilibrium bears (a contact's force, N, a "
           "probe's displacement, m); None: not known.")
       .def_property_readonly(
-          "unstable_modes", [](const Shape& s) { return s.step().unstable_modes; },
+          "unstable_modes", [](const BentShape& s) { return s.step().unstable_modes; },
           "Ways in which the energy decreases, 0: stable; None: not known.")
       .def_property_readonly(
-          "smallest_eigenvalue", [](const Shape& s) { return s.step().smallest_eigenvalue; },
+          "smallest_eigenvalue", [](const BentShape& s) { return s.step().smallest_eigenvalue; },
           "Smallest eigenvalue of the second variation over that of the straight cilium without "
           "loads; None: not known.")
       .def_property_readonly(
           "magnet_forces",
-          [](const Shape& s) {
+          [](const BentShape& s) {
             py::dict result;
             for (const auto& one : models::forces_on_magnets(s.problem.cilium, s.step()))
               result[py::str(one.name)] = py::dict(py::arg("force") = array(one.force),
@@ -292,18 +293,20 @@ void bind_models(py::module_& module) {
           },
           "Of each magnet of the environment, by its name: force (3,), N, and torque about its\n"
           "centre (3,), N m, that the cilium exerts on it.")
-      .def_property_readonly("seconds", [](const Shape& s) { return s.step().seconds; })
+      .def_property_readonly("seconds", [](const BentShape& s) { return s.step().seconds; })
       .def_property_readonly(
-          "S", [](const Shape& s) { return along(s, [](double S, const auto&) { return S; }); },
+          "S", [](const BentShape& s) { return along(s, [](double S, const auto&) { return S; }); },
           "Arc length of material points from the base, (n,), m.")
       .def_property_readonly("centreline", &positions, "Their positions, (n, 3), m.")
       .def_property_readonly(
           "theta",
-          [](const Shape& s) { return along(s, [](double, const auto& p) { return p.theta(); }); },
+          [](const BentShape& s) {
+            return along(s, [](double, const auto& p) { return p.theta(); });
+          },
           "Angle of the sections from the upright one, (n,), rad.")
       .def_property_readonly(
           "curvature",
-          [](const Shape& s) {
+          [](const BentShape& s) {
             return along(s, [](double, const auto& p) { return p.bending_curvature(); });
           },
           "Bending curvature, (n,), 1/m.")
@@ -314,19 +317,19 @@ void bind_models(py::module_& module) {
           "there is none, and message. Raises InputError, SolverError.")
       .def(
           "B",
-          [](const Shape& s, const py::object& where, const std::string& model,
+          [](const BentShape& s, const py::object& where, const std::string& model,
              const py::kwargs& options) {
             return py::object(field(s, where, model, options)["B"]);
           },
           py::arg("points"), py::arg("model") = "volume", "B alone: (n, 3), T.")
       .def(
           "dB",
-          [](const Shape& s, const py::object& where, const std::string& model,
+          [](const BentShape& s, const py::object& where, const std::string& model,
              const py::kwargs& options) {
             return py::object(field(s, where, model, options)["dB"]);
           },
           py::arg("points"), py::arg("model") = "volume", "B - B(straight): (n, 3), T.")
-      .def("__repr__", [](const Shape& s) {
+      .def("__repr__", [](const BentShape& s) {
         return s.step().deformation
                    ? fmt::format("<Shape by {}: tip ({:.4g}, {:.4g}, {:.4g}) mm>", s.run.model,
                                  1e3 * s.tip().position.x(), 1e3 * s.tip().position.y(),

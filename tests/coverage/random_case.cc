@@ -16,7 +16,7 @@
 namespace ciliaval::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 class Draw {
  public:

@@ -49,7 +49,7 @@ STUDY = """
 name = "mine"
 case = "../case.toml"
 pairs = ["elastica/volume", "beam/volume", "solid/mesh"]
-outputs = ["dB_norm", "sensitivity"]
+outputs = ["dB_norm"]
 combine = "zip"
 [fixed]
 load.force = "2 mN"

@@ -111,7 +111,7 @@ class Commands(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             case = Path(folder) / "case.toml"
             case.write_text(quick("fig3b"))
-            budget = cv.budget(case)
+            budget = cv.budget(case, "--without", "solid", "--without", "potential")
             self.assertEqual(budget.kind, "budget")
             self.assertTrue(budget["rows"])
             self.assertEqual(cv.converge(case).kind, "converge")

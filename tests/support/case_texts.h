@@ -106,10 +106,14 @@ inline std::vector<std::pair<std::string, input::Option>> all_options() {
   return result;
 }
 
+inline input::Case read(std::string_view text) {
+  return input::read_case(text, "bad.toml", models::known());
+}
+
 /// What is said of a bad case file; empty if it is read. Any other exception is let through.
 inline std::string faults_of(std::string_view text) {
   try {
-    input::read_case(text, "bad.toml", models::known());
+    read(text);
   } catch (const InputError& error) {
     return error.what();
   }

@@ -11,11 +11,11 @@
 
 #include "analytic/elastica/environment/series.h"
 #include "problem/error.h"
+#include "problem/types.h"
 
 namespace ciliaval::analytic::elastica::environment {
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr int most_iterations = 12;
 constexpr double smallest_step = 1e-7;  ///< of a path
 /// A step that ends at an equilibrium with more unstable modes than it started from may have leapt

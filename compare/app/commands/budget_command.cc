@@ -19,7 +19,7 @@
 namespace ciliaval::compare::app::commands {
 namespace {
 
-struct Options {
+struct BudgetOptions {
   std::filesystem::path file;
   std::vector<std::string> without;  ///< models left out, "sensitivity"
   OptionalFile json;
@@ -38,7 +38,7 @@ budget::Budget run_budget(const input::Case& problem, const std::vector<std::str
 /// assumptions, whatever models the case lists. The plot comes last: without Python, everything
 /// else is there. Returns `solver` if a model failed somewhere, `undecided` if no link could be
 /// judged.
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_budget(const BudgetOptions& options, const std::string& words) {
   require_one_rank("budget");
   const input::Case problem = read_cases({options.file}).front();
   if (output::is_sweep(problem))
@@ -65,12 +65,12 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_budget(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BudgetOptions>();
   CLI::App* budget = line.add(
       "budget",
       "Error budget: split what lies between the paper's model and the best one into the parts of\n"
       "its assumptions, each with its numerical uncertainty, for tip, B, dB and dB/dF.",
-      options, execute);
+      options, execute_budget);
   add_file(budget, "CASE", options->file, "Case file (TOML); its lists of models do not matter");
   budget
       ->add_option(

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct CheckOptions {
   std::vector<fs::path> files;
   bool quick = false;   ///< without the models that take more than a moment
   bool accept = false;  ///< write candidates for new baselines instead
@@ -127,7 +127,7 @@ ExitCode verdict(const std::vector<regression::CheckReport>& reports) {
 /// them. With `accept` it writes `NAME.baseline.candidate.json` beside each case that differs from
 /// its baseline; the baseline itself is never touched. Returns `tolerance`, `solver` or `undecided`
 /// if the check fails.
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_check(const CheckOptions& options, const std::string& words) {
   require_one_rank("check");
   if (options.quick && options.accept)
     throw InputError("--accept needs all models: leave out --quick");
@@ -165,13 +165,13 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_check(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   CLI::App* check = line.add(
       "check",
       "Regression check: run cases, by default all shipped ones, and hold every result against\n"
       "the accepted one in the baseline beside the case, NAME.baseline.json "
       "(docs/guide/accuracy.md).",
-      options, execute);
+      options, execute_check);
   check->add_option("CASE", options->files, "Case files (TOML); none: all shipped ones")
       ->transform(input_file());
   check->add_flag(

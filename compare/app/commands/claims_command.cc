@@ -11,12 +11,12 @@
 namespace ciliaval::compare::app::commands {
 namespace {
 
-struct Options {
+struct ClaimsOptions {
   bool quick = false;  ///< without the 3D solid
   OptionalFile json;
 };
 
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_claims(const ClaimsOptions& options, const std::string& words) {
   require_one_rank("claims");
   const ShippedCases shipped = shipped_cases();
   const std::filesystem::path folder = shipped.folder / "paper";
@@ -36,12 +36,12 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_claims(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ClaimsOptions>();
   CLI::App* claims = line.add(
       "claims",
       "The paper's quantitative statements, each with what the models find: reproduced, not\n"
       "reproduced, depends on the model, or not checkable and why (docs/evidence/paper.md).",
-      options, execute);
+      options, execute_claims);
   claims->add_flag("--quick", options->quick,
                    "Without the 3D solid: seconds instead of two minutes");
   add_output(claims, "--json", options->json, "Write the ledger as JSON too");

@@ -15,7 +15,7 @@
 namespace ciliaval::compare::app::commands {
 namespace {
 
-struct Options {
+struct ConvergeOptions {
   std::filesystem::path file;
   unsigned int levels = 3;
   bool list = false;  ///< print the numbers
@@ -27,7 +27,7 @@ struct Options {
 /// Refines each model of a case through the levels of its meshes, degrees, sums and tolerances. The
 /// plot comes last: without Python, everything else is there. Returns `solver` if a model failed
 /// on a level, `undecided` if the case has no model that can be refined.
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_converge(const ConvergeOptions& options, const std::string& words) {
   require_one_rank("converge");
   const input::Case problem = read_cases({options.file}).front();
   output::check_outputs({options.json, options.csv, options.plot},
@@ -61,13 +61,13 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_converge(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConvergeOptions>();
   CLI::App* converge = line.add(
       "converge",
       "Refinement study: refine meshes, element degrees, sums and tolerances of each model of a\n"
       "case; give the observed order, the extrapolated value and its interval of each result, or\n"
       "say why there is none.",
-      options, execute);
+      options, execute_converge);
   add_file(converge, "CASE", options->file, "Case file (TOML)");
   converge
       ->add_option("--levels", options->levels,

@@ -12,13 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct DrawOptions {
   fs::path file;
   OptionalFile figure;
 };
 
 /// Draws a case that is right: cilium, load, sensors and axes, to scale.
-ExitCode draw(const Options& options, const std::string&) {
+ExitCode draw(const DrawOptions& options, const std::string&) {
   const input::Case problem = read_cases({options.file}).front();
   const fs::path figure = options.figure.value_or(problem.name + ".svg");
   output::check_outputs({figure}, input_files(options.file, problem));
@@ -30,7 +30,7 @@ ExitCode draw(const Options& options, const std::string&) {
 }  // namespace
 
 void add_draw(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DrawOptions>();
   CLI::App* command = line.add(
       "draw", "Draw a case to scale: cilium, load, sensors and axes, before anything is solved",
       options, draw);

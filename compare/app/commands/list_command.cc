@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {};
+struct ListOptions {};
 
 std::string title_of(const fs::path& file) {
   try {
@@ -47,7 +47,7 @@ std::string list_of_cases() {
   return text;
 }
 
-ExitCode list(const Options&, const std::string&) {
+ExitCode list(const ListOptions&, const std::string&) {
   std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
   const auto add = [&](const auto& entries) {
     for (const auto& entry : entries)
@@ -71,7 +71,7 @@ ExitCode list(const Options&, const std::string&) {
 
 void add_list(CommandLine& line) {
   line.add("list", "List models, loads, shipped cases, studies and benches",
-           std::make_shared<Options>(), list);
+           std::make_shared<ListOptions>(), list);
 }
 
 }  // namespace ciliaval::compare::app::commands

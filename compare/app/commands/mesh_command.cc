@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct MeshOptions {
   fs::path problem;
   fs::path output;
   std::optional<unsigned int> refinement;
@@ -78,7 +78,7 @@ std::string describe(const meshes::SectionProperties& section, const Cilium& cil
 /// case's refinement or at the one given, or the user's of [models.solid] mesh as it was read. A
 /// `.msh` has the names of the segments and the boundary and can be named in a case again, a `.vtu`
 /// is for ParaView; both keep the curved geometry.
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_mesh(const MeshOptions& options, const std::string& words) {
   const input::Case problem = input::read_case(options.problem, models::known());
   const fs::path& output = options.output;
   output::check_outputs({output}, input_files(options.problem, problem));
@@ -112,13 +112,13 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_mesh(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MeshOptions>();
   CLI::App* mesh = line.add(
       "mesh",
       "Write the solid's mesh of a case to a file: FILE.msh for Gmsh, with the names of the\n"
       "segments and the boundary, or FILE.vtu for ParaView. A .msh can be changed and named\n"
       "in the case, [models.solid] mesh = \"FILE.msh\" (docs/guide/meshes.md).",
-      options, execute);
+      options, execute_mesh);
   add_file(mesh, "CASE", options->problem, "Case file (TOML)");
   mesh->add_option("-o,--output", options->output,
                    "File to write: .msh or .vtu; one that is there is replaced")

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct NewOptions {
   fs::path name;
   std::string load{load_types().front()->name};
 };
@@ -36,7 +36,7 @@ const LoadType& load_type(const std::string& name) {
 }
 
 /// Writes a case file, which is one that can be read, where there is none.
-ExitCode write_new(const Options& options, const std::string&) {
+ExitCode write_new(const NewOptions& options, const std::string&) {
   fs::path file = options.name;
   if (file.extension() != ".toml") file += ".toml";
   if (is_study_file(file) || is_bench_file(file))
@@ -62,7 +62,7 @@ ExitCode print_schema(const None&, const std::string&) {
 }  // namespace
 
 void add_new(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<NewOptions>();
   CLI::App* command =
       line.add("new", "Write a commented case file to start from: NAME.toml", options, write_new);
   command->add_option("NAME", options->name, "Name of the case; the file is NAME.toml")->required();

@@ -29,14 +29,14 @@ file that the page names. A file that is damaged is named, the others are shown,
 is 4. The page is made by the Python package: `python3 -m ciliaval.report DIR` does the same
 (docs/guide/report.md).)";
 
-struct Options {
+struct ReportOptions {
   std::filesystem::path folder = "results";
   OptionalFile output;  ///< else report.html in the folder
 };
 
 /// Where a result file is damaged, the page is written with what can be shown and `input_output`
 /// returned.
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_report(const ReportOptions& options, const std::string& words) {
   const std::filesystem::path& folder = options.folder;
   require_one_rank("report");
   if (!std::filesystem::is_directory(folder))
@@ -60,12 +60,12 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_report(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   CLI::App* report = line.add(
       "report",
       "One page of everything in a folder of results, as one file that opens offline: cases,\n"
       "studies, error budgets, convergence, loads from readings, the ledger of claims, pictures.",
-      options, execute);
+      options, execute_report);
   report->footer(report_help);
   report->add_option("DIR", options->folder, "Folder of results")->capture_default_str();
   add_output(report, "-o,--output", options->output,

@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RunOptions {
   std::vector<fs::path> files;
   fs::path directory = "results";
   bool fresh = false;    ///< empty the stores of runs that were killed
@@ -49,7 +49,7 @@ struct Prepared {
 
 /// Makes the folders and the store, which is emptied if options.fresh. Says what the case goes on
 /// from.
-Prepared prepare(const fs::path& file, const input::Case& problem, const Options& options) {
+Prepared prepare(const fs::path& file, const input::Case& problem, const RunOptions& options) {
   Prepared result{problem,
                   output::OutputFolder(options.directory, problem.name, input_files(file, problem)),
                   nullptr,
@@ -148,7 +148,7 @@ void take_part(input::Case problem) {
 
 /// Checks all case files, output folders and stores before anything runs. Then runs each case,
 /// from its store if there is one, and writes its results to DIRECTORY/name.
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_run(const RunOptions& options, const std::string& words) {
   const std::vector<input::Case> cases = read_cases(options.files);
   if (fem::rank() > 0) {
     for (const input::Case& problem : cases) take_part(problem);
@@ -171,9 +171,9 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_run(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   CLI::App* run =
-      line.add("run", "Run cases, compare the models, write the results", options, execute);
+      line.add("run", "Run cases, compare the models, write the results", options, execute_run);
   run->add_option("CASE", options->files, "Case files (TOML)")->required()->transform(input_file());
   run->add_option("-o,--output", options->directory,
                   "Folder for the results, one subfolder for each case")

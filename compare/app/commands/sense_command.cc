@@ -45,7 +45,7 @@ The load found is the least-squares solution with the chosen pair of models, its
 the noise. `nothing`: the interval holds zero; `misfit`: no load explains the reading; `beyond
 range`: see --largest (docs/guide/sensing.md).)";
 
-struct Options {
+struct SenseOptions {
   std::filesystem::path file;
   std::filesystem::path readings;
   OptionalFile background;
@@ -67,7 +67,7 @@ const Quantity& load_quantity(const Load& load) {
 }
 
 /// The largest load to be found.
-double largest_load(const input::Case& problem, const Options& options) {
+double largest_load(const input::Case& problem, const SenseOptions& options) {
   if (options.largest)
     return input::parse_quantity(*options.largest, load_quantity(problem.load_path.front()));
   double largest = 0;
@@ -87,7 +87,7 @@ ExitCode exit_code(const sensing::Sensing& sensing) {
 }
 
 /// Throws InputError if an option was given that has no effect here.
-void refuse_options(const Options& options, std::initializer_list<std::string_view> unfit,
+void refuse_options(const SenseOptions& options, std::initializer_list<std::string_view> unfit,
                     const char* why) {
   for (const std::string& name : options.given)
     if (std::find(unfit.begin(), unfit.end(), name) != unfit.end())
@@ -95,7 +95,7 @@ void refuse_options(const Options& options, std::initializer_list<std::string_vi
 }
 
 /// Simulates the test bench `options.file`.
-ExitCode simulate_bench(const Options& options, const std::string& words) {
+ExitCode simulate_bench(const SenseOptions& options, const std::string& words) {
   const sensing::Bench bench = sensing::read_bench(options.file);
   output::check_outputs({options.json, options.plot}, input_files(options.file, bench.problem));
   ProgressLine line;
@@ -109,7 +109,7 @@ ExitCode simulate_bench(const Options& options, const std::string& words) {
   return ExitCode::pass;
 }
 
-double noise_of(const Options& options) {
+double noise_of(const SenseOptions& options) {
   const double noise = input::parse_quantity(options.noise, quantity::flux_density);
   constexpr double least_noise = 1e-15;  // T, less than any magnetometer's
   if (!(noise >= least_noise && noise <= 1))
@@ -119,7 +119,7 @@ double noise_of(const Options& options) {
 }
 
 /// The readings of a file, after a check of the outputs.
-sensing::SensorReadings readings_of(const Options& options, const input::Case& problem) {
+sensing::SensorReadings readings_of(const SenseOptions& options, const input::Case& problem) {
   std::vector<std::filesystem::path> inputs = input_files(options.file, problem);
   inputs.push_back(options.readings);
   if (options.background) inputs.push_back(*options.background);
@@ -135,7 +135,7 @@ sensing::SensorReadings readings_of(const Options& options, const input::Case& p
 }
 
 /// The surface's levels from the readings of a sweep. Returns `undecided` if there is none.
-ExitCode sense_surface(const input::Case& problem, const Options& options,
+ExitCode sense_surface(const input::Case& problem, const SenseOptions& options,
                        const std::string& words) {
   const sensing::SensorReadings read = readings_of(options, problem);
   if (!read.measured_offset)
@@ -167,7 +167,7 @@ ExitCode sense_surface(const input::Case& problem, const Options& options,
 /// The load and its direction, with confidence intervals, from each reading of the case's sensors.
 /// Returns `solver` if the least squares fails at a reading, `undecided` if no reading gives a
 /// load.
-ExitCode sense_readings(const Options& options, const std::string& words) {
+ExitCode sense_readings(const SenseOptions& options, const std::string& words) {
   const input::Case problem = read_cases({options.file}).front();
   if (problem.sensors.empty()) throw InputError(options.file.string() + ": the case has no sensor");
   if (output::is_sweep(problem)) return sense_surface(problem, options, words);
@@ -210,7 +210,7 @@ ExitCode sense_readings(const Options& options, const std::string& words) {
   return exit_code(sensing);
 }
 
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_sense(const SenseOptions& options, const std::string& words) {
   require_one_rank("sense");
   if (is_bench_file(options.file)) {
     if (!options.readings.empty())
@@ -237,12 +237,12 @@ void add_text(CLI::App* sense, const char* name, input::external::ReadingOptions
 }  // namespace
 
 void add_sense(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SenseOptions>();
   CLI::App* sense = line.add(
       "sense",
       "From what the sensors read to the load: force or flow speed and direction of each reading,\n"
       "with intervals of 95 %.",
-      options, execute);
+      options, execute_sense);
   sense->footer(sense_help);
   add_file(sense, "CASE", options->file,
            "Case file (TOML): cilium, kind of load, sensors; or a test bench,\n"

@@ -58,7 +58,7 @@ Each point is kept as soon as it is solved: a study that was killed goes on wher
 same command is given again. All keys and outputs: docs/guide/studies.md; examples:
 `ciliaval list`.)";
 
-struct Options {
+struct StudyOptions {
   fs::path file;
   fs::path directory = "results";
   OptionalFile json;
@@ -109,7 +109,7 @@ ExitCode exit_code(const Results& result) {
 /// Computes the outputs of each pair of models at each point, from where an earlier call was
 /// stopped. The figures come last: without Python, everything else is there. Returns `solver` if
 /// every point failed.
-ExitCode execute(const Options& options, const std::string& words) {
+ExitCode execute_study(const StudyOptions& options, const std::string& words) {
   require_one_rank("study");
   const study::Study study = study::reader::read_study(options.file);
   const fs::path folder = options.directory / study.name;
@@ -150,14 +150,14 @@ ExitCode execute(const Options& options, const std::string& words) {
 }  // namespace
 
 void add_study(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StudyOptions>();
   CLI::App* study = line.add(
       "study",
       "Parameter study: vary numbers of a case, alone or together, run pairs of models at each\n"
       "point, and write tables and figures of the signal, its sensitivity and its range; "
       "propagate\n"
       "tolerances to their standard deviations; find the best design within limits.",
-      options, execute);
+      options, execute_study);
   study->footer(study_help);
   add_file(study, "STUDY", options->file, "Study file (TOML)");
   study

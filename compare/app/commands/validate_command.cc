@@ -15,11 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ValidateOptions {
   std::vector<fs::path> files;
 };
 
-ExitCode validate(const Options& options, const std::string&) {
+ExitCode validate(const ValidateOptions& options, const std::string&) {
   std::vector<fs::path> files;
   for (const fs::path& file : options.files) {
     if (is_bench_file(file)) {
@@ -57,7 +57,7 @@ ExitCode validate(const Options& options, const std::string&) {
 }  // namespace
 
 void add_validate(CommandLine& line) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ValidateOptions>();
   line.add("validate",
            "Read and check case files, and say what to expect of them: the signal by the paper's "
            "elastica, and what is odd",

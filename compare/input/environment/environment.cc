@@ -53,11 +53,6 @@ void check_companions(Section& table, const toml::node* pull, const toml::node* 
                                                   gravity.name, uniform_field.name, magnet_table));
 }
 
-std::string vector_text(const Vector3& v, const Quantity& quantity) {
-  return fmt::format("[\"{}\", \"{}\", \"{}\"]", format_quantity(v.x(), quantity),
-                     format_quantity(v.y(), quantity), format_quantity(v.z(), quantity));
-}
-
 }  // namespace
 
 std::vector<Environment> read_environment(Section& root) {
@@ -126,7 +121,7 @@ std::string to_toml(const LoadPath& path) {
   const bool has_gravity = !first.gravity.isZero(0) || first.fluid_density != 0;
   if (has_gravity)
     text += fmt::format("{} = {}\n{} = \"{}\"\n", gravity.name,
-                        vector_text(first.gravity, gravity.quantity), fluid_density.name,
+                        format_vector(first.gravity, gravity.quantity), fluid_density.name,
                         format_quantity(first.fluid_density, fluid_density.quantity));
   const bool varies = std::ranges::any_of(path, [&](const Load& load) {
     return load.environment().uniform_field != first.uniform_field;
@@ -137,7 +132,7 @@ std::string to_toml(const LoadPath& path) {
   if ((has_gravity || !magnets.empty()) && !has_field) return text + magnets;
   std::vector<std::string> fields;
   for (const Load& load : path)
-    fields.push_back(vector_text(load.environment().uniform_field, uniform_field.quantity));
+    fields.push_back(format_vector(load.environment().uniform_field, uniform_field.quantity));
   text += varies ? fmt::format("{} = [{}]\n", uniform_field.name, fmt::join(fields, ", "))
                  : fmt::format("{} = {}\n", uniform_field.name, fields.front());
   return text + fmt::format("{} = \"{}\"\n", magnetic_energy, name(first.magnetic_energy)) +

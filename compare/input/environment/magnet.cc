@@ -117,17 +117,12 @@ std::vector<Vector3> read_positions(Section& table) {
   return points;
 }
 
-std::string vector_text(const Vector3& v, const Quantity& quantity) {
-  return fmt::format("[\"{}\", \"{}\", \"{}\"]", format_quantity(v.x(), quantity),
-                     format_quantity(v.y(), quantity), format_quantity(v.z(), quantity));
-}
-
 std::string magnet_to_toml(const LoadPath& path, std::size_t index) {
   const Magnet& m = path.front().environment().magnets[index];
   std::vector<std::string> positions;
   for (const Load& load : path)
     positions.push_back(
-        vector_text(load.environment().magnets.at(index).position, quantity::length));
+        format_vector(load.environment().magnets.at(index).position, quantity::length));
   const bool stays = std::ranges::all_of(
       positions, [&](const std::string& position) { return position == positions.front(); });
   std::string text =
@@ -138,13 +133,13 @@ std::string magnet_to_toml(const LoadPath& path, std::size_t index) {
   if (q.coeffs() != Quaternion::Identity().coeffs())
     text += fmt::format("rotation = [{}, {}, {}, {}]\n", q.w(), q.x(), q.y(), q.z());
   if (m.shape == Shape::cuboid)
-    text += fmt::format("edges = {}\n", vector_text(m.edges, quantity::length));
+    text += fmt::format("edges = {}\n", format_vector(m.edges, quantity::length));
   else
     text += fmt::format("diameter = \"{}\"\n", format_quantity(m.diameter, quantity::length));
   if (m.shape == Shape::cylinder)
     text += fmt::format("length = \"{}\"\n", format_quantity(m.length, quantity::length));
-  return text +
-         fmt::format("magnetization = {}\n", vector_text(m.magnetization, quantity::magnetization));
+  return text + fmt::format("magnetization = {}\n",
+                            format_vector(m.magnetization, quantity::magnetization));
 }
 
 }  // namespace

@@ -18,12 +18,12 @@ namespace {
 
 using namespace surroundings;
 
-constexpr std::string_view table_name = "surface";
+constexpr std::string_view surface_table = "surface";
 constexpr std::string_view file_kind = "file";
 constexpr std::string_view seed_name = "seed";
 
 constexpr QuantityKey length(std::string_view name, const Range& range, std::string_view doc) {
-  return {table_name, name, quantity::length, range, "", doc};
+  return {surface_table, name, quantity::length, range, "", doc};
 }
 
 constexpr Range height_range{0, 1, false, unit_slip};
@@ -61,7 +61,7 @@ ProfileKind random_kind() {
   };
   return {"random",
           {length("rms", height_range, "`random`: root mean square of the height."),
-           {table_name,
+           {surface_table,
             "hurst",
             quantity::number,
             {0, 1, false, "a self-affine profile has an exponent between 0 and 1"},
@@ -69,7 +69,7 @@ ProfileKind random_kind() {
             "`random`: the Hurst exponent; 1 is the smoothest."},
            wavelength("longest", "`random`: the longest wavelength, after which it repeats."),
            wavelength("shortest", "`random`: the shortest wavelength."),
-           {table_name,
+           {surface_table,
             seed_name,
             quantity::number,
             {0, 4294967295.0, false, "a seed has 32 bits"},
@@ -242,7 +242,7 @@ std::shared_ptr<const Surface> with_value(const Surface& surface, std::string_vi
 std::string to_toml(const Statement& statement) {
   const Surface& surface = *statement.surface;
   const ProfileKind* kind = kind_of(surface.profile);
-  std::string text = fmt::format("\n[{}]\nprofile = \"{}\"\n", table_name,
+  std::string text = fmt::format("\n[{}]\nprofile = \"{}\"\n", surface_table,
                                  kind != nullptr ? kind->name : file_kind);
   if (kind == nullptr) text += fmt::format("path = {}\n", toml_text(statement.file.string()));
   const std::vector<double> all = values(surface);

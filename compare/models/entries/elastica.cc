@@ -79,7 +79,7 @@ void check_corrected(const input::CaseCheck& check) {
                  "joints = 'none'");
 }
 
-void check(const input::CaseCheck& check) {
+void check_elastica(const input::CaseCheck& check) {
   if (!check.is_asked_for || !check.load_is_right) return;
   if (!check.problem.load_path.front().environment().magnets.empty()) return refuse_magnets(check);
   check_plane(check);
@@ -110,7 +110,7 @@ input::MechanicsEntry elastica() {
       .refinements = {tolerances({1e-4, 1e-6, 1e-8, 1e-10, 1e-12})},
       .takes_environment = true,
       .takes_sections = true,
-      .check = check,
+      .check = check_elastica,
   };
 }
 

@@ -8,7 +8,7 @@ using analytic::rod::LineOptions;
 using analytic::rod::Method;
 
 /// The moments R·M have no closed form and are integrated.
-bool is_integrated(const input::ModelOptions& all) {
+bool is_line_integrated(const input::ModelOptions& all) {
   const auto& o = all.of<LineOptions>();
   return o.method == Method::quadrature ||
          (o.method == Method::closed_form && o.push_forward == analytic::sources::PushForward::R);
@@ -25,7 +25,7 @@ input::FieldEntry line() {
       pieces({16, 32, 64, 128, 256, 512, 1024, 2048, 4096}, "length of the pieces, in segments");
   sums.applies = elements.belongs;
   input::Refinement integrals = tolerances({1e-2, 1e-4, 1e-6, 1e-8, 1e-10});
-  integrals.applies = is_integrated;
+  integrals.applies = is_line_integrated;
   return {
       .id = "line",
       .description = "dipoles along the centreline (Eq. 5-7, the paper's single-dipole model)",

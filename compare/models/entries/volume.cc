@@ -10,7 +10,7 @@ using analytic::rod::Method;
 using analytic::rod::VolumeOptions;
 
 /// The stack of loops is integrated along the centreline, with closed forms too.
-bool is_integrated(const input::ModelOptions& all) {
+bool is_volume_integrated(const input::ModelOptions& all) {
   const auto& o = all.of<VolumeOptions>();
   return o.method == Method::quadrature ||
          (o.method == Method::closed_form && o.slices == VolumeOptions::Slices::stacked);
@@ -18,7 +18,7 @@ bool is_integrated(const input::ModelOptions& all) {
 
 /// A rectangle and a tube have the closed form of their charged faces alone, and a stack of loops
 /// is magnetised along its axis.
-void check(const input::CaseCheck& to) {
+void check_volume(const input::CaseCheck& to) {
   const auto& o = to.problem.options.of<VolumeOptions>();
   if (!to.is_asked_for || !to.cilium_is_right) return;
   if (o.method == Method::closed_form && o.slices == VolumeOptions::Slices::stacked &&
@@ -45,7 +45,7 @@ input::FieldEntry volume() {
   input::Refinement sums = pieces({16, 32, 64, 128, 256}, "height of the slices, in segments");
   sums.applies = elements.belongs;
   input::Refinement integrals = tolerances({1e-2, 1e-4, 1e-6, 1e-8, 1e-10});
-  integrals.applies = is_integrated;
+  integrals.applies = is_volume_integrated;
   return {
       .id = "volume",
       .description = "volume of the bent rod (Eq. 8-9, the paper's multi-dipole model)",
@@ -64,7 +64,7 @@ input::FieldEntry volume() {
                   elements},
       .refinements = {sums, integrals},
       .takes_sections = true,
-      .check = check,
+      .check = check_volume,
   };
 }
 

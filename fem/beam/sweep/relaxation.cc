@@ -13,7 +13,7 @@ namespace ciliaval::fem::beam::sweep {
 namespace {
 
 constexpr double first_step = 1e-2;  ///< of time, in τ
-constexpr double shortest_step = 1e-12;
+constexpr double shortest_time_step = 1e-12;
 constexpr double resting_step = 1e2;  ///< such steps with hardly a change end the motion
 constexpr double resting_change = 1e-4;
 constexpr double no_change = 1e-11;      ///< of a step of any length
@@ -45,7 +45,7 @@ class Motion {
       const double change = found ? change_of(*next, result_.end) : 0;
       if (!found || change > 1.5 * options_.largest_change) {
         step_ *= found ? std::max(0.1, options_.largest_change / change) : 0.25;
-        if (step_ < shortest_step) fail("no state of contact is admissible");
+        if (step_ < shortest_time_step) fail("no state of contact is admissible");
         continue;
       }
       accept(*next, viscosity);

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr unsigned int patience = 10;  ///< iterations before convergence must set in
-constexpr double largest_turn = 0.5;   ///< of an angle in an iteration, rad
+constexpr unsigned int patience = 10;           ///< iterations before convergence must set in
+constexpr double largest_iteration_turn = 0.5;  ///< of an angle in an iteration, rad
 
 /// Tangent and normal of a surface of the slope angle β: dt/dβ = n, dn/dβ = −t.
 Vector2d tangent(double beta) {
@@ -337,8 +337,8 @@ std::optional<TipState> Tip::solve(ContactStatus status, const Place& place, con
     const double turn = change.head(n).lpNorm<Eigen::Infinity>();
     // About a corner of the slope's curvature full steps may go to and fro.
     const bool goes_to_and_fro = iteration > 4 && relative > 0.7 * last;
-    unknowns +=
-        change * std::min(goes_to_and_fro ? 0.5 : 1.0, largest_turn / std::max(turn, relative / 4));
+    unknowns += change * std::min(goes_to_and_fro ? 0.5 : 1.0,
+                                  largest_iteration_turn / std::max(turn, relative / 4));
     // A small force on a stiff beam is right to less than the tolerance.
     const bool is_rounding = relative < 1e-9 && relative >= last / 2;
     if (iteration >= patience && relative > last / 2 && relative > 1e-3) return std::nullopt;

@@ -122,7 +122,7 @@ void subtract_derivative(const SolidElement& element, const HeightForceShare& sh
 HeightDensity contact_density(double force, double area, double height, double half_width) {
   const double w = half_width;
   const double g = force / area;
-  constexpr double pi = std::numbers::pi;
+  using std::numbers::pi;
   return {[=](double z) { return g * (1 + std::cos(pi * (z - height) / w)) / (2 * w); },
           [=](double z) { return -g * pi * std::sin(pi * (z - height) / w) / (2 * w * w); },
           std::array{height - w, height + w}};

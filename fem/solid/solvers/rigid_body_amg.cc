@@ -21,8 +21,8 @@ namespace {
 
 // Measured: docs/measurements/solid.md.
 constexpr unsigned int iterations = 8;
-constexpr double reduction = 1e-3;  ///< of the residual, that ends them before
-constexpr int smoother_degree = 2;  ///< of Chebyshev's polynomials
+constexpr double reduction = 1e-3;      ///< of the residual, that ends them before
+constexpr int amg_smoother_degree = 2;  ///< of Chebyshev's polynomials
 
 constexpr std::size_t motion_count = 6;
 
@@ -53,7 +53,7 @@ RigidBodyAmg::RigidBodyAmg(const dealii::IndexSet& own, std::span<const Vector3>
 void RigidBodyAmg::update() {
   dealii::TrilinosWrappers::PreconditionAMG::AdditionalData options;
   options.elliptic = true;
-  options.smoother_sweeps = smoother_degree;
+  options.smoother_sweeps = amg_smoother_degree;
   options.aggregation_threshold = 0;  // of near-incompressible material no coupling is weak
   Teuchos::ParameterList list;
   std::unique_ptr<Epetra_MultiVector> unused;

@@ -10,7 +10,7 @@
 namespace ciliaval::surroundings::magnets {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// P(q, ζ) by the arithmetic-geometric mean, for a number type with derivatives.
 template <class Number>

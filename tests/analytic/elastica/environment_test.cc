@@ -16,7 +16,7 @@
 namespace ciliaval::analytic::elastica {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// EI/L² = 1 N and A M L²/EI = 1 per T.
 Cilium unit_cilium() {

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
+#include "analytic/sources/dipole.h"
 #include "problem/lagrange.h"
 
 namespace ciliaval::oracle {
@@ -23,6 +25,55 @@ Deformation sampled(const Cilium& cilium, const Shape& shape, std::size_t n) {
     pieces.push_back(std::move(piece));
   }
   return {Centreline(std::move(pieces)), nullptr};
+}
+
+Vector3 by_dipoles(const Cilium& cilium, const Centreline& line, const Vector3& x) {
+  const QuadratureRule rule = gauss_legendre(8);
+  const CrossSection& section = cilium.section;
+  Vector3 B = Vector3::Zero();
+  const auto add = [&](const CentrelinePoint& p, double X, double Y, double dV,
+                       const Vector3& of_segment) {
+    const Vector3 at = p.position + p.rotation * Vector3(X, Y, 0);
+    Matrix3 F;
+    F << p.rotation * Vector3::UnitX(), p.rotation * Vector3::UnitY(),
+        p.derivative + p.curvature.cross(at - p.position);
+    B += analytic::sources::dipole_field(dV * F * of_segment, x - at);
+  };
+  const std::vector<double>& breaks = line.breaks();
+  for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
+    const Segment& own =
+        cilium.segments[cilium.segment_at((breaks[piece] + breaks[piece + 1]) / 2)];
+    if (!is_magnetic(own)) continue;
+    constexpr int parts = 12;
+    const double dS = (breaks[piece + 1] - breaks[piece]) / (2 * parts);
+    for (int part = 0; part < parts; ++part)
+      for (std::size_t s = 0; s < rule.nodes.size(); ++s) {
+        const CentrelinePoint p =
+            line.at(breaks[piece] + dS * (2 * part + 1 + rule.nodes[s]), piece);
+        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+          const double weight = dS * rule.weights[s] * rule.weights[i];
+          if (section.shape == CrossSection::Shape::rectangle) {
+            const Eigen::Rotation2Dd turn(section.orientation);
+            for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
+              const Eigen::Vector2d at = turn * Eigen::Vector2d(section.width / 2 * rule.nodes[i],
+                                                                section.height / 2 * rule.nodes[j]);
+              add(p, at.x(), at.y(), section.width * section.height / 4 * weight * rule.weights[j],
+                  magnetization(own));
+            }
+            continue;
+          }
+          const double inner = section.inner_diameter / 2;
+          const double half = (cilium.diameter / 2 - inner) / 2;
+          const double r = inner + half * (1 + rule.nodes[i]);
+          constexpr int around = 32;
+          for (int k = 0; k < around; ++k)
+            add(p, r * std::cos(2 * std::numbers::pi * k / around),
+                r * std::sin(2 * std::numbers::pi * k / around),
+                half * r * 2 * std::numbers::pi / around * weight, magnetization(own));
+        }
+      }
+  }
+  return B;
 }
 
 Deformation straight(const Cilium& cilium) {
@@ -94,6 +145,10 @@ void record(const std::string& name, double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3e", value);
   ::testing::Test::RecordProperty(name, text);
+}
+
+Deformation bent_cilium() {
+  return sampled(paper_cilium(), arc(60, 0.5));
 }
 
 }  // namespace ciliaval::oracle

@@ -35,9 +35,16 @@ Shape contorted();
 /// rotation·x + shift of a shape.
 Shape moved(const Shape& shape, const Quaternion& rotation, const Vector3& shift);
 
+/// The paper's cilium bent to arc(60, 0.5).
+Deformation bent_cilium();
+
 /// B of one field model at one point.
 Vector3 flux_density(const FieldModel& model, const Cilium& cilium, const Deformation& deformation,
                      const Vector3& x);
+
+/// B of dipoles F·M dV all over the volume of the magnet: Gauss's rule in S and across the section,
+/// the trapezoidal one around a circle. They share the map of the rod with the models, no charge.
+Vector3 by_dipoles(const Cilium& cilium, const Centreline& line, const Vector3& x);
 
 /// |a − b|/|b|
 double relative_difference(const Vector3& a, const Vector3& b);

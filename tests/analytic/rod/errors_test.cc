@@ -29,10 +29,6 @@ std::string error_of(const FieldModel& model, const Deformation& deformation, co
   return {};
 }
 
-Deformation bent() {
-  return oracle::sampled(paper_cilium(), oracle::arc(60, 0.5));
-}
-
 TEST(FieldErrors, PointOnTheRimIsAnInputError) {
   for (const double S : {3e-3, 20e-3}) {
     const CentrelinePoint end = oracle::arc(60, 0.5)(S);
@@ -42,23 +38,25 @@ TEST(FieldErrors, PointOnTheRimIsAnInputError) {
       for (const Slices slices : {Slices::wedge, Slices::stacked})
         for (const rod::Method method : {rod::Method::closed_form, rod::Method::quadrature})
           EXPECT_NE(
-              error_of<InputError>(rod::VolumeField({slices, method}), bent(), rim).find("rim"),
+              error_of<InputError>(rod::VolumeField({slices, method}), oracle::bent_cilium(), rim)
+                  .find("rim"),
               std::string::npos);
       // A nanometre away there is a field, of which rounding leaves less than the default 1e-10.
       const Vector3 near_rim = rim + 1e-9 * end.normal();
       EXPECT_NO_THROW(
           flux_density(rod::VolumeField({Slices::wedge, rod::Method::closed_form, 1e-6}),
-                       paper_cilium(), bent(), near_rim));
-      EXPECT_NE(
-          error_of<SolverError>(rod::VolumeField(), bent(), near_rim).find("larger tolerance"),
-          std::string::npos);
+                       paper_cilium(), oracle::bent_cilium(), near_rim));
+      EXPECT_NE(error_of<SolverError>(rod::VolumeField(), oracle::bent_cilium(), near_rim)
+                    .find("larger tolerance"),
+                std::string::npos);
     }
   }
 }
 
 TEST(FieldErrors, PointOnAPoleOrADipoleIsAnInputError) {
-  const Vector3 pole = bent().centreline.at(20e-3).position;
-  EXPECT_NE(error_of<InputError>(rod::LineField(), bent(), pole).find("pole"), std::string::npos);
+  const Vector3 pole = oracle::bent_cilium().centreline.at(20e-3).position;
+  EXPECT_NE(error_of<InputError>(rod::LineField(), oracle::bent_cilium(), pole).find("pole"),
+            std::string::npos);
   const Vector3 middle(0, 0, 11.5e-3);
   EXPECT_NE(error_of<InputError>(rod::DipoleField(), oracle::straight(paper_cilium()), middle)
                 .find("dipole"),
@@ -67,20 +65,26 @@ TEST(FieldErrors, PointOnAPoleOrADipoleIsAnInputError) {
 
 TEST(FieldErrors, PointThatIsNotFiniteIsAnInputError) {
   const Vector3 nowhere(0, std::numeric_limits<double>::quiet_NaN(), 0);
-  EXPECT_THROW(flux_density(rod::DipoleField(), paper_cilium(), bent(), nowhere), InputError);
-  EXPECT_THROW(flux_density(rod::LineField(), paper_cilium(), bent(), nowhere), InputError);
-  EXPECT_THROW(flux_density(rod::VolumeField(), paper_cilium(), bent(), nowhere), InputError);
+  EXPECT_THROW(flux_density(rod::DipoleField(), paper_cilium(), oracle::bent_cilium(), nowhere),
+               InputError);
+  EXPECT_THROW(flux_density(rod::LineField(), paper_cilium(), oracle::bent_cilium(), nowhere),
+               InputError);
+  EXPECT_THROW(flux_density(rod::VolumeField(), paper_cilium(), oracle::bent_cilium(), nowhere),
+               InputError);
 }
 
 TEST(FieldErrors, MissingBodyIsAnInputError) {
-  EXPECT_NE(error_of<InputError>(body::MeshField(), bent(), oracle::paper_sensor).find("body"),
+  EXPECT_NE(error_of<InputError>(body::MeshField(), oracle::bent_cilium(), oracle::paper_sensor)
+                .find("body"),
             std::string::npos);
 }
 
 TEST(FieldErrors, CentrelineOfAnotherCiliumIsAnInputError) {
   Cilium shorter = paper_cilium();
   shorter.segments.back().length = 10e-3;
-  EXPECT_THROW(flux_density(rod::VolumeField(), shorter, bent(), oracle::paper_sensor), InputError);
+  EXPECT_THROW(
+      flux_density(rod::VolumeField(), shorter, oracle::bent_cilium(), oracle::paper_sensor),
+      InputError);
   EXPECT_THROW(flux_density(rod::LineField(), paper_cilium(), {}, oracle::paper_sensor),
                InputError);
 }
@@ -89,13 +93,13 @@ TEST(FieldErrors, ToleranceBelowRoundingIsASolverError) {
   const Vector3 x = oracle::paper_sensor;
   EXPECT_THROW(
       flux_density(rod::LineField({sources::PushForward::F, rod::Method::quadrature, 1e-18}),
-                   paper_cilium(), bent(), x),
+                   paper_cilium(), oracle::bent_cilium(), x),
       SolverError);
   EXPECT_THROW(flux_density(rod::VolumeField({Slices::stacked, rod::Method::closed_form, 1e-18}),
-                            paper_cilium(), bent(), x),
+                            paper_cilium(), oracle::bent_cilium(), x),
                SolverError);
   EXPECT_THROW(flux_density(rod::VolumeField({Slices::wedge, rod::Method::quadrature, 1e-18}),
-                            paper_cilium(), bent(), x),
+                            paper_cilium(), oracle::bent_cilium(), x),
                SolverError);
   const Deformation body = oracle::deformation_of({.degree = 2, .layers = 1}, oracle::identity);
   EXPECT_THROW(
@@ -108,16 +112,16 @@ TEST(FieldErrors, QuadratureInsideOrOnTheMagnetIsASolverError) {
   const Vector3 n = section.rotation * Vector3::UnitX();
   for (const double r : {0.0, 1e-3, 1.5e-3, 1.5001e-3})
     for (const Slices slices : {Slices::wedge, Slices::stacked})
-      EXPECT_NE(error_of<SolverError>(rod::VolumeField({slices, rod::Method::quadrature}), bent(),
-                                      section.position + r * n)
+      EXPECT_NE(error_of<SolverError>(rod::VolumeField({slices, rod::Method::quadrature}),
+                                      oracle::bent_cilium(), section.position + r * n)
                     .find("too near"),
                 std::string::npos)
           << r;
   EXPECT_THROW(flux_density(rod::LineField({sources::PushForward::F, rod::Method::quadrature}),
-                            paper_cilium(), bent(), section.position),
+                            paper_cilium(), oracle::bent_cilium(), section.position),
                SolverError);
-  EXPECT_THROW(flux_density(rod::VolumeField({Slices::stacked}), paper_cilium(), bent(),
-                            section.position + 1.5e-3 * n),
+  EXPECT_THROW(flux_density(rod::VolumeField({Slices::stacked}), paper_cilium(),
+                            oracle::bent_cilium(), section.position + 1.5e-3 * n),
                SolverError);
 }
 
@@ -125,11 +129,11 @@ TEST(FieldErrors, QuadratureInsideOrOnTheMagnetIsASolverError) {
 TEST(FieldErrors, StackedSlicesRefuseAnAccuracyThatRoundingTakesAway) {
   const CentrelinePoint section = oracle::arc(60, 0.5)(9e-3);
   const Vector3 x = section.position + (1.5e-3 + 1e-9) * (section.rotation * Vector3::UnitX());
-  EXPECT_NE(
-      error_of<SolverError>(rod::VolumeField({Slices::stacked}), bent(), x).find("1e-10 of |B|"),
-      std::string::npos);
+  EXPECT_NE(error_of<SolverError>(rod::VolumeField({Slices::stacked}), oracle::bent_cilium(), x)
+                .find("1e-10 of |B|"),
+            std::string::npos);
   EXPECT_NO_THROW(flux_density(rod::VolumeField({Slices::stacked, rod::Method::closed_form, 1e-5}),
-                               paper_cilium(), bent(), x));
+                               paper_cilium(), oracle::bent_cilium(), x));
 }
 
 TEST(FieldErrors, RodBentMoreSharplyThanItsRadiusIsASolverError) {

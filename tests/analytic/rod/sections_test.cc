@@ -8,67 +8,19 @@
 
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
-#include "analytic/sources/dipole.h"
 #include "problem/error.h"
-#include "problem/lagrange.h"
+#include "tests/analytic/oracles/bent_rods.h"
 
 namespace ciliaval::analytic::rod {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using Shape = CrossSection::Shape;
 
 Cilium two_materials(const CrossSection& section) {
   return {section.shape == Shape::rectangle ? 0 : 3e-3,
           {{"base", 3e-3, 0.3e6, 0.49, 0}, {"magnet", 17e-3, 1e6, 0.49, 75e3}},
           section};
-}
-
-/// Dipoles M ∂x/∂S dS dA over the volume of the magnet: Gauss's rule in S, and in the section on
-/// parts of a grid, `in` telling which of them belong to it.
-Vector3 by_dipoles(const Cilium& cilium, const Centreline& line, const Vector3& x) {
-  const QuadratureRule rule = gauss_legendre(6);
-  const CrossSection& section = cilium.section;
-  Vector3 B = Vector3::Zero();
-  const auto add = [&](const CentrelinePoint& p, double X, double Y, double dV) {
-    const Vector3 at = p.position + p.rotation * Vector3(X, Y, 0);
-    const Vector3 carried = p.derivative + p.curvature.cross(at - p.position);
-    B += sources::dipole_field(75e3 * dV * carried, x - at);
-  };
-  const std::vector<double>& breaks = line.breaks();
-  for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
-    if (breaks[piece] < 3e-3 - 1e-9) continue;
-    constexpr int parts = 12;
-    const double dS = (breaks[piece + 1] - breaks[piece]) / (2 * parts);
-    for (int part = 0; part < parts; ++part)
-      for (std::size_t s = 0; s < 6; ++s) {
-        const CentrelinePoint p =
-            line.at(breaks[piece] + dS * (2 * part + 1 + rule.nodes[s]), piece);
-        for (std::size_t i = 0; i < 6; ++i) {
-          if (section.shape == Shape::rectangle) {
-            const double c = std::cos(section.orientation);
-            const double t = std::sin(section.orientation);
-            for (int n = 0; n < 6; ++n)
-              for (std::size_t j = 0; j < 6; ++j) {
-                const double u = section.width / 2 * ((2 * n + 1 + rule.nodes[i]) / 6 - 1);
-                const double v = section.height / 2 * rule.nodes[j];
-                add(p, c * u - t * v, t * u + c * v,
-                    section.width * section.height / 24 * rule.weights[i] * rule.weights[j] * dS *
-                        rule.weights[s]);
-              }
-          } else {
-            const double inner = section.inner_diameter / 2;
-            const double half = (cilium.diameter / 2 - inner) / 2;
-            const double r = inner + half * (1 + rule.nodes[i]);
-            constexpr int around = 32;
-            for (int k = 0; k < around; ++k)
-              add(p, r * std::cos(2 * pi * k / around), r * std::sin(2 * pi * k / around),
-                  half * rule.weights[i] * r * 2 * pi / around * dS * rule.weights[s]);
-          }
-        }
-      }
-  }
-  return B;
 }
 
 // Oracle: dipoles all over the volume of the bent rod.
@@ -89,7 +41,7 @@ TEST(RodSections, FieldOfTheEndFacesIsThatOfTheVolume) {
     EXPECT_GT(bent.centreline.at(20e-3).theta(), 0.2);
     const Field field = VolumeField().field(cilium, bent, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vector3 exact = by_dipoles(cilium, bent.centreline, points[i]);
+      const Vector3 exact = oracle::by_dipoles(cilium, bent.centreline, points[i]);
       EXPECT_LT((field.B[i] - exact).norm(), 1e-6 * exact.norm()) << i;
       EXPECT_LT(field.uncertainty[i].norm(), 1e-10 * exact.norm()) << i;
     }

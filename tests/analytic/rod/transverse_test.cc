@@ -22,7 +22,7 @@ namespace ciliaval::analytic::rod {
 namespace {
 
 using Shape = CrossSection::Shape;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double M = 75e3;
 
 double measured(const std::string& what, double value) {
@@ -35,7 +35,7 @@ Segment segment(double length, const Vector3& magnetization) {
       "magnet", length, 1e6, 0.49, magnetization.z(), 0, {magnetization.x(), magnetization.y()}};
 }
 
-Cilium two_materials(const CrossSection& section) {
+Cilium across_its_axis(const CrossSection& section) {
   return {section.shape == Shape::rectangle ? 0 : 3e-3,
           {{"base", 3e-3, 0.3e6, 0.49, 0}, segment(17e-3, {30e3, -50e3, 40e3})},
           section};
@@ -47,56 +47,6 @@ Deformation straight(const Cilium& cilium) {
 
 Deformation bent(const Cilium& cilium, const Load& load) {
   return elastica::Elastica().solve(cilium, {load}).steps.at(0).deformation.value();
-}
-
-/// Dipoles F·M dV all over the volume of the magnet: Gauss's rule in S and across the section, the
-/// trapezoidal one around a circle. They share the map of the rod with the models, no charge.
-Vector3 by_dipoles(const Cilium& cilium, const Centreline& line, const Vector3& x) {
-  const QuadratureRule rule = gauss_legendre(8);
-  const CrossSection& section = cilium.section;
-  Vector3 B = Vector3::Zero();
-  const auto add = [&](const CentrelinePoint& p, double X, double Y, double dV,
-                       const Vector3& of_segment) {
-    const Vector3 at = p.position + p.rotation * Vector3(X, Y, 0);
-    Matrix3 F;
-    F << p.rotation * Vector3::UnitX(), p.rotation * Vector3::UnitY(),
-        p.derivative + p.curvature.cross(at - p.position);
-    B += sources::dipole_field(dV * F * of_segment, x - at);
-  };
-  const std::vector<double>& breaks = line.breaks();
-  for (std::size_t piece = 0; piece + 1 < breaks.size(); ++piece) {
-    const Segment& own =
-        cilium.segments[cilium.segment_at((breaks[piece] + breaks[piece + 1]) / 2)];
-    if (!is_magnetic(own)) continue;
-    constexpr int parts = 12;
-    const double dS = (breaks[piece + 1] - breaks[piece]) / (2 * parts);
-    for (int part = 0; part < parts; ++part)
-      for (std::size_t s = 0; s < rule.nodes.size(); ++s) {
-        const CentrelinePoint p =
-            line.at(breaks[piece] + dS * (2 * part + 1 + rule.nodes[s]), piece);
-        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-          const double weight = dS * rule.weights[s] * rule.weights[i];
-          if (section.shape == Shape::rectangle) {
-            const Eigen::Rotation2Dd turn(section.orientation);
-            for (std::size_t j = 0; j < rule.nodes.size(); ++j) {
-              const Eigen::Vector2d at = turn * Eigen::Vector2d(section.width / 2 * rule.nodes[i],
-                                                                section.height / 2 * rule.nodes[j]);
-              add(p, at.x(), at.y(), section.width * section.height / 4 * weight * rule.weights[j],
-                  magnetization(own));
-            }
-            continue;
-          }
-          const double inner = section.inner_diameter / 2;
-          const double half = (cilium.diameter / 2 - inner) / 2;
-          const double r = inner + half * (1 + rule.nodes[i]);
-          constexpr int around = 32;
-          for (int k = 0; k < around; ++k)
-            add(p, r * std::cos(2 * pi * k / around), r * std::sin(2 * pi * k / around),
-                half * r * 2 * pi / around * weight, magnetization(own));
-        }
-      }
-  }
-  return B;
 }
 
 // Oracle: H at the middle of a cylinder of length 2h by hand, from the charge M cos φ on its
@@ -146,7 +96,7 @@ TEST(TransverseRod, ChargesOfMantleAndEndsAreTheFieldOfTheVolume) {
   const CrossSection hollow{.shape = Shape::tube, .inner_diameter = 1.6e-3};
   const std::vector<Vector3> points{{0, 0, -1.55e-3}, {2e-3, -3e-3, -1e-3}, {12e-3, 5e-3, 12e-3}};
   for (const CrossSection& section : {CrossSection{}, plate, hollow}) {
-    const Cilium cilium = two_materials(section);
+    const Cilium cilium = across_its_axis(section);
     const bool is_plate = section.shape == Shape::rectangle;
     const Deformation shape =
         bent(cilium, ContactLoad{is_plate ? 0.5e-3 : 5e-3, 16e-3, is_plate ? turn + pi / 2 : 0.4});
@@ -156,7 +106,7 @@ TEST(TransverseRod, ChargesOfMantleAndEndsAreTheFieldOfTheVolume) {
     axial.segments[1].transverse_magnetization = {0, 0};
     const Field without = VolumeField().field(axial, shape, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vector3 exact = by_dipoles(cilium, shape.centreline, points[i]);
+      const Vector3 exact = oracle::by_dipoles(cilium, shape.centreline, points[i]);
       const double error = (field.B[i] - exact).norm() / exact.norm();
       EXPECT_LT(measured("mantle against dipoles", error), 1e-9) << i;
       EXPECT_LT(field.uncertainty[i].norm(), 1e-9 * exact.norm()) << i;
@@ -167,7 +117,7 @@ TEST(TransverseRod, ChargesOfMantleAndEndsAreTheFieldOfTheVolume) {
 
 // Oracle: the closed form's charges. The paper's sums come nearer with the square of their number.
 TEST(TransverseRod, QuadratureAndSumsComeToTheSame) {
-  const Cilium cilium = two_materials({});
+  const Cilium cilium = across_its_axis({});
   const Deformation shape = bent(cilium, ContactLoad{2e-3, 16e-3, 0.4});
   const std::vector<Vector3> below{{-0.1e-3, 0.2e-3, -1.55e-3}};
   const auto error = [&](const VolumeOptions& options) {
@@ -188,7 +138,7 @@ TEST(TransverseRod, QuadratureAndSumsComeToTheSame) {
 
 // The quadrupole of a bent magnet about its centroid is smaller by its length over the distance.
 TEST(TransverseRod, FarAwayAllModelsAreTheDipole) {
-  const Cilium cilium = two_materials({});
+  const Cilium cilium = across_its_axis({});
   const Deformation shape = bent(cilium, ContactLoad{2e-3, 16e-3, 0.4});
   const auto differences = [&](double distance) {
     const Vector3 middle = shape.centreline.at(11.5e-3).position;
@@ -208,7 +158,7 @@ TEST(TransverseRod, FarAwayAllModelsAreTheDipole) {
 
 // By the law R M turns with the sections: the same as F of an unshearable, inextensible rod.
 TEST(TransverseRod, BothPushForwardsOfTheElasticaAreOne) {
-  const Cilium cilium = two_materials({});
+  const Cilium cilium = across_its_axis({});
   const Deformation shape = bent(cilium, ContactLoad{2e-3, 16e-3, 0.4});
   const std::vector<Vector3> below{{-0.1e-3, 0.2e-3, -1.55e-3}};
   const auto difference = [&](const FieldModel& F, const FieldModel& R) {
@@ -223,7 +173,7 @@ TEST(TransverseRod, BothPushForwardsOfTheElasticaAreOne) {
 TEST(TransverseRod, TurnsWithTheCilium) {
   const double angle = 1.1;
   const Quaternion q(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
-  const Cilium cilium = two_materials({});
+  const Cilium cilium = across_its_axis({});
   const Deformation shape = bent(cilium, ContactLoad{2e-3, 16e-3, 0.4});
   const Vector3 x(2e-3, -3e-3, -1e-3);
   const auto check = [&](const FieldModel& model) {
@@ -240,7 +190,7 @@ TEST(TransverseRod, TurnsWithTheCilium) {
 // Oracle: a dipole's force ∇(m·B) and torque m × B in the field of a ball far away; action and
 // reaction.
 TEST(TransverseRod, IsPulledAsADipoleAndPullsBack) {
-  const Cilium cilium = two_materials({});
+  const Cilium cilium = across_its_axis({});
   const Deformation shape = bent(cilium, ContactLoad{2e-3, 16e-3, 0.4});
   const surroundings::magnets::Magnet ball{"ball",
                                            surroundings::magnets::Shape::ball,
@@ -278,7 +228,7 @@ TEST(TransverseRod, IsPulledAsADipoleAndPullsBack) {
 }
 
 TEST(TransverseRod, RefusesWhatHasNoClosedForm) {
-  const Cilium cilium = two_materials({});
+  const Cilium cilium = across_its_axis({});
   const std::vector<Vector3> below{{0, 0, -2e-3}};
   EXPECT_THROW(VolumeField({.slices = VolumeOptions::Slices::stacked})
                    .field(cilium, straight(cilium), below),

@@ -30,10 +30,6 @@ using Slices = rod::VolumeOptions::Slices;
 constexpr double curvature = 60;
 constexpr double azimuth = 0.5;
 
-Deformation bent() {
-  return oracle::sampled(paper_cilium(), oracle::arc(curvature, azimuth));
-}
-
 rod::LineField line_sum(unsigned int n) {
   return rod::LineField({.method = rod::Method::uniform, .elements = n});
 }
@@ -81,7 +77,8 @@ Vector3 plain_sum(int n, int rings, bool jacobian, const Vector3& x) {
 TEST(PapersSums, AreThePlainSumsOverSlicesOfEqualHeight) {
   for (const Vector3& x : {paper_sensor, Vector3(4e-3, -3e-3, 1e-3)}) {
     const auto error = [&](const FieldModel& model, const Vector3& sum) {
-      return relative_difference(flux_density(model, paper_cilium(), bent(), x), sum);
+      return relative_difference(flux_density(model, paper_cilium(), oracle::bent_cilium(), x),
+                                 sum);
     };
     const double line = error(line_sum(13), plain_sum(13, 0, false, x));
     const double stacked = error(volume_sum(Slices::stacked, 7), plain_sum(7, 7, false, x));
@@ -142,8 +139,10 @@ TEST(PapersSums, TakeEitherPushForward) {
 }
 
 TEST(PapersSums, HaveAnEstimateForASingleDipoleToo) {
-  const Field field = line_sum(1).field(paper_cilium(), bent(), std::span(&paper_sensor, 1));
-  const Vector3 exact = flux_density(rod::LineField(), paper_cilium(), bent(), paper_sensor);
+  const Field field =
+      line_sum(1).field(paper_cilium(), oracle::bent_cilium(), std::span(&paper_sensor, 1));
+  const Vector3 exact =
+      flux_density(rod::LineField(), paper_cilium(), oracle::bent_cilium(), paper_sensor);
   EXPECT_LE((field.B.front() - exact).norm(), 3 * field.uncertainty.front().norm());
   EXPECT_GT(field.uncertainty.front().norm(), 0);
 }
@@ -163,9 +162,10 @@ TEST(PapersSums, SayWhatTheyCannotDo) {
   // Bent by 2 rad, the arc's tip points down.
   const Deformation falling = oracle::sampled(paper_cilium(), oracle::arc(100, 0));
   EXPECT_TRUE(error_of(line_sum(10), falling, paper_sensor).starts_with("input: the method"));
-  EXPECT_TRUE(error_of(line_sum(0), bent(), paper_sensor).starts_with("input: the method"));
+  EXPECT_TRUE(
+      error_of(line_sum(0), oracle::bent_cilium(), paper_sensor).starts_with("input: the method"));
   const Vector3 inside = oracle::arc(curvature, azimuth)(9e-3).position;
-  const std::string message = error_of(volume_sum(Slices::wedge, 4), bent(), inside);
+  const std::string message = error_of(volume_sum(Slices::wedge, 4), oracle::bent_cilium(), inside);
   EXPECT_TRUE(message.starts_with("solver: ")) << message;
   EXPECT_NE(message.find("inside the magnet"), std::string::npos);
 }

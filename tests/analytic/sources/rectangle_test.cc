@@ -13,7 +13,7 @@
 namespace ciliaval::analytic {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// ∫∫ (x − x′)/(4π|x − x′|³) by Gauss's rule on n × n parts of 8 × 8 points.
 Vector3 by_quadrature(const std::array<double, 2>& half, const Vector3& x, int n) {

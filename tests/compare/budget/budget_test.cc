@@ -32,7 +32,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double L = 20e-3;
+using test::L;
 
 /// A world of known answers. Mechanics: a straight cilium tilted by a·F, with an a of each model.
 /// Fields: B = c·(tip position), with a c of each variant.

@@ -107,8 +107,9 @@ TEST(Converge, ABeamOfDegreeTwoConvergesWithOrderFourToTheBeamOfDegreeSix) {
     EXPECT_EQ(ids[i], q["id"].get<std::string>());
     EXPECT_EQ(columns.at("unit")[i], q["unit"].get<std::string>());
     EXPECT_EQ(columns.at("conclusive")[i], q["conclusive"].get<bool>() ? "1" : "0");
-    if (q["conclusive"].get<bool>())
+    if (q["conclusive"].get<bool>()) {
       EXPECT_EQ(std::stod(columns.at("limit")[i]), q["limit"].get<double>());
+    }
     EXPECT_EQ(std::stod(columns.at("value_5")[i]), q["levels"][4]["value"].get<double>());
   }
 }

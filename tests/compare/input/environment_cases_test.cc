@@ -56,10 +56,6 @@ constexpr std::string_view one_field = R"(["0 mT", "10 mT", "2 mT"])";
 constexpr std::string_view three_fields =
     R"([["0 mT", "0 mT", "0 mT"], ["0 mT", "0 mT", "1 mT"], ["0 mT", "-10 mT", "2 mT"]])";
 
-input::Case read(std::string_view text) {
-  return input::read_case(text, "bad.toml", models::known());
-}
-
 std::string with_load(std::string_view load, std::string_view text = weight_and_field) {
   return replaced(text, "[models]", std::string("[load]\n").append(load).append("\n[models]"));
 }
@@ -198,7 +194,7 @@ TEST_P(BadEnvironmentCase, IsRefusedWithOneLocatedMessage) {
   expect_refused(weight_and_field, GetParam());
 }
 
-const PlantedFault bad[]{
+const PlantedFault bad_environments[]{
     {"NoDensity", "density = \"1 g/cm^3\"\n", "", "5:1", "the segment 'base' needs a 'density'"},
     {"NegativeDensity", "1 g/cm^3", "-1 g/cm^3", "10:11", "'density' is -1000 kg/m^3"},
     {"DensityIsNoPressure", "1 g/cm^3", "1 Pa", "10:11", "density"},
@@ -240,7 +236,8 @@ const PlantedFault bad[]{
      "18:1", "no model takes an environment beside the load type 'sweep'"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Environment, BadEnvironmentCase, testing::ValuesIn(bad), name_of);
+INSTANTIATE_TEST_SUITE_P(Environment, BadEnvironmentCase, testing::ValuesIn(bad_environments),
+                         name_of);
 
 TEST(EnvironmentCase, ListsAsManyFieldsAsTheLoadHasSteps) {
   const std::string text = replaced(weight_and_field, one_field, three_fields);

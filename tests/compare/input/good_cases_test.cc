@@ -30,10 +30,6 @@ namespace {
 
 using testing::ElementsAre;
 
-input::Case read(std::string_view text) {
-  return input::read_case(text, "test.toml", models::known());
-}
-
 std::filesystem::path source(std::string_view file) {
   return std::filesystem::path(CILIAVAL_SOURCE_DIR) / file;
 }

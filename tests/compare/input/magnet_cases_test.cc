@@ -59,10 +59,6 @@ magnetization = ["0 A/m", "0 A/m", "-1 MA/m"]
 mechanics = ["beam"]
 )";
 
-input::Case read(std::string_view text) {
-  return input::read_case(text, "bad.toml", models::known());
-}
-
 TEST(MagnetCase, SaysShapesPosesAndSizes) {
   const input::Case c = read(beside);
   ASSERT_EQ(c.load_path.size(), 1U);
@@ -155,7 +151,7 @@ TEST_P(BadMagnetCase, IsRefusedWithOneLocatedMessage) {
   expect_refused(beside, GetParam());
 }
 
-const PlantedFault bad[]{
+const PlantedFault bad_magnets[]{
     {"Touches", "\"20 mm\", \"5 mm\"]\ndiameter", "\"4.4 mm\", \"5 mm\"]\ndiameter", "14:12",
      "the magnet 'ball' touches the straight cilium: move it away"},
     {"NoUnit", "\"6 mm\"", "6", "15:12", "has no unit: write a length"},
@@ -191,7 +187,7 @@ const PlantedFault bad[]{
      "the elastica takes no [[environment.magnet]]: use 'beam' or 'solid'"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Magnets, BadMagnetCase, testing::ValuesIn(bad), name_of);
+INSTANTIATE_TEST_SUITE_P(Magnets, BadMagnetCase, testing::ValuesIn(bad_magnets), name_of);
 
 }  // namespace
 }  // namespace ciliaval::compare

@@ -43,10 +43,6 @@ method = "closed_form"
 
 constexpr std::string_view three = R"(["10 kA/m", "0 A/m", "-75 kA/m"])";
 
-input::Case read(std::string_view text) {
-  return input::read_case(text, "bad.toml", models::known());
-}
-
 TEST(MagnetizationCase, HasThreeComponentsOrIsAxial) {
   EXPECT_EQ(magnetization(read(across).cilium.segments[0]), Vector3(1e4, 0, -7.5e4));
   const std::string axial = replaced(across, three, "\"-75 kA/m\"");
@@ -74,7 +70,7 @@ TEST_P(BadMagnetizationCase, IsRefusedWithOneLocatedMessage) {
   expect_refused(across, GetParam());
 }
 
-const PlantedFault bad[]{
+const PlantedFault bad_magnetizations[]{
     {"TwoComponents", "\"0 A/m\", ", "", "10:17",
      "'magnetization' must have three components along x, y and z", "found 2"},
     {"WithoutUnit", "\"-75 kA/m\"", "-75000", "10:38", "has no unit: write a magnetization"},
@@ -90,7 +86,8 @@ const PlantedFault bad[]{
      "take \"wedge\", or the method \"quadrature\""},
 };
 
-INSTANTIATE_TEST_SUITE_P(Magnetization, BadMagnetizationCase, testing::ValuesIn(bad), name_of);
+INSTANTIATE_TEST_SUITE_P(Magnetization, BadMagnetizationCase, testing::ValuesIn(bad_magnetizations),
+                         name_of);
 
 TEST(MagnetizationCase, TheSolidTakesOneAzimuth) {
   const std::string path =

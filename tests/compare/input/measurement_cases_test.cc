@@ -38,10 +38,6 @@ source = "photograph"
 fitted = true
 )toml";
 
-input::Case read(const std::string& text) {
-  return input::read_case(text, "bad.toml", models::known());
-}
-
 TEST(MeasurementCase, StatesAValueOfTheTip) {
   const input::Case c = read(with(tip));
   ASSERT_EQ(c.measured.measurements.size(), 1U);
@@ -107,7 +103,7 @@ TEST_P(BadMeasurementCase, IsRefusedWithOneLocatedMessage) {
   expect_refused(with(tip), GetParam());
 }
 
-const PlantedFault bad[]{
+const PlantedFault bad_measurements[]{
     {"UnknownQuantity", "\"tip.deflection\"", "\"tip.deflexion\"", "37:12",
      "'quantity' cannot be 'tip.deflexion' (valid: tip.x, tip.y, tip.z, tip.deflection, tip.theta, "
      "B.0.x"},
@@ -148,7 +144,7 @@ const PlantedFault bad[]{
      "expected 0 to 2000 tables [[measurement]], found a table"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, BadMeasurementCase, testing::ValuesIn(bad), name_of);
+INSTANTIATE_TEST_SUITE_P(All, BadMeasurementCase, testing::ValuesIn(bad_measurements), name_of);
 
 TEST(MeasurementCase, HasItsPointInTheRectangle) {
   std::string text = replaced(

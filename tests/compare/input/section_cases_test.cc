@@ -55,10 +55,6 @@ std::string tube() {
                   "shape = \"tube\"\ninner_diameter = \"1 mm\"");
 }
 
-input::Case read(std::string_view text) {
-  return input::read_case(text, "bad.toml", models::known());
-}
-
 TEST(SectionCase, IsARectangleOrATube) {
   const Cilium cilium = read(plate).cilium;
   EXPECT_EQ(cilium.section.shape, CrossSection::Shape::rectangle);
@@ -105,7 +101,7 @@ TEST_P(BadSectionCase, IsRefusedWithOneLocatedMessage) {
   expect_refused(plate, GetParam());
 }
 
-const PlantedFault bad[]{
+const PlantedFault bad_sections[]{
     {"NoHeight", "height = \"5 mm\"\n", "", "4:1", "needs 'height'"},
     {"ZeroHeight", "\"5 mm\"", "\"0 mm\"", "7:10", "'height' is 0 m"},
     {"HeightWithoutUnit", "\"5 mm\"", "5", "7:10", "has no unit: write a length"},
@@ -132,7 +128,7 @@ const PlantedFault bad[]{
      "type = \"flow\"\nvelocity = \"1 m/s\"", "18:12", "state force_per_height"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Sections, BadSectionCase, testing::ValuesIn(bad), name_of);
+INSTANTIATE_TEST_SUITE_P(Sections, BadSectionCase, testing::ValuesIn(bad_sections), name_of);
 
 TEST(SectionCase, TheHoleIsNarrowerThanTheTube) {
   EXPECT_THAT(faults_of(replaced(tube(), "\"1 mm\"", "\"3 mm\"")),

@@ -60,10 +60,6 @@ mechanics = ["elastica"]
 fields = ["line"]
 )";
 
-input::Case read(std::string_view text) {
-  return input::read_case(text, "bad.toml", models::known());
-}
-
 std::string faults(std::string_view part, std::string_view by) {
   const std::string text = replaced(good_sweep, part, by);
   EXPECT_FALSE(text.empty()) << part;

@@ -19,8 +19,6 @@ namespace {
 
 using namespace compare;
 
-constexpr double L = 20e-3;
-
 /// A straight line that leans by the angle.
 Centreline leaning(double angle) {
   const Quaternion turn(Eigen::AngleAxisd(angle, Vector3::UnitY()));

@@ -17,7 +17,6 @@ using namespace compare;
 using input::ErrorLimit;
 using testing::HasSubstr;
 
-constexpr double L = 20e-3;
 constexpr double turn = 0.1;  // rad, of the exact solution
 
 struct HalvingOptions {

@@ -20,7 +20,7 @@ using test::mechanics_entry;
 using test::paper_case;
 using test::tilted;
 
-constexpr double L = 20e-3;
+using test::L;
 const Vector3 ex = Vector3::UnitX();
 
 const models::Comparison& find(const std::vector<models::Comparison>& all,

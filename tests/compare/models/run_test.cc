@@ -19,7 +19,7 @@ using test::field_entry;
 using test::mechanics_entry;
 using test::paper_case;
 
-constexpr double L = 20e-3;
+using test::L;
 
 /// Dipole of unit moment at the tip along the tip's normal (Eq. 5).
 Vector3 tip_dipole(const Deformation& d, const Vector3& point) {

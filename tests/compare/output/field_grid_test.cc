@@ -17,7 +17,7 @@ using test::field_entry;
 using test::mechanics_entry;
 using test::paper_case;
 
-constexpr double L = 20e-3;
+using test::L;
 
 models::MechanicsEntry bend(const std::string& id, bool body) {
   return mechanics_entry(id, [body](const Load& load) {

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <future>
 
@@ -37,6 +39,33 @@ TEST(OutputFile, ReplacesAFileAndTouchesNoOther) {
   EXPECT_EQ(read_text(folder.path() / "a.json.tmp"), "the user's");
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
+}
+
+TEST(OutputFile, TakesAwayWhatAKilledProcessHasLeft) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "a.json";
+  const auto count = [&] {
+    return std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator());
+  };
+  const pid_t child = fork();
+  if (child == 0) {
+    write_file(file, [&](const fs::path& temporary) {
+      std::ofstream(temporary) << "half a file" << std::flush;
+      raise(SIGKILL);
+    });
+    _exit(1);
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(count(), 1);
+  EXPECT_FALSE(fs::exists(file));
+  // Those of a living process, of another file, and the user's own stay.
+  for (const std::string& name :
+       {".a." + std::to_string(getppid()) + ".0.tmp.json", std::string(".a.notes.tmp.json"),
+        ".b." + std::to_string(child) + ".0.tmp.json", ".a." + std::to_string(child) + ".0.json"})
+    std::ofstream(folder.path() / name) << "stays";
+  write_file(file, "whole");
+  EXPECT_EQ(read_text(file), "whole");
+  EXPECT_EQ(count(), 5);
 }
 
 TEST(OutputFile, WritesBehindALink) {

@@ -27,7 +27,7 @@ using test::paper_case;
 using test::read_text;
 using test::TemporaryFolder;
 
-constexpr double L = 20e-3;
+using test::L;
 const output::Provenance origin{
     "1.2.3", "abc", {{"VTK", "9.1.0"}}, "ciliaval run x.toml", "2025-01-02T03:04:05Z"};
 

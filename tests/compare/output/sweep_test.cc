@@ -33,7 +33,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 constexpr std::size_t samples = 41;
-const output::Provenance origin{"1.2.3", "abc", {}, "ciliaval run x.toml", "today"};
+const output::Provenance run_origin{"1.2.3", "abc", {}, "ciliaval run x.toml", "today"};
 
 const models::CaseResult& result() {
   static const models::CaseResult value = [] {
@@ -53,7 +53,7 @@ position = ["0 mm", "0 mm", "-1.55 mm"]
 }
 
 json summary() {
-  return json::parse(output::summary_json(result(), models::compare_models(result()), origin));
+  return json::parse(output::summary_json(result(), models::compare_models(result()), run_origin));
 }
 
 std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
@@ -161,7 +161,7 @@ TEST(SweepResults, TableFitsATerminalAndTellsTheJump) {
 
 TEST(SweepResults, VtkHasTheSurfaceAndTheForceOfEachSample) {
   const test::TemporaryFolder folder;
-  output::vtk::write_vtk(result(), std::nullopt, origin, folder.path());
+  output::vtk::write_vtk(result(), std::nullopt, run_origin, folder.path());
   for (const char* series : {"surface.pvd", "contact_elastica.pvd", "centreline_elastica.pvd"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / series)) << series;
   const MechanicsStep& step = result().mechanics[0].result.steps[7];

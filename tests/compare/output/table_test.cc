@@ -23,7 +23,7 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double L = 20e-3;
+using test::L;
 
 models::MechanicsEntry tilt(const std::string& id, double factor) {
   return mechanics_entry(id, [=](const Load& load) {

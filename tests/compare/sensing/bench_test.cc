@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double degree = std::numbers::pi / 180;
+using sensing::degree;
 
 sensing::Bench paper_bench() {
   sensing::Bench bench;

@@ -23,15 +23,11 @@ const sensing::Response& paper_response() {
   return response;
 }
 
-sensing::Vector2 polar(double magnitude, double azimuth) {
-  return {magnitude * std::cos(azimuth), magnitude * std::sin(azimuth)};
-}
-
 TEST(Inversion, GivesTheLoadBackFromExactReadings) {
   const sensing::Inversion invert(paper_response(), noise);
   for (double azimuth = -3; azimuth < 3.2; azimuth += 0.5)
     for (const double force : {1e-6, 0.3e-3, 1.9e-3, 3.99e-3}) {
-      const sensing::Vector2 p = polar(force, azimuth);
+      const sensing::Vector2 p = sensing::polar(force, azimuth);
       const sensing::SensedLoad sensed = invert(paper_response().change(p));
       EXPECT_LT((sensed.load - p).norm(), 1e-10 * 4e-3) << p.transpose();
       EXPECT_LT(sensed.chi_squared, 1e-6);
@@ -52,7 +48,8 @@ TEST(Inversion, ItsIntervalsHoldTheTruthAsOftenAsTheySay) {
   int azimuths = 0;
   int likely = 0;
   for (int i = 0; i < readings; ++i) {
-    const sensing::Vector2 p = polar(0.2e-3 + 3.6e-3 * uniform(random), 6 * uniform(random));
+    const sensing::Vector2 p =
+        sensing::polar(0.2e-3 + 3.6e-3 * uniform(random), 6 * uniform(random));
     Eigen::VectorXd change = paper_response().change(p);
     for (int c = 0; c < 3; ++c) change[c] += noise[c] * normal(random);
     const sensing::SensedLoad sensed = invert(change);
@@ -71,7 +68,7 @@ TEST(Inversion, SaysWhatAReadingDoesNotTell) {
   const sensing::SensedLoad nothing = invert(Eigen::Vector3d(1e-7, -1e-7, 0));
   EXPECT_EQ(nothing.azimuth_interval(), std::numbers::pi);
   EXPECT_GE(nothing.magnitude_interval(), nothing.magnitude());
-  const sensing::SensedLoad large = invert(paper_response().change(polar(4.4e-3, 1)));
+  const sensing::SensedLoad large = invert(paper_response().change(sensing::polar(4.4e-3, 1)));
   EXPECT_TRUE(large.beyond_range);
   // Readings that no load makes: ΔB_z alone, half a millitesla of it.
   EXPECT_LT(invert(Eigen::Vector3d(0, 0, 5e-4)).misfit_probability, 1e-12);
@@ -87,7 +84,7 @@ TEST(LinearFit, InvertsSmallLoads) {
   const sensing::Response small(problem, "volume", sensing::shapes_up_to(problem, "elastica", 1e-6),
                                 problem.sensors);
   const sensing::LinearFit fit(small, noise);
-  const sensing::Vector2 p = polar(0.6e-6, 2);
+  const sensing::Vector2 p = sensing::polar(0.6e-6, 2);
   EXPECT_LT((fit(small.change(p)) - p).norm(), 1e-4 * p.norm());
   EXPECT_LT(fit.misfit(), 1e-3);
   EXPECT_GT(sensing::LinearFit(paper_response(), noise).misfit(), 10 * fit.misfit());

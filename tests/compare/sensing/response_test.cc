@@ -19,10 +19,6 @@ namespace {
 
 using testing::HasSubstr;
 
-sensing::Vector2 polar(double magnitude, double azimuth) {
-  return {magnitude * std::cos(azimuth), magnitude * std::sin(azimuth)};
-}
-
 /// ΔB of a contact force at z = 16 mm, straight from the models.
 template <class Mechanics, class FieldModel>
 Eigen::VectorXd direct(const input::Case& problem, const Mechanics& mechanics,
@@ -49,7 +45,8 @@ TEST(Response, IsThatOfTheModels) {
   const sensing::Response line(problem, "line", sensing::shapes_up_to(problem, "beam", 4e-3),
                                problem.sensors);
   for (const sensing::Vector2& p :
-       {polar(3.3e-3, 0.4), polar(0.7e-3, -2.5), polar(4e-3, 1.9), polar(1e-5, 3.1), polar(0, 0)}) {
+       {sensing::polar(3.3e-3, 0.4), sensing::polar(0.7e-3, -2.5), sensing::polar(4e-3, 1.9),
+        sensing::polar(1e-5, 3.1), sensing::polar(0, 0)}) {
     const Eigen::VectorXd a =
         direct(problem, analytic::elastica::Elastica(), analytic::rod::VolumeField(), p);
     EXPECT_LT((volume.change(p) - a).norm(), 1e-8 * volume.largest_change()) << p.transpose();
@@ -65,8 +62,9 @@ TEST(Response, ItsDerivativeIsThatOfTheChange) {
   const sensing::Response response(
       problem, "line", sensing::shapes_up_to(problem, "elastica", 3e-3), problem.sensors);
   constexpr double h = 1e-7;
-  for (const sensing::Vector2& p : {polar(2e-3, 0.4), polar(0.1e-3, -2.5), polar(0, 0),
-                                    polar(1.5e-3, 0.2), polar(2.9e-3, 1.6)}) {
+  for (const sensing::Vector2& p :
+       {sensing::polar(2e-3, 0.4), sensing::polar(0.1e-3, -2.5), sensing::polar(0, 0),
+        sensing::polar(1.5e-3, 0.2), sensing::polar(2.9e-3, 1.6)}) {
     const Eigen::MatrixX2d derivative = response.derivative(p);
     for (int axis : {0, 1}) {
       const sensing::Vector2 step = h * sensing::Vector2::Unit(axis);
@@ -76,7 +74,7 @@ TEST(Response, ItsDerivativeIsThatOfTheChange) {
           << p.transpose() << ", axis " << axis;
     }
   }
-  const sensing::Vector2 e = polar(1, 0.7);
+  const sensing::Vector2 e = sensing::polar(1, 0.7);
   const Eigen::VectorXd beyond = (response.change(3.6e-3 * e) - response.change(3.4e-3 * e)) / 2e-4;
   EXPECT_LT((beyond - response.derivative(3e-3 * e) * e).norm(), 1e-9 * beyond.norm());
 }

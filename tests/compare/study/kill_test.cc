@@ -140,7 +140,7 @@ void kill_and_compare(int kills_wanted, void (*write)(const fs::path& folder), s
         ++continued;
       ASSERT_TRUE(code == -1 || code == 0) << code << read_text(folder.path() / "out.err");
     } while (code != 0);
-    EXPECT_EQ(contents(folder.path() / "out/varied"), expected);
+    EXPECT_THAT(contents(folder.path() / "out/varied"), testing::ContainerEq(expected));
     EXPECT_EQ(kept(folder.path() / "out/varied"), entries);
     EXPECT_EQ(
         read_text(folder.path() / "out.out"),
@@ -161,7 +161,7 @@ TEST(KilledStudySlow, EndsWithTheSameFilesToTheLastByte) {
 
 // CSV and JSON.
 TEST(KilledOptimisation, EndsWithTheSameFilesToTheLastByte) {
-  kill_and_compare(5, write_optimisation, 2, 2000);
+  kill_and_compare(3, write_optimisation, 2, 2000);
 }
 
 TEST(KilledOptimisationSlow, EndsWithTheSameFilesToTheLastByte) {

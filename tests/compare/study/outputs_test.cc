@@ -18,6 +18,7 @@
 #include "fem/beam/beam.h"
 #include "problem/error.h"
 #include "tests/support/study_texts.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare::study {
 namespace {
@@ -27,7 +28,7 @@ using test::study_text;
 using test::TemporaryFolder;
 using testing::HasSubstr;
 
-constexpr double L = 0.02;
+using test::L;
 
 Study study_of(const fs::path& folder, const std::string& header, const std::string& rest) {
   test::write_study_case(folder);

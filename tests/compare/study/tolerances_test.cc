@@ -15,6 +15,7 @@
 #include "compare/study/summary/report.h"
 #include "problem/error.h"
 #include "tests/support/study_texts.h"
+#include "tests/support/synthetic.h"
 
 namespace ciliaval::compare::study::summary {
 namespace {
@@ -25,7 +26,7 @@ using test::TemporaryFolder;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr double L = 0.02;
+using test::L;
 
 Study study_of(const fs::path& folder, const std::string& header, const std::string& rest) {
   test::write_study_case(folder);

@@ -16,7 +16,7 @@ using input::measurement::Measurand;
 using Kind = Measurand::Kind;
 using testing::HasSubstr;
 
-constexpr double L = 20e-3;
+using test::L;
 constexpr double angle = 0.7;
 constexpr double u_tip = 1e-6;
 const Load load = ContactLoad{1e-3, 16e-3, 0};

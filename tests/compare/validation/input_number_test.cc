@@ -39,10 +39,6 @@ std::string row(std::string_view number, std::string_view uncertainty) {
       .append("\n");
 }
 
-input::Case read(const std::string& text) {
-  return input::read_case(text, "bad.toml", models::known());
-}
-
 std::string input_faults(const std::string& text) {
   const input::Case c = read(text);
   try {

@@ -11,14 +11,24 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fem/beam/newton.h"
+#include "problem/cilium.h"
 
 // What the tests of the beam share.
 namespace beams {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
-inline constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
+inline constexpr double L = 20e-3;  ///< of the paper's cilium, m
+inline constexpr double h = 16e-3;  ///< of its contact, m
+
+/// A rod of one material in n segments.
+inline ciliaval::Cilium equal_segments(std::size_t n) {
+  return {3e-3,
+          std::vector<ciliaval::Segment>(n, {"rod", L / static_cast<double>(n), 1e6, 0.49, 0})};
+}
 
 /// Records the largest of a test's measured errors of one name in its report (--gtest_output), and
 /// hands the error on.

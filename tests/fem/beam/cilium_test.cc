@@ -16,8 +16,9 @@ namespace {
 using namespace ciliaval;
 using beams::measured;
 
-constexpr double L = 20e-3;
-constexpr double h = 16e-3;
+using beams::equal_segments;
+using beams::h;
+using beams::L;
 
 /// The paper's cilium; E₁ = E₂/ratio.
 Cilium paper_cilium(double ratio = 30) {
@@ -162,10 +163,6 @@ TEST(BeamContact, UnloadedStandsStraight) {
   ASSERT_EQ(result.steps[0].status, Status::converged) << result.steps[0].message;
   EXPECT_NEAR(*result.steps[0].contact_arclength, h, 1e-17);
   EXPECT_LT((tip(result.steps[0]).position - L * Vector3::UnitZ()).norm(), 1e-17);
-}
-
-Cilium equal_segments(std::size_t n) {
-  return {3e-3, std::vector<Segment>(n, {"rod", L / static_cast<double>(n), 1e6, 0.49, 0})};
 }
 
 TEST(BeamContact, CutsInOneMaterialDoNotMatter) {

@@ -21,9 +21,9 @@
 namespace ciliaval::fem::beam {
 namespace {
 
+using std::numbers::pi;
 using surroundings::Environment;
 using surroundings::MagneticEnergy;
-constexpr double pi = std::numbers::pi;
 
 /// EI/L² = 1 N, A M L²/EI = 1 per T, ρA = 1 kg/m.
 Cilium unit_cilium() {

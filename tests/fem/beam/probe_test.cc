@@ -15,15 +15,12 @@ namespace {
 using namespace ciliaval;
 using beams::measured;
 
-constexpr double L = 20e-3;
-constexpr double h = 16e-3;
+using beams::equal_segments;
+using beams::h;
+using beams::L;
 
 Cilium paper_cilium() {
   return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
-}
-
-Cilium equal_segments(std::size_t n) {
-  return {3e-3, std::vector<Segment>(n, {"rod", L / static_cast<double>(n), 1e6, 0.49, 0})};
 }
 
 std::vector<oracle::Stretch> stretches(const Cilium& cilium, bool shear_rigid) {

@@ -14,8 +14,8 @@
 namespace ciliaval::fem::beam {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-using Shape = CrossSection::Shape;
+using std::numbers::pi;
+using Section = CrossSection::Shape;
 
 // Oracle: Timoshenko & Goodier, table of §109: GJ = β G l s³, β of l/s = 1, 2 and 10.
 TEST(BeamSections, RectangleTwistsAsInTheTable) {
@@ -47,7 +47,7 @@ TEST(BeamSections, TubeHasItsLimits) {
 }
 
 Cilium two_materials(const CrossSection& section) {
-  return {section.shape == Shape::rectangle ? 0 : 3e-3,
+  return {section.shape == Section::rectangle ? 0 : 3e-3,
           {{"base", 3e-3, 1e6, 0.49, 0, 1000}, {"magnet", 17e-3, 5e6, 0.49, 75e3, 1700}},
           section};
 }
@@ -57,15 +57,15 @@ Cilium two_materials(const CrossSection& section) {
 TEST(BeamSections, BendLikeTheElastica) {
   const double turn = 25 * pi / 180;
   const CrossSection plate{
-      .shape = Shape::rectangle, .width = 2e-3, .height = 1e-3, .orientation = turn};
-  const CrossSection hollow{.shape = Shape::tube, .inner_diameter = 2e-3};
+      .shape = Section::rectangle, .width = 2e-3, .height = 1e-3, .orientation = turn};
+  const CrossSection hollow{.shape = Section::tube, .inner_diameter = 2e-3};
   const Beam beam({.degree = 6, .refinement = 2, .shear_rigid = true});
   for (const CrossSection& section : {plate, hollow}) {
     const Cilium cilium = two_materials(section);
     for (const double azimuth : {turn, turn + pi / 2, turn - pi}) {
       const Vector3 e(std::cos(azimuth), std::sin(azimuth), 0);
       for (const bool is_surrounded : {false, true}) {
-        const double force = section.shape == Shape::rectangle ? 0.3e-3 : 5e-3;
+        const double force = section.shape == Section::rectangle ? 0.3e-3 : 5e-3;
         Load load = ContactLoad{force, 16e-3, azimuth};
         if (is_surrounded)
           load.set_environment(
@@ -88,8 +88,8 @@ TEST(BeamSections, BendLikeTheElastica) {
 }
 
 TEST(BeamSections, RefuseALoadThatIsAlongNoSide) {
-  const Cilium cilium =
-      two_materials({.shape = Shape::rectangle, .width = 2e-3, .height = 1e-3, .orientation = 0.1});
+  const Cilium cilium = two_materials(
+      {.shape = Section::rectangle, .width = 2e-3, .height = 1e-3, .orientation = 0.1});
   EXPECT_THROW(Beam().solve(cilium, {ContactLoad{1e-3, 16e-3, 0}}), InputError);
   EXPECT_THROW(analytic::elastica::Elastica().solve(cilium, {ContactLoad{1e-3, 16e-3, 0}}),
                InputError);

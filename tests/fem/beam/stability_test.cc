@@ -21,7 +21,7 @@
 namespace ciliaval::fem::beam {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// EI/L² = 1 N, A M L²/EI = 1 per T, ρA = 1 kg/m.
 Cilium unit_rod() {

@@ -17,10 +17,10 @@
 namespace ciliaval::fem::beam {
 namespace {
 
+using std::numbers::pi;
 using surroundings::Environment;
 using surroundings::MagneticEnergy;
 using surroundings::magnets::Shape;
-constexpr double pi = std::numbers::pi;
 constexpr std::array laws{MagneticEnergy::F, MagneticEnergy::R};
 
 /// EI/L² = 1 N and A |M| L²/EI = 1 per T for M of unit length.
@@ -110,7 +110,7 @@ TEST(BeamAcrossItsAxis, TheElasticaRefusesWhatTurnsItOutOfThePlane) {
       analytic::elastica::Elastica().solve(unit_cilium({0, 1, 1}), {SectionLoad{0.1, 1, 0}}));
 }
 
-Environment beside(MagneticEnergy law) {
+Environment in_a_field_beside(MagneticEnergy law) {
   Environment environment{.uniform_field = {1e-3, -2e-3, 1e-3}, .magnetic_energy = law};
   environment.magnets = {{"cuboid",
                           Shape::cuboid,
@@ -149,7 +149,7 @@ SectionForces on_dipoles(const Cilium& cilium, const Centreline& line, const Env
 TEST(BeamAcrossItsAxis, TheBaseBearsForceAndCoupleOfItsDipoles) {
   const Cilium cilium = two_materials();
   for (const MagneticEnergy law : laws) {
-    const Environment around = beside(law);
+    const Environment around = in_a_field_beside(law);
     const Centreline line = solved(Beam({.refinement = 2}), cilium, around).centreline;
     const SectionForces exact = on_dipoles(cilium, line, around);
     const SectionForces base = line.at(0, 0).forces;
@@ -162,7 +162,7 @@ TEST(BeamAcrossItsAxis, TheBaseBearsForceAndCoupleOfItsDipoles) {
 TEST(BeamAcrossItsAxis, TurnsWithItsSurroundings) {
   const double angle = 1.1;
   const Quaternion q(Eigen::AngleAxisd(angle, Vector3::UnitZ()));
-  const Environment around = beside(MagneticEnergy::F);
+  const Environment around = in_a_field_beside(MagneticEnergy::F);
   const Centreline line = solved(Beam(), two_materials(), around).centreline;
   const Centreline other =
       solved(Beam(), turned(two_materials(), angle), surroundings::turned(around, angle))

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Cilium cilium() {
+Cilium short_cilium() {
   Segment base;
   base.length = 3e-3;
   base.young_modulus = 1e5;
@@ -37,7 +37,7 @@ meshes::MeshNodes mesh(bool half) {
   options.half = half;
   options.planes = {8e-3};
   dealii::Triangulation<3> triangulation;
-  meshes::cylinder::make_cylinder(cilium(), options, triangulation);
+  meshes::cylinder::make_cylinder(short_cilium(), options, triangulation);
   return meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation));
 }
 
@@ -65,14 +65,14 @@ TEST(Calculix, SerendipityFunctionsInterpolateAndDifferentiate) {
 // Oracle: statics. Force and moment of the nodal forces are those of the load, on the whole body;
 // a half carries half of the force.
 TEST(Calculix, NodalForcesHaveTheLoadsResultant) {
-  const double L = cilium().length();
+  const double L = short_cilium().length();
   for (const bool half : {false, true}) {
     const meshes::MeshNodes nodes = mesh(half);
     const std::vector<std::pair<Load, double>> loads{
         {SectionLoad{.force = 2e-3, .arclength = 8e-3, .azimuth = 0}, 8e-3},
         {DeadLoad{.force_per_length = 2e-3 / L, .azimuth = 0}, L / 2}};
     for (const auto& [load, height] : loads) {
-      const auto forces = calculix_forces(nodes, cilium(), load);
+      const auto forces = calculix_forces(nodes, short_cilium(), load);
       Vector3 force = Vector3::Zero();
       double moment = 0;  // about the y axis
       for (std::size_t i = 0; i < forces.size(); ++i) {
@@ -88,10 +88,11 @@ TEST(Calculix, NodalForcesHaveTheLoadsResultant) {
 
 TEST(Calculix, RefusesWhatItCannotLoad) {
   const meshes::MeshNodes nodes = mesh(true);
-  EXPECT_THROW(calculix_forces(nodes, cilium(), ContactLoad{.force = 1e-3, .height = 8e-3}),
+  EXPECT_THROW(calculix_forces(nodes, short_cilium(), ContactLoad{.force = 1e-3, .height = 8e-3}),
                InputError);
-  EXPECT_THROW(calculix_forces(nodes, cilium(), SectionLoad{.force = 1e-3, .arclength = 7.77e-3}),
-               InputError);
+  EXPECT_THROW(
+      calculix_forces(nodes, short_cilium(), SectionLoad{.force = 1e-3, .arclength = 7.77e-3}),
+      InputError);
 }
 
 /// A mesh of one element whose nodes are numbered as CalculiX's.
@@ -144,17 +145,18 @@ TEST(Calculix, SolvesTheSameCilium) {
   const fs::path folder = own.path();
   const meshes::MeshNodes nodes = mesh(true);
   std::ofstream input(folder / "cilium.inp");
-  write_calculix(input, nodes, cilium(), load);
+  write_calculix(input, nodes, short_cilium(), load);
   input.close();
   ASSERT_EQ(std::system(("cd '" + folder.string() + "' && ccx -i cilium > ccx.log 2>&1").c_str()),
             0);
   std::ifstream output(folder / "cilium.dat");
   const auto displacements = read_calculix(output, nodes);
-  const auto tip = calculix_forces(
-      nodes, cilium(), SectionLoad{.force = 2, .arclength = cilium().length(), .azimuth = 0});
+  const auto tip =
+      calculix_forces(nodes, short_cilium(),
+                      SectionLoad{.force = 2, .arclength = short_cilium().length(), .azimuth = 0});
   double deflection = 0;  // the weights add up to 1 on the half
   for (std::size_t i = 0; i < tip.size(); ++i) deflection += tip[i].x() * displacements[i].x();
-  const MechanicsResult solid = solid::Solid({.refinement = 0}).solve(cilium(), {load});
+  const MechanicsResult solid = solid::Solid({.refinement = 0}).solve(short_cilium(), {load});
   const Centreline& line = solid.steps.front().deformation->centreline;
   const double expected = line.at(line.length()).position.x();
   EXPECT_NEAR(deflection, expected, 0.03 * expected);

@@ -23,12 +23,12 @@ using namespace surroundings;
 constexpr double friction = 0.3;
 constexpr double degree = std::numbers::pi / 180;
 
-Cilium cilium() {
+Cilium paper_cilium() {
   return {3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
 }
 
 RefereeSweep flat_sweep(unsigned int refinement) {
-  return {cilium(), refinement, {FlatProfile{}, friction, 0}, 1e-3, {0}};
+  return {paper_cilium(), refinement, {FlatProfile{}, friction, 0}, 1e-3, {0}};
 }
 
 std::vector<SweepState> solid_sweep(const RefereeSweep& sweep) {

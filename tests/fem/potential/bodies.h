@@ -9,6 +9,8 @@
 
 namespace ciliaval::test {
 
+inline constexpr double R = 1.5e-3;  ///< of the paper's cilium, m
+
 /// A ball about the origin, uniformly magnetised: eight cells of degree 5, a cube mapped onto the
 /// ball by x_i = R u_i √(1 − u_j²/2 − u_k²/2 + u_j²u_k²/3).
 std::shared_ptr<const SolidBody> ball(double radius, const Vector3& magnetization);

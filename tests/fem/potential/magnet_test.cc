@@ -12,7 +12,7 @@
 namespace ciliaval::fem::potential {
 namespace {
 
-constexpr double R = 1.5e-3;
+using test::R;
 constexpr double L = 17e-3;
 constexpr double M = 75e3;
 

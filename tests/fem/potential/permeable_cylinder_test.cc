@@ -12,7 +12,7 @@
 namespace ciliaval::oracle {
 namespace {
 
-constexpr double R = 1.5e-3;
+using test::R;
 
 // Oracle: Derby & Olbert for mu_r = 1, where the charge is known and the kernel of a ring is
 // integrated alone. Measured 1e-15.

@@ -18,7 +18,7 @@
 namespace ciliaval::fem::potential {
 namespace {
 
-constexpr double R = 1.5e-3;
+using test::R;
 
 /// Checks every mesh of the sequence: the error of the vector B at each point
 /// over |B| is its estimate within a factor of two either way (measured 0.79 to 1.38).

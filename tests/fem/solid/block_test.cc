@@ -115,12 +115,12 @@ TEST(SolidBlock, ShearsAsTheClosedForm) {
 struct Manufactured {
   Hyperelastic material;
   static Vector3 displacement(const Vector3& X) {
-    constexpr double pi = std::numbers::pi;
+    using std::numbers::pi;
     return 0.1 * Vector3(std::sin(pi * X[1]) * X[0], std::cos(pi * X[2]) * X[1] * X[0],
                          std::sin(pi * X[0] + X[1]));
   }
   static Matrix3 deformation_gradient(const Vector3& X) {
-    constexpr double pi = std::numbers::pi;
+    using std::numbers::pi;
     Matrix3 H;
     H << std::sin(pi * X[1]), pi * std::cos(pi * X[1]) * X[0], 0,  //
         std::cos(pi * X[2]) * X[1], std::cos(pi * X[2]) * X[0],

@@ -15,7 +15,7 @@
 #include "fem/solid/loads/height_loads.h"
 #include "fem/solid/postprocessing/centreline.h"
 #include "problem/error.h"
-#include "tests/fem/solid/bent_cilium.h"
+#include "tests/fem/solid/cilia.h"
 #include "tests/fem/solid/cube.h"
 
 namespace ciliaval::fem::solid {

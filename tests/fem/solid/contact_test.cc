@@ -11,7 +11,7 @@
 #include "fem/solid/contact/nodal_contact.h"
 #include "fem/solid/contact/rigid_surface.h"
 #include "meshes/boundary_ids.h"
-#include "tests/fem/solid/bent_cilium.h"
+#include "tests/fem/solid/cilia.h"
 #include "tests/fem/solid/cube.h"
 
 namespace ciliaval::fem::solid::contact {

@@ -9,37 +9,14 @@
 #include "fem/beam/beam.h"
 #include "fem/solid/solid.h"
 #include "problem/error.h"
+#include "tests/fem/solid/cilia.h"
 
 namespace ciliaval::fem::solid {
 namespace {
 
+using std::numbers::pi;
 using surroundings::Environment;
 using surroundings::MagneticEnergy;
-constexpr double pi = std::numbers::pi;
-
-/// L/d = 20, ν = 0: no bonded end that cannot contract. EI/L² = 1 N, A M L²/EI = 1 per T, ρA = 1
-/// kg/m.
-Cilium slender() {
-  const double d = 0.05;
-  Segment segment{"rod", 1, 64 / (pi * std::pow(d, 4)), 0, 4 / (pi * d * d)};
-  segment.density = 4 / (pi * d * d);
-  return {d, {segment}};
-}
-
-Cilium two_materials() {
-  return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0, 1000}, {"magnet", 17e-3, 3e6, 0.49, 75e3, 1700}}};
-}
-
-MechanicsStep solved(const MechanicsModel& model, const Cilium& cilium, const Load& load) {
-  const MechanicsStep step = model.solve(cilium, {load}).steps.at(0);
-  EXPECT_EQ(step.status, Status::converged) << step.message;
-  return step;
-}
-
-Vector3 tip(const MechanicsStep& step) {
-  const Centreline& line = step.deformation.value().centreline;
-  return line.at(line.length()).position;
-}
 
 double over_deflection(const Environment& environment) {
   const Load load = with_environment(EnvironmentLoad{}, environment);
@@ -80,7 +57,7 @@ TEST(SolidEnvironment, LawsDifferByHalfTheShearOfTheBeam) {
 // Oracle: statics. n is that of weight, load and, in the magnet, M A B₀; the forces on the base and
 // the couple in between are in balance.
 TEST(SolidEnvironment, SectionForcesBalanceWeightFieldAndLoad) {
-  const Cilium cilium = two_materials();
+  const Cilium cilium = stub_and_magnet();
   const Environment environment{.gravity = {3, 0, -9.81}, .uniform_field = {2e-3, 0, -1e-3}};
   for (const Load& load : std::vector<Load>{ContactLoad{1e-3, 16e-3, 0}, ProbeLoad{4e-3, 16e-3, 0},
                                             FlowLoad{0.2, 0}, EnvironmentLoad{}}) {
@@ -115,7 +92,7 @@ TEST(SolidEnvironment, SectionForcesBalanceWeightFieldAndLoad) {
 }
 
 TEST(SolidEnvironment, HalfMeshIsThatOfTheWholeAndOutOfThePlaneItIsWhole) {
-  const Cilium cilium = two_materials();
+  const Cilium cilium = stub_and_magnet();
   const double phi = 0.7;
   const Vector3 e(std::cos(phi), std::sin(phi), 0);
   const Load in_plane = with_environment(
@@ -136,7 +113,7 @@ TEST(SolidEnvironment, HalfMeshIsThatOfTheWholeAndOutOfThePlaneItIsWhole) {
 }
 
 TEST(SolidEnvironment, DoesNotDependOnTheStepsBefore) {
-  const Cilium cilium = two_materials();
+  const Cilium cilium = stub_and_magnet();
   const Environment one{.gravity = {0, 0, -9.81}};
   const Environment other{.gravity = {0, 0, -9.81}, .uniform_field = {2e-3, 0, 0}};
   LoadPath path;

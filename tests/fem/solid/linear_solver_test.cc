@@ -9,7 +9,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -20,6 +19,7 @@
 #include "fem/solid/solvers/multigrid.h"
 #include "fem/solid/solvers/symmetric_inverse.h"
 #include "problem/error.h"
+#include "problem/types.h"
 #include "tests/bench/mesh_family.h"
 
 namespace ciliaval::fem::solid {
@@ -106,7 +106,6 @@ TEST(SolidLinearSolver, SolvesToTheReductionAskedFor) {
 // matrices smaller and larger than the blocks of the algorithm, positive definite and not. Measured
 // up to 0.75 of that; Schur complements by explicit inverses reach 4e5 of it.
 TEST(SolidLinearSolver, SymmetricInverseIsAccurateToTheCondition) {
-  constexpr double epsilon = std::numeric_limits<double>::epsilon();
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   for (const Eigen::Index size : {1, 5, 33, 49, 81, 150, 257})
@@ -170,8 +169,9 @@ TEST(SolidLinearSolver, RowsInBlocksMultiplyAsTheMatrix) {
   Vector product(size);
   system.blocks()->vmult(product, x);
   for (Row row = 0; row < size; ++row)
-    if (!system.constraints.is_constrained(row))
+    if (!system.constraints.is_constrained(row)) {
       EXPECT_NEAR(product[row], expected[row], 1e-13 * expected.linfty_norm());
+    }
 }
 
 // Oracle: the purpose of the vertex patches. A point or cell smoother would need √(K/μ) times as

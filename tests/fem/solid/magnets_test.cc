@@ -15,7 +15,7 @@
 #include "fem/solid/solid.h"
 #include "problem/error.h"
 #include "tests/analytic/oracles/bent_rods.h"
-#include "tests/fem/solid/bent_cilium.h"
+#include "tests/fem/solid/cilia.h"
 
 namespace ciliaval::fem::solid {
 namespace {
@@ -29,8 +29,6 @@ using surroundings::MagneticEnergy;
 using surroundings::magnets::jet;
 using surroundings::magnets::Magnet;
 using surroundings::magnets::Shape;
-
-constexpr std::array laws{MagneticEnergy::F, MagneticEnergy::R};
 
 Magnet cuboid(const Vector3& position) {
   return {"cuboid",
@@ -85,10 +83,6 @@ TEST(SolidMagnets, DerivativesOfTheWorkInAField) {
   }
 }
 
-Load in(const Environment& environment) {
-  return with_environment(EnvironmentLoad{1, 0}, environment);
-}
-
 // Oracle: differences of the nodal forces along a random displacement.
 TEST(SolidMagnets, TangentIsTheDerivativeOfTheForces) {
   const BentCilium bent;
@@ -133,18 +127,10 @@ TEST(SolidMagnets, TangentIsTheDerivativeOfTheForces) {
   }
 }
 
-Cilium two_materials() {
-  return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0, 1000}, {"magnet", 17e-3, 3e6, 0.49, 75e3, 1700}}};
-}
-
-MechanicsStep solved(const MechanicsModel& model, const Environment& environment) {
-  const MechanicsStep step = model.solve(two_materials(), {in(environment)}).steps.at(0);
+MechanicsStep solved_beside(const MechanicsModel& model, const Environment& environment) {
+  const MechanicsStep step = model.solve(stub_and_magnet(), {in(environment)}).steps.at(0);
   EXPECT_EQ(step.status, Status::converged) << step.message;
   return step;
-}
-
-Vector3 tip(const MechanicsStep& step) {
-  return step.deformation->centreline.at(20e-3).position;
 }
 
 // Oracles: the force on the body's charged faces, which the clamped base bears: measured 1.5e-7,
@@ -154,15 +140,15 @@ TEST(SolidMagnets, BendTheSolidLikeTheBeamAndItsBaseBearsTheForce) {
   for (const MagneticEnergy law : laws) {
     Environment environment{.magnetic_energy = law};
     environment.magnets = {cuboid({12e-3, 2e-3, 26e-3})};
-    const MechanicsStep solid = solved(Solid({.refinement = 0}), environment);
-    const MechanicsStep beam = solved(beam::Beam(), environment);
+    const MechanicsStep solid = solved_beside(Solid({.refinement = 0}), environment);
+    const MechanicsStep beam = solved_beside(beam::Beam(), environment);
     const double deflection = (tip(beam) - Vector3(0, 0, 20e-3)).norm();
     record("solid against beam, over the deflection", (tip(solid) - tip(beam)).norm() / deflection);
     EXPECT_GT(deflection, 1e-3);
     EXPECT_LT((tip(solid) - tip(beam)).norm(), 0.06 * deflection);
     EXPECT_LT(std::abs(solid.applied_force), 1e-9);
     if (law == MagneticEnergy::R) continue;
-    const auto wrench = analytic::forces::wrench_on_cilium(two_materials(), *solid.deformation,
+    const auto wrench = analytic::forces::wrench_on_cilium(stub_and_magnet(), *solid.deformation,
                                                            environment.magnets);
     const SectionForces base = solid.deformation->centreline.at(0, 0).forces;
     record("force on the base against the faces', relative",
@@ -184,8 +170,9 @@ TEST(SolidMagnets, HalfMeshIsThatOfTheWhole) {
   cylinder.length = 6e-3;
   cylinder.magnetization = {0, 0, 8e5};
   environment.magnets = {cylinder};
-  const MechanicsStep half = solved(Solid({.refinement = 0}), environment);
-  const MechanicsStep whole = solved(Solid({.refinement = 0, .symmetry = false}), environment);
+  const MechanicsStep half = solved_beside(Solid({.refinement = 0}), environment);
+  const MechanicsStep whole =
+      solved_beside(Solid({.refinement = 0, .symmetry = false}), environment);
   EXPECT_LT(half.unknowns, whole.unknowns);
   EXPECT_LT((tip(half) - tip(whole)).norm(), 1e-8 * 20e-3);
   EXPECT_GT((tip(half) - Vector3(0, 0, 20e-3)).norm(), 1e-4);

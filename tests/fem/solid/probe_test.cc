@@ -10,7 +10,7 @@
 
 #include "fem/solid/solid.h"
 #include "problem/error.h"
-#include "tests/fem/solid/bent_cilium.h"
+#include "tests/fem/solid/cilia.h"
 
 namespace ciliaval::fem::solid {
 using namespace material;
@@ -21,10 +21,6 @@ using namespace solvers;
 namespace {
 
 constexpr double width = 0.5e-3;
-
-Cilium stub_and_magnet() {
-  return {3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
-}
 
 /// Gives each node the displacement that belongs to its place X.
 template <typename Field>

@@ -12,12 +12,12 @@
 namespace ciliaval::fem::solid {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-using Shape = CrossSection::Shape;
+using std::numbers::pi;
+using Section = CrossSection::Shape;
 
 /// Slender and ν = 0, so that nothing but the strain's square parts solid and beam. EI/L² = 1 N.
-Cilium slender(CrossSection section) {
-  Cilium cilium{section.shape == Shape::rectangle ? 0 : 0.05, {{"rod", 1, 1, 0, 1}}, section};
+Cilium slender_rod(CrossSection section) {
+  Cilium cilium{section.shape == Section::rectangle ? 0 : 0.05, {{"rod", 1, 1, 0, 1}}, section};
   cilium.segments[0].young_modulus = 1 / cilium.second_moment(section.orientation + pi / 2);
   return cilium;
 }
@@ -42,10 +42,10 @@ std::pair<double, double> off_the_beam(const Cilium& cilium, const Load& load) {
 TEST(SolidSections, SlenderOnesBendLikeTheBeam) {
   const double turn = 0.3;
   const CrossSection plate{
-      .shape = Shape::rectangle, .width = 0.08, .height = 0.04, .orientation = turn};
-  const CrossSection hollow{.shape = Shape::tube, .inner_diameter = 0.03, .orientation = 0};
+      .shape = Section::rectangle, .width = 0.08, .height = 0.04, .orientation = turn};
+  const CrossSection hollow{.shape = Section::tube, .inner_diameter = 0.03, .orientation = 0};
   for (const CrossSection& section : {plate, hollow}) {
-    const Cilium cilium = slender(section);
+    const Cilium cilium = slender_rod(section);
     const double azimuth = section.orientation + pi / 2;  // across the thin side
     const auto [off, estimate] = off_the_beam(cilium, SectionLoad{0.02, 1, azimuth});
     EXPECT_LT(off, 1e-4);
@@ -53,15 +53,15 @@ TEST(SolidSections, SlenderOnesBendLikeTheBeam) {
     EXPECT_LT(off_the_beam(cilium, DeadLoad{0.02, azimuth}).first, 1e-4);
   }
   // Over the wide side, four times as stiff.
-  EXPECT_LT(off_the_beam(slender(plate), SectionLoad{0.08, 1, turn}).first, 3e-4);
+  EXPECT_LT(off_the_beam(slender_rod(plate), SectionLoad{0.08, 1, turn}).first, 3e-4);
 }
 
 // Oracle: half the section with a plane of symmetry is the whole one.
 TEST(SolidSections, HalfIsTheWhole) {
   for (const CrossSection& section :
-       {CrossSection{.shape = Shape::rectangle, .width = 5e-3, .height = 1e-3},
-        CrossSection{.shape = Shape::tube, .inner_diameter = 1.5e-3}}) {
-    const Cilium cilium{section.shape == Shape::rectangle ? 0 : 3e-3,
+       {CrossSection{.shape = Section::rectangle, .width = 5e-3, .height = 1e-3},
+        CrossSection{.shape = Section::tube, .inner_diameter = 1.5e-3}}) {
+    const Cilium cilium{section.shape == Section::rectangle ? 0 : 3e-3,
                         {{"base", 3e-3, 0.5e6, 0.49, 0}, {"magnet", 7e-3, 2e6, 0.49, 75e3}},
                         section};
     const Load load = ContactLoad{2e-3, 8e-3, pi / 2};
@@ -79,7 +79,7 @@ TEST(SolidSections, HalfIsTheWhole) {
 TEST(SolidSections, RefuseWhatTheyDoNotTake) {
   const Cilium cilium{0,
                       {{"rod", 10e-3, 1e6, 0.49, 0}},
-                      {.shape = Shape::rectangle, .width = 2e-3, .height = 1e-3}};
+                      {.shape = Section::rectangle, .width = 2e-3, .height = 1e-3}};
   EXPECT_THROW(Solid().solve(cilium, {DeadLoad{0.1, 0.5}}), InputError);
   EXPECT_THROW(Solid().solve(cilium, {DeadLoad{0.1, 0}, DeadLoad{0.1, pi / 2}}), InputError);
   SolidOptions options;

@@ -13,36 +13,27 @@
 #include <vector>
 
 #include "problem/error.h"
+#include "tests/fem/solid/cilia.h"
 
 namespace ciliaval::fem::solid {
 namespace {
 
-/// The paper's cilium, and a solid on its coarsest mesh.
-Cilium stub_and_magnet() {
-  return {3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
-}
-Solid coarse() {
-  return Solid({.refinement = 0});
-}
 const MechanicsStep& converged(const MechanicsResult& result, std::size_t i = 0) {
   const MechanicsStep& step = result.steps.at(i);
   EXPECT_EQ(step.status, Status::converged) << step.message;
   if (!step.deformation) throw SolverError(step.message);
   return step;
 }
-Vector3 tip(const MechanicsStep& step) {
-  return step.deformation->centreline.at(step.deformation->centreline.length()).position;
-}
 
 /// One solution that several tests look at.
 const MechanicsResult& bent() {
   static const MechanicsResult result =
-      coarse().solve(stub_and_magnet(), {ContactLoad{2e-3, 16e-3, 0.4}});
+      Solid(coarse()).solve(stub_and_magnet(), {ContactLoad{2e-3, 16e-3, 0.4}});
   return result;
 }
 
 TEST(Solid, CentrelineIsStraightAndItsFrameTheIdentityWhenUndeformed) {
-  const Centreline centreline = coarse().solve(stub_and_magnet(), {}).undeformed.centreline;
+  const Centreline centreline = Solid(coarse()).solve(stub_and_magnet(), {}).undeformed.centreline;
   EXPECT_DOUBLE_EQ(centreline.length(), 20e-3);
   for (const double S : {0.0, 1e-3, 3e-3, 11.3e-3, 20e-3}) {
     const CentrelinePoint point = centreline.at(S);
@@ -187,7 +178,7 @@ TEST(Solid, ChargedFacesCarryTheMagnetsEndCharges) {
 // A magnet that stands on the base has its south pole there, with a normal along −Z.
 TEST(Solid, ChargedFacesOfAMagnetOnTheBasePointDownThere) {
   const Cilium magnet{1e-3, {{"magnet", 3e-3, 1e6, 0.45, 1e4}}};
-  const SolidBody body = *coarse().solve(magnet, {}).undeformed.body;
+  const SolidBody body = *Solid(coarse()).solve(magnet, {}).undeformed.body;
   bool found = false;
   for (const ChargedFace& face : body.charged_faces) {
     const FacePoint point = evaluate(body.nodes, face, 0.5, 0.5);
@@ -202,7 +193,8 @@ TEST(Solid, ChargedFacesOfAMagnetOnTheBasePointDownThere) {
 // Oracle: isotropy. The same load in another direction gives the turned result; the mesh turns with
 // it, so that only rounding is left, in the body as in the centreline.
 TEST(Solid, TurnsWithTheAzimuth) {
-  const MechanicsResult straight = coarse().solve(stub_and_magnet(), {ContactLoad{2e-3, 16e-3, 0}});
+  const MechanicsResult straight =
+      Solid(coarse()).solve(stub_and_magnet(), {ContactLoad{2e-3, 16e-3, 0}});
   const Deformation& plane = *converged(straight).deformation;
   const Deformation& bent_to = *converged(bent()).deformation;
   const Eigen::AngleAxisd turn(0.4, Vector3::UnitZ());
@@ -234,7 +226,7 @@ TEST(Solid, HalfAnswersAsTheWholeCylinder) {
                        SectionLoad{2e-3, 8e-3, 0.3}, DeadLoad{0.3, 0.3},
                        ProbeLoad{1e-3, 8e-3, 0.3}};
   for (const Load& load : loads) {
-    const MechanicsResult halves = coarse().solve(cilium, {load});
+    const MechanicsResult halves = Solid(coarse()).solve(cilium, {load});
     const MechanicsResult wholes = whole.solve(cilium, {load});
     const MechanicsStep& half = converged(halves);
     const MechanicsStep& full = converged(wholes);
@@ -257,7 +249,7 @@ TEST(Solid, HalfAnswersAsTheWholeCylinder) {
 TEST(Solid, MirrorImageCompletesTheBody) {
   const Cilium cilium{3e-3, {{"magnet", 5e-3, 1e5, 0.49, 75e3}}};
   const LoadPath load{SectionLoad{1e-3, 5e-3, 0}};
-  const MechanicsResult halves = coarse().solve(cilium, load);
+  const MechanicsResult halves = Solid(coarse()).solve(cilium, load);
   const MechanicsResult wholes = Solid({.refinement = 0, .symmetry = false}).solve(cilium, load);
   const SolidBody& half = *converged(halves).deformation->body;
   const SolidBody& full = *converged(wholes).deformation->body;
@@ -291,7 +283,7 @@ TEST(Solid, BendsAsTimoshenkosCantileverForSmallLoads) {
     const double G = rod.segments[0].shear_modulus();
     const double k = 6 * (1 + nu) / (7 + 6 * nu);
     const double w = F * L * L * L / (3 * 1e6 * rod.second_moment()) + F * L / (k * G * rod.area());
-    const MechanicsResult result = coarse().solve(rod, {SectionLoad{F, L, 0}});
+    const MechanicsResult result = Solid(coarse()).solve(rod, {SectionLoad{F, L, 0}});
     EXPECT_NEAR(tip(converged(result)).x() / w, 1, nu < 0.4 ? 0.01 : 0.015) << "nu " << nu;
     EXPECT_LE(result.steps[0].iterations, 6);
   }
@@ -308,13 +300,15 @@ TEST(Solid, AllLoadTypesHaveTheirBeamLimit) {
   const double q = F / L;
   const double at_h = F * h * h * (3 * L - h) / (6 * EI);
   const double spread = q * std::pow(L, 4) / (8 * EI);
-  const auto w = [&](const Load& load) { return tip(converged(coarse().solve(rod, {load}))).x(); };
+  const auto w = [&](const Load& load) {
+    return tip(converged(Solid(coarse()).solve(rod, {load}))).x();
+  };
   EXPECT_NEAR(w(ContactLoad{F, h, 0}) / at_h, 1, 0.015);
   EXPECT_NEAR(w(SectionLoad{F, h, 0}) / at_h, 1, 0.015);
   EXPECT_NEAR(w(FlowLoad{q, 0}) / spread, 1, 0.015);
   EXPECT_NEAR(w(DeadLoad{q, 0}) / spread, 1, 0.015);
   const double delta = 1e-6;
-  const MechanicsResult probe = coarse().solve(rod, {ProbeLoad{delta, h, 0}});
+  const MechanicsResult probe = Solid(coarse()).solve(rod, {ProbeLoad{delta, h, 0}});
   EXPECT_NEAR(converged(probe).applied_force / (3 * EI * delta / (h * h * h)), 1, 0.015);
 }
 
@@ -357,7 +351,7 @@ TEST(Solid, MaterialsDifferAtALargeLoad) {
 TEST(Solid, FindsTheSlipOffForceAndGoesOn) {
   const LoadPath path{ContactLoad{4e-3, 16e-3, 0}, ContactLoad{8e-3, 16e-3, 0},
                       ContactLoad{9e-3, 16e-3, 0}, ContactLoad{3e-3, 16e-3, 0}};
-  const MechanicsResult result = coarse().solve(stub_and_magnet(), path);
+  const MechanicsResult result = Solid(coarse()).solve(stub_and_magnet(), path);
   converged(result, 0);
   EXPECT_EQ(result.steps[1].status, Status::slipped_off) << result.steps[1].message;
   EXPECT_EQ(result.steps[2].status, Status::slipped_off) << result.steps[2].message;
@@ -368,9 +362,9 @@ TEST(Solid, FindsTheSlipOffForceAndGoesOn) {
   EXPECT_NEAR(converged(result, 3).applied_force, 3e-3, 3e-9);
 
   // Just below it all of the force is applied, 1.5 % above it is not.
-  const MechanicsResult check =
-      coarse().solve(stub_and_magnet(),
-                     {ContactLoad{slip_off, 16e-3, 0}, ContactLoad{1.015 * slip_off, 16e-3, 0}});
+  const MechanicsResult check = Solid(coarse()).solve(
+      stub_and_magnet(),
+      {ContactLoad{slip_off, 16e-3, 0}, ContactLoad{1.015 * slip_off, 16e-3, 0}});
   EXPECT_NEAR(converged(check, 0).applied_force / slip_off, 1, 1e-6);
   EXPECT_EQ(check.steps[1].status, Status::slipped_off);
 }
@@ -378,11 +372,11 @@ TEST(Solid, FindsTheSlipOffForceAndGoesOn) {
 // Oracle: each load alone. Height and azimuth change along the path: the slip-off is that of the
 // target's own place, whatever came before.
 TEST(Solid, PlaceOfAnEarlierLoadDoesNotMatter) {
-  const LoadPath path{ContactLoad{1e-3, 16e-3, 0}, ContactLoad{8e-3, 15e-3, 0},
-                      ContactLoad{5e-3, 16e-3, 0.5}, ContactLoad{8e-3, 16e-3, 0.5}};
-  const MechanicsResult result = coarse().solve(stub_and_magnet(), path);
+  const LoadPath path{ContactLoad{1e-3, 16e-3, 0}, ContactLoad{8e-3, 15e-3, 0.5},
+                      ContactLoad{5e-3, 16e-3, 0}};
+  const MechanicsResult result = Solid(coarse()).solve(stub_and_magnet(), path);
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const MechanicsResult alone = coarse().solve(stub_and_magnet(), {path[i]});
+    const MechanicsResult alone = Solid(coarse()).solve(stub_and_magnet(), {path[i]});
     EXPECT_EQ(result.steps[i].status, alone.steps[0].status) << i;
     if (alone.steps[0].deformation) {
       EXPECT_NEAR((tip(converged(result, i)) - tip(converged(alone))).norm(), 0, 1e-10) << i;
@@ -395,13 +389,13 @@ TEST(Solid, PlaceOfAnEarlierLoadDoesNotMatter) {
   }
   EXPECT_EQ(result.steps[1].status, Status::slipped_off);
   EXPECT_EQ(result.steps[2].status, Status::converged);
-  EXPECT_EQ(result.steps[3].status, Status::slipped_off);
 }
 
 // Oracle: the slip-off force found from 8 mN, 5.34 mN (FindsTheSlipOffForceAndGoesOn). 1 N is 190
 // times that.
 TEST(Solid, SlipsOffUnderAHugeForceToo) {
-  const MechanicsResult result = coarse().solve(stub_and_magnet(), {ContactLoad{1, 16e-3, 0}});
+  const MechanicsResult result =
+      Solid(coarse()).solve(stub_and_magnet(), {ContactLoad{1, 16e-3, 0}});
   EXPECT_EQ(result.steps[0].status, Status::slipped_off) << result.steps[0].message;
   ASSERT_TRUE(result.steps[0].slip_off_force);
   EXPECT_NEAR(*result.steps[0].slip_off_force / 5.34e-3, 1, 0.011);
@@ -420,8 +414,8 @@ TEST(Solid, SaysWhyAStepFailed) {
 
 // Loading and unloading: back at zero force the solid is straight again.
 TEST(Solid, IsStraightAgainWhenUnloaded) {
-  const MechanicsResult result =
-      coarse().solve(stub_and_magnet(), {ContactLoad{1e-3, 16e-3, 0}, ContactLoad{0, 16e-3, 0}});
+  const MechanicsResult result = Solid(coarse()).solve(
+      stub_and_magnet(), {ContactLoad{1e-3, 16e-3, 0}, ContactLoad{0, 16e-3, 0}});
   EXPECT_GT(tip(converged(result, 0)).x(), 1e-3);
   EXPECT_NEAR((tip(converged(result, 1)) - 20e-3 * Vector3::UnitZ()).norm(), 0, 1e-12);
 }
@@ -442,11 +436,11 @@ TEST(Solid, LaterLoadsGoOnFromTheLastTwoAndEndAsTheyWouldAlone) {
 TEST(Solid, ReportsItsProgress) {
   std::vector<std::string> lines;
   std::vector<Status> ended;
-  coarse().solve({1e-3, {{"rod", 5e-3, 1e6, 0.3, 0}}}, {DeadLoad{1e-3, 0}},
-                 [&](const ProgressReport& report) {
-                   lines.push_back(report.text);
-                   if (report.step != nullptr) ended.push_back(report.step->status);
-                 });
+  Solid(coarse()).solve({1e-3, {{"rod", 5e-3, 1e6, 0.3, 0}}}, {DeadLoad{1e-3, 0}},
+                        [&](const ProgressReport& report) {
+                          lines.push_back(report.text);
+                          if (report.step != nullptr) ended.push_back(report.step->status);
+                        });
   ASSERT_GE(lines.size(), 2U);
   EXPECT_NE(lines.back().find("step 1/1"), std::string::npos);
   EXPECT_EQ(ended, std::vector{Status::converged});
@@ -462,7 +456,7 @@ TEST(Solid, RejectsBadInput) {
   EXPECT_THROW(Solid({.yeoh_ratios = {std::numeric_limits<double>::infinity(), 0}}), InputError);
   const Cilium cilium = stub_and_magnet();
   const auto rejects = [&](const LoadPath& path) {
-    EXPECT_THROW(coarse().solve(cilium, path), InputError);
+    EXPECT_THROW(Solid(coarse()).solve(cilium, path), InputError);
   };
   rejects({ContactLoad{1e-3, 19.8e-3, 0}});
   rejects({ContactLoad{1e-3, 0.3e-3, 0}});
@@ -474,7 +468,7 @@ TEST(Solid, RejectsBadInput) {
   rejects({ProbeLoad{1e-3, 16e-3, 0}, ContactLoad{1e-3, 16e-3, 0}});
   rejects({ContactLoad{1e-3, 16e-3, 0}, FlowLoad{1, 0}});
   rejects({SectionLoad{1e-3, 21e-3, 0}});
-  EXPECT_THROW(coarse().solve({3e-3, {}}, {}), InputError);
+  EXPECT_THROW(Solid(coarse()).solve({3e-3, {}}, {}), InputError);
 }
 
 /// The error of the tip of `rough` against `fine`, and the estimate of it.
@@ -501,8 +495,8 @@ TEST(Solid, ConvergesNearlyIncompressibleOnTheDefaultMesh) {
 TEST(Solid, EstimatesTheErrorOfItsTip) {
   for (const Load& load :
        LoadPath{ContactLoad{2e-3, 16e-3, 0}, FlowLoad{0.1, 0}, SectionLoad{1e-3, 20e-3, 0}}) {
-    const auto [error, estimate] = error_and_estimate(coarse().solve(stub_and_magnet(), {load}),
-                                                      Solid().solve(stub_and_magnet(), {load}));
+    const auto [error, estimate] = error_and_estimate(
+        Solid(coarse()).solve(stub_and_magnet(), {load}), Solid().solve(stub_and_magnet(), {load}));
     EXPECT_GT(estimate / error, 1) << type(load);
     EXPECT_LT(estimate / error, 6) << type(load);
   }
@@ -531,7 +525,7 @@ TEST(SolidSlow, TipOfTheDefaultMeshAgreesWithTheFineMesh) {
     const LoadPath path{ContactLoad{2e-3, 16e-3, 0}};
     const Vector3 fine = tip(converged(Solid({.refinement = 2}).solve(cilium, path)));
     const Vector3 standard = tip(converged(Solid({.refinement = 1}).solve(cilium, path)));
-    const Vector3 crude = tip(converged(coarse().solve(cilium, path)));
+    const Vector3 crude = tip(converged(Solid(coarse()).solve(cilium, path)));
     EXPECT_NEAR(standard.x() / fine.x(), 1, 2e-3) << "nu " << nu;
     EXPECT_NEAR(crude.x() / fine.x(), 1, 5e-3) << "nu " << nu;
   }

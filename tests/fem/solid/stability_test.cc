@@ -12,37 +12,16 @@
 #include "analytic/elastica/environment/step.h"
 #include "fem/beam/beam.h"
 #include "fem/solid/solid.h"
+#include "tests/fem/solid/cilia.h"
 
 namespace ciliaval::fem::solid {
 namespace {
 
+using std::numbers::pi;
 using surroundings::Environment;
-constexpr double pi = std::numbers::pi;
-
-/// L/d = 20, ν = 0. EI/L² = 1 N, A M L²/EI = 1 per T, ρA = 1 kg/m.
-Cilium slender() {
-  const double d = 0.05;
-  Segment segment{"rod", 1, 64 / (pi * std::pow(d, 4)), 0, 4 / (pi * d * d)};
-  segment.density = 4 / (pi * d * d);
-  return {d, {segment}};
-}
-
-Cilium two_materials() {
-  return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0, 1000}, {"magnet", 17e-3, 3e6, 0.49, 75e3, 1700}}};
-}
-
-SolidOptions coarse() {
-  return {.refinement = 0};
-}
 
 Load alone(const Environment& environment) {
   return with_environment(EnvironmentLoad{}, environment);
-}
-
-MechanicsStep solved(const MechanicsModel& model, const Cilium& cilium, const Load& load) {
-  const MechanicsStep step = model.solve(cilium, {load}).steps.at(0);
-  EXPECT_EQ(step.status, Status::converged) << step.message;
-  return step;
 }
 
 // Oracles: the elastica's critical load (Greenhill's weight, (π/2)² of an opposing field), which
@@ -97,8 +76,8 @@ TEST(SolidStability, HalfMeshHasTheModesOfTheWhole) {
   SolidOptions whole = coarse();
   whole.symmetry = false;
   const auto compare = [&](const Environment& environment) {
-    const MechanicsStep half = solved(Solid(coarse()), two_materials(), alone(environment));
-    const MechanicsStep both = solved(Solid(whole), two_materials(), alone(environment));
+    const MechanicsStep half = solved(Solid(coarse()), stub_and_magnet(), alone(environment));
+    const MechanicsStep both = solved(Solid(whole), stub_and_magnet(), alone(environment));
     EXPECT_LT(half.unknowns, both.unknowns);
     EXPECT_EQ(half.unstable_modes, both.unstable_modes);
     EXPECT_NEAR(*half.smallest_eigenvalue / *both.smallest_eigenvalue, 1, 1e-6);
@@ -107,8 +86,8 @@ TEST(SolidStability, HalfMeshHasTheModesOfTheWhole) {
   };
   const Environment opposing{.uniform_field = {0, 0, -20e-3}};
   const MechanicsStep straight = compare(opposing);
-  EXPECT_EQ(solved(analytic::elastica::Elastica(), two_materials(), alone(opposing)).unstable_modes,
-            1);
+  EXPECT_EQ(
+      solved(analytic::elastica::Elastica(), stub_and_magnet(), alone(opposing)).unstable_modes, 1);
   EXPECT_EQ(straight.unstable_modes, 2);
   EXPECT_LT(*straight.smallest_eigenvalue, 0);
   EXPECT_EQ(straight.message, "this equilibrium is not stable: it buckles in 2 modes");
@@ -119,7 +98,7 @@ TEST(SolidStability, HalfMeshHasTheModesOfTheWhole) {
 TEST(SolidStability, IsNotJudgedWithoutPotentialEnvironmentOrFactors) {
   const Environment weight{.gravity = {0, 0, -9.81}};
   const auto is_judged = [](const SolidOptions& options, const Load& load) {
-    const MechanicsStep step = solved(Solid(options), two_materials(), load);
+    const MechanicsStep step = solved(Solid(options), stub_and_magnet(), load);
     EXPECT_EQ(step.unstable_modes.has_value(), step.smallest_eigenvalue.has_value());
     return step.unstable_modes.has_value();
   };

@@ -18,43 +18,28 @@
 #include "problem/error.h"
 #include "problem/lagrange.h"
 #include "tests/analytic/oracles/bent_rods.h"
+#include "tests/fem/solid/cilia.h"
 
 namespace ciliaval::fem::solid {
 namespace {
 
 using oracle::record;
+using std::numbers::pi;
 using surroundings::Environment;
 using surroundings::MagneticEnergy;
 using surroundings::magnets::Shape;
-constexpr double pi = std::numbers::pi;
-constexpr std::array laws{MagneticEnergy::F, MagneticEnergy::R};
 
 /// ν = 0: no bonded end that cannot contract. EI/L² = 1 N, A M L²/EI = 1 per T.
-Cilium slender(double d) {
+Cilium slender_across(double d) {
   Segment segment{"rod", 1, 64 / (pi * std::pow(d, 4)), 0, 0};
   segment.transverse_magnetization = {4 / (pi * d * d), 0};
   return {d, {segment}};
 }
 
-Cilium two_materials(const Vector3& M = {40e3, -30e3, 50e3}) {
+Cilium across_its_axis(const Vector3& M = {40e3, -30e3, 50e3}) {
   Segment magnet{"magnet", 17e-3, 3e6, 0.49, M.z()};
   magnet.transverse_magnetization = {M.x(), M.y()};
   return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0}, magnet}};
-}
-
-MechanicsStep solved(const MechanicsModel& model, const Cilium& cilium, const Load& load) {
-  const MechanicsStep step = model.solve(cilium, {load}).steps.at(0);
-  EXPECT_EQ(step.status, Status::converged) << step.message;
-  return step;
-}
-
-Load in(const Environment& environment, double azimuth = 0) {
-  return with_environment(EnvironmentLoad{1, azimuth}, environment);
-}
-
-Vector3 tip(const MechanicsStep& step) {
-  const Centreline& line = step.deformation.value().centreline;
-  return line.at(line.length()).position;
 }
 
 // Oracle: the beam at a small load. What couples turn in the solid is the mean of −∂u_z/∂X over the
@@ -65,8 +50,8 @@ TEST(SolidAcrossItsAxis, SlenderCiliumBendsLikeTheBeam) {
   for (const double d : {0.1, 0.05})
     for (const MagneticEnergy law : laws) {
       const Load load = in({.uniform_field = {0, 0, 0.005}, .magnetic_energy = law});
-      const double rod = tip(solved(beam::Beam(), slender(d), load)).x();
-      const double body = tip(solved(Solid(), slender(d), load)).x();
+      const double rod = tip(solved(beam::Beam(), slender_across(d), load)).x();
+      const double body = tip(solved(Solid(), slender_across(d), load)).x();
       EXPECT_NEAR(rod, -0.005 / 3, 1e-6);
       const double difference = (body - rod) / rod;
       record(law == MagneticEnergy::F ? "solid to beam, law F" : "solid to beam, law R",
@@ -80,7 +65,7 @@ TEST(SolidAcrossItsAxis, TwistsLikeTheBeam) {
   for (const MagneticEnergy law : laws) {
     const Load load = in({.uniform_field = {0, 0.005, 0}, .magnetic_energy = law});
     const Quaternion end =
-        solved(Solid(), slender(0.05), load).deformation->centreline.at(1).rotation;
+        solved(Solid(), slender_across(0.05), load).deformation->centreline.at(1).rotation;
     const double twist = (end * Vector3::UnitX()).y();
     record("twist over cL²/(2GJ)", twist / 0.0025);
     EXPECT_NEAR(twist / 0.0025, 1, 5e-3);
@@ -100,7 +85,7 @@ Vector3 moment_above(const Cilium& cilium, const Centreline& line, double S) {
 // Oracle: statics. The section bears the couple on the magnet above it. The mesh's section is 1e-3
 // smaller than the circle's, and M across the axis is stretched with it where it is bonded.
 TEST(SolidAcrossItsAxis, SectionsBearTheCoupleAbove) {
-  const Cilium cilium = two_materials();
+  const Cilium cilium = across_its_axis();
   const Environment around{.uniform_field = {1e-3, 0.5e-3, 2e-3}};
   const MechanicsStep step = solved(Solid({.refinement = 0}), cilium, in(around));
   const Centreline& line = step.deformation->centreline;
@@ -125,7 +110,7 @@ TEST(SolidAcrossItsAxis, TheBaseBearsTheForceOfMagnets) {
                      0,
                      {6e-3, 4e-3, 5e-3},
                      {6e5, 0, -6e5}}};
-  const Cilium cilium = two_materials();
+  const Cilium cilium = across_its_axis();
   const MechanicsStep step = solved(Solid({.refinement = 0}), cilium, in(around));
   const auto wrench = analytic::forces::wrench_on_cilium(cilium, *step.deformation, around.magnets);
   const SectionForces base = step.deformation->centreline.at(0, 0).forces;
@@ -138,7 +123,7 @@ TEST(SolidAcrossItsAxis, TheBaseBearsTheForceOfMagnets) {
 TEST(SolidAcrossItsAxis, HalfMeshIsThatOfTheWholeIfTheMagnetLiesInThePlane) {
   const double phi = 0.7;
   const Vector3 e(std::cos(phi), std::sin(phi), 0);
-  const Cilium in_plane = two_materials(40e3 * e + 50e3 * Vector3::UnitZ());
+  const Cilium in_plane = across_its_axis(40e3 * e + 50e3 * Vector3::UnitZ());
   const std::vector<Vector3> sensor{{-0.1e-3, 0.2e-3, -1.55e-3}};
   for (const MagneticEnergy law : laws) {
     const Load load =
@@ -150,7 +135,7 @@ TEST(SolidAcrossItsAxis, HalfMeshIsThatOfTheWholeIfTheMagnetLiesInThePlane) {
     const analytic::body::MeshField mesh;
     const Vector3 B = mesh.field(in_plane, *whole.deformation, sensor).B[0];
     EXPECT_LT((mesh.field(in_plane, *half.deformation, sensor).B[0] - B).norm(), 1e-6 * B.norm());
-    EXPECT_EQ(solved(Solid({.refinement = 0}), two_materials(), load).unknowns, whole.unknowns);
+    EXPECT_EQ(solved(Solid({.refinement = 0}), across_its_axis(), load).unknowns, whole.unknowns);
   }
 }
 
@@ -174,7 +159,7 @@ Vector3 by_dipoles(const SolidBody& body, const Vector3& x) {
 
 // Oracle: dipoles. A load without a field leaves the half mesh, whatever M is.
 TEST(SolidAcrossItsAxis, ChargesOfItsFacesAreTheFieldOfItsVolume) {
-  const Cilium cilium = two_materials();
+  const Cilium cilium = across_its_axis();
   const std::vector<Vector3> points{{-0.1e-3, 0.2e-3, -1.55e-3}, {14e-3, 5e-3, 12e-3}};
   const MechanicsStep step =
       solved(Solid({.refinement = 0}), cilium, SectionLoad{2e-3, 20e-3, 0.7});
@@ -199,7 +184,7 @@ TEST(SolidAcrossItsAxis, ChargesOfItsFacesAreTheFieldOfItsVolume) {
 TEST(SolidAcrossItsAxis, RefusesAPathOfTwoAzimuths) {
   EXPECT_THROW(
       Solid({.refinement = 0})
-          .solve(two_materials(), {SectionLoad{1e-3, 20e-3, 0}, SectionLoad{1e-3, 20e-3, 0.5}}),
+          .solve(across_its_axis(), {SectionLoad{1e-3, 20e-3, 0}, SectionLoad{1e-3, 20e-3, 0.5}}),
       InputError);
 }
 

@@ -21,7 +21,7 @@ Cilium paper_cilium() {
 }
 
 /// Position of the centreline's end under one load.
-Vector3 tip(const SolidOptions& options, const Load& load) {
+Vector3 tip_by(const SolidOptions& options, const Load& load) {
   const Cilium cilium = paper_cilium();
   const MechanicsResult result = Solid(options).solve(cilium, {load});
   if (result.steps.at(0).status != Status::converged) throw SolverError(result.steps.at(0).message);
@@ -37,7 +37,7 @@ TEST(SolidOnAMeshFile, BendsAsOnTheMeshThatWasWritten) {
   options.symmetry = false;
   options.newton_tolerance = 1e-11;
   const Load load = SectionLoad{1e-3, 20e-3, 0};
-  const Vector3 made = tip(options, load);
+  const Vector3 made = tip_by(options, load);
 
   dealii::Triangulation<3> triangulation;
   meshes::cylinder::make_cylinder(paper_cilium(), cylinder_mesh_options(options, {load}),
@@ -48,7 +48,7 @@ TEST(SolidOnAMeshFile, BendsAsOnTheMeshThatWasWritten) {
   options.mesh_unit = 1e-3;
   meshes::gmsh::write_gmsh(meshes::mesh_nodes(triangulation, *mapping), paper_cilium(),
                            options.mesh, {.unit = 1e-3});
-  const Vector3 read = tip(options, load);
+  const Vector3 read = tip_by(options, load);
   EXPECT_GT(made.x(), 1e-3);
   EXPECT_LT((read - made).norm() / made.x(), 1e-10);
 }
@@ -67,8 +67,8 @@ TEST(SolidOnAMeshFile, TakesLoadsOfAnyAzimuth) {
   meshes::gmsh::write_gmsh(
       meshes::mesh_nodes(triangulation, *meshes::cylinder::cylinder_mapping(triangulation)),
       paper_cilium(), options.mesh);
-  const Vector3 x = tip(options, SectionLoad{1e-4, 20e-3, 0});
-  const Vector3 y = tip(options, SectionLoad{1e-4, 20e-3, std::numbers::pi / 2});
+  const Vector3 x = tip_by(options, SectionLoad{1e-4, 20e-3, 0});
+  const Vector3 y = tip_by(options, SectionLoad{1e-4, 20e-3, std::numbers::pi / 2});
   EXPECT_GT(x.x(), 1e-5);
   EXPECT_NEAR(y.y() / x.x(), 1, 1e-8);
   EXPECT_NEAR(y.x() / x.x(), 0, 1e-8);
@@ -88,10 +88,10 @@ TEST(SolidOnAMeshFile, TellsWhatIsWrongWithTheFile) {
 TEST(SolidOnAMeshFileSlow, ShippedGmshMeshAgreesWithTheBuiltInMesh) {
   const Load load = ContactLoad{1e-3, 16e-3, 0};
   SolidOptions options;
-  const Vector3 built_in = tip(options, load);
+  const Vector3 built_in = tip_by(options, load);
   options.mesh = CILIAVAL_SOURCE_DIR "/cases/verification/ogrid.msh";
   options.mesh_unit = 1e-3;
-  const Vector3 from_gmsh = tip(options, load);
+  const Vector3 from_gmsh = tip_by(options, load);
   EXPECT_NEAR(from_gmsh.x() / built_in.x(), 1, 1.5e-3);
 }
 

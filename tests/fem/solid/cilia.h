@@ -2,18 +2,60 @@
 #pragma once
 
 #include <deal.II/dofs/dof_tools.h>
+#include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <vector>
 
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/equilibrium/load_path.h"
 #include "fem/solid/loads/height_loads.h"
+#include "fem/solid/solid_options.h"
 #include "meshes/cylinder/cylinder_mesh.h"
+#include "problem/mechanics_model.h"
 
 namespace ciliaval::fem::solid {
+
+inline SolidOptions coarse() {
+  return {.refinement = 0};
+}
+
+/// The paper's cilium of fig. 3.
+inline Cilium stub_and_magnet() {
+  return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0, 1000}, {"magnet", 17e-3, 3e6, 0.49, 75e3, 1700}}};
+}
+
+/// L/d = 20, ν = 0: no bonded end that cannot contract. EI/L² = 1 N, A M L²/EI = 1 per T, ρA = 1
+/// kg/m.
+inline Cilium slender() {
+  const double d = 0.05;
+  Segment segment{"rod", 1, 64 / (std::numbers::pi * std::pow(d, 4)), 0,
+                  4 / (std::numbers::pi * d * d)};
+  segment.density = 4 / (std::numbers::pi * d * d);
+  return {d, {segment}};
+}
+
+inline MechanicsStep solved(const MechanicsModel& model, const Cilium& cilium, const Load& load) {
+  const MechanicsStep step = model.solve(cilium, {load}).steps.at(0);
+  EXPECT_EQ(step.status, Status::converged) << step.message;
+  return step;
+}
+
+inline Vector3 tip(const MechanicsStep& step) {
+  const Centreline& line = step.deformation.value().centreline;
+  return line.at(line.length()).position;
+}
+
+/// The environment alone.
+inline Load in(const surroundings::Environment& environment, double azimuth = 0) {
+  return with_environment(EnvironmentLoad{1, azimuth}, environment);
+}
+
+inline constexpr std::array laws{surroundings::MagneticEnergy::F, surroundings::MagneticEnergy::R};
 
 /// A coarse cilium, bent by hand: no equilibrium is needed to check forces and their derivatives.
 struct BentCilium {
