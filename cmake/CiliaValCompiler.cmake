@@ -9,7 +9,8 @@ target_compile_options(ciliaval_compiler INTERFACE
 if(CMAKE_UNITY_BUILD)
   # What is only due to files compiled together, and GCC 12's false alarms in std::string (its bug 105329) where it inlines more.
   # The preset `debug` compiles each file alone.
-  target_compile_options(ciliaval_compiler INTERFACE -Wno-shadow -Wno-subobject-linkage -Wno-array-bounds -Wno-stringop-overflow)
+  target_compile_options(ciliaval_compiler INTERFACE -Wno-shadow -Wno-subobject-linkage -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
+    -Wno-stringop-overread)
 endif()
 if(CILIAVAL_ODR)
   # Intermediate code beside the machine code, for the test odr.EveryTypeIsDefinedOnce alone: programs are linked without it.
