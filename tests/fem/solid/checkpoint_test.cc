@@ -143,7 +143,7 @@ TEST(SolidCheckpoint, GoesOnAlongASweep) {
                   .height = 0.3e-3, .top = 4e-3, .bottom = 4e-3, .flank = 0.3e-3, .radius = 0.2e-3},
               0.3, 0});
   const Load start(SweepLoad{0.2e-3, 8.3e-3, 0.01, 0.4}, surface);
-  const MechanicsResult whole = stop_and_go_on(coarse(), sweep_path(start, {9.5e-3, 4, false}), 3);
+  const MechanicsResult whole = stop_and_go_on(coarse(), sweep_path(start, {9.5e-3, 13, false}), 2);
   EXPECT_TRUE(std::ranges::any_of(whole.steps, [](const MechanicsStep& step) {
     return step.contact && step.contact->energy_lost;
   }));
