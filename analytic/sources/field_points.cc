@@ -12,6 +12,7 @@
 #include "problem/types.h"
 
 namespace ciliaval::analytic::sources {
+
 void for_ranges(std::size_t count, std::size_t longest,
                 const std::function<void(std::size_t begin, std::size_t end)>& work) {
   if (count <= longest) {

@@ -36,11 +36,10 @@ std::string temporary_name(const std::string& name, std::string_view extension) 
 /// two renames of a file system that cannot exchange, its old results go back to their place.
 void remove_stale(const fs::path& directory, const fs::path& target, const std::string& name) {
   for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-    if (!is_left_over(entry.path(), name)) continue;
-    const fs::path extension = entry.path().extension();
-    if (extension == ".old" && !fs::exists(target))
+    const bool is_old = is_left_over(entry.path(), name, ".old");
+    if (is_old && !fs::exists(target))
       fs::rename(entry.path(), target);
-    else if (extension == ".tmp" || extension == ".old")
+    else if (is_old || is_left_over(entry.path(), name, ".tmp"))
       fs::remove_all(entry.path());
   }
 }

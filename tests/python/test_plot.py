@@ -125,7 +125,7 @@ class Plot(unittest.TestCase):
         self.assertEqual(ticks[0], "beam/volume")  # the best reference first
 
     def test_studies_budgets_and_benches_are_drawn(self):
-        """From the shipped files, with fewer points and without the range; what is drawn is in the file."""
+        """From the shipped files with fewer points; what is drawn is in the file."""
 
         def study_of(name):
             text = (SOURCE / f"cases/paper/{name}.study.toml").read_text()

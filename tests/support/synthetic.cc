@@ -33,13 +33,13 @@ position = )" +
          text.sensor + "\n[models]\n" + models;
 }
 
-Centreline planar_curve(double L, double joint, const Vector3& e,
+Centreline planar_curve(double length, double joint, const Vector3& e,
                         const std::function<Vector3(double)>& position,
                         const std::function<double(double)>& theta,
                         const std::function<double(double)>& kappa) {
   const Vector3 axis = Vector3::UnitZ().cross(e);
   std::vector<Centreline::Piece> pieces;
-  for (const auto& [from, to] : {std::pair(0.0, joint), std::pair(joint, L)}) {
+  for (const auto& [from, to] : {std::pair(0.0, joint), std::pair(joint, length)}) {
     Centreline::Piece piece{chebyshev_points(24, from, to), {}};
     for (const double S : piece.S) {
       SectionState state;
@@ -53,18 +53,18 @@ Centreline planar_curve(double L, double joint, const Vector3& e,
   return Centreline(std::move(pieces));
 }
 
-Centreline arc(double L, double joint, const Vector3& e, double k) {
+Centreline arc(double length, double joint, const Vector3& e, double k) {
   return planar_curve(
-      L, joint, e,
+      length, joint, e,
       [=](double S) -> Vector3 {
         return (1 - std::cos(k * S)) / k * e + std::sin(k * S) / k * Vector3::UnitZ();
       },
       [=](double S) { return k * S; }, [=](double) { return k; });
 }
 
-Centreline tilted(double L, double joint, const Vector3& e, double angle) {
+Centreline tilted(double length, double joint, const Vector3& e, double angle) {
   return planar_curve(
-      L, joint, e,
+      length, joint, e,
       [=](double S) -> Vector3 {
         return S * (std::sin(angle) * e + std::cos(angle) * Vector3::UnitZ());
       },

@@ -29,15 +29,15 @@ std::string case_text(const ContactCaseText& text, const std::string& models);
 
 /// The curve r(S) with the section's rotation about ê_z × e by θ(S), in two pieces that join at
 /// `joint`, each on 24 Chebyshev points.
-Centreline planar_curve(double L, double joint, const Vector3& e,
+Centreline planar_curve(double length, double joint, const Vector3& e,
                         const std::function<Vector3(double)>& position,
                         const std::function<double(double)>& theta,
                         const std::function<double(double)>& kappa);
 
 /// Circular arc that leaves the base along +z and bends towards e with curvature k, 1/m.
-Centreline arc(double L, double joint, const Vector3& e, double k);
+Centreline arc(double length, double joint, const Vector3& e, double k);
 /// Straight line tilted from +z towards e by an angle, rad.
-Centreline tilted(double L, double joint, const Vector3& e, double angle);
+Centreline tilted(double length, double joint, const Vector3& e, double angle);
 
 /// A mechanics model that returns the curve of a function.
 class ShapeModel : public MechanicsModel {

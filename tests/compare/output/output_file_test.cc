@@ -58,14 +58,16 @@ TEST(OutputFile, TakesAwayWhatAKilledProcessHasLeft) {
   waitpid(child, nullptr, 0);
   EXPECT_EQ(count(), 1);
   EXPECT_FALSE(fs::exists(file));
-  // Those of a living process, of another file, and the user's own stay.
+  // Those of a living process, of other files (`a.7.json`), and the user's own stay.
+  const std::string dead = std::to_string(child);
   for (const std::string& name :
-       {".a." + std::to_string(getppid()) + ".0.tmp.json", std::string(".a.notes.tmp.json"),
-        ".b." + std::to_string(child) + ".0.tmp.json", ".a." + std::to_string(child) + ".0.json"})
+       {".a." + std::to_string(getppid()) + "-0.tmp.json", ".a.7." + dead + "-0.tmp.json",
+        ".b." + dead + "-0.tmp.json", ".a." + dead + "-0.json", ".a." + dead + ".notes.tmp.json",
+        std::string(".a.notes.tmp.json")})
     std::ofstream(folder.path() / name) << "stays";
   write_file(file, "whole");
   EXPECT_EQ(read_text(file), "whole");
-  EXPECT_EQ(count(), 5);
+  EXPECT_EQ(count(), 7);
 }
 
 TEST(OutputFile, WritesBehindALink) {
