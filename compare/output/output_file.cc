@@ -3,13 +3,10 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <signal.h>  // NOLINT(modernize-deprecated-headers): kill() is POSIX
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <string>
 #include <system_error>
@@ -78,17 +75,11 @@ fs::path behind_links(fs::path file) {
   return file;
 }
 
-/// A new empty file beside `target` with its extension, and open; never one that was there. What
-/// processes that are no longer alive have left of such files goes.
+/// A new empty file beside `target` with its extension, and open; never one that was there.
 fs::path make_temporary(const fs::path& target, const fs::path& file, int& descriptor) {
-  const std::string stem = target.stem().string();
-  const std::string end = ".tmp" + target.extension().string();
-  std::error_code ignored;
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-    if (is_left_over(entry.path(), stem, end)) fs::remove(entry.path(), ignored);
   for (int i = 0;; ++i) {
-    fs::path name = target.parent_path() / fmt::format(".{}.{}-{}{}", stem, getpid(), i, end);
+    fs::path name = target.parent_path() / fmt::format(".{}.{}.{}.tmp{}", target.stem().string(),
+                                                       getpid(), i, target.extension().string());
     descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0) return name;
     if (errno != EEXIST) fail(file, errno);
@@ -115,22 +106,6 @@ void replace(const fs::path& file,
 }
 
 }  // namespace
-
-bool is_left_over(const fs::path& file, std::string_view name, std::string_view end) {
-  const std::string text = file.filename().string();
-  const std::string begin = fmt::format(".{}.", name);
-  if (!text.starts_with(begin) || !text.ends_with(end) || text.size() <= begin.size() + end.size())
-    return false;
-  const char* first = text.data() + begin.size();
-  const char* last = text.data() + text.size() - end.size();
-  pid_t process = 0;
-  const auto [stop, error] = std::from_chars(first, last, process);
-  const bool is_number =
-      stop == last ||
-      (*stop == '-' && std::all_of(stop + 1, last, [](char c) { return c >= '0' && c <= '9'; }));
-  if (error != std::errc() || !is_number || process <= 0) return false;
-  return process == getpid() || (kill(process, 0) != 0 && errno == ESRCH);
-}
 
 void write_file(const fs::path& file, std::string_view text) {
   if (const auto stream = standard_stream(file)) {

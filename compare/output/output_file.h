@@ -10,14 +10,8 @@
 
 namespace ciliaval::compare::output {
 
-/// Whether a file is called `.NAME.PROCESS` or `.NAME.PROCESS-NUMBER` and then `end`, as this
-/// program calls what it has not finished, and that process is no longer alive: it was killed. One
-/// of this process's own number, too, for in a container every run may have the same.
-bool is_left_over(const std::filesystem::path& file, std::string_view name, std::string_view end);
-
 /// Writes a text to a file. A regular file, or the one that a link leads to, is replaced at once or
-/// not at all; what a killed process has left beside it goes with the next writing. Devices, FIFOs
-/// and the program's own standard output are written to as they are.
+/// not at all. Devices, FIFOs and the program's own standard output are written to as they are.
 /// Throws FileError with the path and the reason, also if the disk is full.
 void write_file(const std::filesystem::path& file, std::string_view text);
 

@@ -3,10 +3,12 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <stdio.h>  // NOLINT(modernize-deprecated-headers): renameat2() is Linux
+#include <signal.h>  // NOLINT(modernize-deprecated-headers): kill() is POSIX
+#include <stdio.h>   // NOLINT(modernize-deprecated-headers): renameat2() is Linux
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -32,14 +34,33 @@ std::string temporary_name(const std::string& name, std::string_view extension) 
   return "." + name + "." + std::to_string(getpid()) + std::string(extension);
 }
 
+/// The process id in `.NAME.PID.tmp` or `.NAME.PID.old`, if that is what `file` is called.
+std::optional<pid_t> owner(const fs::path& file, const std::string& name) {
+  const std::string text = file.filename().string();
+  const std::string prefix = "." + name + ".";
+  if (!text.starts_with(prefix) || !(text.ends_with(".tmp") || text.ends_with(".old")) ||
+      text.size() <= prefix.size() + 4)
+    return std::nullopt;
+  pid_t pid = 0;
+  const char* end = text.data() + text.size() - 4;
+  const auto [stop, error] = std::from_chars(text.data() + prefix.size(), end, pid);
+  if (error != std::errc() || stop != end || pid <= 0) return std::nullopt;
+  return pid;
+}
+
+bool is_alive(pid_t pid) {
+  return pid != getpid() && (kill(pid, 0) == 0 || errno != ESRCH);
+}
+
 /// Takes away what processes that are no longer alive have left. Where one was killed between the
 /// two renames of a file system that cannot exchange, its old results go back to their place.
 void remove_stale(const fs::path& directory, const fs::path& target, const std::string& name) {
   for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-    const bool is_old = is_left_over(entry.path(), name, ".old");
-    if (is_old && !fs::exists(target))
+    const auto pid = owner(entry.path(), name);
+    if (!pid || is_alive(*pid)) continue;
+    if (entry.path().extension() == ".old" && !fs::exists(target))
       fs::rename(entry.path(), target);
-    else if (is_old || is_left_over(entry.path(), name, ".tmp"))
+    else
       fs::remove_all(entry.path());
   }
 }

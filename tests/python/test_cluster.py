@@ -67,6 +67,7 @@ RODS = """
 name = "rods"
 case = "../case.toml"
 pairs = ["elastica/line"]
+outputs = ["dB_norm", "sensitivity"]
 [fixed]
 load.force = "1 mN"
 [[parameter]]
@@ -81,6 +82,7 @@ OPTIMUM = """
 name = "best"
 case = "../case.toml"
 pairs = ["elastica/line"]
+outputs = ["dB_norm", "sensitivity"]
 [fixed]
 load.force = "1 mN"
 [optimise]

@@ -41,7 +41,7 @@ def save(figure: Figure, file: Path) -> None:
     kind = file.suffix.lstrip(".").lower()
     if kind not in ("svg", "pdf", "png"):
         raise FileError(f"{file}: a figure's name ends in .svg, .pdf or .png")
-    scratch = file.with_name(f".{file.name}.{os.getpid()}")
+    scratch = file.with_name(f".{file.stem}.{os.getpid()}.0.tmp{file.suffix}")
     date = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
     try:
         with style():

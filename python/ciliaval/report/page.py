@@ -234,7 +234,7 @@ def _html(title: str, lead: str, sections: list[Section], footer: str) -> str:
 
 def write(file: Path, page: Page) -> None:
     """Under another name first: the old page is replaced at once or not at all. Raises FileError."""
-    scratch = file.with_name(f".{file.name}.{os.getpid()}")
+    scratch = file.with_name(f".{file.stem}.{os.getpid()}.0.tmp{file.suffix}")
     try:
         scratch.write_text(page.html, encoding="utf-8", errors="replace")
         scratch.replace(file)

@@ -4,10 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <fstream>
 #include <future>
 
@@ -39,35 +37,6 @@ TEST(OutputFile, ReplacesAFileAndTouchesNoOther) {
   EXPECT_EQ(read_text(folder.path() / "a.json.tmp"), "the user's");
   EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
-}
-
-TEST(OutputFile, TakesAwayWhatAKilledProcessHasLeft) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.path() / "a.json";
-  const auto count = [&] {
-    return std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator());
-  };
-  const pid_t child = fork();
-  if (child == 0) {
-    write_file(file, [&](const fs::path& temporary) {
-      std::ofstream(temporary) << "half a file" << std::flush;
-      raise(SIGKILL);
-    });
-    _exit(1);
-  }
-  waitpid(child, nullptr, 0);
-  EXPECT_EQ(count(), 1);
-  EXPECT_FALSE(fs::exists(file));
-  // Those of a living process, of other files (`a.7.json`), and the user's own stay.
-  const std::string dead = std::to_string(child);
-  for (const std::string& name :
-       {".a." + std::to_string(getppid()) + "-0.tmp.json", ".a.7." + dead + "-0.tmp.json",
-        ".b." + dead + "-0.tmp.json", ".a." + dead + "-0.json", ".a." + dead + ".notes.tmp.json",
-        std::string(".a.notes.tmp.json")})
-    std::ofstream(folder.path() / name) << "stays";
-  write_file(file, "whole");
-  EXPECT_EQ(read_text(file), "whole");
-  EXPECT_EQ(count(), 7);
 }
 
 TEST(OutputFile, WritesBehindALink) {

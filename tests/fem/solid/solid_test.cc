@@ -372,8 +372,8 @@ TEST(Solid, FindsTheSlipOffForceAndGoesOn) {
 // Oracle: each load alone. Height and azimuth change along the path: the slip-off is that of the
 // target's own place, whatever came before.
 TEST(Solid, PlaceOfAnEarlierLoadDoesNotMatter) {
-  const LoadPath path{ContactLoad{1e-3, 16e-3, 0}, ContactLoad{8e-3, 15e-3, 0.5},
-                      ContactLoad{5e-3, 16e-3, 0}};
+  const LoadPath path{ContactLoad{1e-3, 16e-3, 0}, ContactLoad{8e-3, 15e-3, 0},
+                      ContactLoad{5e-3, 16e-3, 0.5}, ContactLoad{8e-3, 16e-3, 0.5}};
   const MechanicsResult result = Solid(coarse()).solve(stub_and_magnet(), path);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const MechanicsResult alone = Solid(coarse()).solve(stub_and_magnet(), {path[i]});
@@ -389,6 +389,7 @@ TEST(Solid, PlaceOfAnEarlierLoadDoesNotMatter) {
   }
   EXPECT_EQ(result.steps[1].status, Status::slipped_off);
   EXPECT_EQ(result.steps[2].status, Status::converged);
+  EXPECT_EQ(result.steps[3].status, Status::slipped_off);
 }
 
 // Oracle: the slip-off force found from 8 mN, 5.34 mN (FindsTheSlipOffForceAndGoesOn). 1 N is 190
