@@ -8,8 +8,8 @@ target_compile_options(ciliaval_compiler INTERFACE
   -Werror=invalid-pch)
 if(CMAKE_UNITY_BUILD)
   # What is only due to files compiled together, and GCC 12's false alarms in std::string (its bug 105329) where it inlines more.
-  # The preset `debug` compiles each file alone.
-  target_compile_options(ciliaval_compiler INTERFACE -Wno-shadow -Wno-subobject-linkage -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
+  # With CMAKE_UNITY_BUILD=OFF, as in the preset `debug`, each file is compiled alone.
+  target_compile_options(ciliaval_compiler INTERFACE -Wno-shadow -Wshadow=local -Wno-subobject-linkage -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow
     -Wno-stringop-overread)
 endif()
 if(CILIAVAL_ODR)

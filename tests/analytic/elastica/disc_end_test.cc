@@ -21,6 +21,7 @@
 
 #include "analytic/elastica/sweep.h"
 #include "problem/error.h"
+#include "tests/analytic/elastica/sweeps.h"
 
 namespace ciliaval::analytic::elastica {
 using namespace surroundings;
@@ -37,23 +38,10 @@ Surface step(double height, double friction) {
           friction, 0};
 }
 
-std::vector<SurfacePlace> straight_on(double height, double travel, int samples) {
-  std::vector<SurfacePlace> places;
-  for (int i = 0; i <= samples; ++i) places.push_back({height, travel * i / samples});
-  return places;
-}
-
 std::vector<SurfacePlace> there_and_back(double height, double travel, int samples) {
   std::vector<SurfacePlace> places = straight_on(height, travel, samples);
   for (int i = samples - 1; i >= 0; --i) places.push_back({height, travel * i / samples});
   return places;
-}
-
-std::vector<TipJump> jumps(const std::vector<SweepSample>& samples) {
-  std::vector<TipJump> all;
-  for (const SweepSample& sample : samples)
-    all.insert(all.end(), sample.jumps.begin(), sample.jumps.end());
-  return all;
 }
 
 /// Work of the surface − friction − losses − change of the energy, over the surface's work.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "problem/error.h"
+#include "tests/analytic/elastica/sweeps.h"
 
 namespace ciliaval::analytic::elastica {
 using namespace surroundings;
@@ -23,19 +24,6 @@ Surface step(double friction) {
   return {TrapezoidProfile{
               .height = 1e-3, .top = 15e-3, .bottom = 15e-3, .flank = 1e-3, .radius = 0.5e-3},
           friction, 0};
-}
-
-std::vector<SurfacePlace> straight_on(double height, double travel, int samples) {
-  std::vector<SurfacePlace> places;
-  for (int i = 0; i <= samples; ++i) places.push_back({height, travel * i / samples});
-  return places;
-}
-
-std::vector<TipJump> jumps_of(const std::vector<SweepSample>& samples) {
-  std::vector<TipJump> all;
-  for (const SweepSample& sample : samples)
-    all.insert(all.end(), sample.jumps.begin(), sample.jumps.end());
-  return all;
 }
 
 Surface teeth(const TrapezoidProfile& trapezoid, double friction) {
@@ -100,8 +88,8 @@ TEST(Sweep, JumpsDownAStep) {
   for (const double friction : {0.0, 0.3}) {
     const auto samples = sweep(tip_problem(paper_rod), step(friction), straight_on(0.95, 1.7, 170));
     for (std::size_t i = 0; i <= 158; ++i) EXPECT_TRUE(samples[i].jumps.empty()) << i;
-    ASSERT_EQ(jumps_of(samples).size(), 1U);
-    EXPECT_GT(jumps_of(samples)[0].energy_lost, 0);
+    ASSERT_EQ(jumps(samples).size(), 1U);
+    EXPECT_GT(jumps(samples)[0].energy_lost, 0);
     const TipContact& first = samples.front().contact;
     const TipContact& last = samples.back().contact;
     EXPECT_NEAR(last.contact_x, first.contact_x, 1e-4);
@@ -131,7 +119,7 @@ TEST(Sweep, DoesNotDependOnTheSamples) {
   const auto few = sweep(tip_problem(paper_rod), step(0.3), straight_on(0.95, 1.7, 17));
   const auto many = sweep(tip_problem(paper_rod), step(0.3), straight_on(0.95, 1.7, 340));
   EXPECT_NEAR(place(few), place(many), 1e-6);
-  EXPECT_NEAR(jumps_of(few).at(0).energy_lost, jumps_of(many).at(0).energy_lost, 1e-6);
+  EXPECT_NEAR(jumps(few).at(0).energy_lost, jumps(many).at(0).energy_lost, 1e-6);
   EXPECT_NEAR(few.back().contact.contact_x, many.back().contact.contact_x, 1e-6);
 }
 
@@ -168,7 +156,7 @@ TEST(Sweep, LandsOnTheNextTooth) {
     }
     was_bent = sample.contact.energy > 0.05;
   }
-  EXPECT_GE(jumps_of(samples).size(), 2U);
+  EXPECT_GE(jumps(samples).size(), 2U);
   EXPECT_NEAR(missing_energy(samples), 0, 1e-5);
 }
 
@@ -181,8 +169,8 @@ TEST(Sweep, FollowsNarrowEdges) {
       std::vector<SurfacePlace> places;  // from the plateau down
       for (int i = 0; i <= 20; ++i) places.push_back({0.95, 1.5 + 0.01 * i});
       const auto samples = sweep(tip_problem(paper_rod), surface, places);
-      ASSERT_EQ(jumps_of(samples).size(), 1U) << radius << " " << friction;
-      EXPECT_GT(jumps_of(samples)[0].energy_lost, 0);
+      ASSERT_EQ(jumps(samples).size(), 1U) << radius << " " << friction;
+      EXPECT_GT(jumps(samples)[0].energy_lost, 0);
       EXPECT_NEAR(missing_energy(samples), 0, 1e-5);
     }
 }

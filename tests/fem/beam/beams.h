@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "fem/beam/newton.h"
+#include "fem/beam/section.h"
+#include "oracles.h"
 #include "problem/cilium.h"
 
 // What the tests of the beam share.
@@ -28,6 +30,24 @@ inline constexpr double h = 16e-3;  ///< of its contact, m
 inline ciliaval::Cilium equal_segments(std::size_t n) {
   return {3e-3,
           std::vector<ciliaval::Segment>(n, {"rod", L / static_cast<double>(n), 1e6, 0.49, 0})};
+}
+
+/// The paper's cilium; E₁ = E₂/ratio.
+inline ciliaval::Cilium paper_cilium(double ratio = 30) {
+  return {3e-3, {{"base", 3e-3, 3e6 / ratio, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
+}
+
+/// Its segments for the oracles.
+inline std::vector<oracle::Stretch> stretches(const ciliaval::Cilium& cilium, bool shear_rigid) {
+  std::vector<oracle::Stretch> beam;
+  for (const ciliaval::Segment& s : cilium.segments) {
+    const auto k =
+        ciliaval::fem::beam::circular_section(cilium.diameter, s.young_modulus, s.poisson_ratio);
+    const double stretch = shear_rigid ? 0 : 1 / k.EA;
+    const double shear = shear_rigid ? 0 : 1 / k.kGA1;
+    beam.push_back({s.length, k.EI1, stretch - shear, stretch, shear});
+  }
+  return beam;
 }
 
 /// Records the largest of a test's measured errors of one name in its report (--gtest_output), and

@@ -18,21 +18,8 @@ using beams::measured;
 using beams::equal_segments;
 using beams::h;
 using beams::L;
-
-Cilium paper_cilium() {
-  return {3e-3, {{"base", 3e-3, 0.1e6, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
-}
-
-std::vector<oracle::Stretch> stretches(const Cilium& cilium, bool shear_rigid) {
-  std::vector<oracle::Stretch> beam;
-  for (const Segment& s : cilium.segments) {
-    const auto k = fem::beam::circular_section(cilium.diameter, s.young_modulus, s.poisson_ratio);
-    const double stretch = shear_rigid ? 0 : 1 / k.EA;
-    const double shear = shear_rigid ? 0 : 1 / k.kGA1;
-    beam.push_back({s.length, k.EI1, stretch - shear, stretch, shear});
-  }
-  return beam;
-}
+using beams::paper_cilium;
+using beams::stretches;
 
 fem::beam::Beam beam(bool shear_rigid) {
   fem::beam::BeamOptions result;
