@@ -162,10 +162,10 @@ TEST_P(Parts, HaveTheForcesOfTheWhole) {
           meshed.state.displacement, *meshed.space,
           loads::external_forces(*meshed.space, *meshed.quadrature, meshed.cilium, load, 0.5e-3));
     };
-    const Vector expected = forces(whole);
-    expect_same(forces(parts), expected);
+    const Vector of_whole = forces(whole);
+    expect_same(forces(parts), of_whole);
     expect_near(loads::resultant(*parts.space, forces(parts)),
-                loads::resultant(*whole.space, expected), expected.l2_norm());
+                loads::resultant(*whole.space, of_whole), of_whole.l2_norm());
   };
   same_load(ContactLoad{.force = 1e-3, .height = 4e-3, .azimuth = 0.3});
   same_load(FlowLoad{.force_per_height = 0.1, .azimuth = 0.3});
