@@ -63,6 +63,7 @@ Outcome run(const fs::path& folder, const std::vector<std::string>& arguments,
     std::vector<std::string> words{CILIAVAL_PROGRAM, "run", "case.toml"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
+    argv.reserve(words.size() + 1);
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
     execv(CILIAVAL_PROGRAM, argv.data());
@@ -197,7 +198,9 @@ TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   write_case(folder.path());
   interrupt(folder.path());
   const fs::path file = store_in(folder.path());
-  compare::output::store::Store{file};  // merges what the kill has left beside it
+  {
+    const compare::output::store::Store merged(file);  // with what the kill has left beside it
+  }
   const std::string good = read_text(file);
   const auto refused = [&](const std::string& why) {
     const std::string before = read_text(file);
