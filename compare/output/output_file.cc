@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <regex>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -124,6 +125,14 @@ void write_file(const fs::path& file, const std::function<void(const fs::path&)>
   if (is_special(file))
     throw FileError(fmt::format("cannot write `{}`: it is no regular file", file.string()));
   replace(file, [&](const fs::path& temporary, Descriptor&) { write(temporary); });
+}
+
+void remove_unfinished(const fs::path& folder) {
+  // As make_temporary() and python/ciliaval/files.py call them: .study.4711.0.tmp.csv
+  static const std::regex name(R"(\..+\.[0-9]+\.[0-9]+\.tmp\.[a-z]+)");
+  std::error_code error;  // what cannot be taken away disturbs nobody
+  for (fs::directory_iterator file(folder, error), end; file != end; file.increment(error))
+    if (std::regex_match(file->path().filename().string(), name)) fs::remove(*file, error);
 }
 
 void check_outputs(std::initializer_list<std::optional<fs::path>> outputs,

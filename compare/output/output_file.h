@@ -20,6 +20,10 @@ void write_file(const std::filesystem::path& file, std::string_view text);
 void write_file(const std::filesystem::path& file,
                 const std::function<void(const std::filesystem::path&)>& write);
 
+/// Takes away temporary files of write_file(), and of figures, that killed commands have left in a
+/// folder. Only where no other process writes: of a study while its store is open.
+void remove_unfinished(const std::filesystem::path& folder);
+
 /// Checks the files that a command will write before it starts its work; absent ones are skipped.
 /// Throws InputError if one is also an input, under any name, or the same as another; FileError if
 /// one cannot be written.

@@ -3,9 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <regex>
-#include <system_error>
-
 #include "problem/error.h"
 
 namespace ciliaval::compare::study {
@@ -31,13 +28,6 @@ void make_folder(const fs::path& folder) {
                     "-o DIR",
                     folder.string(), error.code().message()));
   }
-}
-
-void remove_unfinished(const fs::path& folder) {
-  static const std::regex name(R"(\..+\.[0-9]+\.[0-9]+\.tmp\.[a-z]+)");  // .study.4711.0.tmp.csv
-  std::error_code error;  // what cannot be taken away disturbs nobody
-  for (fs::directory_iterator file(folder, error), end; file != end; file.increment(error))
-    if (std::regex_match(file->path().filename().string(), name)) fs::remove(*file, error);
 }
 
 }  // namespace ciliaval::compare::study

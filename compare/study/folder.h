@@ -12,9 +12,4 @@ inline constexpr const char* store_name = "points.sqlite";
 /// lies there.
 void make_folder(const std::filesystem::path& folder);
 
-/// Takes away what killed commands have left unfinished in that folder: write_file()'s temporary
-/// files, and those of figures. Only for whom has opened the store, for then no other process
-/// writes there.
-void remove_unfinished(const std::filesystem::path& folder);
-
 }  // namespace ciliaval::compare::study

@@ -82,7 +82,6 @@ OPTIMUM = """
 name = "best"
 case = "../case.toml"
 pairs = ["elastica/line"]
-outputs = ["dB_norm", "sensitivity"]
 [fixed]
 load.force = "1 mN"
 [optimise]

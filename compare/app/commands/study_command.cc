@@ -118,7 +118,7 @@ ExitCode execute_study(const StudyOptions& options, const std::string& words) {
   output::check_outputs({options.json}, inputs);
   study::make_folder(folder);
   output::store::Store store(folder / study::store_name, options.fresh);
-  study::remove_unfinished(folder);
+  output::remove_unfinished(folder);
   study::Solutions solutions(store, study, output::version_line());
   announce(study, solutions.size());
   const Results result = solve(study, solutions);

@@ -8,7 +8,6 @@ takes them as SVG. Of a case it is the signal at the first sensor.
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from matplotlib.figure import Figure
 from .. import plot
 from .._core import CaseFile
 from ..errors import Error, FileError
+from ..files import replacing
 from ..results import Document, Result, read
 from .style import style
 
@@ -37,20 +37,13 @@ def main_figure(data: Result | Document) -> Figure | None:
 
 
 def save(figure: Figure, file: Path) -> None:
-    """Under another name first: an old figure is replaced at once or not at all."""
+    """An old figure is replaced at once or not at all."""
     kind = file.suffix.lstrip(".").lower()
     if kind not in ("svg", "pdf", "png"):
         raise FileError(f"{file}: a figure's name ends in .svg, .pdf or .png")
-    scratch = file.with_name(f".{file.stem}.{os.getpid()}.0.tmp{file.suffix}")
     date = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[kind]
-    try:
-        with style():
-            figure.savefig(scratch, format=kind, dpi=200, metadata=date)
-        scratch.replace(file)
-    except OSError as error:
-        raise FileError(f"{file}: {error.strerror}") from error
-    finally:
-        scratch.unlink(missing_ok=True)
+    with replacing(file) as scratch, style():
+        figure.savefig(scratch, format=kind, dpi=200, metadata=date)
 
 
 def main() -> int:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import os
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from typing import Any, Union
 from jinja2 import Environment, PackageLoader
 
 from ..errors import FileError
+from ..files import replacing
 from ..results import Document, Result, read
 from ..units import in_words, number
 from . import evidence, view3d
@@ -233,11 +233,6 @@ def _html(title: str, lead: str, sections: list[Section], footer: str) -> str:
 
 
 def write(file: Path, page: Page) -> None:
-    """Under another name first: the old page is replaced at once or not at all. Raises FileError."""
-    scratch = file.with_name(f".{file.stem}.{os.getpid()}.0.tmp{file.suffix}")
-    try:
+    """The old page is replaced at once or not at all. Raises FileError."""
+    with replacing(file) as scratch:
         scratch.write_text(page.html, encoding="utf-8", errors="replace")
-        scratch.replace(file)
-    except OSError as error:
-        scratch.unlink(missing_ok=True)
-        raise FileError(f"{file}: {error.strerror}") from error
