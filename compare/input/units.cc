@@ -23,18 +23,34 @@ namespace ciliaval::compare::input {
 namespace {
 
 constexpr std::string_view blanks = " \t";
-constexpr std::size_t longest_unit = 64;     ///< bytes; UDUNITS' parser is not asked to read more
-constexpr std::size_t longest_exponent = 2;  ///< digits
+constexpr std::size_t longest_unit = 64;      ///< bytes; UDUNITS' parser is not asked to read more
+constexpr std::size_t longest_exponent = 2;   ///< digits
+constexpr double standard_gravity = 9.80665;  ///< m/s², of the gram-force (CGPM 1901)
 
 struct FreeUnit {
   void operator()(ut_unit* unit) const { ut_free(unit); }
 };
 using Unit = std::unique_ptr<ut_unit, FreeUnit>;
 
+/// Symbols that UDUNITS does not know, or reads otherwise ("Gs": a gigasecond). They take its
+/// prefixes, so that "mG" is a milligauss. emu: the magnetic moment of the CGS, erg/G.
+struct Symbol {
+  const char* name;
+  const char* definition;
+};
+constexpr Symbol added_symbols[]{{"G", "gauss"},       {"Gs", "gauss"}, {"emu", "1e-3 A m2"},
+                                 {"cc", "cm3"},        {"dyn", "dyne"}, {"gf", "gram_force"},
+                                 {"deg", "arc_degree"}};
+
 ut_system* unit_system() {
   static ut_system* const system = [] {
-    ut_set_error_message_handler(ut_ignore);  // UDUNITS would write to stderr
-    return ut_read_xml(nullptr);              // lives as long as the program
+    ut_set_error_message_handler(ut_ignore);       // UDUNITS would write to stderr
+    ut_system* const read = ut_read_xml(nullptr);  // lives as long as the program
+    if (read != nullptr)
+      for (const Symbol& symbol : added_symbols)
+        ut_map_symbol_to_unit(symbol.name, UT_UTF8,
+                              Unit(ut_parse(read, symbol.definition, UT_UTF8)).get());
+    return read;
   }();
   if (system == nullptr)
     throw FileError(
@@ -80,6 +96,13 @@ std::string in_ascii(std::string_view text) {
     text.remove_prefix(spelling != nullptr ? spelling->written.size() : 1);
   }
   return result;
+}
+
+/// Whether a word in lower case is in the text, in any case.
+bool holds_word(std::string_view text, std::string_view word) {
+  return std::ranges::search(text, word, [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) == b;
+         }).begin() != text.end();
 }
 
 std::string wanted(const Quantity& expected) {
@@ -149,23 +172,6 @@ bool is_product_of_names(std::string_view unit) {
   }
 }
 
-/// "deg", which UDUNITS does not know, as "degree".
-std::string with_degrees(std::string_view unit) {
-  constexpr std::string_view word = "deg";
-  std::string result;
-  for (std::size_t i = 0; i < unit.size();) {
-    const bool starts = i == 0 || !is_unit_letter(unit[i - 1]);
-    const bool ends = i + word.size() >= unit.size() || !is_unit_letter(unit[i + word.size()]);
-    if (unit.substr(i, word.size()) == word && starts && ends) {
-      result += "degree";
-      i += word.size();
-    } else {
-      result += unit[i++];
-    }
-  }
-  return result;
-}
-
 /// Units that a person may mean to write, for advice.
 std::span<const std::string_view> usual_units(const Quantity& expected) {
   using Names = std::vector<std::string_view>;
@@ -176,7 +182,8 @@ std::span<const std::string_view> usual_units(const Quantity& expected) {
       {"Pa",
        {"Pa", "MPa", "kPa", "GPa", "pascal", "kilopascal", "megapascal", "gigapascal", "N/m^2",
         "N/mm^2", "bar", "psi"}},
-      {"A/m", {"A/m", "kA/m", "MA/m", "A/mm", "oersted"}},
+      {"A/m", {"A/m", "kA/m", "MA/m", "A/mm", "emu/cc", "Oe", "kOe", "oersted"}},
+      {"T", {"T", "mT", "uT", "nT", "G", "mG", "kG", "tesla", "millitesla", "microtesla", "gauss"}},
       {"N", {"N", "mN", "uN", "kN", "newton", "millinewton", "micronewton", "lbf", "kgf"}},
       {"N/m", {"N/m", "mN/m", "uN/m", "kN/m", "N/mm", "mN/mm"}},
       {"m/s", {"m/s", "mm/s", "cm/s", "km/h"}},
@@ -212,22 +219,62 @@ std::optional<double> factor_between(const ut_unit* from, std::string_view to) {
   return factor;
 }
 
+/// The value that a person means who states another quantity than the expected one; empty if that
+/// is not known.
+std::string converted(double value, const ut_unit* given, const Quantity& expected) {
+  const auto in = [&](std::string_view unit) -> std::optional<double> {
+    const auto factor = factor_between(given, unit);
+    return factor ? std::optional(value * *factor) : std::nullopt;
+  };
+  if (expected.unit == quantity::magnetization.unit) {
+    if (const auto remanence = in("T"))
+      return fmt::format("magnetization is B_r/mu_0: {:.4g} T is {:.4g} kA/m: write that",
+                         *remanence, *remanence / vacuum_permeability / 1000);
+    if (const auto per_mass = in("A m2/kg"))
+      return fmt::format(
+          "it is a magnetization per mass: times the magnet's density, {:.4g} A m2/kg times "
+          "kg/m^3, it is in A/m",
+          *per_mass);
+  }
+  if (expected.unit == quantity::flux_density.unit)
+    if (const auto strength = in("A/m"))
+      return fmt::format("B is mu_0 M or mu_0 H: {:.4g} kA/m is {:.4g} mT: write that",
+                         *strength / 1000, *strength * vacuum_permeability * 1000);
+  if (expected.unit == quantity::force.unit)
+    if (const auto mass = in("kg"))
+      return fmt::format("a mass is no force: the weight of {:.4g} g is {:.4g} mN: write that",
+                         *mass * 1000, *mass * standard_gravity * 1000);
+  return {};
+}
+
+/// The unit as UDUNITS reads it. Where a flux density is due, "mt", "ut" and "nt" are no tonnes.
+std::string symbol_of(std::string_view unit, const Quantity& expected) {
+  std::string symbol(unit);
+  if (expected.unit == quantity::flux_density.unit)
+    for (const std::string_view lower : {"mt", "ut", "nt", "\u00B5t", "\u03BCt"})
+      if (unit == lower) symbol.back() = 'T';
+  return symbol;
+}
+
 /// The factor from the unit of a value to the SI unit of `expected`.
 double factor_to_si(double value, std::string_view unit, const Quantity& expected) {
-  const Unit given(ut_parse(unit_system(), with_degrees(unit).c_str(), UT_UTF8));
+  const Unit given(ut_parse(unit_system(), symbol_of(unit, expected).c_str(), UT_UTF8));
   if (!given)
     throw InputError(fmt::format("unknown unit {}: {}{}", in_quotes(unit), wanted(expected),
                                  did_you_mean_unit(unit, expected)));
   if (const auto factor = factor_between(given.get(), expected.unit)) return *factor;
-  std::string what =
-      fmt::format("{} is not a unit of {} {}: ", in_quotes(unit), expected.article, expected.name);
-  const std::optional<double> tesla = factor_between(given.get(), "T");
-  if (tesla && expected.unit == quantity::magnetization.unit)
-    what += fmt::format("divide B_r by mu_0 (magnetization = B_r/mu_0), here \"{:.4g} kA/m\"",
-                        value * *tesla / vacuum_permeability / 1000);
-  else
-    what += wanted(expected) + did_you_mean_unit(unit, expected);
-  throw InputError(what);
+  const std::string meant = converted(value, given.get(), expected);
+  throw InputError(
+      fmt::format("{} is not a unit of {} {}: {}", in_quotes(unit), expected.article, expected.name,
+                  meant.empty() ? wanted(expected) + did_you_mean_unit(unit, expected) : meant));
+}
+
+/// Whether three digits go on behind a number where a person parts the thousands: "75 000",
+/// "75'000", "75_000".
+bool goes_on_by_thousands(std::string_view rest) {
+  const std::size_t mark = std::min(rest.find_first_not_of(" \t'_"), rest.size());
+  UnitReader reader{rest.substr(mark)};
+  return mark > 0 && reader.take_all(is_digit) == 3;
 }
 
 /// The number at the start of the text, which is cut off from it.
@@ -258,10 +305,22 @@ double parse_quantity(std::string_view text, const Quantity& expected) {
   const std::string plain = in_ascii(text);
   std::string_view rest = support::trimmed(plain);
   if (rest.empty()) throw InputError(fmt::format("the text is empty: {}", wanted(expected)));
+  if (expected.unit == quantity::pressure.unit && holds_word(rest, "shore"))
+    throw InputError(fmt::format(
+        "{} is a hardness, which fixes no modulus: measure Young's modulus, or take it from the "
+        "data sheet, and {}",
+        in_quotes(text), wanted(expected)));
   const double value = take_number(rest, expected);
   if (rest.starts_with(','))
-    throw InputError(fmt::format("{} has a comma: write the decimal point, such as \"0.5 mm\"",
-                                 in_quotes(text)));
+    throw InputError(
+        fmt::format("{} has a comma: write the decimal point, such as \"0.5 mm\", and nothing "
+                    "between thousands",
+                    in_quotes(text)));
+  if (goes_on_by_thousands(rest))
+    throw InputError(
+        fmt::format("{} has a mark between its thousands: write the digits alone, such "
+                    "as \"75000 A/m\"",
+                    in_quotes(text)));
   const std::string_view unit = support::trimmed(rest);
   if (unit.empty())
     throw InputError(fmt::format("{} has no unit: {}", in_quotes(text), wanted(expected)));
@@ -271,10 +330,10 @@ double parse_quantity(std::string_view text, const Quantity& expected) {
   if (unit.size() > longest_unit)
     throw InputError(fmt::format("the unit of {} is too long to be one", in_quotes(text)));
   if (!is_product_of_names(unit))
-    throw InputError(
-        fmt::format("the unit {} is not a product of units with small exponents, such as \"kg m "
-                    "s^-2\": write the number first, then the unit alone, such as \"{}\"",
-                    in_quotes(unit), expected.example));
+    throw InputError(fmt::format(
+        "the unit {} is not a product of units with small exponents, such as \"kg m "
+        "s^-2\": write the number first, then the unit alone, such as \"{}\"{}",
+        in_quotes(unit), expected.example, unit == "\"" ? "; did you mean 'inch'?" : ""));
 
   const double factor = factor_to_si(value, unit, expected);
   // Factors such as 1000 and 1/1000 come from UDUNITS with a rounding error.

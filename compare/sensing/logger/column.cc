@@ -110,19 +110,6 @@ ColumnRole role_of(std::string_view name, std::span<const std::string> sensors) 
   return role;
 }
 
-/// The unit as UDUNITS writes it: "uT" for "µT", "milligauss" for "mG".
-std::string udunits_name(std::string_view unit) {
-  std::string text(support::trimmed(unit));
-  for (const std::string_view micro : {"µ", "μ"}) text = replaced_all(text, micro, "u");
-  constexpr std::pair<std::string_view, std::string_view> spellings[]{
-      {"G", "gauss"},       {"Gs", "gauss"},          {"mG", "milligauss"}, {"mGs", "milligauss"},
-      {"uG", "microgauss"}, {"kG", "kilogauss"},      {"mt", "mT"},         {"ut", "uT"},
-      {"nt", "nT"},         {"mGauss", "milligauss"}, {"uTesla", "uT"},     {"mTesla", "mT"}};
-  for (const auto& [written, read] : spellings)
-    if (text == written) return std::string(read);
-  return text.size() > 4 ? in_lower_case(text) : text;  // "Tesla", "Gauss", "MicroTesla"
-}
-
 bool is_lsb(std::string_view unit) {
   const std::string text = in_lower_case(support::trimmed(unit));
   constexpr std::string_view names[]{"lsb", "lsbs", "count", "counts", "digit", "digits",
@@ -159,10 +146,10 @@ double lsb_scale_of(std::string_view text) {
   const std::string_view unit = support::trimmed(head.substr(blank));
   double scale = 0;
   if (is_lsb(unit) && !divisor.empty())
-    scale = input::parse_quantity("1 " + udunits_name(divisor), quantity::flux_density) /
+    scale = input::parse_quantity(fmt::format("1 {}", divisor), quantity::flux_density) /
             input::parse_quantity(number + " T", quantity::flux_density);
   else if (divisor.empty() || is_lsb(divisor))
-    scale = input::parse_quantity(number + " " + udunits_name(unit), quantity::flux_density);
+    scale = input::parse_quantity(fmt::format("{} {}", number, unit), quantity::flux_density);
   constexpr double least = 1e-15;  // T: less than any sensor resolves
   if (!(scale >= least && scale <= 1))
     throw InputError(
@@ -176,7 +163,7 @@ double lsb_scale_of(std::string_view text) {
 
 std::optional<double> flux_density_unit(std::string_view unit) {
   if (is_lsb(unit)) return std::nullopt;
-  return input::parse_quantity("1 " + udunits_name(unit), quantity::flux_density);
+  return input::parse_quantity(fmt::format("1 {}", unit), quantity::flux_density);
 }
 
 bool is_flux_density_unit(std::string_view unit) {
@@ -189,12 +176,7 @@ bool is_flux_density_unit(std::string_view unit) {
 }
 
 double time_unit(std::string_view unit) {
-  std::string text(support::trimmed(unit));
-  for (const std::string_view micro : {"µ", "μ"}) text = replaced_all(text, micro, "u");
-  if (text == "sec") text = "s";
-  if (text == "msec") text = "ms";
-  if (text == "usec") text = "us";
-  return input::parse_quantity("1 " + text, quantity::time);
+  return input::parse_quantity(fmt::format("1 {}", unit), quantity::time);
 }
 
 std::array<double, 3> lsb_scale(std::string_view text) {

@@ -42,15 +42,14 @@ struct Column {
 /// `sensor`, `azimuth`.
 Column column_of(const input::CsvCell& cell, std::span<const std::string> sensors);
 
-/// A unit of flux density in T; none for the digits of a sensor (LSB, counts, digits, raw). Beside
-/// what UDUNITS knows: G and Gs for gauss with the prefixes m, u, k; µ for u; ut, mt, nt. Throws
-/// InputError if it is neither.
+/// A unit of flux density in T (input::parse_quantity()); none for the digits of a sensor (LSB,
+/// counts, digits, raw). Throws InputError if it is neither.
 std::optional<double> flux_density_unit(std::string_view unit);
 
 /// Whether flux_density_unit() takes it.
 bool is_flux_density_unit(std::string_view unit);
 
-/// A unit of time in s: s, ms, us, min, h, sec and what UDUNITS knows. Throws InputError.
+/// A unit of time in s (input::parse_quantity()). Throws InputError.
 double time_unit(std::string_view unit);
 
 /// The flux density of one LSB along x, y, z, T: "0.15 uT", "0.15 uT/LSB", "6842 LSB/G", or three

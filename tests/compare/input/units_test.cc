@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <string_view>
 
 #include "problem/error.h"
 
@@ -100,6 +102,76 @@ TEST(Units, TypesettersBlanksMinusAndSuperscriptsAreRead) {
   EXPECT_EQ(input::parse_quantity("2 m⁺¹", quantity::length), 2.0);
 }
 
+/// A text, what it is, and its value by the definitions of the units.
+struct GoodText {
+  std::string_view text;
+  Quantity quantity;
+  double value;
+};
+
+// 1 G = 1e-4 T; 1 emu = 1 erg/G = 1e-3 A m²; 1 Oe = 1000/(4π) A/m, which UDUNITS rounds to seven
+// digits; 1 gf = 9.80665e-3 N; 1 dyn = 1e-5 N; 1 lbf = 4.4482216152605 N.
+TEST(Units, OfTheLaboratoryAreKnownEverywhere) {
+  constexpr double oersted = 1000 / (4 * std::numbers::pi);
+  constexpr double psi = 4.4482216152605 / (0.0254 * 0.0254);
+  for (const auto& [text, quantity, value] :
+       std::initializer_list<GoodText>{{"1 G", quantity::flux_density, 1e-4},
+                                       {"1 Gs", quantity::flux_density, 1e-4},
+                                       {"1 gauss", quantity::flux_density, 1e-4},
+                                       {"1 Gauss", quantity::flux_density, 1e-4},
+                                       {"1 mG", quantity::flux_density, 1e-7},
+                                       {"1 mGs", quantity::flux_density, 1e-7},
+                                       {"1 mGauss", quantity::flux_density, 1e-7},
+                                       {"1 uG", quantity::flux_density, 1e-10},
+                                       {"1 µG", quantity::flux_density, 1e-10},
+                                       {"1 kG", quantity::flux_density, 0.1},
+                                       {"1 mt", quantity::flux_density, 1e-3},
+                                       {"1 ut", quantity::flux_density, 1e-6},
+                                       {"1 µt", quantity::flux_density, 1e-6},
+                                       {"1 MicroTesla", quantity::flux_density, 1e-6},
+                                       {"1 gamma", quantity::flux_density, 1e-9},
+                                       {"1 Wb/m2", quantity::flux_density, 1},
+                                       {"1 V s/m2", quantity::flux_density, 1},
+                                       {"1 emu/cm^3", quantity::magnetization, 1e3},
+                                       {"1 emu/cm3", quantity::magnetization, 1e3},
+                                       {"1 emu/cm³", quantity::magnetization, 1e3},
+                                       {"1 emu/cc", quantity::magnetization, 1e3},
+                                       {"1 memu/cc", quantity::magnetization, 1},
+                                       {"1 Oe", quantity::magnetization, oersted},
+                                       {"1 kOe", quantity::magnetization, 1e3 * oersted},
+                                       {"1 A/mm", quantity::magnetization, 1e3},
+                                       {"1 A/cm", quantity::magnetization, 1e2},
+                                       {"1 kA·m⁻¹", quantity::magnetization, 1e3},
+                                       {"1 kA m-1", quantity::magnetization, 1e3},
+                                       {"1 kA / m", quantity::magnetization, 1e3},
+                                       {"1 gf", quantity::force, 9.80665e-3},
+                                       {"1 mgf", quantity::force, 9.80665e-6},
+                                       {"1 kgf", quantity::force, 9.80665},
+                                       {"1 gram_force", quantity::force, 9.80665e-3},
+                                       {"1 pond", quantity::force, 9.80665e-3},
+                                       {"1 ozf", quantity::force, 4.4482216152605 / 16},
+                                       {"1 dyn", quantity::force, 1e-5},
+                                       {"1 dyne", quantity::force, 1e-5},
+                                       {"1 kg m/s2", quantity::force, 1},
+                                       {"1 psi", quantity::pressure, psi},
+                                       {"1 ksi", quantity::pressure, 1e3 * psi},
+                                       {"1 kgf/cm2", quantity::pressure, 98066.5},
+                                       {"1 at", quantity::pressure, 98066.5},
+                                       {"1 atm", quantity::pressure, 101325},
+                                       {"1 bar", quantity::pressure, 1e5},
+                                       {"1 dyn/cm2", quantity::pressure, 0.1},
+                                       {"1 N/mm2", quantity::pressure, 1e6},
+                                       {"1 in", quantity::length, 0.0254},
+                                       {"1 mil", quantity::length, 25.4e-6},
+                                       {"1 micron", quantity::length, 1e-6},
+                                       {"1 millimetres", quantity::length, 1e-3},
+                                       {"1 msec", quantity::time, 1e-3},
+                                       {"1 usec", quantity::time, 1e-6},
+                                       {"1 sec", quantity::time, 1}}) {
+    EXPECT_NEAR(input::parse_quantity(text, quantity), value, 3e-7 * value) << text;
+  }
+}
+
 struct BadText {
   std::string_view text;
   Quantity expected;
@@ -123,6 +195,7 @@ TEST_P(BadQuantity, IsRefusedWithTheReason) {
 }
 
 constexpr std::string_view no_number = "does not start with a finite number";
+constexpr std::string_view thousands = "has a mark between its thousands";
 constexpr std::string_view no_product = "is not a product of units with small exponents";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -145,8 +218,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"30", quantity::angle, "has no unit: write an angle, such as \"30 deg\""},
         BadText{"0,5 mm", quantity::length, "has a comma: write the decimal point"},
         BadText{"0x10 mm", quantity::length, "unknown unit 'x10 mm'"},
-        BadText{"1_000 mm", quantity::length, no_product},
-        BadText{"1 000 mm", quantity::length, no_product},
+        BadText{"1_000 mm", quantity::length, thousands},
+        BadText{"1 000 mm", quantity::length, thousands},
+        BadText{"75\u202F000 A/m", quantity::magnetization, thousands},
+        BadText{"75'000 A/m", quantity::magnetization, thousands},
+        BadText{"75,000 A/m", quantity::magnetization, "nothing between thousands"},
         BadText{"3 mm 2", quantity::length, no_product},
         BadText{"3 mm.2", quantity::length, no_product},
         BadText{"3 1", quantity::angle, no_product},
@@ -184,8 +260,27 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"\u2212\u22123 m", quantity::length, no_number},
         // M = B_r/μ0: 0.1 T / (4π·1e-7 N/A²) = 79577.5 A/m; 1 G = 1e-4 T.
         BadText{"0.1 T", quantity::magnetization,
-                "divide B_r by mu_0 (magnetization = B_r/mu_0), here \"79.58 kA/m\""},
-        BadText{"-1000 gauss", quantity::magnetization, "here \"-79.58 kA/m\""},
+                "magnetization is B_r/mu_0: 0.1 T is 79.58 kA/m: write that"},
+        BadText{"-1000 gauss", quantity::magnetization, "-0.1 T is -79.58 kA/m"},
+        BadText{"942 G", quantity::magnetization, "0.0942 T is 74.96 kA/m: write that"},
+        BadText{"94.2 mT", quantity::magnetization, "0.0942 T is 74.96 kA/m: write that"},
+        BadText{"12 emu/g", quantity::magnetization,
+                "times the magnet's density, 12 A m2/kg times kg/m^3"},
+        // The reverse: 75 kA/m · μ0 = 94.248 mT; 50 Oe = 3978.9 A/m, 5 mT.
+        BadText{"75 kA/m", quantity::flux_density, "75 kA/m is 94.25 mT: write that"},
+        BadText{"75 emu/cc", quantity::flux_density, "75 kA/m is 94.25 mT: write that"},
+        BadText{"50 Oe", quantity::flux_density, "3.979 kA/m is 5 mT: write that"},
+        // 0.2 g · 9.80665 m/s² = 1.96133 mN.
+        BadText{"0.2 g", quantity::force, "the weight of 0.2 g is 1.961 mN: write that"},
+        BadText{"10 Gs", quantity::time, "'Gs' is not a unit of a time"},
+        BadText{"50 Shore A", quantity::pressure, "is a hardness, which fixes no modulus"},
+        BadText{"Shore 00-30", quantity::pressure, "is a hardness, which fixes no modulus"},
+        BadText{"0.63\"", quantity::length, "did you mean 'inch'?"},
+        BadText{"16 degC", quantity::length, "'degC' is not a unit of a length"},
+        BadText{"0.1 MPA", quantity::pressure, "did you mean 'MPa'?"},
+        BadText{"2 Mn", quantity::force, "did you mean 'mN'?"},
+        BadText{"2 mN\u00B7m", quantity::force, "is not a unit of a force"},
+        BadText{"2 %", quantity::force, "'%' is not a unit of a force"},
         BadText{"5 %", quantity::angle, "'%' is not a unit of an angle"},
         BadText{"0.1 T", quantity::magnetization, "'T' is not a unit of a magnetization"},
         BadText{"1 N m", quantity::force, "'N m' is not a unit of a force"},
