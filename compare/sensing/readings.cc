@@ -32,11 +32,12 @@ struct UnloadedPart {
   Kind kind = Kind::named;
   double first = 0;  ///< row from 1, or s
   double last = 0;
+  double resolution = 0;  ///< of the time, s: a row at a boundary belongs to the part
 
   bool holds(const logger::Row& row) const {
     if (kind != Kind::rows && kind != Kind::time) return false;
     const double value = kind == Kind::rows ? static_cast<double>(row.number) : row.time;
-    return value >= first && value <= last;
+    return value >= first - resolution && value <= last + resolution;
   }
 };
 
@@ -206,7 +207,8 @@ std::size_t fewest_rows(const RowsOfSample& sample) {
 SensorReadings readings_of(const logger::File& file, const Background* background,
                            std::span<const std::string> sensors, const ReadingOptions& options,
                            Faults& faults) {
-  const UnloadedPart part = unloaded_part(options.unloaded);
+  UnloadedPart part = unloaded_part(options.unloaded);
+  if (part.kind == UnloadedPart::Kind::time) part.resolution = file.time_resolution;
   SensorReadings result;
   result.remark = file.remark;
   if (part.kind == UnloadedPart::Kind::time && !file.has_time) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <boost/locale/encoding_utf.hpp>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
@@ -233,7 +234,7 @@ class Reader {
                   fmt::format("{} is no time as in the rows above", in_quotes(cell.text)));
       return false;
     }
-    const double value = time->value * second_;
+    const long double value = nanoseconds(*time);
     auto& last = last_time_[row.sensor];
     if (last && last->first == row.sample && value < last->second) {
       faults_.add(cell.place,
@@ -245,8 +246,12 @@ class Reader {
     if (!last) last.emplace();
     last->second = value;
     if (last->first != row.sample) last->first = row.sample;
-    if (file_.has_time) row.time = value - origin_;
+    if (file_.has_time) row.time = static_cast<double>(value - origin_) / 1e9;
     return true;
+  }
+
+  long double nanoseconds(const Time& time) const {
+    return form_ == Time::Form::number ? std::round(time.value * unit_) : time.value;
   }
 
   void begin_time(const Time& time, const Column& column) {
@@ -260,7 +265,8 @@ class Reader {
               fmt::format("the column {} has no unit: {}", in_quotes(column.header), advice);
           return;
         }
-        second_ = time_unit(*column.unit);
+        unit_ = 1e9L * time_unit(*column.unit);
+        if (unit_ >= 1) unit_ = std::round(unit_);
       } catch (const InputError& fault) {
         file_.timeless =
             fmt::format("the column {}: {}; {}", in_quotes(column.header), fault.what(), advice);
@@ -268,9 +274,14 @@ class Reader {
       }
     }
     file_.has_time = true;
-    constexpr double seconds_of_dates = 1e8;  // since 1970: of no record from its beginning
-    if (form_ != Time::Form::number || time.value * second_ > seconds_of_dates)
-      origin_ = time.value * second_;
+    constexpr long double of_dates = 1e17L;  // ns since 1970: of no record from its beginning
+    if (form_ == Time::Form::number && nanoseconds(time) <= of_dates) return;
+    origin_ = nanoseconds(time);
+    if (form_ == Time::Form::clock) return;
+    const double unit = form_ == Time::Form::number ? static_cast<double>(unit_) : 1e9;
+    const double stated = static_cast<double>(origin_) / unit;
+    file_.time_resolution =
+        (std::nextafter(stated, std::numeric_limits<double>::infinity()) - stated) * unit / 1e9;
   }
 
   std::string remark() const {
@@ -310,10 +321,10 @@ class Reader {
   double angle_ = 1;                                     ///< the azimuth's unit, rad
   std::optional<std::pair<char, std::size_t>> decimal_;  ///< the mark, and its first line
   Time::Form form_ = Time::Form::number;
-  double second_ = 1;  ///< the time's unit, s
-  double origin_ = 0;  ///< s
+  long double unit_ = 1e9L;  ///< the time's, ns
+  long double origin_ = 0;   ///< ns
   /// Of each sensor: the sample and time of its last row.
-  std::vector<std::optional<std::pair<std::string, double>>> last_time_;
+  std::vector<std::optional<std::pair<std::string, long double>>> last_time_;
 };
 
 }  // namespace

@@ -21,7 +21,8 @@ struct Row {
   std::size_t sensor = 0;
   std::string sample;  ///< of the column `sample`, else empty
   double azimuth = 0;  ///< rad
-  /// s; from the first row on if the file has dates or seconds since 1970; NaN if it has no time.
+  /// s, to whole ns; from the first row on if the file has dates or seconds since 1970; NaN if it
+  /// has no time.
   double time = std::numeric_limits<double>::quiet_NaN();
   Vector3 B = Vector3::Zero();  ///< or ΔB, T
 };
@@ -33,7 +34,10 @@ struct File {
   bool has_sensor = false;  ///< a row for each sensor
   bool has_azimuth = false;
   bool has_time = false;  ///< of a known unit
-  std::string timeless;   ///< why there is no time; empty: there is one
+  /// How well a double holds the times as the file states them, s: 0.24 us of seconds since 1970.
+  /// Programs that write them have held them so.
+  double time_resolution = 0;
+  std::string timeless;  ///< why there is no time; empty: there is one
   std::vector<Row> rows;
   std::size_t row_count = 0;  ///< lines of readings
   std::string remark;         ///< what was read and what was not, for people

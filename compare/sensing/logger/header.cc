@@ -300,6 +300,21 @@ void choose_fields(Header& header, std::span<const std::string> sensors, Faults&
       }
 }
 
+/// The number of a cell with a decimal point or comma.
+template <class T>
+std::optional<T> number_of_type(std::string_view cell) {
+  std::array<char, 64> copy{};
+  if (cell.starts_with('+')) cell.remove_prefix(1);
+  if (cell.empty() || cell.size() > copy.size() || std::ranges::count(cell, ',') > 1)
+    return std::nullopt;
+  std::ranges::replace_copy(cell, copy.begin(), ',', '.');
+  T value = 0;
+  const char* const last = copy.data() + cell.size();
+  const auto [end, error] = std::from_chars(copy.data(), last, value);
+  if (error != std::errc() || end != last) return std::nullopt;
+  return value;
+}
+
 /// "[uT]" or "(uT)" without the brackets.
 std::string without_brackets(const std::string& text) {
   auto [name, unit] = input::name_and_unit(text);
@@ -315,16 +330,11 @@ bool is_comment(std::string_view line) {
 }
 
 std::optional<double> number_in(std::string_view cell) {
-  std::array<char, 64> copy{};
-  if (cell.starts_with('+')) cell.remove_prefix(1);
-  if (cell.empty() || cell.size() > copy.size() || std::ranges::count(cell, ',') > 1)
-    return std::nullopt;
-  std::ranges::replace_copy(cell, copy.begin(), ',', '.');
-  double value = 0;
-  const char* const last = copy.data() + cell.size();
-  const auto [end, error] = std::from_chars(copy.data(), last, value);
-  if (error != std::errc() || end != last) return std::nullopt;
-  return value;
+  return number_of_type<double>(cell);
+}
+
+std::optional<long double> precise_number_in(std::string_view cell) {
+  return number_of_type<long double>(cell);
 }
 
 std::optional<Header> take_header(std::string_view& text, std::size_t& number,

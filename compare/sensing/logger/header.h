@@ -63,5 +63,7 @@ bool is_comment(std::string_view line);
 
 /// The number of a cell; none if it is none. A comma is read as the decimal point.
 std::optional<double> number_in(std::string_view cell);
+/// The same with the 64 bits of a long double, for times.
+std::optional<long double> precise_number_in(std::string_view cell);
 
 }  // namespace ciliaval::compare::sensing::logger

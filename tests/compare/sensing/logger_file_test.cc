@@ -9,8 +9,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -308,8 +312,10 @@ TEST_F(LoggerText, TimesOfManyFormsAreSeconds) {
   EXPECT_NEAR(second("Time (s)", "3", "4,5"), 4.5, 1e-12);
   EXPECT_NEAR(second("t_ms", "3", "1500"), 1.5, 1e-12);
   EXPECT_NEAR(second("micros", "3", "1500000"), 1.5, 1e-12);
-  EXPECT_NEAR(second("Timestamp [s]", "1764065918", "1764065919.5"), 1.5, 1e-6);
-  EXPECT_NEAR(second("time", "2026-11-25T10:18:38+01:00", "2026-11-25T09:18:39.25Z"), 1.25, 1e-6);
+  EXPECT_EQ(second("Timestamp [s]", "1764065918", "1764065919.5"), 1.5);
+  EXPECT_EQ(second("Timestamp [s]", "1764065918", "1764065920,2"), 2.2);
+  EXPECT_EQ(second("t [day]", "45979.5", "45979.75"), 21600);
+  EXPECT_NEAR(second("time", "2026-11-25T10:18:38+01:00", "2026-11-25T09:18:39.25Z"), 1.25, 0);
   EXPECT_NEAR(second("time", "2024-02-28 23:59:59", "2024-02-29 00:00:00,5"), 1.5, 1e-6);
   EXPECT_NEAR(second("Time", "10:18:38.5", "10:19:00"), 21.5, 1e-9);
   EXPECT_NEAR(second("date", "2024-02-28", "2024-03-01"), 2 * 86400, 1e-6);
@@ -366,6 +372,116 @@ TEST(LoggedReadings, RowsOfOneTimeAreOneSample) {
   EXPECT_NEAR(read.samples[1].change[3], -1e-6, 1e-20);
   EXPECT_EQ(read.samples[1].time, 4.0);
 }
+
+/// A time as loggers and the programs behind them write it, `hundredths` of a second after an epoch
+/// in whole seconds since 1970.
+struct TimeForm {
+  std::string name;
+  std::string header;
+  std::function<std::string(std::int64_t epoch, int hundredths)> text;
+  /// Whether the file has the time as it was, not as a double held it.
+  bool is_exact = true;
+};
+
+/// "2025-11-18T16:27:14" with the fraction and the offset from UTC.
+std::string iso(std::int64_t epoch, char between, const std::string& fraction, int offset_minutes) {
+  const std::time_t local = static_cast<std::time_t>(epoch + 60 * offset_minutes);
+  std::tm parts{};
+  gmtime_r(&local, &parts);
+  return fmt::format("{:04}-{:02}-{:02}{}{:02}:{:02}:{:02}{}{}{:02}:{:02}", parts.tm_year + 1900,
+                     parts.tm_mon + 1, parts.tm_mday, between, parts.tm_hour, parts.tm_min,
+                     parts.tm_sec, fraction, offset_minutes < 0 ? '-' : '+',
+                     std::abs(offset_minutes) / 60, std::abs(offset_minutes) % 60);
+}
+
+double in_seconds(std::int64_t epoch, int hundredths) {
+  return static_cast<double>(epoch) + hundredths / 100.;
+}
+
+const TimeForm time_forms[]{
+    {"Seconds", "time [s]",
+     [](std::int64_t epoch, int h) { return fmt::format("{}.{:02}", epoch + h / 100, h % 100); }},
+    {"Milliseconds", "time [ms]",
+     [](std::int64_t epoch, int h) { return fmt::format("{}", 1000 * epoch + 10 * h); }},
+    {"MillisecondsWithFraction", "time [ms]",
+     [](std::int64_t epoch, int h) { return fmt::format("{}.000", 1000 * epoch + 10 * h); }},
+    {"Microseconds", "time [us]",
+     [](std::int64_t epoch, int h) { return fmt::format("{}", 1'000'000 * epoch + 10'000 * h); }},
+    {"Nanoseconds", "time [ns]",
+     [](std::int64_t epoch, int h) {
+       return fmt::format("{}", 1'000'000'000 * epoch + 10'000'000 * h);
+     }},
+    {"SecondsOfADouble", "time [s]",
+     [](std::int64_t epoch, int h) { return fmt::format("{:.9f}", in_seconds(epoch, h)); }, false},
+    {"SecondsOfNumpy", "time [s]",
+     [](std::int64_t epoch, int h) { return fmt::format("{:.18e}", in_seconds(epoch, h)); }, false},
+    {"NanosecondsOfNumpy", "time [ns]",
+     [](std::int64_t epoch, int h) {
+       return fmt::format("{:.18e}", static_cast<double>(1'000'000'000 * epoch + 10'000'000 * h));
+     },
+     false},
+    {"IsoWithZone", "time",
+     [](std::int64_t epoch, int h) {
+       return iso(epoch + h / 100, 'T', fmt::format(".{:02}0", h % 100), 0);
+     }},
+    {"IsoOfPython", "time",  // str(datetime) has no fraction where it is zero
+     [](std::int64_t epoch, int h) {
+       return iso(epoch + h / 100, ' ',
+                  h % 100 == 0 ? std::string() : fmt::format(".{:02}0000", h % 100), 0);
+     }},
+    {"IsoOfNanoseconds", "time",
+     [](std::int64_t epoch, int h) {
+       return iso(epoch + h / 100, 'T', fmt::format(".{:02}0000000", h % 100), 330);
+     }},
+    {"IsoWestOfGreenwich", "time",
+     [](std::int64_t epoch, int h) {
+       return iso(epoch + h / 100, 'T', fmt::format(".{:02}", h % 100), -150);
+     }},
+    {"IsoOfADouble", "time",  // as pandas makes it of seconds since 1970
+     [](std::int64_t epoch, int h) {
+       const std::string text = fmt::format("{:.9f}", in_seconds(epoch, h));
+       const auto point = text.find('.');
+       return iso(std::stoll(text.substr(0, point)), ' ', text.substr(point), 0);
+     },
+     false}};
+
+class TimesSince1970 : public testing::TestWithParam<TimeForm> {};
+
+// Twenty rows of the straight cilium, 50 ms apart, and a window whose end is the last of them.
+// Oracle: the rows' numbers. The times of the loaded rows are the doubles nearest to what the file
+// has.
+TEST_P(TimesSince1970, ARowAtTheBoundaryOfAWindowBelongsToIt) {
+  const TimeForm& form = GetParam();
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "log.csv";
+  for (const std::int64_t epoch :
+       {std::int64_t{100'000'001}, std::int64_t{999'999'999}, std::int64_t{1'763'483'234},
+        std::int64_t{2'147'483'647}, std::int64_t{3'848'765'234}, std::int64_t{4'102'444'799}}) {
+    std::ofstream out(file);
+    out << form.header << ",Bx [uT],By [uT],Bz [uT]\n";
+    for (int i = 0; i < 30; ++i)
+      out << form.text(epoch, 5 * i) << (i < 20 ? ",0,0,0\n" : ",9,0,0\n");
+    out.close();
+    const auto read = [&](const std::string& window) {
+      return read_sensor_readings(file, {}, one_sensor, Given{window}.options());
+    };
+    const SensorReadings all = read("0 s..0.95 s");
+    EXPECT_THAT(all.remark, HasSubstr("; 20 unloaded")) << epoch;
+    ASSERT_EQ(all.samples.size(), 10U) << epoch;
+    for (int i = 0; i < 10; ++i) {
+      const double time = all.samples[static_cast<std::size_t>(i)].time.value_or(-1);
+      if (form.is_exact)
+        EXPECT_EQ(time, (100 + 5 * i) / 100.) << epoch;
+      else
+        EXPECT_NEAR(time, (100 + 5 * i) / 100., 0.5e-6) << epoch;
+    }
+    EXPECT_THAT(read("0.05 s..0.95 s").remark, HasSubstr("; 19 unloaded")) << epoch;
+    EXPECT_THAT(read("50 ms..949 ms").remark, HasSubstr("; 18 unloaded")) << epoch;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Forms, TimesSince1970, testing::ValuesIn(time_forms),
+                         [](const auto& form) { return form.param.name; });
 
 // Oracle: by hand. Rows 1, 2, 3 of x differ from their mean by −1, 0, 1 µT.
 TEST(LoggedReadings, RepeatedRowsAreAveragedWithTheirScatter) {
