@@ -7,12 +7,16 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 
 preset=release
 labels=(-LE slow)
+all=OFF
 while [ $# -gt 0 ]; do
   case $1 in
-    --all) labels=() ;;
+    --all)
+      labels=()
+      all=ON
+      ;;
     --preset) shift; preset=${1:?--preset needs a name: release, debug or sanitize} ;;
     *)
-      echo "usage: ./test.sh [--all] [--preset release|debug|sanitize]   (--all: the long tests, label 'slow', too)"
+      echo "usage: ./test.sh [--all] [--preset release|debug|sanitize]   (--all: the long tests, label 'slow', the benchmarks and the check of types across files, too)"
       [ "$1" = --help ] || [ "$1" = -h ] || exit 2
       exit 0
       ;;
@@ -22,7 +26,8 @@ done
 
 install_packages
 scripts/check_includes.sh
-[ "$preset" != release ] || configure_options=(-D CILIAVAL_ODR=ON)
+configure_options=(-D CILIAVAL_BENCHMARKS=$all)
+[ "$preset" != release ] || configure_options+=(-D CILIAVAL_ODR=$all)
 build "$preset"
 scripts/paraview.sh >/dev/null || say "no ParaView: its tests are skipped"
 say "testing"

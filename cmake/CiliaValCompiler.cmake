@@ -25,6 +25,14 @@ if(CILIAVAL_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
+# What was compiled before is not compiled again, in another clone either. A precompiled header is then known by its text (-fpch-preprocess).
+find_program(CILIAVAL_CCACHE ccache)
+if(CILIAVAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+    CCACHE_SLOPPINESS=pch_defines,time_macros ${CILIAVAL_CCACHE})
+  add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess>)
+endif()
+
 # GNU ld takes ten times as long to link a program against deal.II's libraries.
 include(CheckLinkerFlag)
 check_linker_flag(CXX -fuse-ld=gold CILIAVAL_HAS_GOLD)
