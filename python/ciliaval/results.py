@@ -11,7 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from .errors import FileError
+from .errors import FileError, InputError
+
+# The words of a comparison, docs/guide/results.md.
+_WORDS = {
+    "quantity": ("centreline", "tip", "tip_angle", "deflection", "B", "dB"),
+    "component": (None, "x", "y", "z"),
+    "statistic": ("value", "maximum", "rms", "r2", "rrmse"),
+    "verdict": ("resolved", "below uncertainty", "inconclusive"),
+}
 
 
 @dataclass(frozen=True)
@@ -20,7 +28,7 @@ class Comparison:
 
     step: from 0; None: over the whole load path. sensor: from 0; None: not a field.
     difference, scale and uncertainty in `unit`; relative = difference / scale.
-    verdict: "resolved", "below_uncertainty" or "inconclusive".
+    verdict: "resolved", "below uncertainty" or "inconclusive".
     """
 
     step: int | None
@@ -108,11 +116,10 @@ class Validation:
     remarks: tuple[str, ...]
 
     def of(self, **what: Any) -> list[ValidationSeries]:
-        """Those with these attributes: of(model="beam", quantity="tip.deflection")."""
-        unknown = set(what) - set(ValidationSeries.__dataclass_fields__)
-        if unknown:
-            raise TypeError(f"a series has no {', '.join(sorted(unknown))}")
-        return [s for s in self.series if all(getattr(s, k) == v for k, v in what.items())]
+        """Those with these attributes: of(model="beam", quantity="tip.deflection"). Raises InputError
+        if no series has the model, quantity or point at all."""
+        names = {"model": (), "quantity": (), "point": ()}
+        return _chosen(self.series, ValidationSeries, what, names)
 
 
 class Result:
@@ -149,7 +156,7 @@ class Result:
         return np.array([around.get("uniform_field", [0.0] * 3) for around in self.environments])
 
     def status(self, model: str) -> list[str]:
-        """ "converged", "slipped_off" or "failed" at each step."""
+        """ "converged", "slipped_off", "pulled_in" or "failed" at each step."""
         return [str(self._of(step, model).get("status", "failed")) for step in self.steps]
 
     def tip(self, model: str) -> np.ndarray:
@@ -194,11 +201,19 @@ class Result:
         ]
 
     def compare(self, **what: Any) -> list[Comparison]:
-        """Those with these attributes: compare(quantity="tip", step=0, model="elastica")."""
-        unknown = set(what) - set(Comparison.__dataclass_fields__)
-        if unknown:
-            raise TypeError(f"a comparison has no {', '.join(sorted(unknown))}")
-        return [c for c in self.comparisons if all(getattr(c, k) == v for k, v in what.items())]
+        """Those with these attributes: compare(quantity="tip", step=0, verdict="below uncertainty").
+        Raises InputError where there can be none, as with a misspelt model."""
+        names = [*self.models, *self.pairs]
+        valid = {
+            **_WORDS,
+            "model": names,
+            "reference": names,
+            "step": [None, *range(len(self.steps))],
+            "sensor": [None, *range(len(self.sensors))],
+        }
+        if isinstance(what.get("verdict"), str):
+            what["verdict"] = what["verdict"].replace("_", " ")
+        return _chosen(self.comparisons, Comparison, what, valid)
 
     def centreline(self, model: str, step: int) -> dict[str, np.ndarray]:
         """S, x, y, z (m), theta (rad) and kappa (1/m) along a deformed centreline."""
@@ -226,8 +241,10 @@ class Result:
         return step["mechanics"].get(model, {})
 
     def _mechanics(self, model: str, quantity: str, size: int | None = None) -> np.ndarray:
-        missing = None if size is None else [None] * size
-        return _numbers([self._of(s, model).get(quantity) or missing for s in self.steps], size)
+        found = [self._of(step, model).get(quantity) for step in self.steps]
+        if size is not None:
+            found = [[None] * size if values is None else values for values in found]
+        return _numbers(found, size)
 
     def _field(self, pair: str, quantity: str) -> np.ndarray:
         if pair not in self.pairs:
@@ -235,8 +252,9 @@ class Result:
         none = [None, None, None]
         rows = []
         for step in self.steps:
-            values = step["fields"].get(pair, {}).get(quantity) or [none] * len(self.sensors)
-            rows.append([value or none for value in values])
+            values = step["fields"].get(pair, {}).get(quantity)
+            values = [none] * len(self.sensors) if values is None else values
+            rows.append([none if value is None else value for value in values])
         return _numbers(rows).reshape(len(self.steps), -1, 3)
 
     def __repr__(self) -> str:
@@ -342,6 +360,20 @@ def _of_fields(kind: Any, data: dict[str, Any]) -> Any:
     """A dataclass from what the file knows of its fields; lists become tuples."""
     known = {key: data[key] for key in kind.__dataclass_fields__ if key in data}
     return kind(**{key: tuple(v) if isinstance(v, list) else v for key, v in known.items()})
+
+
+def _chosen(entries: Any, kind: Any, what: dict[str, Any], valid: dict[str, Any]) -> list[Any]:
+    """The entries with these attributes. `valid`: the values that each attribute can have besides
+    those of the entries; an attribute that it does not name can have any."""
+    unknown = set(what) - set(kind.__dataclass_fields__)
+    if unknown:
+        raise TypeError(f"{kind.__name__} has no {', '.join(sorted(unknown))}")
+    for name, value in what.items():
+        if name in valid:
+            known = list(dict.fromkeys([*valid[name], *(getattr(e, name) for e in entries)]))
+            if value not in known:
+                raise InputError(f"{name}={value!r}: there is {', '.join(map(repr, known)) or 'none'}")
+    return [e for e in entries if all(getattr(e, name) == value for name, value in what.items())]
 
 
 def _numbers(values: list[Any], size: int | None = None) -> np.ndarray:

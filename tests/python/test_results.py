@@ -71,6 +71,42 @@ class Results(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "colour"):
             self.result.compare(colour=1)
 
+    def test_are_filtered_by_the_words_of_the_documentation(self):
+        text = (SOURCE / "docs/guide/results.md").read_text()
+        words = re.findall(r"^- `([a-z ]+)`: ", text.split("**Verdict.**")[1].split("\n\n")[1], re.M)
+        self.assertEqual(len(words), 3)
+        summary = json.loads((self.folder / "fig3b" / "summary.json").read_text())
+        summary["comparisons"][0]["verdict"] = words[1]
+        result = results.Result(summary)
+        found = {word: result.compare(verdict=word) for word in words}
+        self.assertEqual(sum(map(len, found.values())), len(result.comparisons))
+        self.assertEqual(found["below uncertainty"], [result.comparisons[0]])
+        self.assertEqual(result.compare(verdict="below_uncertainty"), found["below uncertainty"])
+        for wrong, valid in [
+            ({"verdict": "unresolved"}, "'below uncertainty', 'inconclusive'"),
+            ({"model": "solid"}, "'elastica', 'beam', 'elastica/dipole'"),
+            ({"quantity": "tips"}, "'tip', 'tip_angle'"),
+            ({"statistic": "max"}, "'maximum'"),
+            ({"step": 4}, "2, 3"),
+            ({"sensor": -1}, "None, 0"),
+        ]:
+            with self.subTest(wrong), self.assertRaisesRegex(cv.InputError, valid):
+                self.result.compare(**wrong)
+        self.assertEqual(self.result.compare(verdict="inconclusive", step=np.int64(0), sensor=0), [])
+
+    def test_of_exactly_zero_are_zero(self):
+        """A straight cilium's angle and force are known."""
+        summary = json.loads((self.folder / "fig3b" / "summary.json").read_text())
+        beam = summary["steps"][0]["mechanics"]["beam"]
+        beam.update(tip=[0, 0, 0.02], tip_angle=0, applied_force=0.0, tip_uncertainty=0)
+        del summary["steps"][1]["mechanics"]["beam"]["tip_angle"]
+        summary["steps"][0]["fields"]["beam/volume"]["dB"] = [[0, 0, 0]]
+        zero = results.Result(summary)
+        for array in (zero.tip_angle, zero.applied_force, zero.tip_uncertainty):
+            self.assertEqual(array("beam")[0], 0)
+        self.assertTrue(np.isnan(zero.tip_angle("beam")[1]))
+        np.testing.assert_array_equal(zero.dB("beam/volume")[0], [[0, 0, 0]])
+
     def test_of_a_load_that_slips_off_are_nan(self):
         text = re.sub(r'force = .*', 'force = ["1 mN", "9 mN"]', quick("fig3b"))
         file = self.folder / "off.toml"
