@@ -6,14 +6,20 @@
 
 namespace ciliaval::analytic::elastica::environment {
 
-/// A value with its derivatives by the three unknowns of an equilibrium (equilibrium.h).
+/// A value with its derivatives by θ, M and H where a descent begins, by the point force and by its
+/// place (descent.h).
 struct Dual {
+  using Derivatives = Eigen::Array<double, 5, 1>;
   double value = 0;
-  Eigen::Array3d by = Eigen::Array3d::Zero();
+  Derivatives by = Derivatives::Zero();
 
   Dual() = default;
   Dual(double v) : value(v) {}  // NOLINT: a number is a constant
-  Dual(double v, Eigen::Array3d derivatives) : value(v), by(std::move(derivatives)) {}
+  Dual(double v, Derivatives derivatives) : value(v), by(std::move(derivatives)) {}
+  /// The variable i itself.
+  static Dual variable(double v, Eigen::Index i) {
+    return {v, Eigen::Matrix<double, 5, 1>::Unit(i).array()};
+  }
 
   Dual& operator+=(const Dual& b) { return *this = {value + b.value, by + b.by}; }
   Dual& operator-=(const Dual& b) { return *this = {value - b.value, by - b.by}; }

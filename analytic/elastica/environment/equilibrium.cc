@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "analytic/elastica/environment/equilibrium.h"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numbers>
 #include <sstream>
 
+#include "analytic/elastica/environment/descent.h"
 #include "analytic/elastica/environment/series.h"
 #include "problem/error.h"
 #include "problem/types.h"
@@ -19,119 +23,238 @@ namespace {
 constexpr int most_iterations = 12;
 constexpr double smallest_step = 1e-7;  ///< of a path
 /// A step that ends at an equilibrium with more unstable modes than it started from may have leapt
-/// over a bifurcation to a branch that the path does not lead to. It is halved, down to this: then
-/// the path itself goes there.
-constexpr double smallest_leap = 1e-3;
-constexpr double largest_turn = 0.6;  ///< of the tip in a step of a path, rad
+/// over a bifurcation to a branch that the path does not lead to. It is halved, down to this part
+/// of the way so far: then the path itself goes there.
+constexpr double smallest_leap = 1e-3;  ///< over t
+constexpr double largest_turn = 0.6;    ///< of a section in a step of a path, rad
 
-/// Accuracy of the series.
-struct Accuracy {
-  double tolerance = 1e-17;
-  double fraction = 1;
-};
-
-/// What the integration from the tip down finds.
-template <class T>
-struct Descent {
-  State<T> base;
-  State<T> at_force;
-  int sign_changes = 0;  ///< of ∂θ/∂θ(1), if T is a Dual
-};
+/// Between two nodes errors grow by e to this at most: two digits of sixteen.
+constexpr double most_foldings = 4;
 
 /// Sign changes of ∂θ/∂θ(1) within a step, looked for at points that are closer than its waves.
-int sign_changes(const Series<Dual>& step) {
+/// `variation` holds ∂θ, ∂M and ∂H where the descent has begun.
+int sign_changes(const Series<Dual>& step, const Eigen::Vector3d& variation) {
   constexpr int points = 16;
+  const auto is_negative = [&](int k) {
+    const Dual theta = step.theta_at(static_cast<double>(k) / points);
+    return theta.by.head<3>().matrix().dot(variation) < 0;
+  };
   int changes = 0;
-  bool is_negative = step.at(0.0).theta.by[0] < 0;
+  bool last = is_negative(0);
   for (int k = 1; k <= points; ++k) {
-    const bool next = step.at(static_cast<double>(k) / points).theta.by[0] < 0;
-    changes += next != is_negative ? 1 : 0;
-    is_negative = next;
+    const bool next = is_negative(k);
+    changes += next != last ? 1 : 0;
+    last = next;
   }
   return changes;
 }
-int sign_changes(const Series<double>& /*step*/) {
-  return 0;
+
+/// e-foldings of errors in a step.
+double e_foldings(const Series<double>& step) {
+  const auto force = [](const State<double>& s) {
+    return std::abs(s.along) + std::abs(s.vertical);
+  };
+  return std::sqrt(step.flexibility() * std::max(force(step.at(0)), force(step.at_end()))) *
+         std::abs(step.end() - step.start());
 }
 
-/// Integrates from the tip to the base, where w = z = 0 count from the tip.
-template <class T>
-class Down {
- public:
-  Down(const Rod& rod, const T& tip_angle, const T& force, const T& at, const Accuracy& accuracy,
-       std::vector<Series<T>>* steps)
-      : rod_(rod), accuracy_(accuracy), steps_(steps) {
-    state_.S = T(1.0);
-    state_.theta = tip_angle;
-    add(rod.at_ends.back());
-    bool is_passed = value_of(at) >= 1;
-    if (is_passed) pass(force);
-    for (std::size_t i = rod.compliance.size(); i-- > 0;) {
-      if (!is_passed && value_of(at) >= rod.ends[i]) {
-        march(i, at);
-        pass(force);
-        is_passed = true;
+Descent<double> from_tip(const Rod& rod, const Unknowns& u, const Accuracy& accuracy) {
+  return {rod, u.tip_angle, u.force, u.at, accuracy};
+}
+
+/// From node i on.
+void begin_anew(Descent<double>& descent, const Node& node) {
+  descent.begin_anew(node.theta, node.moment, node.along);
+}
+
+/// Adds nodes in equal parts of e-foldings where there are too many between two of them.
+std::vector<Node> with_further_nodes(const Rod& rod, const Unknowns& u, const Accuracy& accuracy) {
+  std::vector<Node> nodes;
+  Descent<double> descent = from_tip(rod, u, accuracy);
+  for (std::size_t i = 0; i <= u.nodes.size(); ++i) {
+    std::vector<Series<double>> steps;
+    double sum = 0;
+    descent.to(i < u.nodes.size() ? u.nodes[i].S : 0, [&](const Series<double>& step) {
+      steps.push_back(step);
+      sum += e_foldings(step);
+    });
+    const double part = sum / std::ceil(std::max(sum / most_foldings, 1.0));
+    double next = part;
+    double passed = 0;
+    for (const Series<double>& step : steps) {
+      const double size = e_foldings(step);
+      for (; next < passed + size && next < (1 - 1e-6) * sum; next += part) {
+        const State<double> state = step.at((next - passed) / size);
+        nodes.push_back({state.S, state.theta, state.moment, state.along});
       }
-      march(i, T(rod.ends[i]));
-      if (i > 0) add(rod.at_ends[i]);
+      passed += size;
     }
-    result_.base = state_;
+    if (i == u.nodes.size()) break;
+    nodes.push_back(u.nodes[i]);
+    begin_anew(descent, u.nodes[i]);
   }
-  const Descent<T>& result() const { return result_; }
+  return nodes;
+}
+
+using Vector = Eigen::VectorXd;
+using Triplet = Eigen::Triplet<double>;
+
+/// The equations' left sides and their derivatives. Unknowns: θ(1), F, its S, then θ, M, H at each
+/// node. Equations: θ(0) = 0, the two conditions, then what θ, M, H come to at each node from
+/// above.
+class Equations {
+ public:
+  Equations(const Rod& rod, const Conditions& conditions, const Unknowns& u,
+            const Accuracy& accuracy)
+      : residuals_(Vector::Zero(size(u))), scales_(Vector::Ones(size(u))) {
+    Descent<Dual> descent(rod, Dual::variable(u.tip_angle, 0), Dual::variable(u.force, 3),
+                          Dual::variable(u.at, 4), accuracy);
+    scale(u);
+    Eigen::Vector3d variation = Eigen::Vector3d::UnitX();
+    Row height;
+    Row deflection;
+    for (std::size_t i = 0; i <= u.nodes.size(); ++i) {
+      const bool is_last = i == u.nodes.size();
+      descent.to(is_last ? 0 : u.nodes[i].S, [&](const Series<Dual>& step) {
+        unstable_modes_ += sign_changes(step, variation);
+        note_angles(step);
+      });
+      const State<Dual>& end = descent.state();
+      // From the point force to the base, part by part.
+      if (const auto& at_force = descent.at_force()) {
+        height.value = at_force->z.value;
+        deflection.value = at_force->w.value;
+        add_derivatives(at_force->z, i, height);
+        add_derivatives(at_force->w, i, deflection);
+      }
+      if (descent.is_passed()) {
+        add_derivatives(-end.z, i, height);
+        add_derivatives(-end.w, i, deflection);
+      }
+      if (is_last) {
+        set(0, end.theta, i);
+        break;
+      }
+      const Node& node = u.nodes[i];
+      const std::array come_to{end.theta, end.moment, end.along};
+      const std::array begins{node.theta, node.moment, node.along};
+      Eigen::Vector3d next;
+      for (int c = 0; c < 3; ++c) {
+        const auto k = static_cast<std::size_t>(c);
+        set(node_unknown(i) + c, come_to[k] - Dual(begins[k]), i);
+        triplets_.emplace_back(node_unknown(i) + c, node_unknown(i) + c, -1);
+        next[c] = come_to[k].by.head<3>().matrix().dot(variation);
+      }
+      variation = next.normalized();
+      descent.begin_anew(Dual::variable(node.theta, 0), Dual::variable(node.moment, 1),
+                         Dual::variable(node.along, 2));
+    }
+    height.value -= descent.state().z.value;
+    deflection.value -= descent.state().w.value;
+    height_ = height.value;
+    deflection_ = deflection.value;
+    set(conditions, u, height, deflection);
+  }
+
+  const Vector& residuals() const { return residuals_; }  ///< over their scales
+  /// Sizes of the unknowns of the nodes and of their equations; 1 of the others.
+  const Vector& scales() const { return scales_; }
+  double height() const { return height_; }
+  double deflection() const { return deflection_; }
+  int unstable_modes() const { return unstable_modes_; }
+  const std::array<double, 16>& angles() const { return angles_; }
+
+  /// The step of Newton's method, over the scales; none where the Jacobian is singular.
+  std::optional<Vector> step() const {
+    Eigen::SparseMatrix<double> jacobian(residuals_.size(), residuals_.size());
+    jacobian.setFromTriplets(triplets_.begin(), triplets_.end());
+    jacobian = scales_.cwiseInverse().asDiagonal() * jacobian * scales_.asDiagonal();
+    const Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(jacobian);
+    if (factors.info() != Eigen::Success) return std::nullopt;
+    Vector result = factors.solve(-residuals_);
+    if (!result.allFinite()) return std::nullopt;
+    return result;
+  }
+
+  static Eigen::Index size(const Unknowns& u) { return node_unknown(u.nodes.size()); }
+  static int node_unknown(std::size_t i) { return 3 + 3 * static_cast<int>(i); }
 
  private:
-  void add(const PlanarForce& force) {
-    state_.along += T(force.along);
-    state_.vertical += T(force.vertical);
+  /// A left side.
+  struct Row {
+    double value = 0;
+    std::vector<std::pair<int, double>> by;  ///< column, derivative
+  };
+
+  /// Adds those of a term of part i, which begins at node i − 1 or at the tip.
+  static void add_derivatives(const Dual& term, std::size_t i, Row& row) {
+    const int first = i == 0 ? 0 : node_unknown(i - 1);
+    for (int k = 0; k < (i == 0 ? 1 : 3); ++k) row.by.emplace_back(first + k, term.by[k]);
+    row.by.emplace_back(1, term.by[3]);
+    row.by.emplace_back(2, term.by[4]);
   }
-  void pass(const T& force) {
-    result_.at_force = state_;
-    state_.along += force;
+  void set(int number, const Row& row, double target) {
+    residuals_[number] = (row.value - target) / scales_[number];
+    for (const auto& [column, derivative] : row.by)
+      triplets_.emplace_back(number, column, derivative);
   }
-  void march(std::size_t i, const T& target) {
-    const Forces forces{rod_.compliance[i], rod_.per_length[i].along, rod_.per_length[i].vertical,
-                        rod_.per_height};
-    while (true) {
-      const Series<T> step(state_, forces, target, accuracy_.tolerance, accuracy_.fraction);
-      state_ = step.at_end();
-      result_.sign_changes += sign_changes(step);
-      if (steps_ != nullptr && step.start() != step.end()) steps_->push_back(step);
-      if (step.complete()) break;
+  void set(int number, const Dual& value, std::size_t i) {
+    Row row{value.value, {}};
+    add_derivatives(value, i, row);
+    set(number, row, 0);
+  }
+  void set(const Conditions& conditions, const Unknowns& u, const Row& height,
+           const Row& deflection) {
+    int number = 1;
+    const auto set_if = [&](const Row& row, const std::optional<double>& target) {
+      if (target && number < 3) set(number++, row, *target);
+    };
+    set_if(height, conditions.height);
+    set_if({u.at, {{2, 1}}}, conditions.at);
+    set_if({u.force, {{1, 1}}}, conditions.force);
+    set_if(deflection, conditions.deflection);
+  }
+  void note_angles(const Series<Dual>& step) {
+    for (std::size_t k = 0; k < angles_.size(); ++k) {
+      const double S = static_cast<double>(k) / static_cast<double>(angles_.size());
+      if (S < step.end() || S >= step.start()) continue;
+      angles_[k] = step.theta_at((S - step.start()) / (step.end() - step.start())).value;
     }
-    state_.S = target;
+  }
+  void scale(const Unknowns& u) {
+    double moment = 1;
+    double force = 1;
+    for (const Node& node : u.nodes) {
+      moment = std::max(moment, std::abs(node.moment));
+      force = std::max(force, std::abs(node.along));
+    }
+    for (std::size_t i = 0; i < u.nodes.size(); ++i) {
+      scales_[node_unknown(i) + 1] = moment;
+      scales_[node_unknown(i) + 2] = force;
+    }
   }
 
-  const Rod& rod_;
-  Accuracy accuracy_;
-  std::vector<Series<T>>* steps_;
-  State<T> state_;
-  Descent<T> result_;
+  Vector residuals_;
+  Vector scales_;
+  std::vector<Triplet> triplets_;
+  double height_ = 0;
+  double deflection_ = 0;
+  int unstable_modes_ = 0;
+  std::array<double, 16> angles_{};
 };
 
-Descent<Dual> descend(const Rod& rod, const Unknowns& u, const Accuracy& accuracy) {
-  const auto unknown = [](double value, int i) {
-    return Dual(value, Eigen::Vector3d::Unit(i).array());
-  };
-  return Down<Dual>(rod, unknown(u.tip_angle, 0), unknown(u.force, 1), unknown(u.at, 2), accuracy,
-                    nullptr)
-      .result();
-}
-
-/// The equations' left sides: θ(0), and two of the conditions'.
-std::array<Dual, 3> residuals(const Descent<Dual>& descent, const Conditions& conditions,
-                              const Unknowns& u) {
-  const Dual height = descent.at_force.z - descent.base.z;
-  const Dual deflection = descent.at_force.w - descent.base.w;
-  std::array<Dual, 3> result{descent.base.theta};
-  std::size_t i = 1;
-  const auto add = [&](const Dual& value, const std::optional<double>& target) {
-    if (target && i < result.size()) result[i++] = value - Dual(*target);
-  };
-  add(height, conditions.height);
-  add(Dual(u.at, Eigen::Vector3d::Unit(2).array()), conditions.at);
-  add(Dual(u.force, Eigen::Vector3d::Unit(1).array()), conditions.force);
-  add(deflection, conditions.deflection);
-  return result;
+/// u + step · scales.
+Unknowns moved(Unknowns u, const Vector& step) {
+  u.tip_angle += step[0];
+  u.force += step[1];
+  u.at += step[2];
+  for (std::size_t i = 0; i < u.nodes.size(); ++i) {
+    const Eigen::Index k = Equations::node_unknown(i);
+    u.nodes[i].theta += step[k];
+    u.nodes[i].moment += step[k + 1];
+    u.nodes[i].along += step[k + 2];
+  }
+  return u;
 }
 
 Accuracy accuracy_of(double tolerance) {
@@ -149,40 +272,64 @@ Rod scaled(const Rod& rod, double t) {
   return result;
 }
 
-std::optional<Equilibrium> solve(const Rod& rod, const Conditions& conditions,
-                                 const Unknowns& guess, double tolerance) {
-  const Accuracy accuracy = accuracy_of(tolerance);
+double e_foldings(const Rod& rod, double force) {
+  double sum = 0;
+  PlanarForce above{force, 0};
+  for (std::size_t i = rod.compliance.size(); i-- > 0;) {
+    const double length = rod.ends[i + 1] - rod.ends[i];
+    above.along += rod.at_ends[i + 1].along;
+    above.vertical += rod.at_ends[i + 1].vertical;
+    const PlanarForce top = above;
+    above.along += (rod.per_length[i].along + rod.per_height) * length;
+    above.vertical += rod.per_length[i].vertical * length;
+    const double largest = std::max(std::abs(top.along) + std::abs(top.vertical),
+                                    std::abs(above.along) + std::abs(above.vertical));
+    sum += length * std::sqrt(rod.compliance[i] * largest);
+  }
+  return sum;
+}
+
+Unknowns interpolate(const Unknowns& a, const Unknowns& b, double t) {
+  Unknowns result = b;
+  result.tip_angle = std::lerp(a.tip_angle, b.tip_angle, t);
+  result.force = std::lerp(a.force, b.force, t);
+  result.at = std::lerp(a.at, b.at, t);
+  if (a.nodes.size() != b.nodes.size()) return result;
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    result.nodes[i].theta = std::lerp(a.nodes[i].theta, b.nodes[i].theta, t);
+    result.nodes[i].moment = std::lerp(a.nodes[i].moment, b.nodes[i].moment, t);
+    result.nodes[i].along = std::lerp(a.nodes[i].along, b.nodes[i].along, t);
+  }
+  return result;
+}
+
+namespace {
+
+std::optional<Equilibrium> newton(const Rod& rod, const Conditions& conditions,
+                                  const Unknowns& guess, const Accuracy& accuracy) {
   Equilibrium result{guess};
   Unknowns& u = result.unknowns;
+  u.nodes = with_further_nodes(rod, guess, accuracy);
   double last = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const Descent<Dual> descent = descend(rod, u, accuracy);
-    const auto r = residuals(descent, conditions, u);
-    Eigen::Matrix3d jacobian;
-    Eigen::Vector3d right;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      right[i] = -r[static_cast<std::size_t>(i)].value;
-      jacobian.row(i) = r[static_cast<std::size_t>(i)].by.matrix();
-    }
-    // Each unknown's column by its own size: a force per angle may be 1e3 and more.
-    const Eigen::RowVector3d scale =
-        jacobian.colwise().norm().cwiseMax(std::numeric_limits<double>::min()).cwiseInverse();
-    const Eigen::Vector3d step =
-        scale.transpose().cwiseProduct((jacobian * scale.asDiagonal()).fullPivLu().solve(right));
+    const Equations equations(rod, conditions, u, accuracy);
+    const std::optional<Vector> step = equations.step();
+    if (!step) return std::nullopt;
+    Vector change = step->cwiseProduct(equations.scales());
+    Vector relative = *step;
+    relative[1] /= std::max(1.0, std::abs(u.force));
+    const double size = relative.lpNorm<Eigen::Infinity>();
     result.iterations = iteration + 1;
-    if (!step.allFinite()) return std::nullopt;
-    const double size =
-        std::max({std::abs(step[0]), std::abs(step[1]) / std::max(1.0, std::abs(u.force)),
-                  std::abs(step[2])});
-    result.deflection = (descent.at_force.w - descent.base.w).value;
-    result.height = (descent.at_force.z - descent.base.z).value;
-    result.unstable_modes = descent.sign_changes;
+    result.deflection = equations.deflection();
+    result.height = equations.height();
+    result.unstable_modes = equations.unstable_modes();
+    result.angles = equations.angles();
     const double enough = 4 * epsilon * std::max(1.0, std::abs(u.tip_angle));
     // A step may vanish because the Jacobian is singular, too.
-    const bool is_solved = right.cwiseAbs().maxCoeff() < 1e-10;
+    const bool is_solved = equations.residuals().lpNorm<Eigen::Infinity>() < 1e-10;
     if (is_solved && (size <= enough || (size < 1e-9 && size > 0.5 * last))) return result;
     if (size > 1e3 || (iteration > 4 && size > last)) return std::nullopt;
-    u = {u.tip_angle + step[0], u.force + step[1], u.at + step[2]};
+    u = moved(std::move(u), change);
     if (!(u.at > 0 && u.at < 1 + 1e-3)) return std::nullopt;
     u.at = std::min(u.at, 1.0);
     last = size;
@@ -190,8 +337,29 @@ std::optional<Equilibrium> solve(const Rod& rod, const Conditions& conditions,
   return std::nullopt;
 }
 
-Equilibrium follow(const Path& path, const Unknowns& start, double tolerance) {
+/// The largest turn of a section from one equilibrium to the other, rad.
+double turn_between(const Equilibrium& a, const Equilibrium& b) {
+  double turn = std::abs(a.unknowns.tip_angle - b.unknowns.tip_angle);
+  for (std::size_t k = 0; k < a.angles.size(); ++k)
+    turn = std::max(turn, std::abs(a.angles[k] - b.angles[k]));
+  return turn;
+}
+
+}  // namespace
+
+std::optional<Equilibrium> solve(const Rod& rod, const Conditions& conditions,
+                                 const Unknowns& guess, double tolerance) {
+  try {
+    return newton(rod, conditions, guess, accuracy_of(tolerance));
+  } catch (const SolverError&) {
+    return std::nullopt;  // a trial that coils up
+  }
+}
+
+Equilibrium follow(const Path& path, const Unknowns& start, double tolerance, int attempts) {
+  int used = 0;
   const auto at = [&](double t, const Unknowns& guess) {
+    ++used;
     const auto [rod, conditions] = path(t);
     return solve(rod, conditions, guess, tolerance);
   };
@@ -207,34 +375,34 @@ Equilibrium follow(const Path& path, const Unknowns& start, double tolerance) {
     const double next = std::min(1.0, t + step);
     Unknowns guess = now->unknowns;
     if (last) {
-      const double factor = (next - t) / (t - last_t);
-      guess.tip_angle += factor * (now->unknowns.tip_angle - last->unknowns.tip_angle);
-      guess.force += factor * (now->unknowns.force - last->unknowns.force);
-      guess.at += factor * (now->unknowns.at - last->unknowns.at);
+      guess = interpolate(last->unknowns, now->unknowns, (next - last_t) / (t - last_t));
       guess.at = std::clamp(guess.at, 1e-6, 1.0);
     }
     const std::optional<Equilibrium> found = at(next, guess);
     if (found) iterations += found->iterations;
-    const bool is_near =
-        found && std::abs(found->unknowns.tip_angle - now->unknowns.tip_angle) <= largest_turn;
-    const bool leaves = is_near && found->unstable_modes > allowed && next - t > smallest_leap;
+    const bool is_near = found && turn_between(*now, *found) <= largest_turn;
+    const bool leaves =
+        is_near && found->unstable_modes > allowed && next - t > smallest_leap * next;
     if (is_near && !leaves) {
       allowed = std::max(allowed, found->unstable_modes);
       last = std::exchange(now, found);
       last_t = std::exchange(t, next);
       step *= 2;
-      continue;
+    } else {
+      step = (next - t) / 2;
     }
-    step = (next - t) / 2;
-    if (step < smallest_step) {
-      std::ostringstream text;
-      text << "elastica: the branch of equilibria ends at " << 100 * t
-           << " % of the way from the straight cilium, at a tip angle of "
-           << now->unknowns.tip_angle * 180 / std::numbers::pi << " deg";
-      throw SolverError(text.str());
-    }
+    const bool is_short_of_attempts = t < 1 && used >= attempts;
+    if (step >= smallest_step && !is_short_of_attempts) continue;
+    std::ostringstream text;
+    text << "elastica: "
+         << (is_short_of_attempts ? std::to_string(attempts) + " attempts do not lead beyond "
+                                  : std::string("the branch of equilibria ends at "))
+         << 100 * t << " % of the way from the straight cilium, at a tip angle of "
+         << now->unknowns.tip_angle * 180 / std::numbers::pi << " deg";
+    throw SolverError(text.str());
   }
   now->iterations = iterations;
+  now->attempts = used;
   return *now;
 }
 
@@ -242,23 +410,36 @@ PlanarShape shape(const Rod& rod, const Equilibrium& equilibrium, double toleran
   const Unknowns& u = equilibrium.unknowns;
   const Accuracy accuracy = accuracy_of(tolerance);
   std::vector<Series<double>> steps;
-  const auto run = [&](const Accuracy& a, std::vector<Series<double>>* kept) {
-    return Down<double>(rod, u.tip_angle, u.force, u.at, a, kept).result();
+  double mismatch = 0;  // of θ at the nodes, which turns all on one side of them
+  const auto run = [&](const Accuracy& a) {
+    steps.clear();
+    mismatch = 0;
+    Descent<double> descent = from_tip(rod, u, a);
+    const auto keep = [&](const Series<double>& step) {
+      if (step.start() != step.end()) steps.push_back(step);
+    };
+    for (const Node& node : u.nodes) {
+      descent.to(node.S, keep);
+      mismatch += std::abs(descent.state().theta - node.theta);
+      begin_anew(descent, node);
+    }
+    descent.to(0, keep);
+    return descent.state();
   };
-  const Descent<double> fine = run({accuracy.tolerance, 0.6}, &steps);
-  const Descent<double> check = run(accuracy, nullptr);
+  const State<double> check = run(accuracy);
+  const State<double> base = run({accuracy.tolerance, 0.6});
   std::ranges::reverse(steps);
 
   PlanarShape shape;
   shape.breaks = rod.ends;
   add_break(shape.breaks, u.at);
+  for (const Node& node : u.nodes) add_break(shape.breaks, node.S);
   // θ(0), which is not quite 0, turns all of it.
-  shape.error =
-      std::max(std::abs(fine.base.w - check.base.w), std::abs(fine.base.z - check.base.z)) +
-      std::abs(fine.base.theta);
+  shape.error = std::max(std::abs(base.w - check.w), std::abs(base.z - check.z)) +
+                std::abs(base.theta) + mismatch;
   shape.iterations = equilibrium.iterations;
   const auto shared = std::make_shared<const std::vector<Series<double>>>(std::move(steps));
-  shape.state = [shared, breaks = shape.breaks, base = fine.base](double S, std::size_t i) {
+  shape.state = [shared, breaks = shape.breaks, base](double S, std::size_t i) {
     const double inside = std::clamp(S, std::nextafter(breaks[i], breaks[i + 1]),
                                      std::nextafter(breaks[i + 1], breaks[i]));
     const auto above = std::ranges::upper_bound(*shared, inside, {},
@@ -282,7 +463,10 @@ PlanarShape shape(const Rod& rod, const Equilibrium& equilibrium, double toleran
 
 std::optional<double> critical_scale(const Rod& rod, double most) {
   const auto base_angle = [&](double t) {
-    return descend(scaled(rod, t), {}, accuracy_of(1e-12)).base.theta.by[0];
+    const Rod at_t = scaled(rod, t);
+    Descent<Dual> descent(at_t, Dual::variable(0, 0), 0, 1, accuracy_of(1e-12));
+    descent.to(0, [](const Series<Dual>&) {});
+    return descent.state().theta.by[0];
   };
   // By steps that are small against the distance of two critical loads.
   constexpr int steps = 400;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -30,12 +31,25 @@ struct Rod {
 /// The same with all its forces times t.
 Rod scaled(const Rod& rod, double t);
 
-/// The unknowns of an equilibrium: what shooting from the tip down to the base has to find.
-struct Unknowns {
-  double tip_angle = 0;  ///< θ at S = 1
-  double force = 0;      ///< F, along e …
-  double at = 1;         ///< … at S
+/// A section at which the integration down to the base begins anew.
+struct Node {
+  double S = 0;
+  double theta = 0;
+  double moment = 0;
+  double along = 0;  ///< H just below
 };
+
+/// The unknowns of an equilibrium: what multiple shooting from the tip down to the base has to
+/// find.
+struct Unknowns {
+  double tip_angle = 0;       ///< θ at S = 1
+  double force = 0;           ///< F, along e …
+  double at = 1;              ///< … at S
+  std::vector<Node> nodes{};  ///< from the tip down; solve() adds what is missing
+};
+
+/// a + t (b − a), with b's nodes.
+Unknowns interpolate(const Unknowns& a, const Unknowns& b, double t);
 
 /// Two equations beside θ(0) = 0.
 struct Conditions {
@@ -53,20 +67,31 @@ struct Equilibrium {
   /// How often ∂θ/∂θ(1) changes sign on the way down, at a point force that stays on its section:
   /// the number of ways in which the energy decreases. The equilibrium is stable if it is 0.
   int unstable_modes = 0;
+  std::array<double, 16> angles{};  ///< θ at S = 0, 1/16, …
   int iterations = 0;
+  int attempts = 1;  ///< of Newton's method, on the path to the equilibrium
 };
 
-/// Newton's method from a guess; none if it does not converge.
+/// ∫ √(f (|H| + |V|)) dS of the straight rod: how often errors of a long pull grow e-fold from end
+/// to end. The shortest bend takes about 1/that of the length.
+double e_foldings(const Rod& rod, double force);
+
+/// Newton's method from a guess; none if it does not converge. Between two nodes errors grow to
+/// e⁴ times what they were, so that the digits suffice for a pull of any strength.
 std::optional<Equilibrium> solve(const Rod& rod, const Conditions& conditions,
                                  const Unknowns& guess, double tolerance);
 
 /// A rod and its conditions as a function of t.
 using Path = std::function<std::pair<Rod, Conditions>(double t)>;
 
+/// Attempts of Newton's method on a path, or on all paths of a load, after which it is given up.
+inline constexpr int most_attempts = 1000;
+
 /// The equilibrium at t = 1 of the branch that goes through the one at t = 0, which is near
 /// `start`: by steps of t that are halved where Newton's method fails or ends at an equilibrium
-/// that is less stable. Throws SolverError, with t, where the branch ends.
-Equilibrium follow(const Path& path, const Unknowns& start, double tolerance);
+/// that is less stable. Throws SolverError, with t, where the branch ends or no attempts are left.
+Equilibrium follow(const Path& path, const Unknowns& start, double tolerance,
+                   int attempts = most_attempts);
 
 /// The shape of an equilibrium.
 PlanarShape shape(const Rod& rod, const Equilibrium& equilibrium, double tolerance);

@@ -44,7 +44,7 @@ class Series {
   /// SolverError if the state is not finite.
   Series(const State<T>& start, const Forces& forces, const T& target, double tolerance,
          double fraction)
-      : start_(start), width_(target - start.S), forces_(forces) {
+      : start_(start), target_(target), width_(target - start.S), forces_(forces) {
     using std::abs, std::pow;
     const double reach = std::abs(value_of(width_));
     const double rate =
@@ -72,7 +72,7 @@ class Series {
 
   bool complete() const { return complete_; }
   double start() const { return value_of(start_.S); }
-  double end() const { return value_of(start_.S + width_); }
+  double end() const { return value_of(complete_ ? target_ : start_.S + width_); }
   double flexibility() const { return forces_.flexibility; }
 
   /// The state at the part t of the step, 0 to 1.
@@ -87,6 +87,7 @@ class Series {
     state.vertical = start_.vertical - width_ * t * forces_.vertical;
     return state;
   }
+  T theta_at(double t) const { return sum(theta_, T(t)); }
   State<T> at_end() const { return at(T(1.0)); }
 
  private:
@@ -155,6 +156,7 @@ class Series {
   }
 
   State<T> start_;
+  T target_;
   T width_;
   Forces forces_;
   bool complete_ = true;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "problem/cilium.h"
@@ -33,32 +35,45 @@ Equilibrium untouched(const Rod& rod, double height, double tolerance) {
 }
 
 /// The equilibrium in which the tip has sunk to the contact height: under a force on the tip, which
-/// grows until the tip is below, and then by Newton's method.
+/// grows until the tip is below, and then is bisected until Newton's method converges inside.
 Equilibrium at_slip_off(const Rod& rod, double height, double tolerance) {
-  constexpr int most_doublings = 60;
+  constexpr int most_forces = 100;
+  int attempts = most_attempts;
   const auto on_tip = [&](double from, double to, const Unknowns& start) {
     const auto path = [&](double t) {
       return std::pair(rod, Conditions{.at = 1, .force = std::lerp(from, to, t)});
     };
-    return follow(path, start, tolerance);
+    Equilibrium result = follow(path, start, tolerance, attempts);
+    attempts -= result.attempts;
+    return result;
   };
   const auto hanging = [&](double t) {
     return std::pair(scaled(rod, t), Conditions{.at = 1, .force = 0});
   };
   Equilibrium above = follow(hanging, {}, tolerance);
+  if (above.height < height)
+    throw SolverError("the environment alone bends the cilium's tip below the contact height");
+  std::optional<Equilibrium> below;
   double force = 0.5 / *std::ranges::max_element(rod.compliance);
-  for (int k = 0; k < most_doublings; ++k, force *= 1.5) {
-    const Equilibrium next = on_tip(above.unknowns.force, force, above.unknowns);
-    if (next.height > height) {
-      above = next;
+  for (int k = 0; k < most_forces; ++k) {
+    Equilibrium next = on_tip(above.unknowns.force, force, above.unknowns);
+    if (next.height > height)
+      above = std::move(next);
+    else
+      below = std::move(next);
+    if (!below) {
+      force *= 1.5;
       continue;
     }
-    const double part = (above.height - height) / (above.height - next.height);
-    const auto between = [&](double a, double b) { return std::lerp(a, b, part); };
-    const Unknowns guess{between(above.unknowns.tip_angle, next.unknowns.tip_angle),
-                         between(above.unknowns.force, next.unknowns.force), 1};
-    if (const auto found = solve(rod, {.height = height, .at = 1}, guess, tolerance)) return *found;
-    break;
+    const double low = above.unknowns.force;
+    const double high = below->unknowns.force;
+    const double part = (above.height - height) / (above.height - below->height);
+    const auto found = solve(rod, {.height = height, .at = 1},
+                             interpolate(above.unknowns, below->unknowns, part), tolerance);
+    // At the bracket's upper end itself, rounding error may put the force just outside.
+    if (found && found->unknowns.force >= low && found->unknowns.force <= high * (1 + 1e-9))
+      return *found;
+    force = std::midpoint(low, high);
   }
   throw SolverError("elastica: no slip-off force found");
 }
@@ -96,6 +111,18 @@ Equilibrium pulled(const Rod& rod, const PlanarUnits& units, double tolerance, c
     return std::pair(scaled(rod, t), Conditions{.at = at, .force = t * force});
   };
   return follow(path, {0, 0, at}, tolerance);
+}
+
+/// Throws SolverError where a bend would take too little of the length.
+void require_resolvable(const Rod& rod, double force) {
+  constexpr double most_foldings = 1000;
+  const double foldings = e_foldings(rod, force);
+  if (foldings <= most_foldings) return;
+  std::ostringstream text;
+  text << "elastica: weight, field and load are so strong that the cilium bends within "
+       << 1 / foldings << " of its length; the elastica goes down to " << 1 / most_foldings
+       << ": check the units of density, field, magnetisation and Young's modulus, or state less";
+  throw SolverError(text.str());
 }
 
 /// The horizontal force of the load, N: the environment's is not counted.
@@ -172,6 +199,7 @@ std::optional<double> critical_factor(const Cilium& cilium,
 void solve_step(const Cilium& cilium, double tolerance, MechanicsStep& step) {
   const PlanarUnits units = units_of(cilium, azimuth(step.load));
   const Rod rod = rod_of(cilium, step.load);
+  require_resolvable(rod, step.load.is<SectionLoad>() ? magnitude(step.load) / units.force : 0);
   std::optional<Equilibrium> equilibrium;
   if (contact_height(step.load))
     equilibrium = pushed(rod, units, tolerance, step);
