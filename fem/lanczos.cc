@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem {
 namespace {
@@ -73,6 +74,7 @@ Eigenpair smallest_eigenpair(const EigenProblem& problem, int negative) {
   }
   Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(most_vectors, most_vectors);
   for (Index n = 1; n <= most_vectors; ++n) {
+    support::check_interruption();
     const auto j = static_cast<std::size_t>(n - 1);
     Eigen::VectorXd next = problem.solve(weighed[j]);
     for (int pass = 0; pass < 2; ++pass)

@@ -12,6 +12,7 @@
 #include "analytic/elastica/jumps/jump.h"
 #include "analytic/elastica/taylor.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 #include "problem/types.h"
 
 namespace ciliaval::analytic::elastica {
@@ -48,6 +49,7 @@ std::pair<Reached, PlanarState> climb(const PlanarProblem& problem, double load,
       if (state.phi <= 0) return {Reached::level, state};
     }
     while (state.S < problem.ends[i + 1]) {
+      support::check_interruption();
       TaylorStep step(state, problem.flexibility(i, load), ForceLaw::constant, problem.ends[i + 1],
                       accuracy.tolerance, accuracy.fraction);
       state = step.end_state();
@@ -161,6 +163,7 @@ PlanarState descend(const PlanarProblem& problem, const Launch& from, const Accu
   if (problem.kind == PlanarLoad::dead) state.force = 1 - from.S;
   for (std::size_t i = problem.compliance.size(); i-- > 0;) {
     while (state.S > problem.ends[i]) {
+      support::check_interruption();
       const TaylorStep step(state, problem.flexibility(i, problem.load), force_law(problem.kind),
                             problem.ends[i], accuracy.tolerance, accuracy.fraction);
       if (steps != nullptr) steps->push_back(step);

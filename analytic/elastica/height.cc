@@ -9,12 +9,14 @@
 #include <utility>
 
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::analytic::elastica {
 namespace {
 
 double integral(const auto& integrand, double a, double b) {
   static boost::math::quadrature::tanh_sinh<double> rule;
+  support::check_interruption();
   if (!(b > a)) return 0;
   // On the unit interval: tanh-sinh asserts that a, b are many ulps apart.
   return (b - a) *

@@ -11,6 +11,7 @@
 #include "analytic/elastica/planar.h"
 #include "analytic/elastica/point_forces/path.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::analytic::elastica {
 using namespace surroundings;
@@ -98,6 +99,7 @@ std::optional<TipContact> solve_contact(const TipProblem& problem, const Surface
   Assembly assembly(problem, surface, place, law, layout, contact);
   double last_change = std::numeric_limits<double>::infinity();
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
+    support::check_interruption();
     const System system = assembly.at(u);
     const Vector change = -system.jacobian.partialPivLu().solve(system.residuals);
     if (!change.allFinite()) return std::nullopt;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 #include "problem/types.h"
 
 namespace ciliaval::analytic::sources {
@@ -23,6 +24,7 @@ void for_ranges(std::size_t count, std::size_t longest,
   std::vector<std::exception_ptr> errors(ranges);
   tbb::parallel_for(std::size_t{0}, ranges, [&](std::size_t i) {
     try {
+      support::check_interruption();
       work(i * longest, std::min(count, (i + 1) * longest));
     } catch (...) {
       errors[i] = std::current_exception();

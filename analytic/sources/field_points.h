@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "problem/field_model.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::analytic::sources {
 
@@ -32,7 +33,8 @@ void require_finite(const Vector3& x);
 void require_finite(const FieldValue& value, const Vector3& x);
 
 /// Calls `work(begin, end)` for ranges that make up [0, count), on the threads of TBB unless there
-/// is but one range. If some throw, the exception of the lowest range is thrown on.
+/// is but one range. If some throw, the exception of the lowest range is thrown on. Throws
+/// Interrupted (problem/support/interruption.h).
 void for_ranges(std::size_t count, std::size_t longest,
                 const std::function<void(std::size_t begin, std::size_t end)>& work);
 
@@ -46,6 +48,7 @@ Field field_at(std::span<const Vector3> points, std::size_t grain, const PointFi
   result.uncertainty.resize(points.size());
   for_ranges(points.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      support::check_interruption();
       require_finite(points[i]);
       const FieldValue value = field(points[i]);
       require_finite(value, points[i]);
@@ -61,6 +64,7 @@ template <class PointGradient>
 std::vector<Matrix3> gradient_at(std::span<const Vector3> points, const PointGradient& gradient) {
   std::vector<Matrix3> result;
   for (const Vector3& x : points) {
+    support::check_interruption();
     require_finite(x);
     result.push_back(gradient(x));
     require_finite({result.back().rowwise().sum(), Vector3::Zero()}, x);

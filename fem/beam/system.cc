@@ -9,6 +9,7 @@
 #include "fem/beam/kinematics.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::beam {
 namespace {
@@ -317,6 +318,7 @@ Eigen::VectorXd System::point_load_derivative(const Loads& loads) const {
 }
 
 void System::factorize(const State& state, const Loads& loads) {
+  support::check_interruption();
   matrix_.set_zero();
   for_each_stiffness(state, loads, [&](std::size_t i, std::size_t j, double value) {
     if (!supported_[i] && !supported_[j]) matrix_.add(i, j, value);

@@ -32,6 +32,7 @@
 #include "meshes/cylinder/cylinder_mesh.h"
 #include "problem/error.h"
 #include "problem/support/child_process.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::calculix {
 namespace {
@@ -274,6 +275,7 @@ Solution run_on_first_rank(const std::function<Solution()>& work) {
     } catch (const std::exception& error) {
       solution.failure = error.what();
     }
+    support::check_interruption();  // rather than a failure for having been killed
   }
   if (rank_count() > 1) {
     namespace mpi = dealii::Utilities::MPI;

@@ -17,6 +17,7 @@
 #include "fem/potential/operator.h"
 #include "problem/error.h"
 #include "problem/field_model.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::potential {
 namespace {
@@ -78,6 +79,7 @@ Layout lay_out(const PotentialProblem& problem) {
     if (problem.magnet.meets(plate.box))
       throw InputError("a permeable plate and the magnet overlap");
   for (const Vector3& point : problem.points) {
+    support::check_interruption();
     double distance = problem.magnet.distance(point, finest);
     for (const PermeableBox& plate : problem.plates)
       distance = std::min(distance, plate.box.exteriorDistance(point));

@@ -9,6 +9,7 @@
 
 #include "fem/potential/block_cut.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::potential {
 namespace {
@@ -117,6 +118,7 @@ void CutCells::add(const Magnet& magnet, double relative_permeability, const Sam
   std::vector<MagnetSample> points;
   double outside = 0;
   while (!stack.empty()) {
+    support::check_interruption();
     const Magnet::Block block = stack.back();
     stack.pop_back();
     const Magnet::Extent extent = magnet.extent(block);

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "problem/support/interruption.h"
+
 namespace ciliaval::fem::potential {
 namespace {
 
@@ -23,6 +25,7 @@ SensorFunctional::SensorFunctional(const PotentialSpace& space, std::vector<Sens
 template <typename Act>
 void SensorFunctional::for_each_cell(const SensorBall& ball, const Act& act) const {
   constexpr std::size_t points = 5;
+  support::check_interruption();
   const Vector3 reach = Vector3::Constant(ball.radius);
   const double scale = 1 / (normalisation * std::pow(ball.radius, 5));
   Eigen::Matrix<double, Eigen::Dynamic, 3> weights(space_.nodes(), 3);

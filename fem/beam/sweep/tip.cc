@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "problem/support/interruption.h"
+
 namespace ciliaval::fem::beam::sweep {
 using surroundings::ProfilePoint;
 using surroundings::Surface;
@@ -329,6 +331,7 @@ std::optional<TipState> Tip::solve(ContactStatus status, const Place& place, con
   Eigen::MatrixXd J;
   double last = std::numeric_limits<double>::infinity();
   for (unsigned int iteration = 1; iteration <= max_iterations_; ++iteration) {
+    support::check_interruption();
     equations(status, place, start, viscosity, unknowns, residual, J);
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(J);
     Eigen::VectorXd change = -lu.solve(residual);

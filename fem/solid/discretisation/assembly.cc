@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::solid::discretisation {
 using namespace material;
@@ -169,6 +170,7 @@ Eigen::Matrix<double, element_nodes, 3> element_forces(const SolidElement& eleme
 }
 
 std::optional<InternalForces> internal_forces(const SolidSpace& space, const SolidState& state) {
+  support::check_interruption();
   const auto& elements = space.elements();
   InternalForces result{space.vector(), space.vector(),
                         std::vector<PressureEquation>(elements.size())};
@@ -201,6 +203,7 @@ std::optional<InternalForces> internal_forces(const SolidSpace& space, const Sol
 
 void add_stiffness(const SolidSpace& space, const SolidState& state, const InternalForces& internal,
                    TangentMatrix& matrix, std::span<const std::size_t> cells) {
+  support::check_interruption();
   const auto& elements = space.elements();
   std::vector<std::size_t> indices(cells.begin(), cells.end());
   if (indices.empty()) {

@@ -13,6 +13,7 @@
 
 #include "fem/parallel.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
@@ -157,6 +158,7 @@ void DirectSolver::analyse(const SparsityPattern& pattern) {
 }
 
 void DirectSolver::factorize(const dealii::SparseMatrix<double>& matrix) {
+  support::check_interruption();
   Mumps& m = *mumps_;
   const double off_diagonal = kind_ == Kind::symmetric_part ? 0.5 : 1;
   std::size_t k = 0;

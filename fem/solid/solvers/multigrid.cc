@@ -13,6 +13,7 @@
 
 #include "fem/parallel.h"
 #include "fem/solid/discretisation/row_range.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::solid::solvers {
 using namespace discretisation;
@@ -229,7 +230,9 @@ void Multigrid::add_galerkin_rows(Node node) {
 }
 
 void Multigrid::update() {
+  support::check_interruption();
   schwarz_.update(matrix_);
+  support::check_interruption();
   coarse_blocks_->clear();
   for (Node node = 0; node < own_nodes_; ++node) add_galerkin_rows(node);
   const auto fill = [this](auto& matrix) {
@@ -261,6 +264,7 @@ void Multigrid::solve_coarse(Vector& x, const Vector& b) const {
 }
 
 void Multigrid::residual(Vector& r, const Vector& x, const Vector& b) const {
+  support::check_interruption();
   matrix_.vmult(r, x);
   r.sadd(-1, 1, b);
 }
