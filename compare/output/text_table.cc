@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numbers>
 #include <numeric>
@@ -73,7 +74,7 @@ std::string text_table(const TextRows& rows, std::string_view alignment) {
 }
 
 std::string number_cell(std::optional<double> value, double unit, std::string_view format) {
-  if (!value) return "-";
+  if (!value || !std::isfinite(*value)) return "-";
   const std::string text = fmt::format(fmt::runtime(format), *value / unit);
   const bool is_zero = text.find_first_not_of("-0.") == std::string::npos;
   return is_zero && text.starts_with('-') ? text.substr(1) : text;

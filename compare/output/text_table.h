@@ -19,8 +19,8 @@ void set_line_width(std::size_t columns);
 /// Where the line is too short, the further columns follow below, each time after the first one.
 std::string text_table(const TextRows& rows, std::string_view alignment = ">");
 
-/// A number in a unit by a format such as "{:.4f}", or a dash for an undefined one. A number that
-/// rounds to zero has no sign.
+/// A number in a unit by a format such as "{:.4f}", or a dash for one that is undefined or not
+/// finite. A number that rounds to zero has no sign.
 std::string number_cell(std::optional<double> value, double unit, std::string_view format);
 
 /// A unit that people read: an SI value is divided by `size`.

@@ -106,7 +106,7 @@ std::string sensing_text(const Sensing& s) {
     const bool has_azimuth = sensed.azimuth_interval() < std::numbers::pi;
     std::vector<std::string>& row = rows.emplace_back();
     row = {reading.name, fmt::format("{:.5g}", sensed.magnitude() * factor),
-           fmt::format("{:.2g}", sensed.magnitude_interval() * factor),
+           output::number_cell(sensed.magnitude_interval(), size, "{:.2g}"),
            has_azimuth ? fmt::format("{:.2f}", sensed.azimuth() / degree) : "-",
            has_azimuth ? fmt::format("{:.2f}", sensed.azimuth_interval() / degree) : ""};
     if (s.flow)

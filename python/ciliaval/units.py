@@ -38,8 +38,8 @@ def shown(si: str | None) -> Unit:
 
 
 def number(value: Any, unit: float = 1.0, digits: int = 4) -> str:
-    """value / unit with so many significant digits; a dash for None and NaN."""
-    if value is None or (isinstance(value, float) and math.isnan(value)):
+    """value / unit with so many significant digits; a dash for None and what is not finite."""
+    if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return NOT_KNOWN
     text = f"{value / unit + 0.0:.{digits}g}"
     if "e" in text and 1e-4 < abs(value / unit) < 1e7:  # 1.2e+03

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "compare/input/units.h"
@@ -52,9 +53,10 @@ std::string trend_text(const StudyResult& result, std::size_t pair, std::size_t 
   const std::string from_to = fmt::format("from {:.5g} to {:.5g}", t.first / unit, t.last / unit);
   const std::string at =
       fmt::format("{:.5g} at {} = {}", t.largest / unit, p.name, format_value(p, t.extreme_at));
-  const double factor = t.last / t.first;
+  // There is none from or to zero, or from one sign to the other.
+  const double factor = std::max(t.last / t.first, t.first / t.last);
   const std::string ratio =
-      factor > 0 ? fmt::format(" ({:.4g} times)", factor > 1 ? factor : 1 / factor) : "";
+      factor > 0 && std::isfinite(factor) ? fmt::format(" ({:.4g} times)", factor) : "";
   const std::string settled = fmt::format("; 95 % of it by {}", format_value(p, t.settled_at));
   switch (t.kind) {
     case Trend::Kind::none:
@@ -85,12 +87,12 @@ std::string trends(const StudyResult& result) {
                      output::text_table(rows, "<"));
 }
 
-/// How many points of each pair slipped off or failed, and why the first one did.
+/// How many points of each pair slipped off, were pulled in or failed, and why the first one did.
 std::string exceptions(const StudyResult& result) {
   const Study& study = result.study;
   std::string text;
   for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
-    for (const Status status : {Status::slipped_off, Status::failed}) {
+    for (const Status status : {Status::slipped_off, Status::pulled_in, Status::failed}) {
       std::size_t count = 0;
       std::size_t first = 0;
       for (std::size_t point = 0; point < study.point_count(); ++point)

@@ -93,7 +93,7 @@ def _paper(result: Result) -> str:
         return ""
     parts = []
     tips = _deflections(result, step)
-    if order[-1] in tips and order[0] in tips:
+    if order[-1] in tips and tips.get(order[0]):
         by = tips[order[-1]] / tips[order[0]] - 1
         verdict = _verdict(result, step, order[-1], order[0])
         word = "further" if by > 0 else "less"
