@@ -25,12 +25,10 @@ void fail(CheckReport& report, std::string id, std::string message) {
       {false, std::move(id), "baseline", std::move(message), {}, {}, {}, {}, {}});
 }
 
-/// Whether an entry belongs to one of the models: `steps/0/mechanics/solid/…`,
-/// `…/fields/solid/mesh/…`.
+/// Whether an entry is of one of the models.
 bool belongs_to(const std::string& id, const std::vector<std::string>& models) {
-  const auto slash = std::min(id.find("mechanics/"), id.find("fields/"));
-  return std::any_of(models.begin(), models.end(), [&](const std::string& model) {
-    return id.find("/" + model + "/", slash) != std::string::npos;
+  return std::ranges::any_of(models_of(id), [&](const std::string& model) {
+    return std::ranges::find(models, model) != models.end();
   });
 }
 

@@ -81,6 +81,7 @@ void add_step(const std::string& prefix, const models::MechanicsRun& run, const 
   add("slip_off_force", "N", step.slip_off_force, largest.force, largest.force);
   const double slip_off = step.slip_off_displacement.value_or(0);
   add("slip_off_displacement", "m", step.slip_off_displacement, slip_off, slip_off);
+  if (step.pull_in) add("pull_in_fraction", "", step.pull_in->fraction, 1, 1);
 }
 
 /// Contact forces at the steps, and the number of jumps. Not the works: how a jump divides its
@@ -178,6 +179,25 @@ void add_fields(const models::FieldRun& run, const std::vector<std::size_t>& ste
 }
 
 }  // namespace
+
+std::vector<std::string> models_of(std::string_view id) {
+  std::vector<std::string> result;
+  std::size_t missing = 0;
+  while (!id.empty()) {
+    const std::size_t slash = std::min(id.find('/'), id.size());
+    const std::string_view part = id.substr(0, slash);
+    id.remove_prefix(std::min(slash + 1, id.size()));
+    if (missing > 0) {
+      result.emplace_back(part);
+      if (--missing == 0) break;
+    } else if (part == "fields") {
+      missing = 2;
+    } else if (part == "mechanics" || part == "energy_balance") {
+      missing = 1;
+    }
+  }
+  return result;
+}
 
 Measurements measurements(const models::CaseResult& result) {
   const std::size_t count = result.problem.load_path.size();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compare/models/run.h"
@@ -29,11 +30,15 @@ struct Measurement {
 };
 
 /// How a model ended a step: `steps/1/mechanics/solid/status`: "converged", "slipped_off",
-/// "failed"; of a field "computed" or "failed".
+/// "pulled_in", "failed"; of a field "computed" or "failed".
 struct Outcome {
   std::string id;
   std::string value;
 };
+
+/// The models that a quantity or an outcome is of, as its id says: the one behind `mechanics` or
+/// `energy_balance`, the two behind `fields`.
+std::vector<std::string> models_of(std::string_view id);
 
 struct Measurements {
   std::vector<Measurement> quantities;

@@ -15,6 +15,7 @@
 
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
+#include "tests/support/case_texts.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
@@ -357,6 +358,29 @@ TEST(Check, AToleranceHoldsToItsLimitAndNotBeyond) {
     e.value = value * (1 + sign * 1.01e-10);
     EXPECT_EQ(setup.report().failures(), 1u);
   }
+}
+
+// Every quantity and outcome names its models, of a sweep too.
+TEST(Check, LeavesOutAllThatAModelOfASweepHasInTheBaseline) {
+  const std::string text = plateau_sweep("travel = \"4 mm\"\nsamples = 3\n") +
+                           "[sensor]\nposition = [\"1 mm\", \"0 mm\", \"-2 mm\"]\n";
+  Checked setup{read(replaced(text, "[\"elastica\"]", "[\"elastica\", \"beam\"]")), {}, {}};
+  setup.result = models::run(setup.problem, models::mechanics_models(), models::field_models());
+  const regression::Measurements all = regression::measurements(setup.result);
+  for (const regression::Measurement& quantity : all.quantities) {
+    std::vector<std::string> models{quantity.mechanics};
+    if (!quantity.field.empty()) models.push_back(quantity.field);
+    EXPECT_EQ(regression::models_of(quantity.id), models) << quantity.id;
+  }
+  for (const regression::Outcome& outcome : all.outcomes)
+    EXPECT_FALSE(regression::models_of(outcome.id).empty()) << outcome.id;
+  setup.baseline = regression::make_baseline(setup.problem, all, {}, nullptr);
+  std::erase_if(setup.result.mechanics, [](const auto& run) { return run.model == "beam"; });
+  std::erase_if(setup.result.fields, [](const auto& run) { return run.mechanics == "beam"; });
+  setup.left_out = {"beam"};
+  const regression::CheckReport report = setup.report();
+  EXPECT_EQ(report.failures(), 0u) << regression::report_text({report});
+  EXPECT_GT(report.left_out, 0u);
 }
 
 }  // namespace
