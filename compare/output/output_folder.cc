@@ -7,8 +7,10 @@
 #include <stdio.h>   // NOLINT(modernize-deprecated-headers): renameat2() is Linux
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <charconv>
+#include <climits>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -30,14 +32,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string temporary_name(const std::string& name, std::string_view extension) {
-  return "." + name + "." + std::to_string(getpid()) + std::string(extension);
+/// Name of this computer as a part of a file's name, without dots, which separate the parts.
+std::string host() {
+  std::array<char, HOST_NAME_MAX + 1> text{};
+  if (gethostname(text.data(), text.size() - 1) != 0) return "unknown";
+  std::string name = text.data();
+  for (char& c : name)
+    if (c == '.' || c == '/') c = '_';
+  return name;
 }
 
-/// The process id in `.NAME.PID.tmp` or `.NAME.PID.old`, if that is what `file` is called.
+std::string temporary_name(const std::string& name, std::string_view extension) {
+  return fmt::format(".{}.{}.{}{}", name, host(), getpid(), extension);
+}
+
+/// The process id in `.NAME.HOST.PID.tmp` or `.NAME.HOST.PID.old`, if `file` is called so and this
+/// host made it. A process of another host cannot be asked whether it lives: what it made stays.
 std::optional<pid_t> owner(const fs::path& file, const std::string& name) {
   const std::string text = file.filename().string();
-  const std::string prefix = "." + name + ".";
+  const std::string prefix = fmt::format(".{}.{}.", name, host());
   if (!text.starts_with(prefix) || !(text.ends_with(".tmp") || text.ends_with(".old")) ||
       text.size() <= prefix.size() + 4)
     return std::nullopt;
@@ -52,8 +65,9 @@ bool is_alive(pid_t pid) {
   return pid != getpid() && (kill(pid, 0) == 0 || errno != ESRCH);
 }
 
-/// Takes away what processes that are no longer alive have left. Where one was killed between the
-/// two renames of a file system that cannot exchange, its old results go back to their place.
+/// Takes away what processes of this host that are no longer alive have left. Where one was killed
+/// between the two renames of a file system that cannot exchange, its old results go back to their
+/// place.
 void remove_stale(const fs::path& directory, const fs::path& target, const std::string& name) {
   for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
     const auto pid = owner(entry.path(), name);

@@ -8,7 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "compare/output/results.h"
 #include "problem/error.h"
@@ -20,6 +24,21 @@ namespace {
 namespace fs = std::filesystem;
 using test::read_text;
 using test::TemporaryFolder;
+
+/// This host as it stands in the name of a temporary folder.
+std::string this_host() {
+  std::array<char, 256> text{};
+  gethostname(text.data(), text.size() - 1);
+  std::string name = text.data();
+  std::ranges::replace(name, '.', '_');
+  return name;
+}
+
+/// What a process calls its temporary folder of the case.
+fs::path temporary_of(const fs::path& directory, const std::string& name, const std::string& host,
+                      pid_t pid, const std::string& extension = ".tmp") {
+  return directory / ("." + name + "." + host + "." + std::to_string(pid) + extension);
+}
 
 /// The id of a process that has ended.
 pid_t dead_process() {
@@ -90,8 +109,8 @@ TEST(OutputFolder, AKilledRunLeavesTheOldResultsAndTheNextOneCleansUp) {
 
 TEST(OutputFolder, DoesNotTouchWhatALivingProcessOrAnotherCaseWrites) {
   const TemporaryFolder out;
-  const fs::path living = out.path() / (".case." + std::to_string(getppid()) + ".tmp");
-  const fs::path other = out.path() / (".other." + std::to_string(dead_process()) + ".tmp");
+  const fs::path living = temporary_of(out.path(), "case", this_host(), getppid());
+  const fs::path other = temporary_of(out.path(), "other", this_host(), dead_process());
   const fs::path file = out.path() / ".case.notes.tmp";
   for (const fs::path& folder : {living, other, file}) fs::create_directory(folder);
   write_results_of(out.path(), "new");
@@ -100,9 +119,29 @@ TEST(OutputFolder, DoesNotTouchWhatALivingProcessOrAnotherCaseWrites) {
   EXPECT_TRUE(fs::exists(file));
 }
 
+// On a folder that several computers share, a process of another one cannot be asked whether it
+// lives, and its number may be that of none here.
+TEST(OutputFolder, DoesNotTouchWhatAnotherHostWrites) {
+  const TemporaryFolder out;
+  const pid_t pid = dead_process();
+  std::vector<fs::path> kept;
+  for (const std::string& host : {std::string("otherhost"), "x" + this_host(), this_host() + "x",
+                                  "node7." + this_host(), this_host() + "." + this_host()})
+    for (const char* extension : {".tmp", ".old"})
+      kept.push_back(temporary_of(out.path(), "case", host, pid, extension));
+  kept.push_back(out.path() / (".case." + std::to_string(pid) + ".tmp"));  // of an unknown host
+  for (const fs::path& folder : kept) fs::create_directory(folder);
+  const fs::path own = temporary_of(out.path(), "case", this_host(), pid);
+  fs::create_directory(own);
+  write_results_of(out.path(), "new");
+  for (const fs::path& folder : kept) EXPECT_TRUE(fs::exists(folder)) << folder;
+  EXPECT_FALSE(fs::exists(own));
+  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("new"));
+}
+
 TEST(OutputFolder, PutsOldResultsBackThatWereMovedAsideWhenTheProgramWasKilled) {
   const TemporaryFolder out;
-  const fs::path aside = out.path() / (".case." + std::to_string(dead_process()) + ".old");
+  const fs::path aside = temporary_of(out.path(), "case", this_host(), dead_process(), ".old");
   fs::create_directory(aside);
   output::write_file(aside / "summary.json", summary("old"));
   { const output::OutputFolder folder(out.path(), "case"); }
