@@ -11,11 +11,8 @@
 #include <map>
 #include <memory>
 #include <utility>
-#include <variant>
 
-#include "compare/input/case_keys.h"
-#include "compare/input/environment/environment.h"
-#include "compare/input/units.h"
+#include "fem/parallel.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
 
@@ -350,61 +347,6 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
     if (!model.readings.empty())
       result.fields.push_back(external_fields(model, problem.sensors.size()));
   return result;
-}
-
-std::optional<support::Fingerprint> fingerprint(const input::Case& problem,
-                                                const MechanicsEntry& entry) {
-  if (!entry.checkpoint_without) return std::nullopt;
-  support::Fingerprint all;
-  const auto add = [&all](const QuantityKey& key, const std::string& of, double value) {
-    all.emplace_back(std::string(key.name) + of, input::format_quantity(value, key.quantity));
-  };
-  add(input::key::diameter, "", problem.cilium.diameter);
-  const CrossSection& section = problem.cilium.section;
-  if (section.shape != CrossSection::Shape::circle)
-    all.emplace_back(
-        "section", fmt::format("{}: {}, {}, {}, {}", static_cast<int>(section.shape), section.width,
-                               section.height, section.orientation, section.inner_diameter));
-  all.emplace_back("number of segments", std::to_string(problem.cilium.segments.size()));
-  for (const Segment& segment : problem.cilium.segments) {
-    const std::string of = " of segment `" + segment.name + "`";
-    add(input::key::segment_length, of, segment.length);
-    add(input::key::young_modulus, of, segment.young_modulus);
-    add(input::key::poisson_ratio, of, segment.poisson_ratio);
-    add(input::key::magnetization, of, segment.magnetization);
-    const auto& [x, y] = segment.transverse_magnetization;
-    if (x != 0 || y != 0) {
-      add(input::key::magnetization, " along x" + of, x);
-      add(input::key::magnetization, " along y" + of, y);
-    }
-    if (segment.density != 0) add(input::key::density, of, segment.density);
-  }
-  all.emplace_back("number of load steps", std::to_string(problem.load_path.size()));
-  for (std::size_t i = 0; i < problem.load_path.size(); ++i) {
-    const Load& load = problem.load_path[i];
-    std::string text(type(load));
-    for (std::size_t p = 0; p < load.values().size(); ++p) {
-      const QuantityKey& key = load.type().parameters[p].key;
-      text +=
-          fmt::format(", {} {}", key.name, input::format_quantity(load.values()[p], key.quantity));
-    }
-    all.emplace_back(fmt::format("load of step {}", i + 1), text);
-    if (load.environment() != surroundings::Environment{})
-      all.emplace_back(fmt::format("environment of step {}", i + 1),
-                       input::environment::to_toml({load}));
-  }
-  for (const input::Option& option : entry.options) {
-    if (std::ranges::find(*entry.checkpoint_without, option.name) !=
-        entry.checkpoint_without->end())
-      continue;
-    const input::OptionValue value = option.get(problem.options);
-    std::string text = to_toml(option, value);
-    if (option.file == input::Option::File::mesh)
-      if (const auto& mesh = std::get<std::string>(value); !mesh.empty())
-        text = support::describe_content(mesh);
-    all.emplace_back(fmt::format("models.{}.{}", entry.id, option.name), text);
-  }
-  return all;
 }
 
 bool all_solved(const MechanicsRun& run) {

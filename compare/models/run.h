@@ -12,7 +12,6 @@
 #include "compare/models/registry.h"
 #include "problem/field_model.h"
 #include "problem/mechanics_model.h"
-#include "problem/support/fingerprint.h"
 
 namespace ciliaval::compare::models {
 
@@ -94,11 +93,6 @@ MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& probl
 /// converged step of a mechanics run, whatever the load path of the case.
 FieldRun run_field(const std::string& id, const FieldModel& model, const MechanicsRun& mechanics,
                    const input::Case& problem, const Progress& progress = {});
-
-/// What the checkpoint of a mechanics model depends on: cilium, load path, the model's options; of
-/// the user's mesh the content, wherever it lies. None if the model keeps no checkpoint.
-std::optional<support::Fingerprint> fingerprint(const input::Case& problem,
-                                                const MechanicsEntry& entry);
 
 /// Whether no step of the model failed.
 bool all_solved(const MechanicsRun& run);

@@ -191,6 +191,7 @@ std::vector<std::string> case_text(const input::Case& problem) {
                       [](input::Option::File kind, std::filesystem::path& file) {
                         file = kind == input::Option::File::folder ? "" : file.filename();
                       });
+  portable.surface.file = portable.surface.file.filename();
   for (input::external::ExternalModel& model : portable.external) {
     for (std::filesystem::path& file : model.centreline_files) file = file.filename();
     model.readings_file = model.readings_file.filename();

@@ -7,13 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <filesystem>
-#include <sstream>
 #include <utility>
 
-#include "compare/input/case_syntax.h"
 #include "compare/input/units.h"
-#include "compare/models/registry.h"
+#include "compare/models/fingerprint.h"
 
 namespace ciliaval::compare::study {
 namespace {
@@ -59,24 +56,6 @@ std::optional<Setting> moved_number(const Study& study, std::size_t point) {
   return Setting{tolerance.number, tolerance.nominal + step * tolerance_step * tolerance.deviation};
 }
 
-/// Each value under its dotted key; the tables of a list are counted from 1.
-void append_values(const toml::node& node, const std::string& name, support::Fingerprint& all) {
-  const auto inner = [&](std::string_view key) {
-    return name.empty() ? std::string(key) : fmt::format("{}.{}", name, key);
-  };
-  const toml::array* list = node.as_array();
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, value] : *table) append_values(value, inner(key.str()), all);
-  } else if (list != nullptr && list->is_array_of_tables()) {
-    for (std::size_t i = 0; i < list->size(); ++i)
-      append_values((*list)[i], inner(std::to_string(i + 1)), all);
-  } else {
-    std::ostringstream text;
-    node.visit([&](const auto& value) { text << value; });
-    all.emplace_back(name, std::move(text).str());
-  }
-}
-
 void append_optimisation(const Optimisation& o, support::Fingerprint& all) {
   all.emplace_back("maximise", id(o.goal));
   all.emplace_back("global_evaluations", std::to_string(o.global_evaluations));
@@ -91,17 +70,6 @@ void append_optimisation(const Optimisation& o, support::Fingerprint& all) {
                      fmt::format("{} = {}, {}, from {}", p.number.path, fmt::join(p.values, " "),
                                  p.is_logarithmic ? "logarithmic" : "linear", o.start[i]));
   }
-}
-
-/// The case with the content of its files in place of their names: a file may lie anywhere.
-input::Case with_contents(input::Case c) {
-  input::change_files(models::known(), c.options,
-                      [](input::Option::File kind, std::filesystem::path& file) {
-                        if (kind == input::Option::File::mesh)
-                          file = support::describe_content(file);
-                      });
-  if (!c.surface.file.empty()) c.surface.file = support::describe_content(c.surface.file);
-  return c;
 }
 
 /// The case with the study's fixed numbers and these values of parameters.
@@ -214,11 +182,7 @@ std::string format_value(const Parameter& parameter, double value) {
 }
 
 support::Fingerprint fingerprint(const Study& study) {
-  toml::table base =
-      input::parse_toml(input::to_toml(with_contents(study.base), models::known()), study.name);
-  base.erase("case");  // its name and title
-  support::Fingerprint all;
-  append_values(base, "", all);
+  support::Fingerprint all = models::fingerprint(study.base);
   for (const Setting& s : study.fixed)
     all.emplace_back("fixed " + s.number.path, fmt::to_string(s.value));
   std::size_t count = 0;

@@ -13,6 +13,7 @@
 #include "compare/app/python.h"
 #include "compare/app/terminal.h"
 #include "compare/models/errors.h"
+#include "compare/models/fingerprint.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/field_grid.h"

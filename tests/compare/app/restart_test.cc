@@ -220,7 +220,7 @@ TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   write_case(folder.path(), "newton_tolerance = 1e-8\n");
   refused("models.solid.newton_tolerance was");
   write_case(folder.path(), "", R"(["0.5 mN", "1 mN", "1.25 mN", "2 mN"])");
-  refused("load of step 3 was contact, force 0.0015 N");
+  refused("load.force was");
   write_case(folder.path(), "max_iterations = 30\n[models.line]\ntolerance = 1e-9\n");
   EXPECT_EQ(run(folder.path(), to_out, never).code, 0);
 }

@@ -240,29 +240,5 @@ TEST(Run, RefusesAModelThatDoesNotExist) {
   EXPECT_THROW(models::run(c, mechanics, {}), InputError);
 }
 
-// A checkpoint of another environment or density must not be gone on from.
-TEST(Run, TheFingerprintKnowsTheEnvironment) {
-  const models::MechanicsEntry& solid = models::entry_of(models::mechanics_models(), "solid");
-  input::Case problem = test::paper_case({1e-3});
-  std::vector<support::Fingerprint> all{*models::fingerprint(problem, solid)};
-  problem.cilium.segments[0].density = 1000;
-  all.push_back(*models::fingerprint(problem, solid));
-  surroundings::Environment around;
-  const auto surrounded = [&] {
-    problem.load_path.front().set_environment(around);
-    all.push_back(*models::fingerprint(problem, solid));
-  };
-  around.gravity = {0, 0, -9.81};
-  surrounded();
-  around.fluid_density = 1;
-  surrounded();
-  around.uniform_field = {1e-3, 0, 0};
-  surrounded();
-  around.magnetic_energy = surroundings::MagneticEnergy::R;
-  surrounded();
-  for (std::size_t i = 0; i < all.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) EXPECT_NE(all[i], all[k]) << i << " " << k;
-}
-
 }  // namespace
 }  // namespace ciliaval::compare
