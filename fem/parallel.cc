@@ -117,6 +117,12 @@ void sum_over_ranks(MPI_Comm communicator, std::span<double> values) {
   dealii::Utilities::MPI::sum(dealii::ArrayView<const double>(view), communicator, view);
 }
 
+bool is_same_on_all_ranks(MPI_Comm communicator, const std::string& text) {
+  if (rank_count(communicator) == 1) return true;
+  const bool differs = dealii::Utilities::MPI::broadcast(communicator, text, 0) != text;
+  return dealii::Utilities::MPI::max(differs ? 1 : 0, communicator) == 0;
+}
+
 std::string first_text(MPI_Comm communicator, const std::string& text) {
   if (rank_count(communicator) == 1) return text;
   const int ranks = rank_count(communicator);

@@ -34,6 +34,9 @@ int from_first_rank(int value);
 /// The sums of the ranks' values, in their place, with the same bits on all ranks. Collective.
 void sum_over_ranks(MPI_Comm communicator, std::span<double> values);
 
+/// Whether all ranks have the same text. Collective.
+bool is_same_on_all_ranks(MPI_Comm communicator, const std::string& text);
+
 /// The first rank's text that is not empty. Collective.
 std::string first_text(MPI_Comm communicator, const std::string& text);
 

@@ -89,6 +89,8 @@ void append_field(const FieldModel& model, const Cilium& cilium, const Deformati
                                                            : std::optional(field.uncertainty[i]));
     }
     return;
+  } catch (const RankFailure&) {
+    throw;
   } catch (const std::exception& error) {
     const bool refused = dynamic_cast<const InputError*>(&error) != nullptr;
     if (points.size() <= 1 || !(model.pointwise() || refused))
@@ -269,6 +271,18 @@ FieldRun external_fields(const input::external::ExternalModel& model, std::size_
   return run;
 }
 
+/// The ranks of a program bend the rods each by itself, and a collective field model is called by
+/// all of them or by none: throws RankFailure on all unless the same steps have converged on all.
+/// Collective.
+void require_same_steps_on_all_ranks(const MechanicsRun& run) {
+  std::string converged;
+  for (const MechanicsStep& step : run.result.steps)
+    converged += step.status == Status::converged ? '1' : '0';
+  if (!fem::is_same_on_all_ranks(MPI_COMM_WORLD, converged))
+    throw RankFailure(run.model +
+                      ": some ranks have solved load steps that others have not, out of memory?");
+}
+
 }  // namespace
 
 bool FieldStep::any() const {
@@ -335,7 +349,10 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   }
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.centrelines.empty()) result.mechanics.push_back(external_mechanics(model, problem));
+  const bool is_collective = std::ranges::any_of(
+      field_entries, [](const FieldEntry* entry) { return entry->is_collective; });
   for (const MechanicsRun& mechanics_run : result.mechanics) {
+    if (is_collective) require_same_steps_on_all_ranks(mechanics_run);
     const Deformation& undeformed = mechanics_run.result.undeformed;
     if (undeformed.centreline.pieces().empty()) continue;
     for (const FieldEntry* entry : field_entries)

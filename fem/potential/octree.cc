@@ -94,12 +94,15 @@ bool Octree::refine(const std::function<bool(const Cube&)>& cut) {
 }
 
 void Octree::refine(const std::vector<bool>& flags) {
+  int is_too_deep = 0;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     if (!flags[c]) continue;
-    if (cells_[c]->level() >= finest_level - 1)
-      throw SolverError("the octree of the potential would need more than 18 levels");
+    if (cells_[c]->level() >= finest_level - 1) is_too_deep = 1;
     cells_[c]->set_refine_flag();
   }
+  // One rank has the deepest leaf, and all of them must know before they refine.
+  if (dealii::Utilities::MPI::max(is_too_deep, communicator()) != 0)
+    throw SolverError("the octree of the potential would need more than 18 levels");
   triangulation_.execute_coarsening_and_refinement();
   update();
 }

@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <string>
 
+#include "fem/parallel.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::potential {
 namespace {
@@ -32,6 +34,7 @@ void PotentialOperator::apply(PotentialVector& result, const Read& read) const {
   Eigen::MatrixXd u(space_.nodes(), batch);
   Eigen::MatrixXd r(space_.nodes(), batch);
   for (int start = 0; start < cells; start += batch) {
+    support::check_interruption();
     const int count = std::min(batch, cells - start);
     for (int c = 0; c < count; ++c) read(start + c, u.col(c));
     r.noalias() = unit_ * u;
@@ -186,13 +189,17 @@ unsigned int solve(const PotentialOperator& A, const PotentialMultigrid& precond
   constexpr unsigned int most = 200;
   dealii::SolverControl control(most, tolerance * b.l2_norm());
   dealii::SolverCG<PotentialVector> cg(control);
+  const double load = b.l2_norm();
+  std::string trouble;
   try {
     cg.solve(A, x, b, preconditioner);
   } catch (const dealii::SolverControl::NoConvergence& failure) {
-    throw SolverError("the potential's conjugate gradients did not converge: residual " +
-                      std::to_string(failure.last_residual / b.l2_norm()) + " of the load after " +
-                      std::to_string(failure.last_step) + " iterations");
+    trouble = "the potential's conjugate gradients did not converge: residual " +
+              std::to_string(failure.last_residual / load) + " of the load after " +
+              std::to_string(failure.last_step) + " iterations";
   }
+  trouble = first_text(A.space().octree().communicator(), trouble);
+  if (!trouble.empty()) throw SolverError(trouble);
   return control.last_step();
 }
 

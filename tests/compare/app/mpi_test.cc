@@ -298,28 +298,41 @@ int count(const std::string& text, const std::string& part) {
 // Rank 1 or rank 0 alone runs out of memory, at several places of the solution: both end, with the
 // exit code of a solver's failure, and the one that failed says so, once. Oracle: the contract; a
 // minute's `timeout` stands for "waits forever" (code 124).
-TEST_P(MpiSolverSlow, AFaultOfOneRankAloneEndsAllOfThem) {
-  const TemporaryFolder folder;
-  write_case(folder.path(), solver());
+void expect_fault_of_one_rank_ends_all(const fs::path& folder,
+                                       const std::vector<int>& allocations) {
   const std::string program = "'" CILIAVAL_PROGRAM "' run case.toml -o out";
   for (const int failing : {1, 0})
-    for (const int allocation : {1, 20}) {
-      fs::remove_all(folder.path() / "out");
+    for (const int allocation : allocations) {
+      fs::remove_all(folder / "out");
       const std::string faulty = "env LD_PRELOAD='" CILIAVAL_FAILING_NEW "' CILIAVAL_FAIL_AT=" +
                                  std::to_string(allocation) + " " + program;
-      const Outcome outcome =
-          execute(folder.path(), "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 " +
-                                     (failing == 0 ? faulty : program) + " : -n 1 " +
-                                     (failing == 1 ? faulty : program));
-      const std::string said = read_text(folder.path() / "err.txt");
+      const Outcome outcome = execute(folder, "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 " +
+                                                  (failing == 0 ? faulty : program) + " : -n 1 " +
+                                                  (failing == 1 ? faulty : program));
+      const std::string said = read_text(folder / "err.txt");
       const std::string what =
           "rank " + std::to_string(failing) + ", allocation " + std::to_string(allocation);
       EXPECT_EQ(outcome.code, 3) << what << ": " << said;
       EXPECT_EQ(count(said, "rank " + std::to_string(failing) + " of 2 failed alone: "), 1)
           << what << ": " << said;
       EXPECT_EQ(count(said, "ciliaval: "), 1) << what << ": " << said;
-      EXPECT_FALSE(fs::exists(folder.path() / "out" / "mpi"));
+      EXPECT_FALSE(fs::exists(folder / "out" / "mpi"));
     }
+}
+
+TEST_P(MpiSolverSlow, AFaultOfOneRankAloneEndsAllOfThem) {
+  const TemporaryFolder folder;
+  write_case(folder.path(), solver());
+  expect_fault_of_one_rank_ends_all(folder.path(), {1, 20});
+}
+
+TEST(MpiPotentialSlow, AFaultOfOneRankAloneEndsAllOfThem) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "case.toml")
+      << test::case_text({.name = "mpi"},
+                         "mechanics = [\"elastica\"]\nfields = [\"potential\"]\n"
+                         "[models.potential]\ntolerance = 0.05\n");
+  expect_fault_of_one_rank_ends_all(folder.path(), {1, 20});
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 
 #include "bodies.h"
 #include "fem/parallel.h"
+#include "fem/potential/octree.h"
 #include "fem/potential/potential.h"
+#include "problem/error.h"
 
 namespace ciliaval::fem::potential {
 namespace {
@@ -27,6 +29,22 @@ TEST(Communicator, OneRankSolvesAlone) {
   if (rank() == 0) {
     EXPECT_LE((alone - together).norm(), 1e-6 * together.norm());
   }
+}
+
+// The leaf at a corner of the cube is one rank's. Each of them must hear that it is too deep,
+// instead of waiting for the other to refine: oracle is the time-out of the test on two ranks.
+TEST(Communicator, ATreeThatIsTooDeepOnOneRankFailsOnAll) {
+  start_mpi();
+  const Vector3 corner = Vector3::Constant(-1);
+  Octree octree(Vector3::Zero(), 1, MPI_COMM_WORLD);
+  const auto is_at_corner = [&](const Cube& cube) {
+    return cube.box().exteriorDistance(corner) < 1e-12;
+  };
+  const auto refine = [&] {
+    while (octree.refine(is_at_corner)) {
+    }
+  };
+  EXPECT_THROW(refine(), SolverError);
 }
 
 }  // namespace
