@@ -4,11 +4,52 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+
+#include "problem/error.h"
 
 namespace ciliaval {
 
 const MechanicsResult& solution(const MechanicsResult& result, std::size_t i) {
   return i == 0 ? result : result.companions.at(i - 1);
+}
+
+MechanicsResult companion_of(const MechanicsResult& result,
+                             const std::function<MechanicsResult()>& solve) {
+  try {
+    return solve();
+  } catch (const RankFailure&) {
+    throw;
+  } catch (const Error& error) {
+    MechanicsResult failed{.undeformed = result.undeformed, .steps = {}};
+    for (const MechanicsStep& step : result.steps) {
+      MechanicsStep& of_companion = failed.steps.emplace_back();
+      of_companion.load = step.load;
+      of_companion.message = error.what();
+    }
+    return failed;
+  }
+}
+
+namespace {
+
+/// Why the error of a converged step is not known: what a companion says that has not converged
+/// there.
+void remark_on_companions(MechanicsResult& result, std::size_t s) {
+  for (const MechanicsResult& companion : result.companions) {
+    const MechanicsStep& other = companion.steps.at(s);
+    if (other.status == Status::converged || other.message.empty()) continue;
+    std::string& message = result.steps[s].message;
+    message += (message.empty() ? "" : "; ") + error_is_not_known(other.message);
+    return;
+  }
+}
+
+}  // namespace
+
+std::string error_is_not_known(const std::string& reason) {
+  return "the numerical error is not known: the solution that it is estimated from failed: " +
+         reason;
 }
 
 void estimate_errors(MechanicsResult& result) {
@@ -22,6 +63,7 @@ void estimate_errors(MechanicsResult& result) {
       if (step.slip_off_uncertainty) *step.slip_off_uncertainty += result.algebraic_error * *limit;
     }
     if (step.status != Status::converged) continue;
+    remark_on_companions(result, s);
     const auto estimate = [&](const auto& of_step, double algebraic) {
       std::optional<double> error = error_estimate(result.error_parts, [&](std::size_t i) {
         const MechanicsStep& other = solution(result, i).steps.at(s);

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "problem/mechanics_model.h"
 
@@ -37,8 +39,16 @@ std::optional<double> error_estimate(std::span<const ErrorPart> parts, const Qua
 /// Solution i of a result: 0 itself, i its companion i − 1.
 const MechanicsResult& solution(const MechanicsResult& result, std::size_t i);
 
+/// The companion that `solve` makes. An error that it throws (problem/error.h) costs the error
+/// estimate alone: then the companion has a failed step for each of the result's, with the reason.
+MechanicsResult companion_of(const MechanicsResult& result,
+                             const std::function<MechanicsResult()>& solve);
+
+/// The remark on a step whose companion has failed for this reason.
+std::string error_is_not_known(const std::string& reason);
+
 /// Sets the uncertainties of the converged steps from the companions, if there are any, and the
-/// algebraic error.
+/// algebraic error. Where a companion has failed, the step says why its error is not known.
 void estimate_errors(MechanicsResult& result);
 
 }  // namespace ciliaval

@@ -217,7 +217,8 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
   if (options_.error_estimate) {
     BeamOptions higher = options_;
     higher.degree += companion_degrees;
-    result.companions.push_back(solve_all(cilium, path, higher, corrections, {}));
+    result.companions.push_back(
+        companion_of(result, [&] { return solve_all(cilium, path, higher, corrections, {}); }));
     result.error_parts = {{"degree", 1, 0, safety}};
     result.algebraic_error = is_sweep(path) ? sweep_error : rounding;
     for (std::size_t i = 0; i < path.size(); ++i)

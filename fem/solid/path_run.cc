@@ -70,9 +70,11 @@ MechanicsStep companion_step(const Level& level, const Equilibrium* equilibrium,
   MechanicsStep step;
   step.load = load;
   if (equilibrium == nullptr) return step;
+  step.message =
+      failure_of([&] { step.deformation = level.deformation(*equilibrium, mesh_azimuth); });
+  if (!step.message.empty()) return step;
   step.status = Status::converged;
   step.unknowns = level.unknowns();
-  step.deformation = level.deformation(*equilibrium, mesh_azimuth);
   step.applied_force = equilibrium->applied_force;
   return step;
 }
@@ -96,7 +98,7 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
   return step;
 }
 
-/// Adds a remark to a step that has converged.
+/// Adds a remark to a step.
 void remark(MechanicsStep& step, const std::string& text) {
   step.message += (step.message.empty() ? "" : "; ") + text;
 }
@@ -124,6 +126,18 @@ std::optional<std::string> fold_remark(const postprocessing::MantleCompression& 
       "{:.2f}): near this rubber folds, and the numerical error is not known "
       "(docs/theory/solid.md)",
       compression.height * 1e3, compression.stretch, compression.ratio);
+}
+
+std::string failure_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const RankFailure&) {
+    throw;
+  } catch (const Error& error) {
+    require_failure_of_all_ranks(error.what());
+    return error.what();
+  }
+  return {};
 }
 
 PathRun::PathRun(Levels levels, const LoadPath& path, const SolidOptions& options,
@@ -219,6 +233,26 @@ void PathRun::save(const MechanicsStep* finished) const {
   });
 }
 
+std::string PathRun::advance_companions(const Load& load, const Progress& progress) {
+  // The coarser levels are there already, unless the finest has left them behind.
+  Level& section = *levels_.all.back();
+  std::string reason;
+  if (is_at(*levels_.all.front(), load)) {
+    LoadPathOutcome outcome;
+    reason = failure_of([&] { outcome = section.advance(load, progress); });
+    if (!reason.empty()) section.restore(std::nullopt);  // it may have stopped between two states
+    if (reason.empty()) reason = outcome.message;
+  }
+  for (std::size_t i = 0; i < levels_.companions.size(); ++i) {
+    if (is_at(companion(i), load)) continue;
+    std::string text = fmt::format("no equilibrium with this load on the mesh of {} unknowns",
+                                   companion(i).unknowns());
+    if (&companion(i) == &section && !reason.empty()) text += ": " + reason;
+    return text;
+  }
+  return {};
+}
+
 MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   const auto start = Clock::now();
   const Progress shown = with_prefix(progress_, label(i));
@@ -229,7 +263,6 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
   MechanicsStep step = finished(outcome, path_[i], mesh_azimuth(options_, path_[i]), finest());
   const std::optional<std::string> fold = fold_remark(finest().mantle_compression());
   if (step.status == Status::converged) {
-    // The coarser levels are there already, unless the finest has left them behind.
     Progress of_companions;
     if (shown) of_companions = with_prefix(shown, "error estimate, ");
     if (!surroundings::is_empty(acting_environment(load))) judge(finest(), step);
@@ -238,15 +271,22 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
       remark(step, *fold);
       // Without this companion there is no estimate.
       if (has_companions) levels_.all.back()->restore(std::nullopt);
-    } else if (has_companions && is_at(*levels_.all.front(), load)) {
-      levels_.all.back()->advance(load, of_companions);
+    } else if (has_companions) {
+      const std::string missing = advance_companions(load, of_companions);
+      if (!missing.empty()) remark(step, error_is_not_known(missing));
     }
   } else if (fold) {
     step.message += "; at the last load before, " + *fold;
   }
   if (step.status == Status::slipped_off && levels_.finest > 0 && !fold) {
     // The bracket, and how far that of the next coarser level, which has slipped off too, is away.
-    const LoadPathOutcome coarser = levels_.all[levels_.finest - 1]->advance(load, {});
+    LoadPathOutcome coarser;
+    Level& next = *levels_.all[levels_.finest - 1];
+    const std::string failure = failure_of([&] { coarser = next.advance(load, {}); });
+    if (!failure.empty()) {
+      next.restore(std::nullopt);
+      remark(step, error_is_not_known(failure));
+    }
     const auto own = slip_off_limit(step);
     const auto other =
         load.is<ProbeLoad>() ? coarser.slip_off_displacement : coarser.slip_off_force;

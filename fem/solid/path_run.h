@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,6 +28,10 @@ struct Levels {
 /// What is to be said of a mantle that is compressed so far that rubber folds.
 std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression);
 
+/// The error (problem/error.h) that the work of a companion throws, in words; empty: none. It costs
+/// the error estimate alone. Throws RankFailure. Collective.
+std::string failure_of(const std::function<void()>& work);
+
 /// The levels on their way along a load path.
 class PathRun {
  public:
@@ -49,6 +54,9 @@ class PathRun {
   void save(const MechanicsStep* finished) const;
   /// "step 2/4, "
   std::string label(std::size_t i) const;
+  /// Brings the companions to the load with which the finest level is in equilibrium. Says which
+  /// one has none; empty: each has one. Collective.
+  std::string advance_companions(const Load& load, const Progress& progress);
   /// Step i. If `keep`, saves each equilibrium on the way.
   MechanicsStep solve(std::size_t i, bool keep);
 

@@ -146,12 +146,27 @@ void SweepRun::solve(std::size_t i) {
   std::vector<MechanicsStep> steps(ways_.size());
   for (std::size_t w = 0; w < ways_.size(); ++w) {
     Way& way = ways_[w];
+    const auto go = [&] {
+      if (i == 0) way.follower->start(place_of(path_[0]));
+      steps[w] =
+          step_of(way, i, way.follower->go(place_of(path_[i]), w == 0 ? shown : of_companions));
+    };
+    if (w == 0) {
+      go();
+      continue;
+    }
+    if (way.failure.empty()) {
+      way.failure = failure_of(go);
+      if (way.failure.empty() && steps[w].status != Status::converged)
+        way.failure = steps[w].message;
+      if (!way.failure.empty())
+        way.failure = fmt::format("{}on the mesh of {} unknowns: {}", label, way.level->unknowns(),
+                                  way.failure);
+    }
+    if (way.failure.empty()) continue;
+    steps[w] = {};
     steps[w].load = path_[i];
-    if (way.lost) continue;
-    if (i == 0) way.follower->start(place_of(path_[0]));
-    steps[w] =
-        step_of(way, i, way.follower->go(place_of(path_[i]), w == 0 ? shown : of_companions));
-    way.lost = w > 0 && steps[w].status != Status::converged;
+    steps[w].message = way.failure;
   }
   for (std::size_t c = 0; c < companions_.size(); ++c)
     result_.companions[c].steps.push_back(steps[companions_[c]]);
@@ -208,14 +223,14 @@ void SweepRun::go_on_from_checkpoint() {
       restore(ways_[companions_[c]], result_.companions[c], std::move(steps.at(c + 1)),
               states.at(c + 1));
   }
-  std::vector<std::pair<FollowerState, bool>> states;
+  std::vector<std::pair<FollowerState, std::string>> states;
   deserialize(kept.at(sweep_state_name), states);
   for (std::size_t w = 0; w < ways_.size(); ++w) {
-    auto& [state, lost] = states.at(w);
+    auto& [state, failure] = states.at(w);
     ways_[w].level->require_own(state.now.solid);
     if (state.before) ways_[w].level->require_own(state.before->solid);
     ways_[w].follower->restore(std::move(state));
-    ways_[w].lost = lost;
+    ways_[w].failure = std::move(failure);
   }
 }
 
@@ -231,8 +246,8 @@ void SweepRun::save() const {
     add(result_.steps.back(), ways_.front());
     for (std::size_t c = 0; c < companions_.size(); ++c)
       add(result_.companions[c].steps.back(), ways_[companions_[c]]);
-    std::vector<std::pair<FollowerState, bool>> ways;
-    for (const Way& way : ways_) ways.emplace_back(way.follower->state(), way.lost);
+    std::vector<std::pair<FollowerState, std::string>> ways;
+    for (const Way& way : ways_) ways.emplace_back(way.follower->state(), way.failure);
     return Checkpoint::Entries{{sweep_state_name, serialized(ways)},
                                {std::to_string(result_.steps.size()), serialized(steps, states)}};
   });

@@ -34,7 +34,7 @@ class SweepRun {
   struct Way {
     const Level* level;
     std::unique_ptr<contact::Follower> follower;
-    bool lost = false;
+    std::string failure{};  ///< why it does not go on; empty: it does
   };
 
   /// All of step i.

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <utility>
 
+#include "problem/error_estimate.h"
+
 namespace ciliaval::joints {
 
 std::vector<double> strains(const Cilium& cilium, const Centreline& centreline) {
@@ -31,7 +33,9 @@ void add_companion(MechanicsResult& result, const Cilium& cilium, Corrections co
                             : step.load);
   }
   corrections += uncertainties(cilium);
-  result.companions.push_back({.undeformed = result.undeformed, .steps = solve(path, corrections)});
+  result.companions.push_back(companion_of(result, [&] {
+    return MechanicsResult{.undeformed = result.undeformed, .steps = solve(path, corrections)};
+  }));
   result.error_parts.push_back({"joints", result.companions.size(), 0, 1});
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     result.steps[i].seconds += result.companions.back().steps[i].seconds;
