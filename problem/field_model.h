@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "problem/cilium.h"
@@ -20,6 +21,7 @@ struct Field {
                                      ///< empty if the model has none
   std::shared_ptr<const FieldMesh> mesh = nullptr;  ///< what the model computed B from, if it can
                                                     ///< be drawn
+  std::string remark{};  ///< why the uncertainty is not known, if there is a reason to tell
 };
 
 /// A model of the magnetic field of the deformed cilium.
@@ -40,6 +42,15 @@ class FieldModel {
   /// body, SolverError if the accuracy asked cannot be reached.
   virtual Field field(const Cilium& cilium, const Deformation& deformation,
                       std::span<const Vector3> points) const = 0;
+
+  /// M = B/μ₀ − H of the deformed magnet at the points, A/m: 0 outside of it, and everywhere in a
+  /// model whose sources fill no volume. Throws InputError where a point lies in matter whose M the
+  /// model does not tell.
+  virtual std::vector<Vector3> magnetization(const Cilium& /*cilium*/,
+                                             const Deformation& /*deformation*/,
+                                             std::span<const Vector3> points) const {
+    return std::vector<Vector3>(points.size(), Vector3::Zero());
+  }
 };
 
 }  // namespace ciliaval
