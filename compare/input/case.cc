@@ -91,7 +91,7 @@ Case read_case(std::string_view text, std::string_view file, const Models& known
   require_valid(c.cilium);
   for (const Load& step : c.load_path) require_valid(step, c.cilium);
   external::read_external_files(c.external, c.cilium, c.load_path, sensor_names(c));
-  measurement::read_measured_files(measured, c.load_path.size(), c.measured);
+  measurement::read_measured_files(measured, c);
   return c;
 }
 

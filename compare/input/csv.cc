@@ -130,6 +130,7 @@ class Reader {
     }
     index_[c] = index;
     table_.header[c] = header.place;
+    if (found->any_unit) return;
     if (found->kind == CsvColumn::Kind::word || found->quantity.unit.empty()) {
       if (header.unit && !header.unit->empty() && *header.unit != "1")
         faults_.add(header.place, fmt::format("the column '{}' has no unit", header.name));

@@ -26,6 +26,7 @@ struct CsvColumn {
   Kind kind = Kind::quantity;
   Quantity quantity = quantity::number;
   bool required = true;
+  bool any_unit = false;  ///< the header's unit is left aside: the numbers are as the file has them
 };
 
 /// The columns of a CSV file in the order in which they were asked for; one that the file does not

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "compare/validation/computed.h"
 #include "compare/validation/sensitivity.h"
@@ -183,6 +184,7 @@ std::optional<Validation> validate(const models::CaseResult& result,
     validation.series.push_back(std::move(series));
   }
   validation.remarks = remarks_of(validation);
+  std::ranges::copy(problem.measured.remarks, std::back_inserter(validation.remarks));
   return validation;
 }
 

@@ -47,6 +47,7 @@ ExitCode validate(const ValidateOptions& options, const std::string&) {
                     "{}\n",
                     files[i].string(), cases[i].name, cases[i].load_path.size(),
                     cases[i].sensors.size(), cases[i].mechanics.size(), cases[i].fields.size()));
+    for (const std::string& remark : cases[i].measured.remarks) print("  " + remark + "\n");
     const models::Preview preview = models::preview(cases[i]);
     for (const std::string& text : preview.signal) print("  " + text + "\n");
     for (const std::string& text : preview.warnings) print("  warning: " + text + "\n");

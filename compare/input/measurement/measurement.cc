@@ -196,6 +196,8 @@ void read_file(Section& table, const std::filesystem::path& folder, const Uncert
     result.path = std::filesystem::absolute(folder / *name).lexically_normal();
   if (const toml::node* node = table.find("column"))
     result.column = read_line(*node, "column", longest_text, faults).value_or("");
+  if (const toml::node* node = table.find("load"))
+    result.load = read_line(*node, "load", longest_text, faults).value_or("");
   if (const toml::node* node = table.find("scale"))
     result.scale = read_value(*node, "scale", result.all.measurand.quantity(),
                               range_of(result.all.measurand), faults);
@@ -207,7 +209,8 @@ void read_measurement(Section& table, const std::filesystem::path& folder, bool 
   Faults& faults = table.faults();
   Measurement result;
   const toml::node* name = table.require("quantity");
-  for (const char* key : {"point", "value", "file", "step", "column", "scale"}) table.find(key);
+  for (const char* key : {"point", "value", "file", "step", "column", "load", "scale"})
+    table.find(key);
   const toml::node* uncertainty = table.find("uncertainty");
   if (const toml::node* node = table.require("source"))
     result.source = read_line(*node, "source", longest_text, faults).value_or("");
@@ -230,7 +233,7 @@ void read_measurement(Section& table, const std::filesystem::path& folder, bool 
     refuse_with(table, "value", {"step"});
     return read_file(table, folder, u, result, c, files);
   }
-  refuse_with(table, "file", {"column", "scale"});
+  refuse_with(table, "file", {"column", "load", "scale"});
   table.require("uncertainty");
   result.step = read_step(table, c, case_is_right);
   const auto measured =

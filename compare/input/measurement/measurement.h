@@ -66,11 +66,17 @@ struct Statement {
   std::vector<Measurement> measurements;
   std::vector<InputUncertainty> inputs;
   std::vector<std::filesystem::path> files;  ///< from which values were read
+  /// How the rows of each file were matched to the load steps, and which columns were not read; for
+  /// people.
+  std::vector<std::string> remarks;
 };
 
 inline constexpr std::string_view measurement_table = "measurement";
 inline constexpr std::string_view input_table = "input_uncertainty";
 inline constexpr std::size_t most_values = 2000;  ///< χ² takes a matrix of them
+
+/// The rows of a file are the load steps in their order, whatever the columns say.
+inline constexpr std::string_view in_order = "in order";
 
 /// A table [[measurement]] that names a file, which is read when the rest is right.
 struct MeasuredFile {
@@ -78,6 +84,9 @@ struct MeasuredFile {
   std::size_t at = 0;  ///< place of its values among the measurements
   std::filesystem::path path;
   std::string column = "value";
+  /// The column with the load of each row, "x" or "x [mT]", or `in_order`; empty: the columns whose
+  /// unit is that of the load, otherwise the order.
+  std::string load = {};
   std::optional<double> scale;        ///< what a 1 in a column without a unit is, SI
   std::optional<double> uncertainty;  ///< of each value; none: relative, or a column
   std::optional<double> relative_uncertainty;
@@ -88,10 +97,12 @@ struct MeasuredFile {
 std::vector<MeasuredFile> read_measurements(Section& root, std::string_view file,
                                             bool case_is_right, Case& c);
 
-/// Reads the files and puts their values among the measurements: a row for each load step, or a
-/// column `step`. Throws InputError with every fault, `file:line:column: …`.
-void read_measured_files(const std::vector<MeasuredFile>& files, std::size_t steps,
-                         Statement& statement);
+/// Reads the files and puts their values among the measurements of the case. The rows belong to the
+/// load steps by a column `step`; by the loads that a column in the load's unit has
+/// (match_loads()); or, where there is no such column, by their order: then a column of numbers
+/// without a unit, which may be the loads, is a fault unless MeasuredFile::load says what it is.
+/// Throws InputError with every fault, `file:line:column: …`.
+void read_measured_files(const std::vector<MeasuredFile>& files, Case& c);
 
 /// Both tables as TOML, a table for each value; empty if there are none.
 std::string to_toml(const Statement& statement);

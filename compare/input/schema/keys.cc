@@ -250,8 +250,13 @@ void add_measurements(std::vector<Key>& keys) {
   measured(Kind::any, "value", "`file`", "The measured value.", "3.2 mm");
   measured(Kind::file, "file", "`value`",
            "CSV file with the values, beside the case file unless absolute: a row for each load "
-           "step, or a column `step`.");
+           "step.");
   measured(Kind::text, "column", "`\"value\"`", "`file`: name of the column with the values.");
+  measured(
+      Kind::text, "load", "a column in the load's unit, else `\"in order\"`",
+      "`file`: the column with the load of each row, which names its step; `\"x [mT]\"` states "
+      "its unit. `\"in order\"`: the rows are the load steps in their order.",
+      R"("field [mT]")");
   measured(Kind::any, "scale", "a unit in the header",
            "`file`: what a 1 is in a column without a unit.", "17.2 mm");
   measured(Kind::any, "uncertainty", "a column of the `file`",

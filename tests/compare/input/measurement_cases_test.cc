@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compare/input/case.h"
 #include "compare/models/registry.h"
@@ -235,6 +238,139 @@ TEST_F(MeasuredFiles, MayHaveAScaleUncertaintiesAndSteps) {
   EXPECT_DOUBLE_EQ(c.measured.measurements[1].uncertainty, 0.2e-3);
   EXPECT_EQ(c.measured.measurements[2].step, 0U);
   EXPECT_DOUBLE_EQ(c.measured.measurements[2].value, -2e-3);
+}
+
+constexpr const char* with_uncertainty = "file = \"a.csv\"\nuncertainty = \"0.1 mm\"\n";
+
+// Oracle: by hand; the forces of the case are 1, 2 and 4 mN. However the loads are written, each
+// value is that of its step.
+TEST_F(MeasuredFiles, AreMatchedToTheStepsByTheirLoads) {
+  for (const auto& [csv, more] : std::initializer_list<std::pair<std::string, std::string>>{
+           {"force [mN],value [mm]\n4,3\n1,1\n2,2\n", ""},
+           {"value [mm],F (uN)\n2,2000\n3,4e3\n1,1000.0\n", ""},
+           {"value [mm],x_mN\n3,4\n1,1\n2,2\n", ""},
+           {"value [mm],pull / N\n3,0.004\n1,0.001\n2,0.002\n", ""},
+           {"# units: value mm, x gf\nvalue,x\n3,0.407886486\n1,0.1019716213\n2,0.2039432426\n",
+            ""},
+           {"\xEF\xBB\xBFvalue [mm],x [mN],note,height [mm]\n3,4,a,16\n1,1,b,16\n2,2,c,16\n", ""},
+           {"value [mm],x\n3,4\n1,1\n2,2\n", "load = \"x [mN]\"\n"},
+           {"value [mm],x [mN],y [mN]\n3,4,1\n1,1,4\n2,2,2\n", "load = \"x\"\n"},
+           {"value [mm],x [mN],y [mN]\n3,4,7\n1,1,8\n2,2,9\n", ""}}) {
+    const input::Case c = read(csv, with_uncertainty + more);
+    ASSERT_EQ(c.measured.measurements.size(), 5U) << csv;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Measurement& m = c.measured.measurements[i + 1];
+      EXPECT_DOUBLE_EQ(m.value, 1e-3 * static_cast<double>(m.step + 1)) << csv;
+    }
+    ASSERT_EQ(c.measured.remarks.size(), 1U);
+    EXPECT_THAT(c.measured.remarks[0],
+                StartsWith("a.csv: 3 rows of tip.x from 'value', steps by '"));
+    EXPECT_THAT(c.measured.remarks[0], HasSubstr("(force)"));
+  }
+  EXPECT_THAT(read("value [mm],x [mN],t [s],\"why\"\n3,4,0,a\n1,1,1,b\n2,2,2,c\n", with_uncertainty)
+                  .measured.remarks.at(0),
+              HasSubstr("columns not read: 't [s]', 'why'"));
+}
+
+// No file is taken for one in the steps' order that may have its loads in it.
+TEST_F(MeasuredFiles, AreNotPairedByTheirOrderInSilence) {
+  const auto refused = [&](const std::string& csv, const std::string& more = "") {
+    return faults(csv, with_uncertainty + more);
+  };
+  EXPECT_THAT(
+      refused("x [mN],value [mm]\n4,3\n1,1\n3,2\n"),
+      StartsWith("a.csv:4:1: 3 mN in the column 'x [mN]' is the load of no step; force of the "
+                 "steps: 1 mN, 2 mN, 4 mN"));
+  EXPECT_THAT(refused("x [mN],value [mm]\n4,3\n1,1\n"),
+              StartsWith("a.csv:3:1: there is no row of step 1, force 2 mN"));
+  EXPECT_THAT(refused("x [mN],value [mm]\n4,3\n1,1\n2,2\n4,5\n"),
+              StartsWith("a.csv:5:1: there is a second row of the load 4 mN"));
+  EXPECT_THAT(refused("x [mN],y [mN],value [mm]\n4,1,3\n1,2,1\n2,4,2\n"),
+              StartsWith("a.csv:1:8: both 'x [mN]' (force) and 'y [mN]' (force) have the loads"));
+  EXPECT_THAT(refused("x,value [mm]\n1,1\n2,2\n4,3\n"),
+              StartsWith("a.csv:1:1: the column 'x' has numbers without a unit, which may be the "
+                         "loads: name it with its unit, such as \"x [mN]\", here or by load = \"x "
+                         "[mN]\" in the case"));
+  EXPECT_THAT(refused(",value [mm]\n1,1\n2,2\n4,3\n"),
+              StartsWith("a.csv:1:1: the column without a name has numbers without a unit"));
+  EXPECT_THAT(refused("\"1\",\"0,01\"\n\"2\",\"5,4\"\n\"4\",\"9,6\"\n"),
+              StartsWith("a.csv:1:1: there is no header above the numbers"));
+  EXPECT_THAT(refused("1,0.01\n2,5.4\n4,9.6\n"),
+              StartsWith("a.csv:1:1: there is no header above the numbers '1,0.01'"));
+  EXPECT_THAT(refused("x [mN],value [mm]\n4,\"9,6\"\n1,1\n2,2\n"),
+              StartsWith("a.csv:2:3: '9,6' is not a number"));
+  EXPECT_THAT(
+      refused("x [mN],value [mm]\n4,1\n1,1\n2,2\n", "load = \"y\"\n"),
+      StartsWith("a.csv:1:1: there is no column 'y', which 'load' names (others: 'x [mN]')"));
+  EXPECT_THAT(
+      refused("x [s],value [mm]\n4,1\n1,1\n2,2\n", "load = \"x\"\n"),
+      StartsWith("a.csv:1:1: the column 'x [s]' in s is of no number of the load: force (N)"));
+  EXPECT_THAT(refused("x [mN],value [mm]\n4,1\n1,1\n2,2\n", "load = \"x [N]\"\n"),
+              StartsWith("a.csv:1:1: the column 'x [mN]' has the unit mN, and N by 'load'"));
+  EXPECT_THAT(refused("step,value [mm]\n0,1\n1,1\n2,2\n", "load = \"in order\"\n"),
+              StartsWith("a.csv:1:1: the column 'step' contradicts the key 'load'"));
+}
+
+TEST_F(MeasuredFiles, MayStandInTheOrderOfTheStepsWhereThatIsSaid) {
+  for (const std::string csv :
+       {"x,value [mm]\n7,1\n7,2\n9,3\n", "x [mN],value [mm]\n4,1\n1,2\n2,3\n",
+        ",value [mm]\n7,1\n7,2\n9,3\n"}) {
+    const input::Case c = read(csv, std::string(with_uncertainty) + "load = \"in order\"\n");
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(c.measured.measurements[i + 1].step, i);
+      EXPECT_DOUBLE_EQ(c.measured.measurements[i + 1].value, 1e-3 * static_cast<double>(i + 1));
+    }
+    EXPECT_THAT(c.measured.remarks.at(0), HasSubstr("rows in the order of the load steps"));
+  }
+}
+
+// A path that comes back has a load twice: rows in its order, or a column `step`.
+TEST_F(MeasuredFiles, OfAPathThatComesBackStandInItsOrder) {
+  const auto steps = [&](const std::string& csv) {
+    folder_.write("a.csv", csv);
+    std::string text =
+        replaced(with(tip), "[\"1 mN\", \"2 mN\", \"4 mN\"]", "[\"1 mN\", \"2 mN\", \"1 mN\"]");
+    text += "[[measurement]]\nquantity = \"tip.x\"\nsource = \"b\"\n";
+    std::vector<std::size_t> result;
+    for (const Measurement& m :
+         input::read_case(text + with_uncertainty, (folder_.path() / "case.toml").string(),
+                          models::known())
+             .measured.measurements)
+      result.push_back(m.step);
+    return result;
+  };
+  EXPECT_THAT(steps("x [mN],value [mm]\n1,1\n2,2\n1,3\n"), testing::ElementsAre(2, 0, 1, 2));
+  EXPECT_THROW(steps("x [mN],value [mm]\n1,1\n1,2\n2,3\n"), InputError);
+}
+
+// A field is matched by a component or by its amount; a flow by the velocity that the case states.
+TEST_F(MeasuredFiles, KnowTheNumbersOfAFieldAndOfAFlow) {
+  const auto steps = [&](const std::string& load, const std::string& csv) {
+    folder_.write("a.csv", csv);
+    std::string text(good_case);
+    text = text.substr(0, text.find("[load]")) + load +
+           "[models]\nmechanics = [\"elastica\"]\n[[measurement]]\nquantity = \"tip.x\"\nsource = "
+           "\"b\"\n" +
+           with_uncertainty;
+    std::vector<std::size_t> result;
+    for (const Measurement& m :
+         input::read_case(text, (folder_.path() / "case.toml").string(), models::known())
+             .measured.measurements)
+      result.push_back(m.step);
+    return result;
+  };
+  const std::string field =
+      "[environment]\nuniform_field = [[\"0 T\", \"0 T\", \"0 T\"], [\"-3 mT\", \"0 T\", \"4 "
+      "mT\"], "
+      "[\"-6 mT\", \"0 T\", \"8 mT\"]]\n";
+  for (const char* loads : {"5,1\n0,0\n10,2\n", "-3,1\n0,0\n-6,2\n", "4,1\n0,0\n8,2\n"})
+    EXPECT_THAT(steps(field, std::string("B [mT],value [mm]\n") + loads),
+                testing::ElementsAre(1, 0, 2))
+        << loads;
+  EXPECT_THAT(steps(field, "B [G],value [mm]\n50,1\n0,0\n100,2\n"), testing::ElementsAre(1, 0, 2));
+  EXPECT_THAT(steps("[load]\ntype = \"flow\"\nvelocity = [\"0.1 m/s\", \"0.3 m/s\"]\n",
+                    "v [cm/s],value [mm]\n30,2\n10,1\n"),
+              testing::ElementsAre(1, 0));
 }
 
 TEST_F(MeasuredFiles, AreRefusedWithTheirPlace) {
