@@ -10,6 +10,7 @@
 #include "analytic/body/mesh_field.h"
 #include "analytic/sources/field_points.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::analytic::body {
 namespace {
@@ -100,6 +101,11 @@ Field field_of_charges(const SolidBody& body, double tolerance, std::span<const 
   });
 }
 
+[[noreturn]] void throw_inside(const Vector3& x) {
+  throw SolverError("the field inside the magnet was asked at " + sources::to_string(x) +
+                    ": with the push-forward R it is not available, take F");
+}
+
 Field field_of_moments(const SolidBody& body, double tolerance, std::span<const Vector3> points) {
   const std::vector<MagneticCell> cells = magnetic_cells(body);
   const PatchIntegral<3, Vector3> integral(
@@ -109,24 +115,41 @@ Field field_of_moments(const SolidBody& body, double tolerance, std::span<const 
       },
       "field of the dipoles R·M of the mesh");
   return sources::field_at(points, 1, [&](const Vector3& x) {
-    if (magnetization_at(body.nodes, cells, x))
-      throw SolverError("the field inside the magnet was asked at " + sources::to_string(x) +
-                        ": with the push-forward R it is not available, take F");
+    if (magnetization_at(body.nodes, cells, x)) throw_inside(x);
     return integral.field(x, Vector3::Zero(), tolerance);
   });
+}
+
+void require_body(const Deformation& deformation) {
+  if (!deformation.body)
+    throw InputError(
+        "the field model `mesh` was asked for a deformation without a body: only the "
+        "solid model has one, take `line` or `volume`");
 }
 
 }  // namespace
 
 Field MeshField::field(const Cilium&, const Deformation& deformation,
                        std::span<const Vector3> points) const {
-  if (!deformation.body)
-    throw InputError(
-        "the field model `mesh` was asked for a deformation without a body: only the "
-        "solid model has one, take `line` or `volume`");
+  require_body(deformation);
   return options_.push_forward == sources::PushForward::F
              ? field_of_charges(*deformation.body, options_.tolerance, points)
              : field_of_moments(*deformation.body, options_.tolerance, points);
+}
+
+std::vector<Vector3> MeshField::magnetization(const Cilium&, const Deformation& deformation,
+                                              std::span<const Vector3> points) const {
+  require_body(deformation);
+  const SolidBody& body = *deformation.body;
+  const std::vector<MagneticCell> cells = magnetic_cells(body);
+  std::vector<Vector3> result;
+  for (const Vector3& x : points) {
+    support::check_interruption();
+    const auto m = magnetization_at(body.nodes, cells, x);
+    if (m && options_.push_forward == sources::PushForward::R) throw_inside(x);
+    result.push_back(m.value_or(Vector3::Zero()));
+  }
+  return result;
 }
 
 }  // namespace ciliaval::analytic::body

@@ -17,6 +17,9 @@ class MeshField : public FieldModel {
   explicit MeshField(MeshOptions options = {}) : options_(options) {}
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override;
+  /// m = F·M/J; as for `field` there is none inside with the push-forward R.
+  std::vector<Vector3> magnetization(const Cilium& cilium, const Deformation& deformation,
+                                     std::span<const Vector3> points) const override;
 
  private:
   MeshOptions options_;

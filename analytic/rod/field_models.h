@@ -69,6 +69,9 @@ class VolumeField : public FieldModel {
   explicit VolumeField(VolumeOptions options = {}) : options_(options) {}
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override;
+  /// m = F·M/J inside the wedge's magnet. Stacked slices overlap, so that there is no M inside.
+  std::vector<Vector3> magnetization(const Cilium& cilium, const Deformation& deformation,
+                                     std::span<const Vector3> points) const override;
   /// ∂B_i/∂x_j (T/m) at points outside of the magnet: of the wedge by `closed_form`. Throws
   /// InputError for all else.
   std::vector<Matrix3> gradient(const Cilium& cilium, const Deformation& deformation,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "analytic/sources/adaptive_order.h"
 #include "analytic/sources/field_points.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 #include "problem/types.h"
 
 namespace ciliaval::analytic::rod {
@@ -78,6 +80,26 @@ Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
     require_off_the_rims(magnet.ends, x);
     return rod_field_by_quadrature(magnet, interior, options_.slices, options_.tolerance, x);
   });
+}
+
+std::vector<Vector3> VolumeField::magnetization(const Cilium& cilium,
+                                                const Deformation& deformation,
+                                                std::span<const Vector3> points) const {
+  const RodMagnet magnet = rod_magnet(cilium, deformation);
+  const bool is_wedge = options_.slices == VolumeOptions::Slices::wedge;
+  if (is_wedge) require_body(magnet);
+  const RodInterior interior(magnet);
+  std::vector<Vector3> result;
+  for (const Vector3& x : points) {
+    support::check_interruption();
+    const std::optional<Vector3> m = interior.magnetization_at(x);
+    if (m && !is_wedge)
+      throw InputError("the magnetisation of the model `volume` was asked at " +
+                       sources::to_string(x) +
+                       ", inside the magnet: its slices `stacked` overlap there, take `wedge`");
+    result.push_back(m.value_or(Vector3::Zero()));
+  }
+  return result;
 }
 
 std::vector<Matrix3> VolumeField::gradient(const Cilium& cilium, const Deformation& deformation,

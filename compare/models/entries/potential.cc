@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
 #include "compare/input/case_sections.h"
 #include "compare/input/case_toml.h"
 #include "compare/input/units.h"
 #include "compare/models/entries/values.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {
@@ -88,12 +91,27 @@ std::string write_plates(const input::ModelOptions& options) {
 class PotentialAndItsChanges : public FieldModel {
  public:
   explicit PotentialAndItsChanges(const PotentialOptions& options)
-      : potential_(options), changes_(options.push_forward) {}
+      : potential_(options), changes_(options.push_forward), plates_(options.plates) {}
   bool pointwise() const override { return potential_.pointwise(); }
   const FieldModel& for_differences() const override { return changes_; }
   Field field(const Cilium& cilium, const Deformation& deformation,
               std::span<const Vector3> points) const override {
     return potential_.field(cilium, deformation, points);
+  }
+  /// Of points in air alone: in permeable matter M depends on the solution.
+  std::vector<Vector3> magnetization(const Cilium& cilium, const Deformation& deformation,
+                                     std::span<const Vector3> points) const override {
+    std::vector<Vector3> result = changes_.magnetization(cilium, deformation, points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const bool is_in_plate = std::ranges::any_of(
+          plates_, [&](const PermeableBox& plate) { return plate.box.contains(points[i]); });
+      if (is_in_plate || !result[i].isZero(0))
+        throw InputError(fmt::format(
+            "the magnetisation of the model `potential` was asked at ({:g}, {:g}, {:g}) m, in the "
+            "magnet or in a plate: it is told in air alone",
+            points[i].x(), points[i].y(), points[i].z()));
+    }
+    return result;
   }
 
  private:
@@ -109,6 +127,11 @@ class PotentialAndItsChanges : public FieldModel {
       return deformation.body ? mesh_.field(cilium, deformation, points)
                               : volume_.field(cilium, deformation, points);
     }
+    std::vector<Vector3> magnetization(const Cilium& cilium, const Deformation& deformation,
+                                       std::span<const Vector3> points) const override {
+      return deformation.body ? mesh_.magnetization(cilium, deformation, points)
+                              : volume_.magnetization(cilium, deformation, points);
+    }
 
    private:
     analytic::body::MeshField mesh_;
@@ -117,6 +140,7 @@ class PotentialAndItsChanges : public FieldModel {
 
   fem::potential::Potential potential_;
   InVacuum changes_;
+  std::vector<PermeableBox> plates_;
 };
 
 }  // namespace
