@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-from collections.abc import Callable, Sequence
-from typing import Any, TypedDict
+from collections.abc import Callable, Iterable, Sequence
+from os import PathLike
+from typing import Any, SupportsFloat, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 Progress = Callable[[str], None]
+Number = SupportsFloat | str  # in SI units, or with its unit: "1 mN"
 
 __version__: str
 
@@ -19,29 +21,29 @@ class Segment:
     density: float
     def __init__(
         self,
-        length: float,
-        young_modulus: float,
-        poisson_ratio: float = 0.49,
+        length: Number,
+        young_modulus: Number,
+        poisson_ratio: Number = 0.49,
         magnetization: npt.ArrayLike = 0.0,
         name: str = "",
-        density: float = 0.0,
+        density: Number = 0.0,
     ) -> None: ...
 
 class Cilium:
-    def __init__(self, diameter: float, segments: Sequence[Segment]) -> None: ...
+    def __init__(self, diameter: Number, segments: Iterable[Segment]) -> None: ...
     @staticmethod
     def rectangle(
-        width: float, height: float, segments: Sequence[Segment], orientation: float = 0.0
+        width: Number, height: Number, segments: Iterable[Segment], orientation: Number = 0.0
     ) -> Cilium: ...
     @staticmethod
-    def tube(diameter: float, inner_diameter: float, segments: Sequence[Segment]) -> Cilium: ...
+    def tube(diameter: Number, inner_diameter: Number, segments: Iterable[Segment]) -> Cilium: ...
     @property
     def diameter(self) -> float: ...
     @property
     def sides(self) -> tuple[float, float] | None: ...
     @property
     def orientation(self) -> float: ...
-    def extent(self, azimuth: float = 0.0) -> float: ...
+    def extent(self, azimuth: Number = 0.0) -> float: ...
     @property
     def segments(self) -> list[Segment]: ...
     @property
@@ -51,7 +53,7 @@ class Magnet:
     @staticmethod
     def ball(
         position: npt.ArrayLike,
-        diameter: float,
+        diameter: Number,
         magnetization: npt.ArrayLike,
         axis: npt.ArrayLike = (0.0, 0.0, 1.0),
         name: str = "magnet",
@@ -59,8 +61,8 @@ class Magnet:
     @staticmethod
     def cylinder(
         position: npt.ArrayLike,
-        diameter: float,
-        length: float,
+        diameter: Number,
+        length: Number,
         magnetization: npt.ArrayLike,
         axis: npt.ArrayLike = (0.0, 0.0, 1.0),
         name: str = "magnet",
@@ -85,10 +87,10 @@ class Environment:
     def __init__(
         self,
         gravity: npt.ArrayLike = (0.0, 0.0, 0.0),
-        fluid_density: float = 0.0,
+        fluid_density: Number = 0.0,
         uniform_field: npt.ArrayLike = (0.0, 0.0, 0.0),
         magnetic_energy: str = "F",
-        magnets: Sequence[Magnet] = (),
+        magnets: Iterable[Magnet] = (),
     ) -> None: ...
     @property
     def magnets(self) -> list[Magnet]: ...
@@ -102,7 +104,7 @@ class Environment:
     def magnetic_energy(self) -> str: ...
 
 class Load:
-    def __init__(self, type: str, **parameters: float) -> None: ...
+    def __init__(self, type: str, **parameters: Number) -> None: ...
     @property
     def type(self) -> str: ...
     @property
@@ -159,6 +161,7 @@ class Shape:
     def field(self, points: npt.ArrayLike, model: str = "volume", **options: Any) -> FieldValues: ...
     def B(self, points: npt.ArrayLike, model: str = "volume", **options: Any) -> Array: ...
     def dB(self, points: npt.ArrayLike, model: str = "volume", **options: Any) -> Array: ...
+    def M(self, points: npt.ArrayLike, model: str = "volume", **options: Any) -> Array: ...
 
 class Batch(TypedDict, total=False):
     converged: npt.NDArray[np.bool_]
@@ -172,7 +175,7 @@ class Batch(TypedDict, total=False):
 class CaseFile:
     mechanics: list[str]
     fields: list[str]
-    def __init__(self, file: str) -> None: ...
+    def __init__(self, file: str | PathLike[str]) -> None: ...
     @property
     def name(self) -> str: ...
     @property
@@ -206,7 +209,7 @@ class StudyStore:
     def keep(self, point: int, mechanics: str, solution: str) -> None: ...
     def close(self) -> None: ...
 
-def surrounded(loads: Sequence[Load], environments: Sequence[Environment]) -> list[Load]: ...
+def surrounded(loads: Iterable[Load], environments: Sequence[Environment]) -> list[Load]: ...
 def bend_path(
     cilium: Cilium, loads: Sequence[Load], model: str, progress: Progress | None, **options: Any
 ) -> list[Shape]: ...

@@ -39,11 +39,12 @@ def bend(
     >>> shape = cv.bend(cv.Cilium(3e-3, [base, tip]), cv.Load("contact", force=1e-3, height=13e-3))
     >>> shape.dB([-1e-4, 2e-4, -1.55e-3])  # at a sensor, T  # doctest: +SKIP
     """
-    path = [load] if isinstance(load, Load) else list(load or [])
     is_one = load is None or isinstance(load, Load)
+    path = [] if load is None else [load] if is_one else load
     if environment is not None or load is None:
-        around = [environment] if isinstance(environment, Environment) else list(environment or [])
-        is_one = is_one and not isinstance(environment, Sequence)
+        is_same = environment is None or isinstance(environment, Environment)
+        around = [] if environment is None else [environment] if is_same else environment
+        is_one = is_one and is_same
         path = _core.surrounded(path, around)
     shapes = _core.bend_path(cilium, path, model, progress, **options)
     return shapes[0] if is_one else shapes
@@ -56,8 +57,8 @@ class Case:
     """
 
     def __init__(self, file: str | Path):
+        self._core = _core.CaseFile(file)
         self.file = Path(file)
-        self._core = _core.CaseFile(str(file))
 
     @property
     def name(self) -> str:
@@ -92,7 +93,7 @@ class Case:
 
     @mechanics.setter
     def mechanics(self, models: Sequence[str]) -> None:
-        self._core.mechanics = list(models)
+        self._core.mechanics = models
 
     @property
     def fields(self) -> list[str]:
@@ -101,7 +102,7 @@ class Case:
 
     @fields.setter
     def fields(self, models: Sequence[str]) -> None:
-        self._core.fields = list(models)
+        self._core.fields = models
 
     def toml(self) -> str:
         """The case with every value it uses, defaults included, in SI units."""

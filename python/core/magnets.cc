@@ -3,33 +3,31 @@
 
 #include <string>
 
+#include "compare/input/environment/magnet.h"
 #include "problem/error.h"
 #include "problem/surroundings/magnets/field.h"
 #include "problem/surroundings/magnets/magnet.h"
+#include "python/core/calls.h"
 #include "python/core/convert.h"
+#include "python/core/pickle.h"
 
 namespace ciliaval::python::core {
 namespace {
 
 namespace py = pybind11;
+namespace keys = compare::input::environment;
 using surroundings::magnets::Magnet;
 using surroundings::magnets::Shape;
 
-/// M in the magnet's own axes: along the third, or three components.
-Vector3 magnetization(const py::object& value) {
-  if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value))
-    return value.cast<double>() * Vector3::UnitZ();
-  return vector(value, "magnetization");
-}
-
-Magnet magnet(Shape shape, const std::string& name, const py::object& position, const py::object& M,
-              const py::object& axis) {
+/// A magnet without its sizes; M in its own axes, along the third or three components.
+Magnet magnet(Shape shape, const Text& name, const Array& position, const Array& M,
+              const Array& axis) {
   Magnet result;
-  result.name = name;
+  result.name = text(name, "name");
   result.shape = shape;
-  result.position = vector(position, "position");
-  result.magnetization = magnetization(M);
-  const Vector3 direction = vector(axis, "axis");
+  result.position = vector(position, keys::magnet_position);
+  result.magnetization = magnetization(M, keys::magnet_magnetization);
+  const Vector3 direction = vector(axis, keys::magnet_axis);
   if (direction.isZero(0)) throw InputError("the `axis` of a magnet must point somewhere");
   result.rotation = surroundings::magnets::turn_to(direction);
   return result;
@@ -38,6 +36,20 @@ Magnet magnet(Shape shape, const std::string& name, const py::object& position, 
 Magnet valid(Magnet magnet) {
   require_valid(magnet);
   return magnet;
+}
+
+py::object field_of_magnet(const Magnet& magnet, const Array& where) {
+  const std::vector<Vector3> at = points(where);
+  std::vector<Vector3> B(at.size());
+  {
+    const Call call;
+    const py::gil_scoped_release released;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      support::check_interruption();
+      B[i] = jet(magnet, at[i]).B;
+    }
+  }
+  return array(B);
 }
 
 }  // namespace
@@ -51,31 +63,31 @@ void bind_magnets(py::module_& module) {
       "in the magnet's own axes, whose third one is `axis`. Environment(magnets=[...]) has them.")
       .def_static(
           "ball",
-          [](const py::object& position, double diameter, const py::object& M,
-             const py::object& axis, const std::string& name) {
+          [](const Array& position, const Number& diameter, const Array& M, const Array& axis,
+             const Text& name) {
             Magnet result = magnet(Shape::ball, name, position, M, axis);
-            result.diameter = diameter;
+            result.diameter = number(diameter, keys::magnet_diameter);
             return valid(result);
           },
           py::arg("position"), py::arg("diameter"), py::arg("magnetization"), py::arg("axis") = up,
           py::arg("name") = "magnet")
       .def_static(
           "cylinder",
-          [](const py::object& position, double diameter, double length, const py::object& M,
-             const py::object& axis, const std::string& name) {
+          [](const Array& position, const Number& diameter, const Number& length, const Array& M,
+             const Array& axis, const Text& name) {
             Magnet result = magnet(Shape::cylinder, name, position, M, axis);
-            result.diameter = diameter;
-            result.length = length;
+            result.diameter = number(diameter, keys::magnet_diameter);
+            result.length = number(length, keys::magnet_length);
             return valid(result);
           },
           "Magnetised along its axis.", py::arg("position"), py::arg("diameter"), py::arg("length"),
           py::arg("magnetization"), py::arg("axis") = up, py::arg("name") = "magnet")
       .def_static(
           "cuboid",
-          [](const py::object& position, const py::object& edges, const py::object& M,
-             const py::object& axis, const std::string& name) {
+          [](const Array& position, const Array& edges, const Array& M, const Array& axis,
+             const Text& name) {
             Magnet result = magnet(Shape::cuboid, name, position, M, axis);
-            result.edges = vector(edges, "edges");
+            result.edges = vector(edges, keys::magnet_edges);
             return valid(result);
           },
           "edges: its three lengths, m, the third along its axis.", py::arg("position"),
@@ -86,15 +98,11 @@ void bind_magnets(py::module_& module) {
       .def_property_readonly(
           "moment", [](const Magnet& of) { return array(surroundings::magnets::moment(of)); },
           "m, A m^2, (3,).")
+      .def("B", &field_of_magnet, "Flux density at points (n, 3) in m outside of it, (n, 3), T.",
+           py::arg("points"))
+      .def(pickled<Magnet>())
       .def(
-          "B",
-          [](const Magnet& of, const py::object& at) {
-            std::vector<Vector3> field;
-            for (const Vector3& x : points(at)) field.push_back(jet(of, x).B);
-            return array(field);
-          },
-          "Flux density at points (n, 3) in m outside of it, (n, 3), T.", py::arg("points"))
-      .def("__eq__", [](const Magnet& a, const Magnet& b) { return a == b; })
+          "__eq__", [](const Magnet& a, const Magnet& b) { return a == b; }, py::is_operator())
       .def("__repr__", [](const Magnet& of) {
         return fmt::format("Magnet.{}(name='{}', position=[{:.6g}, {:.6g}, {:.6g}])",
                            surroundings::magnets::name(of.shape), of.name, of.position.x(),

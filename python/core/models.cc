@@ -18,7 +18,9 @@
 #include "compare/models/run.h"
 #include "compare/output/results.h"
 #include "problem/error.h"
+#include "python/core/calls.h"
 #include "python/core/convert.h"
+#include "python/core/pickle.h"
 
 namespace ciliaval::python::core {
 namespace py = pybind11;
@@ -57,22 +59,25 @@ MechanicsResult step_of(const MechanicsResult& result, std::size_t i) {
   return one;
 }
 
-std::vector<BentShape> bend(const Cilium& cilium, const LoadPath& path, const std::string& model,
+std::vector<BentShape> bend(const py::object& rod, const py::object& loads, const Text& model_name,
                             const py::object& callback, const py::kwargs& options) {
+  const auto& cilium = one<Cilium>(rod, "cilium");
+  const auto path = list_of<Load>(loads, "load");
+  const std::string model = text(model_name, "model");
   const input::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), model);
   for (const Load& load : path)
     if (!entry.takes_environment && !surroundings::is_empty(load.environment()))
       throw InputError(fmt::format("{} takes no environment", model));
   input::Case problem;
   problem.cilium = cilium;
-  problem.load_path = path;
   problem.mechanics = {model};
   set_options(model, entry.options, options, problem.options);
   MechanicsResult result;
+  const Call call;
   {
-    const Progress shown = progress(callback);
+    const Progress told = progress(callback);
     const py::gil_scoped_release released;
-    result = entry.make(problem.options)->solve(cilium, path, shown);
+    result = entry.make(problem.options)->solve(cilium, path, told);
   }
   std::vector<BentShape> shapes;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -100,8 +105,31 @@ py::object with_mechanics(const models::AtSensors& own,
   return array(all);
 }
 
-py::dict field(const BentShape& shape, const py::object& where, const std::string& model,
+/// State of a shape: its problem as the model's id, cilium, load and options, and its result.
+py::tuple state(const BentShape& shape) {
+  py::dict options;
+  for (const auto& option : models::entry_of(models::mechanics_models(), shape.run.model).options)
+    options[py::str(std::string(option.name))] = option.get(shape.problem.options);
+  return py::make_tuple(build(), shape.run.model, packed(shape.problem.cilium),
+                        packed(shape.problem.load_path.front()), options, packed(shape.run.result));
+}
+
+BentShape shape_of(const py::tuple& state) {
+  require_own_build(state[0].cast<std::string>());
+  BentShape shape;
+  shape.run.model = state[1].cast<std::string>();
+  shape.problem.mechanics = {shape.run.model};
+  shape.problem.cilium = unpacked<Cilium>(state[2].cast<py::bytes>());
+  shape.problem.load_path = {unpacked<Load>(state[3].cast<py::bytes>())};
+  const auto& entry = models::entry_of(models::mechanics_models(), shape.run.model);
+  set_options(entry.id, entry.options, state[4].cast<py::dict>(), shape.problem.options);
+  shape.run.result = unpacked<MechanicsResult>(state[5].cast<py::bytes>());
+  return shape;
+}
+
+py::dict field(const BentShape& shape, const Array& where, const Text& model_name,
                const py::kwargs& options) {
+  const std::string model = text(model_name, "model");
   const input::FieldEntry& entry = models::entry_of(models::field_models(), model);
   input::Case problem = shape.problem;
   problem.sensors = points(where);
@@ -109,12 +137,14 @@ py::dict field(const BentShape& shape, const py::object& where, const std::strin
   set_options(model, entry.options, options, problem.options);
   static_cast<void>(shape.deformation());  // throws if there is none
   models::FieldRun run;
+  const Call call;
   {
-    const Progress shown = progress(py::none());
+    const Progress told = progress(py::none());
     const py::gil_scoped_release released;
-    run = models::run_field(model, *entry.make(problem.options), shape.run, problem, shown);
+    run = models::run_field(model, *entry.make(problem.options), shape.run, problem, told);
   }
-  if (!run.steps.front() || !run.steps.front()->any())
+  const bool is_missing = !run.steps.front() || !run.steps.front()->any();
+  if (is_missing && !problem.sensors.empty())
     throw SolverError(run.steps.front() ? run.steps.front()->failure : "there is no field");
   const models::FieldStep& step = *run.steps.front();
   py::dict result;
@@ -124,6 +154,23 @@ py::dict field(const BentShape& shape, const py::object& where, const std::strin
   result["dB_uncertainty"] = with_mechanics(step.dB_uncertainty, step.dB_from_mechanics);
   result["message"] = step.failure;
   return result;
+}
+
+py::object magnetization_at(const BentShape& shape, const Array& where, const Text& model_name,
+                            const py::kwargs& options) {
+  const std::string model = text(model_name, "model");
+  const input::FieldEntry& entry = models::entry_of(models::field_models(), model);
+  input::ModelOptions chosen = shape.problem.options;
+  set_options(model, entry.options, options, chosen);
+  const std::vector<Vector3> at = points(where);
+  const Deformation& deformation = shape.deformation();
+  std::vector<Vector3> M;
+  const Call call;
+  {
+    const py::gil_scoped_release released;
+    M = entry.make(chosen)->magnetization(shape.problem.cilium, deformation, at);
+  }
+  return array(M);
 }
 
 /// What a batch keeps of a design.
@@ -140,6 +187,7 @@ struct Design {
 Design solve(const MechanicsModel& mechanics, const FieldModel& field, const Cilium& cilium,
              const Load& load, const std::vector<Vector3>& where) {
   Design design;
+  support::check_interruption();
   try {
     const MechanicsResult result = mechanics.solve(cilium, {load});
     const MechanicsStep& step = result.steps.front();
@@ -159,19 +207,23 @@ Design solve(const MechanicsModel& mechanics, const FieldModel& field, const Cil
   return design;
 }
 
-py::dict batch(const std::vector<Cilium>& cilia, const std::vector<Load>& loads,
-               const py::object& where, const std::string& model, const std::string& field_model,
-               const py::kwargs& chosen) {
+py::dict batch(const py::object& cilium_list, const py::object& load_list, const Array& where,
+               const Text& model_name, const Text& field_name, const py::kwargs& chosen) {
+  const auto cilia = list_of<Cilium>(cilium_list, "cilia");
+  const auto loads = list_of<Load>(load_list, "loads");
+  const std::string model = text(model_name, "model");
   if (cilia.size() != loads.size())
     throw InputError(fmt::format("there are {} cilia and {} loads: give one load for each cilium",
                                  cilia.size(), loads.size()));
   const input::MechanicsEntry& mechanics = models::entry_of(models::mechanics_models(), model);
-  const input::FieldEntry& field = models::entry_of(models::field_models(), field_model);
+  const input::FieldEntry& field =
+      models::entry_of(models::field_models(), text(field_name, "field"));
   const std::vector<Vector3> at = where.is_none() ? std::vector<Vector3>{} : points(where);
   std::vector<Design> designs(cilia.size());
   input::ModelOptions options;
   set_options(model, mechanics.options, chosen, options);
   models::without_error_estimates(options);
+  const Call call;
   {
     const py::gil_scoped_release released;
     const auto solver = mechanics.make(options);
@@ -208,7 +260,8 @@ py::dict batch(const std::vector<Cilium>& cilia, const std::vector<Load>& loads,
   result["tip_angle"] = numbers(&Design::tip_angle);
   result["applied_force"] = numbers(&Design::applied_force);
   result["slip_off"] = numbers(&Design::slip_off);
-  if (!at.empty()) result["B"] = array(std::move(B), {n, static_cast<py::ssize_t>(at.size()), 3});
+  if (!where.is_none())
+    result["B"] = array(std::move(B), {n, static_cast<py::ssize_t>(at.size()), 3});
   result["message"] = messages;
   return result;
 }
@@ -285,10 +338,16 @@ void bind_models(py::module_& module) {
       .def_property_readonly(
           "magnet_forces",
           [](const BentShape& s) {
+            std::vector<models::MagnetForce> forces;
+            const Call call;
+            {
+              const py::gil_scoped_release released;
+              forces = models::forces_on_magnets(s.problem.cilium, s.step());
+            }
             py::dict result;
-            for (const auto& one : models::forces_on_magnets(s.problem.cilium, s.step()))
-              result[py::str(one.name)] = py::dict(py::arg("force") = array(one.force),
-                                                   py::arg("torque") = array(one.torque));
+            for (const models::MagnetForce& on : forces)
+              result[py::str(on.name)] = py::dict(py::arg("force") = array(on.force),
+                                                  py::arg("torque") = array(on.torque));
             return result;
           },
           "Of each magnet of the environment, by its name: force (3,), N, and torque about its\n"
@@ -314,21 +373,24 @@ void bind_models(py::module_& module) {
           "field", &field, py::arg("points"), py::arg("model") = "volume",
           "Field at points, (3,) or (n, 3), m, by a field model and its options: a dict of\n"
           "B, dB = B - B(straight), B_uncertainty, dB_uncertainty, each (n, 3), T, with NaN where\n"
-          "there is none, and message. Raises InputError, SolverError.")
+          "there is none or it is not known, and message, which says why. Raises InputError,\n"
+          "SolverError.")
       .def(
           "B",
-          [](const BentShape& s, const py::object& where, const std::string& model,
-             const py::kwargs& options) {
+          [](const BentShape& s, const Array& where, const Text& model, const py::kwargs& options) {
             return py::object(field(s, where, model, options)["B"]);
           },
           py::arg("points"), py::arg("model") = "volume", "B alone: (n, 3), T.")
       .def(
           "dB",
-          [](const BentShape& s, const py::object& where, const std::string& model,
-             const py::kwargs& options) {
+          [](const BentShape& s, const Array& where, const Text& model, const py::kwargs& options) {
             return py::object(field(s, where, model, options)["dB"]);
           },
           py::arg("points"), py::arg("model") = "volume", "B - B(straight): (n, 3), T.")
+      .def("M", &magnetization_at, py::arg("points"), py::arg("model") = "volume",
+           "Magnetisation of the bent magnet at points, as the field model has it: (n, 3), A/m, 0\n"
+           "outside of the magnet. H = B / mu_0 - M.")
+      .def(py::pickle(&state, &shape_of))
       .def("__repr__", [](const BentShape& s) {
         return s.step().deformation
                    ? fmt::format("<Shape by {}: tip ({:.4g}, {:.4g}, {:.4g}) mm>", s.run.model,

@@ -6,6 +6,7 @@
 
 #include "compare/output/provenance.h"
 #include "problem/error.h"
+#include "python/core/calls.h"
 #include "python/core/convert.h"
 
 namespace py = pybind11;
@@ -30,6 +31,7 @@ PYBIND11_MODULE(_core, module) {
     }
   });
   module.attr("__version__") = compare::output::provenance("").version;
+  python::core::bind_calls(module);
   python::core::bind_array(module);
   python::core::bind_problem(module);
   python::core::bind_models(module);

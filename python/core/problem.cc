@@ -5,25 +5,42 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "compare/input/case_keys.h"
 #include "compare/input/environment/environment.h"
 #include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/load.h"
 #include "python/core/convert.h"
+#include "python/core/pickle.h"
 
 namespace ciliaval::python::core {
 namespace py = pybind11;
+namespace key = compare::input::key;
 namespace names = compare::input::environment;
 namespace {
 
 using surroundings::Environment;
 
-Load load(const std::string& type, const py::kwargs& parameters) {
+/// A parameter of a load, of which some might give a list.
+double parameter_value(py::handle value, const QuantityKey& key) {
+  const bool is_list =
+      !PyUnicode_Check(value.ptr()) && !as_number(value) && py::isinstance<py::sequence>(value);
+  if (is_list)
+    throw InputError(
+        fmt::format("`{}` of a load is one {}, not {}: make a Load of each; bend() takes a list of "
+                    "loads",
+                    key.name, key.quantity.name, shown(value)));
+  return number(value, key);
+}
+
+Load load(const Text& type_name, const py::kwargs& parameters) {
+  const std::string type = text(type_name, "type");
   const LoadType* found = find_load_type(type);
   if (found == nullptr) {
     std::string known;
@@ -43,7 +60,7 @@ Load load(const std::string& type, const py::kwargs& parameters) {
       throw InputError(
           fmt::format("a load of type `{}` has no `{}`; it has: {}", type, name, expected));
     result.set_value(static_cast<std::size_t>(at - found->parameters.begin()),
-                     value.cast<double>());
+                     parameter_value(value, at->key));
   }
   for (const auto& parameter : found->parameters)
     if (parameter.key.fallback.empty() &&
@@ -53,25 +70,28 @@ Load load(const std::string& type, const py::kwargs& parameters) {
   return result;
 }
 
-Environment environment(const py::object& gravity, double fluid_density,
-                        const py::object& uniform_field, const std::string& magnetic_energy,
-                        const std::vector<surroundings::magnets::Magnet>& magnets) {
+Environment environment(const Array& gravity, const Number& fluid_density,
+                        const Array& uniform_field, const Text& energy_name,
+                        const py::object& magnets) {
+  const std::string magnetic_energy = text(energy_name, names::magnetic_energy);
   const auto energy = std::ranges::find(names::energy_names, magnetic_energy);
   if (energy == names::energy_names.end())
     throw InputError(fmt::format("`{}` is {}, not `{}`", names::magnetic_energy,
                                  fmt::join(names::energy_names, " or "), magnetic_energy));
-  return {.gravity = vector(gravity, "gravity"),
-          .fluid_density = fluid_density,
-          .uniform_field = vector(uniform_field, "uniform_field"),
+  return {.gravity = vector(gravity, names::gravity),
+          .fluid_density = number(fluid_density, names::fluid_density),
+          .uniform_field = vector(uniform_field, names::uniform_field),
           .magnetic_energy = energy == names::energy_names.begin()
                                  ? surroundings::MagneticEnergy::F
                                  : surroundings::MagneticEnergy::R,
-          .magnets = magnets};
+          .magnets = list_of<surroundings::magnets::Magnet>(magnets, "magnets")};
 }
 
 /// The loads in their environments, one for all or one for each; without loads those of nothing
 /// else.
-LoadPath surrounded(LoadPath loads, const std::vector<Environment>& environments) {
+LoadPath surrounded(const py::object& load_list, const py::object& environment_list) {
+  LoadPath loads = list_of<Load>(load_list, "loads");
+  const auto environments = list_of<Environment>(environment_list, "environment");
   if (environments.empty()) throw InputError("there is neither a load nor an environment");
   if (loads.empty()) return names::path_of(environments);
   const std::size_t steps = loads.size();
@@ -83,42 +103,40 @@ LoadPath surrounded(LoadPath loads, const std::vector<Environment>& environments
   return loads;
 }
 
-std::string text(const Vector3& vector) {
+std::string representation(const Vector3& vector) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", vector.x(), vector.y(), vector.z());
 }
 
-std::string text(const Environment& around) {
+std::string representation(const Environment& around) {
   return fmt::format(
       "Environment(gravity={}, fluid_density={:.6g}, uniform_field={}, magnetic_energy='{}')",
-      text(around.gravity), around.fluid_density, text(around.uniform_field),
+      representation(around.gravity), around.fluid_density, representation(around.uniform_field),
       names::name(around.magnetic_energy));
 }
 
-std::string text(const Load& load) {
+std::string representation(const Load& load) {
   std::string parameters;
   for (std::size_t i = 0; i < load.values().size(); ++i)
     parameters += fmt::format(", {}={:.6g}", load.type().parameters[i].key.name, load.values()[i]);
   const std::string around = surroundings::is_empty(load.environment())
                                  ? ""
-                                 : fmt::format(" in {}", text(load.environment()));
+                                 : fmt::format(" in {}", representation(load.environment()));
   return fmt::format("Load('{}'{}){}", load.type().name, parameters, around);
 }
 
-std::string text(const Segment& segment) {
+std::string representation(const Segment& segment) {
   const Vector3 M = magnetization(segment);
   return fmt::format(
       "Segment(length={:.6g}, young_modulus={:.6g}, poisson_ratio={:.6g}, magnetization={}, "
       "name='{}', density={:.6g})",
       segment.length, segment.young_modulus, segment.poisson_ratio,
-      M.head<2>().isZero(0) ? fmt::format("{:.6g}", M.z()) : text(M), segment.name,
+      M.head<2>().isZero(0) ? fmt::format("{:.6g}", M.z()) : representation(M), segment.name,
       segment.density);
 }
 
 /// Along the axis, or three components.
-void set_magnetization(Segment& segment, const py::object& value) {
-  const bool is_axial = py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value);
-  const Vector3 M =
-      is_axial ? Vector3(value.cast<double>() * Vector3::UnitZ()) : vector(value, "magnetization");
+void set_magnetization(Segment& segment, const Array& value) {
+  const Vector3 M = magnetization(value, key::magnetization);
   segment.transverse_magnetization = {M.x(), M.y()};
   segment.magnetization = M.z();
 }
@@ -129,10 +147,10 @@ py::object get_magnetization(const Segment& segment) {
   return py::make_tuple(M.x(), M.y(), M.z());
 }
 
-std::string text(const Cilium& cilium) {
+std::string representation(const Cilium& cilium) {
   std::string segments;
   for (const Segment& segment : cilium.segments)
-    segments += (segments.empty() ? "" : ", ") + text(segment);
+    segments += (segments.empty() ? "" : ", ") + representation(segment);
   const CrossSection& section = cilium.section;
   switch (section.shape) {
     case CrossSection::Shape::rectangle:
@@ -145,6 +163,16 @@ std::string text(const Cilium& cilium) {
     default:
       return fmt::format("Cilium(diameter={:.6g}, segments=[{}])", cilium.diameter, segments);
   }
+}
+
+/// A number of a segment as an attribute.
+template <double Segment::*member>
+double get(const Segment& segment) {
+  return segment.*member;
+}
+template <double Segment::*member, const QuantityKey& key>
+void set(Segment& segment, const Number& value) {
+  segment.*member = number(value, key);
 }
 
 Cilium valid(Cilium cilium) {
@@ -162,49 +190,63 @@ void bind_problem(py::module_& module) {
       "length in m, young_modulus in Pa, poisson_ratio, magnetization M along the\n"
       "axis in A/m (M = B_r / mu_0; 0: not magnetic) or its three components, name\n"
       "for people, density in kg/m^3 (0: not known), which gravity needs.")
-      .def(py::init([](double length, double young_modulus, double poisson_ratio,
-                       const py::object& M, const std::string& name, double density) {
-             Segment segment{name, length, young_modulus, poisson_ratio, 0, density};
+      .def(py::init([](const Number& length, const Number& young_modulus,
+                       const Number& poisson_ratio, const Array& M, const Text& name,
+                       const Number& density) {
+             Segment segment{text(name, "name"),
+                             number(length, key::segment_length),
+                             number(young_modulus, key::young_modulus),
+                             number(poisson_ratio, key::poisson_ratio),
+                             0,
+                             number(density, key::density)};
              set_magnetization(segment, M);
              return segment;
            }),
            py::arg("length"), py::arg("young_modulus"), py::arg("poisson_ratio") = 0.49,
            py::arg("magnetization") = 0.0, py::arg("name") = "", py::arg("density") = 0.0)
-      .def_readwrite("length", &Segment::length)
-      .def_readwrite("young_modulus", &Segment::young_modulus)
-      .def_readwrite("poisson_ratio", &Segment::poisson_ratio)
+      .def_property("length", &get<&Segment::length>, &set<&Segment::length, key::segment_length>)
+      .def_property("young_modulus", &get<&Segment::young_modulus>,
+                    &set<&Segment::young_modulus, key::young_modulus>)
+      .def_property("poisson_ratio", &get<&Segment::poisson_ratio>,
+                    &set<&Segment::poisson_ratio, key::poisson_ratio>)
       .def_property("magnetization", &get_magnetization, &set_magnetization)
-      .def_readwrite("name", &Segment::name)
-      .def_readwrite("density", &Segment::density)
-      .def("__repr__", [](const Segment& segment) { return text(segment); });
+      .def_property(
+          "name", [](const Segment& segment) { return segment.name; },
+          [](Segment& segment, const Text& name) { segment.name = text(name, "name"); })
+      .def_property("density", &get<&Segment::density>, &set<&Segment::density, key::density>)
+      .def(pickled<Segment>())
+      .def("__repr__", [](const Segment& segment) { return representation(segment); });
 
   py::class_<Cilium>(module, "Cilium",
                      "A straight cylinder of segments, from the base up. diameter in m.\n"
                      "Cilium.rectangle and Cilium.tube have other sections.\n\n"
                      "Raises InputError if a number is impossible.")
-      .def(py::init([](double diameter, std::vector<Segment> segments) {
-             return valid({diameter, std::move(segments)});
-           }),
-           py::arg("diameter"), py::arg("segments"))
+      .def(
+          py::init([](const Number& diameter, const py::object& segments) {
+            return valid({number(diameter, key::diameter), list_of<Segment>(segments, "segments")});
+          }),
+          py::arg("diameter"), py::arg("segments"))
       .def_static(
           "rectangle",
-          [](double width, double height, std::vector<Segment> segments, double orientation) {
+          [](const Number& width, const Number& height, const py::object& segments,
+             const Number& orientation) {
             return valid({0,
-                          std::move(segments),
+                          list_of<Segment>(segments, "segments"),
                           {.shape = CrossSection::Shape::rectangle,
-                           .width = width,
-                           .height = height,
-                           .orientation = orientation}});
+                           .width = number(width, key::section_width),
+                           .height = number(height, key::section_height),
+                           .orientation = number(orientation, key::section_orientation)}});
           },
           "Of rectangular section: width along x and height along y, m, turned by orientation, "
           "rad.",
           py::arg("width"), py::arg("height"), py::arg("segments"), py::arg("orientation") = 0.0)
       .def_static(
           "tube",
-          [](double diameter, double inner_diameter, std::vector<Segment> segments) {
-            return valid({diameter,
-                          std::move(segments),
-                          {.shape = CrossSection::Shape::tube, .inner_diameter = inner_diameter}});
+          [](const Number& diameter, const Number& inner_diameter, const py::object& segments) {
+            return valid({number(diameter, key::diameter),
+                          list_of<Segment>(segments, "segments"),
+                          {.shape = CrossSection::Shape::tube,
+                           .inner_diameter = number(inner_diameter, key::section_inner_diameter)}});
           },
           "A tube: outer and inner diameter, m.", py::arg("diameter"), py::arg("inner_diameter"),
           py::arg("segments"))
@@ -220,11 +262,16 @@ void bind_problem(py::module_& module) {
       .def_property_readonly(
           "orientation", [](const Cilium& cilium) { return cilium.section.orientation; },
           "Turn of a rectangle about z, rad.")
-      .def("extent", &Cilium::extent, "Extent across the axis along an azimuth, m.",
-           py::arg("azimuth") = 0.0)
+      .def(
+          "extent",
+          [](const Cilium& cilium, const Number& azimuth) {
+            return cilium.extent(number(azimuth, "azimuth", quantity::angle));
+          },
+          "Extent across the axis along an azimuth, m.", py::arg("azimuth") = 0.0)
       .def_property_readonly("segments", [](const Cilium& cilium) { return cilium.segments; })
       .def_property_readonly("length", &Cilium::length, "L, the sum of the lengths, m.")
-      .def("__repr__", [](const Cilium& cilium) { return text(cilium); });
+      .def(pickled<Cilium>())
+      .def("__repr__", [](const Cilium& cilium) { return representation(cilium); });
 
   py::class_<Environment>(
       module, "Environment",
@@ -233,8 +280,7 @@ void bind_problem(py::module_& module) {
       "magnetic_energy the field acts: 'F', -(F M).B_0, or 'R', -(R M).B_0, and magnets beside it.")
       .def(py::init(&environment), py::arg("gravity") = py::make_tuple(0.0, 0.0, 0.0),
            py::arg("fluid_density") = 0.0, py::arg("uniform_field") = py::make_tuple(0.0, 0.0, 0.0),
-           py::arg("magnetic_energy") = "F",
-           py::arg("magnets") = std::vector<surroundings::magnets::Magnet>{})
+           py::arg("magnetic_energy") = "F", py::arg("magnets") = py::tuple())
       .def_readonly("magnets", &Environment::magnets)
       .def_property_readonly("gravity", [](const Environment& of) { return array(of.gravity); })
       .def_readonly("fluid_density", &Environment::fluid_density)
@@ -243,8 +289,11 @@ void bind_problem(py::module_& module) {
       .def_property_readonly(
           "magnetic_energy",
           [](const Environment& of) { return std::string(names::name(of.magnetic_energy)); })
-      .def("__eq__", [](const Environment& a, const Environment& b) { return a == b; })
-      .def("__repr__", [](const Environment& of) { return text(of); });
+      .def(
+          "__eq__", [](const Environment& a, const Environment& b) { return a == b; },
+          py::is_operator())
+      .def(pickled<Environment>())
+      .def("__repr__", [](const Environment& of) { return representation(of); });
 
   py::class_<Load>(module, "Load",
                    "A load by its type and parameters, in SI units:\n"
@@ -261,7 +310,8 @@ void bind_problem(py::module_& module) {
                              })
       .def_property_readonly("environment", &Load::environment,
                              "What surrounds the cilium under this load, besides it.")
-      .def("__repr__", [](const Load& of) { return text(of); });
+      .def(pickled<Load>())
+      .def("__repr__", [](const Load& of) { return representation(of); });
 
   module.def("surrounded", &surrounded, py::arg("loads"), py::arg("environments"));
 

@@ -20,6 +20,7 @@
 #include "compare/study/sweep.h"
 #include "problem/error.h"
 #include "problem/support/fingerprint.h"
+#include "python/core/calls.h"
 #include "python/core/convert.h"
 
 namespace ciliaval::python::core {
@@ -43,8 +44,8 @@ struct StudyFile {
   fs::path file;
   study::Study study;
 
-  explicit StudyFile(const std::string& name)
-      : file(name), study(study::reader::read_study(file)) {}
+  explicit StudyFile(const Text& name)
+      : file(file_name(name, "file")), study(study::reader::read_study(file)) {}
 
   /// Of the program too.
   support::Fingerprint fingerprint() const {
@@ -62,6 +63,7 @@ struct StudyFile {
       solutions[i] = to_bytes(evaluate(study, study.case_at(point), mechanics,
                                        models::mechanics_models(), models::field_models()));
     };
+    const Call call;
     const py::gil_scoped_release released;
     if (tasks.size() == 1)
       solve_one(0);  // a model that uses the cores itself stays in this thread
@@ -107,7 +109,7 @@ class StudyStore {
 
 void bind_study(py::module_& module) {
   py::class_<StudyFile>(module, "StudyFile")
-      .def(py::init<const std::string&>(), py::arg("file"))
+      .def(py::init<const Text&>(), py::arg("file"))
       .def_property_readonly("name", [](const StudyFile& of) { return of.study.name; })
       .def_property_readonly("optimises",
                              [](const StudyFile& of) { return of.study.optimisation.has_value(); })

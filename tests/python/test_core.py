@@ -183,6 +183,25 @@ class Bend(unittest.TestCase):
             shape.tip  # noqa: B018
 
 
+    def test_a_magnet_that_pulls_the_cilium_in_is_a_result(self):
+        brick = cv.Magnet.cuboid(
+            [12e-3, 0, 20e-3], [6e-3, 4e-3, 5e-3], 1.2 / (4e-7 * np.pi), axis=[1, 0, 0], name="brick"
+        )
+        shape = cv.bend(
+            paper_cilium(), model="beam", environment=cv.Environment(magnets=[brick])
+        )
+        self.assertEqual(shape.status, "pulled_in")
+        self.assertTrue(0 < shape.pull_in["fraction"] < 1)
+        self.assertEqual(shape.pull_in["magnet"], "brick")
+        self.assertEqual(shape.pull_in["tip"].shape, (3,))
+        fractions, eigenvalues = shape.pull_in["approach"].T
+        self.assertTrue((np.diff(fractions) > 0).all())
+        self.assertLess(abs(eigenvalues[-1]), 1e-2)
+        with self.assertRaisesRegex(cv.SolverError, "pulled_in"):
+            shape.tip  # noqa: B018
+        self.assertIsNone(cv.bend(paper_cilium(), contact(1e-3)).pull_in)
+
+
 class BadInput(unittest.TestCase):
     def test_is_refused_with_what_there_is(self):
         cilium = paper_cilium()
@@ -261,6 +280,27 @@ class Process(unittest.TestCase):
     def test_what_only_reads_results_does_not_load_the_models(self):
         program = "import sys, ciliaval.errors, ciliaval; assert 'ciliaval._core' not in sys.modules"
         subprocess.run([sys.executable, "-c", program], check=True)
+
+    def test_a_path_of_many_loads_takes_memory_in_proportion(self):
+        program = textwrap.dedent(
+            """
+            import ciliaval as cv
+            from test_core import contact, paper_cilium
+            def pages():
+                return int(open("/proc/self/statm").read().split()[1])
+            def pages_per_load(count):
+                before = pages()
+                shapes = cv.bend(paper_cilium(), [contact(1e-3)] * count)
+                return (pages() - before) / count
+            print(pages_per_load(500), pages_per_load(3000))
+            """
+        )
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join([*sys.path])}
+        done = subprocess.run(
+            [sys.executable, "-c", program], env=environment, capture_output=True, check=True, text=True
+        )
+        few, many = map(float, done.stdout.split())
+        self.assertLess(many, 1.5 * few)
 
     def test_progress_is_told_and_an_exception_in_it_ends_the_solution(self):
         lines = []
