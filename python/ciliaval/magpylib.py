@@ -15,18 +15,24 @@ VACUUM_PERMEABILITY = 4e-7 * np.pi  # H/m, as in the paper
 def source(shape: Shape, model: str = "volume", **options: Any):
     """A magpylib.misc.CustomSource of the bent magnet, in the frame of the cilium.
 
-    B is that of the field model. H is B/mu_0: outside the magnet alone. Units are magpylib's: SI
-    from version 5 on; mm, mT and kA/m before. Raises ImportError without magpylib.
+    B is that of the field model, M the magnetisation that the model has (Shape.M), J = mu_0 M and
+    H = B/mu_0 - M. Units are magpylib's: SI from version 5 on; mm, mT and kA/m before. Raises
+    ImportError without magpylib.
     """
     import magpylib
 
     is_si = int(magpylib.__version__.split(".")[0]) >= 5
     length, flux, strength = (1.0, 1.0, 1.0) if is_si else (1e-3, 1e3, 1e-3)
 
-    def field(quantity: str, observers):
-        if quantity not in ("B", "H"):
-            return None  # magpylib asks which quantities there are
-        B = shape.B(np.asarray(observers, dtype=float) * length, model, **options)
-        return B * flux if quantity == "B" else B / VACUUM_PERMEABILITY * strength
+    # magpylib asks for these names of the arguments.
+    def field_func(field: str, observers):
+        points = np.asarray(observers, dtype=float) * length
+        B = shape.B(points, model, **options) if field in ("B", "H") else None
+        if field == "B":
+            return B * flux
+        M = shape.M(points, model, **options)
+        if field == "H":
+            return (B / VACUUM_PERMEABILITY - M) * strength
+        return M * strength if field == "M" else VACUUM_PERMEABILITY * M * flux
 
-    return magpylib.misc.CustomSource(field_func=field)
+    return magpylib.misc.CustomSource(field_func=field_func)
