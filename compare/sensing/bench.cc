@@ -110,8 +110,12 @@ class Simulation {
 Simulation::Simulation(const Bench& bench, const Progress& progress) : bench_(bench) {
   double largest = 0;
   for (const Load& load : bench.problem.load_path) largest = std::max(largest, magnitude(load));
-  model_shapes_ = shapes_up_to(bench.problem, bench.models.mechanics, beyond_the_largest * largest,
-                               with_prefix(progress, bench.models.mechanics + ": "));
+  model_shapes_ = shapes_within(bench.problem, bench.models.mechanics, beyond_the_largest * largest,
+                                with_prefix(progress, bench.models.mechanics + ": "));
+  if (model_shapes_.largest() < largest)
+    throw SolverError(fmt::format("no shape under the bench's largest load, {:g} {}: {}", largest,
+                                  magnitude_unit(bench.problem.load_path.front()),
+                                  model_shapes_.limit));
   response_ = std::make_unique<Response>(bench.problem, bench.models.field, model_shapes_,
                                          bench.problem.sensors);
   if (bench.truth.name() != bench.models.name()) {

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
@@ -17,24 +18,54 @@
 namespace ciliaval::compare::sensing {
 namespace {
 
-/// (ΔB(p) − reading)/σ as a function of p over the largest load: the solver's tolerances mean the
-/// same for newtons and metres.
+/// V^-1/2 of a reading: values times it have the covariance 1.
+class Whitening {
+ public:
+  /// `weights`: 1/σ of each component.
+  Whitening(const Eigen::VectorXd& weights, const ReadingError& error)
+      : weights_(weights / (error.common.size() == 0 ? std::sqrt(error.variance) : 1)) {
+    if (error.common.size() == 0) return;
+    const Eigen::Index sensors = error.common.rows();
+    factor_.compute(error.common + error.variance * Eigen::MatrixXd::Identity(sensors, sensors));
+  }
+
+  /// Of each column, the components of all sensors one after the other.
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& values) const {
+    Eigen::MatrixXd result = weights_.asDiagonal() * values;
+    if (factor_.rows() == 0) return result;
+    for (Eigen::Index j = 0; j < result.cols(); ++j) {
+      Eigen::Map<Eigen::Matrix3Xd> by_sensor(result.col(j).data(), 3, factor_.rows());
+      by_sensor = factor_.matrixL().solve(by_sensor.transpose()).transpose().eval();
+    }
+    return result;
+  }
+
+ private:
+  Eigen::VectorXd weights_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;  ///< of V over σ²; empty: V is diagonal
+};
+
+/// V^-1/2 (ΔB(p) − reading) as a function of p over the largest load: the solver's tolerances mean
+/// the same for newtons and metres.
 struct Misfit : Eigen::DenseFunctor<double> {
-  Misfit(const Response& r, const Eigen::VectorXd& w, const Eigen::VectorXd& read)
-      : DenseFunctor(2, static_cast<int>(read.size())), response(r), weights(w), reading(read) {}
+  Misfit(const Response& r, const Whitening& w, const Eigen::VectorXd& read)
+      : DenseFunctor(load_components, static_cast<int>(read.size())),
+        response(r),
+        whitened(w),
+        reading(read) {}
 
   int operator()(const InputType& x, ValueType& residuals) const {
-    residuals = weights.cwiseProduct(response.change(response.largest() * x) - reading);
+    residuals = whitened(response.change(response.largest() * x) - reading);
     return 0;
   }
   int df(const InputType& x, JacobianType& jacobian) const {
     const double scale = response.largest();
-    jacobian = scale * (weights.asDiagonal() * response.derivative(scale * x));
+    jacobian = scale * whitened(response.derivative(scale * x));
     return 0;
   }
 
   const Response& response;
-  const Eigen::VectorXd& weights;
+  const Whitening& whitened;
   const Eigen::VectorXd& reading;
 };
 
@@ -84,8 +115,7 @@ double SensedLoad::azimuth_interval() const {
   if (magnitude() == 0) return std::numbers::pi;
   const Vector2 across = Vector2(-load.y(), load.x()) / magnitude();
   const double angle = two_sided_95 * std::sqrt(across.dot(covariance * across)) / magnitude();
-  // Where the interval of the magnitude holds zero, the direction is not known.
-  return magnitude_interval() >= magnitude() ? std::numbers::pi : std::min(angle, std::numbers::pi);
+  return is_nothing() ? std::numbers::pi : std::min(angle, std::numbers::pi);
 }
 
 Inversion::Inversion(const Response& response, const Vector3& noise)
@@ -94,31 +124,31 @@ Inversion::Inversion(const Response& response, const Vector3& noise)
       starts_(loads_over(response.largest(), 8, 16)),
       start_changes_(weights_.size(), static_cast<Eigen::Index>(starts_.size())) {
   for (std::size_t i = 0; i < starts_.size(); ++i)
-    start_changes_.col(static_cast<Eigen::Index>(i)) =
-        weights_.cwiseProduct(response.change(starts_[i]));
+    start_changes_.col(static_cast<Eigen::Index>(i)) = response.change(starts_[i]);
 }
 
-SensedLoad Inversion::operator()(const Eigen::VectorXd& change) const {
+SensedLoad Inversion::operator()(const Eigen::VectorXd& change, const ReadingError& error) const {
   if (change.size() != weights_.size() || !change.allFinite())
     throw InputError(fmt::format("a reading has {} finite numbers", weights_.size()));
+  const Whitening whitened(weights_, error);
   Eigen::Index nearest = 0;
-  (start_changes_.colwise() - weights_.cwiseProduct(change))
-      .colwise()
-      .squaredNorm()
-      .minCoeff(&nearest);
+  whitened(start_changes_.colwise() - change).colwise().squaredNorm().minCoeff(&nearest);
   Eigen::VectorXd x = starts_[static_cast<std::size_t>(nearest)] / response_.largest();
-  Misfit misfit(response_, weights_, change);
+  Misfit misfit(response_, whitened, change);
   SensedLoad result;
   result.converged = minimise(misfit, x);
   result.load = x * response_.largest();
   result.beyond_range = result.magnitude() > response_.largest() * (1 + 1e-9);
-  const Eigen::VectorXd residuals = weights_.cwiseProduct(response_.change(result.load) - change);
-  result.chi_squared = residuals.squaredNorm();
-  const Eigen::MatrixX2d J = weights_.asDiagonal() * response_.derivative(result.load);
-  result.covariance = (J.transpose() * J).inverse();
-  const boost::math::chi_squared distribution(static_cast<double>(weights_.size() - 2));
-  result.misfit_probability =
-      boost::math::cdf(boost::math::complement(distribution, result.chi_squared));
+  result.chi_squared = whitened(response_.change(result.load) - change).squaredNorm();
+  const Eigen::MatrixXd J = whitened(response_.derivative(result.load));
+  result.covariance = Eigen::Matrix2d(J.transpose() * J).inverse();
+  const auto probability = [](double chi_squared, Eigen::Index freedom) {
+    const boost::math::chi_squared distribution(static_cast<double>(freedom));
+    return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, chi_squared)));
+  };
+  result.misfit_probability = probability(result.chi_squared, weights_.size() - load_components);
+  result.nothing_probability =
+      probability(whitened(change).squaredNorm() - result.chi_squared, load_components);
   return result;
 }
 

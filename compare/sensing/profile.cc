@@ -35,6 +35,7 @@ input::Case level_case(input::Case problem, const models::ModelPair& pair, doubl
   const SweepLoad first = problem.load_path.front().as<SweepLoad>().value();
   problem.mechanics = {pair.mechanics};
   problem.fields = {pair.field};
+  problem.external.clear();  // they are of the case's own path
   problem.load_path.clear();
   for (std::size_t i = 0; i < curve_points; ++i) {
     const double part = static_cast<double>(i) / (curve_points - 1);
@@ -53,12 +54,15 @@ Level level_of(const std::vector<HeightReading>& readings, std::size_t first, st
   Level level{first, last, 0, 0};
   const std::size_t margin = (last - first + 1) / 8;
   const auto n = static_cast<double>(last - first + 1 - 2 * margin);
-  double largest = 0;
+  double own = 0;  // m²
+  double common = 0;
   for (std::size_t i = first + margin; i <= last - margin; ++i) {
-    level.interference += readings[i].interference / n;
-    largest = std::max(largest, readings[i].interval);
+    const HeightReading& reading = readings[i];
+    level.interference += reading.interference / n;
+    own = std::max(own, std::pow(reading.interval, 2) - std::pow(reading.common_interval, 2));
+    common = std::max(common, std::pow(reading.common_interval, 2));
   }
-  level.interval = largest / std::sqrt(n);
+  level.interval = std::sqrt(own / n + common);
   return level;
 }
 
@@ -69,21 +73,26 @@ LevelCurve::LevelCurve(const input::Case& sweep, const models::ModelPair& pair, 
   const models::CaseResult result =
       models::run(level_case(sweep, pair, largest), models::mechanics_models(),
                   models::field_models(), progress);
-  for (std::size_t i = 0; i < curve_points; ++i) {
-    const MechanicsStep& step = result.mechanics.front().result.steps[i];
-    if (step.status != Status::converged)
-      throw SolverError(fmt::format("{}: no shape under an interference of {:g} m: {}",
-                                    pair.mechanics, magnitude(step.load), step.message));
+  const std::vector<MechanicsStep>& steps = result.mechanics.front().result.steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const MechanicsStep& step = steps[i];
+    if (step.status != Status::converged) {
+      limit_ = fmt::format("{}: no shape under an interference of {:g} m: {}", pair.mechanics,
+                           magnitude(step.load), step.message);
+      break;
+    }
     const std::size_t sensors = sweep.sensors.size();
+    const models::FieldStep& field = result.fields.front().steps.at(i).value();
     Eigen::VectorXd change(static_cast<Eigen::Index>(3 * sensors));
     for (std::size_t s = 0; s < sensors; ++s) {
-      const auto& dB = result.fields.front().steps[i]->dB[s];
-      if (!dB) throw SolverError(pair.name() + ": " + result.fields.front().steps[i]->failure);
+      const auto& dB = field.dB.at(s);
+      if (!dB) throw SolverError(pair.name() + ": " + field.failure);
       change.segment<3>(static_cast<Eigen::Index>(3 * s)) = *dB;
     }
     interference_.push_back(magnitude(step.load));
     change_.push_back(std::move(change));
   }
+  if (change_.size() < 2) throw SolverError(limit_);
 }
 
 LevelCurve::Place LevelCurve::nearest(const Eigen::VectorXd& change) const {
@@ -127,14 +136,15 @@ std::string_view to_string(HeightReading::Status status) {
 SensedProfile sense_profile(const LevelCurve& curve, const SensorReadings& readings, double noise) {
   SensedProfile profile;
   profile.noise = noise;
-  const double sigma = noise * readings.noise_factor();
   for (const Sample& sample : readings.samples) {
+    const double common = noise * std::sqrt(readings.common_variance(sample));
+    const double sigma = std::hypot(common, noise / std::sqrt(static_cast<double>(sample.rows)));
     const LevelCurve::Place place = curve.nearest(sample.change);
     const auto freedom = static_cast<double>(sample.change.size() - 1);
     const double far =
         sigma * std::sqrt(quantile(complement(boost::math::chi_squared(freedom), rare)));
     HeightReading reading{HeightReading::Status::level, place.interference,
-                          two_sided_95 * sigma / place.slope};
+                          two_sided_95 * sigma / place.slope, two_sided_95 * common / place.slope};
     if (place.is_end)
       reading.status = HeightReading::Status::beyond;
     else if (place.distance > far)

@@ -32,9 +32,14 @@ class LevelCurve {
   };
   Place nearest(const Eigen::VectorXd& change) const;
 
+  double largest() const { return interference_.back(); }  ///< interference, m
+  /// Why the curve ends below the largest interference asked for; empty: it does not.
+  const std::string& limit() const { return limit_; }
+
  private:
   std::vector<double> interference_;
   std::vector<Eigen::VectorXd> change_;
+  std::string limit_;
 };
 
 /// A reading as that of a level surface.
@@ -46,8 +51,9 @@ struct HeightReading {
     beyond      ///< the interference is larger than the largest computed
   };
   Status status = Status::level;
-  double interference = 0;  ///< m
-  double interval = 0;      ///< half-width of 95 % by the noise, m
+  double interference = 0;     ///< m
+  double interval = 0;         ///< half-width of 95 % by the noise, m
+  double common_interval = 0;  ///< the part of it that the readings have in common: the offset's, m
 };
 std::string_view to_string(HeightReading::Status status);
 
@@ -68,7 +74,8 @@ struct SensedProfile {
 };
 
 /// The readings one by one, and the levels among them: five or more in a row whose interferences
-/// differ by no more than their noise.
+/// differ by no more than their noise. The interval of a level's mean: the readings' own noise
+/// averages out, that of offset and background, which they have in common, does not.
 SensedProfile sense_profile(const LevelCurve& curve, const SensorReadings& readings, double noise);
 
 /// A table of the levels for people, with the steps between them and what is not known there.

@@ -2,9 +2,11 @@
 // A file of readings, less all offsets.
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -172,30 +174,79 @@ void check_unloaded(const logger::File& file, const Sorted& rows, const Unloaded
     faults.add({}, "there is no reading but of the unloaded cilium");
 }
 
+/// The mean of a sample's rows, less the background.
+struct MeanOfRows {
+  Eigen::VectorXd B;  ///< of all sensors one after the other, T
+  /// [sensor, mean of the background]: with which weights they were taken off.
+  Eigen::MatrixXd background;
+};
+
+/// The squares of rows (3 × rows) about their mean, weighted by V⁻¹, over σ²: χ² of 3 (rows − 1)
+/// degrees of freedom. Each row has the noise 1 of its own, and by W (rows × means) that of the
+/// background: V = I + W D Wᵀ, D the variances of its means. V⁻¹ = I − W (D⁻¹ + WᵀW)⁻¹ Wᵀ
+/// (Woodbury).
+double squares_about_mean(const Eigen::Matrix3Xd& rows, const Eigen::MatrixXd& W,
+                          const Eigen::VectorXd& inverse_D) {
+  const Eigen::MatrixXd x = (rows.colwise() - rows.rowwise().mean()).transpose();
+  // Rows of one azimuth have the background's error in common: it is gone with their mean.
+  if (W.cols() == 0 || (W.rowwise() - W.row(0)).isZero()) return x.squaredNorm();
+  const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd(inverse_D.asDiagonal()) +
+                                          W.transpose() * W);
+  const auto weighted = [&](const Eigen::MatrixXd& y) -> Eigen::MatrixXd {
+    return y - W * inner.solve(W.transpose() * y);
+  };
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(x.rows());
+  const Eigen::VectorXd of_ones = weighted(ones);
+  return x.cwiseProduct(weighted(x)).sum() -
+         (of_ones.transpose() * x).squaredNorm() / of_ones.sum();
+}
+
 /// The mean of each sensor's rows, each less the background at its azimuth. Adds their scatter.
-Eigen::VectorXd mean_of(const RowsOfSample& sample, const Background* background, Scatter& scatter,
-                        Faults& faults) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * sample.rows.size()));
-  std::vector<Vector3> read;
-  for (std::size_t s = 0; s < sample.rows.size(); ++s) {
-    read.clear();
-    for (const logger::Row* row : sample.rows[s]) {
-      read.push_back(row->B);
+MeanOfRows mean_of(const RowsOfSample& sample, const Background* background, Scatter& scatter,
+                   Faults& faults) {
+  const auto sensors = static_cast<Eigen::Index>(sample.rows.size());
+  const auto means =
+      static_cast<Eigen::Index>(background == nullptr ? 0 : background->mean_count());
+  MeanOfRows result{Eigen::VectorXd::Zero(3 * sensors), Eigen::MatrixXd::Zero(sensors, means)};
+  Eigen::VectorXd rows_of_mean(means);
+  for (Eigen::Index k = 0; k < means; ++k)
+    rows_of_mean[k] = static_cast<double>(background->rows(static_cast<std::size_t>(k)));
+  for (Eigen::Index s = 0; s < sensors; ++s) {
+    const auto sensor = static_cast<std::size_t>(s);
+    const auto count = static_cast<Eigen::Index>(sample.rows[sensor].size());
+    Eigen::Matrix3Xd read(3, count);
+    Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(count, means);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const logger::Row& row = *sample.rows[sensor][static_cast<std::size_t>(i)];
+      read.col(i) = row.B;
       if (background == nullptr) continue;
-      if (const auto ambient = background->at(row->azimuth, s))
-        read.back() -= *ambient;
-      else
-        faults.add(row->place,
+      const auto parts = background->parts(row.azimuth, sensor);
+      if (!parts) {
+        faults.add(row.place,
                    "the background has a single azimuth, which is not this row's: measure it at "
                    "more");
+        continue;
+      }
+      read.col(i) -= *background->at(row.azimuth, sensor);
+      for (const Background::Part& part : *parts)
+        weights(i, static_cast<Eigen::Index>(part.mean)) += part.weight;
     }
-    Vector3 mean = Vector3::Zero();
-    for (const Vector3& B : read) mean += B / static_cast<double>(read.size());
-    for (const Vector3& B : read) scatter.squares += (B - mean).squaredNorm();
-    scatter.freedom += 3 * (read.size() - 1);
-    result.segment<3>(static_cast<Eigen::Index>(3 * s)) = mean;
+    result.B.segment<3>(3 * s) = read.rowwise().mean();
+    if (means > 0) result.background.row(s) = weights.colwise().mean();
+    if (count > 1) scatter.squares += squares_about_mean(read, weights, rows_of_mean);
+    scatter.freedom += 3 * static_cast<std::size_t>(count - 1);
   }
   return result;
+}
+
+/// The covariance of the sensors' ΔB by the background's noise, over σ²: A D Aᵀ with A the weights
+/// of its means in ΔB and D = diag(1/rows). Empty without a background.
+Eigen::MatrixXd background_covariance(const Eigen::MatrixXd& A, const Background* background) {
+  if (background == nullptr) return {};
+  Eigen::VectorXd D(A.cols());
+  for (Eigen::Index k = 0; k < A.cols(); ++k)
+    D[k] = 1 / static_cast<double>(background->rows(static_cast<std::size_t>(k)));
+  return A * D.asDiagonal() * A.transpose();
 }
 
 std::size_t fewest_rows(const RowsOfSample& sample) {
@@ -221,7 +272,7 @@ SensorReadings readings_of(const logger::File& file, const Background* backgroun
   if (faults.empty()) check_unloaded(file, rows, part, options.unloaded, faults);
   if (!faults.empty()) return result;
   result.measured_offset = file.is_change;
-  Eigen::VectorXd offset = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * sensors.size()));
+  std::optional<MeanOfRows> offset;
   if (!rows.unloaded.rows.front().empty()) {
     offset = mean_of(rows.unloaded, background, result.scatter, faults);
     const std::size_t count = fewest_rows(rows.unloaded);
@@ -231,8 +282,13 @@ SensorReadings readings_of(const logger::File& file, const Background* backgroun
   }
   result.samples.reserve(rows.samples.size());
   for (const RowsOfSample& of_sample : rows.samples) {
-    Sample sample{of_sample.name, mean_of(of_sample, background, result.scatter, faults) - offset,
-                  fewest_rows(of_sample)};
+    MeanOfRows mean = mean_of(of_sample, background, result.scatter, faults);
+    if (offset) {
+      mean.B -= offset->B;
+      mean.background -= offset->background;
+    }
+    Sample sample{of_sample.name, std::move(mean.B), fewest_rows(of_sample)};
+    sample.background = background_covariance(mean.background, background);
     if (file.has_time) sample.time = of_sample.rows.front().front()->time;
     result.samples.push_back(std::move(sample));
     if (faults.size() >= input::most_csv_faults) break;

@@ -19,8 +19,9 @@ namespace {
 constexpr std::size_t magnitude_intervals = 16;
 constexpr std::size_t fewest_angles = 16;
 constexpr std::size_t most_angles = 256;
-constexpr double enough = 1e-9;    ///< error between the angles, of the largest |ΔB|
-constexpr double too_much = 1e-3;  ///< … of the whole interpolation
+constexpr double enough = 1e-9;          ///< error between the angles, of the largest |ΔB|
+constexpr double too_much = 1e-3;        ///< … of the whole interpolation
+constexpr std::size_t most_ranges = 16;  ///< of loads, each below the one before
 constexpr std::size_t check_places[] = {1, 5, 10, 14};  ///< the intervals with a check
 
 Matrix3 turn(double angle) {
@@ -80,6 +81,46 @@ Eigen::Matrix3Xcd fourier(const Eigen::Matrix3Xd& values) {
   return result;
 }
 
+/// Magnitudes of loads in their order; whether each is a check or a node.
+using MagnitudePath = std::vector<std::pair<double, bool>>;
+
+/// The Chebyshev–Lobatto points of 0 … largest but 0, and checks between some of them.
+MagnitudePath magnitudes_up_to(double largest) {
+  const auto node = [&](std::size_t k) {
+    return largest / 2 *
+           (1 - std::cos(std::numbers::pi * static_cast<double>(k) / magnitude_intervals));
+  };
+  MagnitudePath path;
+  for (std::size_t k = 1; k < magnitude_intervals; ++k) path.emplace_back(node(k), false);
+  path.emplace_back(largest, false);
+  for (const std::size_t k : check_places) path.emplace_back((node(k) + node(k + 1)) / 2, true);
+  std::sort(path.begin(), path.end());
+  return path;
+}
+
+Shapes shapes_of(const MechanicsResult& result, const MagnitudePath& path, std::string limit) {
+  Shapes shapes;
+  shapes.limit = std::move(limit);
+  shapes.undeformed = result.undeformed;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto& [magnitude, is_check] = path[i];
+    (is_check ? shapes.checks : shapes.nodes).push_back(result.steps.at(i).deformation.value());
+    (is_check ? shapes.check_magnitudes : shapes.node_magnitudes).push_back(magnitude);
+  }
+  return shapes;
+}
+
+/// A range of loads below one without a shape: up to the slip-off, less what the model does not
+/// know of it; where this is not known, up to the last load with a shape, or the first of all.
+double range_below(const MechanicsStep& missing, double last) {
+  constexpr double rounding = 1e-6;
+  if (const auto limit = slip_off_limit(missing); limit && *limit > last) {
+    const double known = *limit * (1 - rounding) - missing.slip_off_uncertainty.value_or(0);
+    if (known > last && known < magnitude(missing.load)) return known;
+  }
+  return last > 0 ? last : magnitude(missing.load);
+}
+
 double largest_column(const Eigen::Matrix3Xd& values) {
   return values.cols() == 0 ? 0 : values.colwise().norm().maxCoeff();
 }
@@ -120,8 +161,8 @@ void require_load_to_sense(const input::Case& problem) {
         "magnetised along its axis");
 }
 
-Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
-                    const Progress& progress) {
+Shapes shapes_within(const input::Case& problem, const std::string& mechanics, double largest,
+                     const Progress& progress) {
   const models::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), mechanics);
   for (const auto& [option, mesh] : input::user_meshes({{entry}, {}}, problem.options))
     throw InputError("a solid with a mesh of the user is not the same from all sides: leave out " +
@@ -129,33 +170,36 @@ Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, do
   require_load_to_sense(problem);
   if (!(largest > 0) || !std::isfinite(largest))
     throw InputError("the largest load must be finite and positive");
-  Shapes shapes;
-  const auto node = [&](std::size_t k) {
-    return largest / 2 *
-           (1 - std::cos(std::numbers::pi * static_cast<double>(k) / magnitude_intervals));
-  };
-  std::vector<std::pair<double, bool>> path;
-  for (std::size_t k = 1; k < magnitude_intervals; ++k) path.emplace_back(node(k), false);
-  path.emplace_back(largest, false);
-  for (const std::size_t k : check_places) path.emplace_back((node(k) + node(k + 1)) / 2, true);
-  std::sort(path.begin(), path.end());
-  LoadPath loads;
-  for (const auto& [magnitude, is_check] : path)
-    loads.push_back(with_magnitude(with_azimuth(problem.load_path.front(), 0), magnitude));
   const auto model = entry.make(problem.options);
-  if (progress) progress({"starting", 0, loads.size()});
-  const MechanicsResult result = model->solve(problem.cilium, loads, progress);
-  shapes.undeformed = result.undeformed;
-  for (std::size_t i = 0; i < result.steps.size(); ++i) {
-    const MechanicsStep& step = result.steps[i];
-    if (!step.deformation)
-      throw SolverError(fmt::format(
-          "{}: no shape under {:g} {}, within the range of loads up to {:g} {} that is asked for: "
-          "{}",
-          mechanics, path[i].first, magnitude_unit(step.load), largest, magnitude_unit(step.load),
-          step.message));
-    (path[i].second ? shapes.checks : shapes.nodes).push_back(*step.deformation);
-    (path[i].second ? shapes.check_magnitudes : shapes.node_magnitudes).push_back(path[i].first);
+  std::string limit;
+  double range = largest;
+  for (std::size_t attempt = 0; attempt < most_ranges; ++attempt) {
+    const MagnitudePath path = magnitudes_up_to(range);
+    LoadPath loads;
+    for (const auto& [magnitude, is_check] : path)
+      loads.push_back(with_magnitude(with_azimuth(problem.load_path.front(), 0), magnitude));
+    if (progress) progress({"starting", 0, loads.size()});
+    const MechanicsResult result = model->solve(problem.cilium, loads, progress);
+    const auto missing = std::ranges::find_if(
+        result.steps, [](const MechanicsStep& step) { return !step.deformation; });
+    if (missing == result.steps.end()) return shapes_of(result, path, std::move(limit));
+    if (limit.empty()) limit = fmt::format("{}: {}", mechanics, missing->message);
+    const double last = missing == result.steps.begin() ? 0 : magnitude((missing - 1)->load);
+    range = range_below(*missing, last);
+  }
+  throw SolverError(fmt::format("no shape under {:g} {} or more: {}", range,
+                                magnitude_unit(problem.load_path.front()), limit));
+}
+
+Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
+                    const Progress& progress) {
+  Shapes shapes = shapes_within(problem, mechanics, largest, progress);
+  if (!shapes.limit.empty()) {
+    const std::string_view unit = magnitude_unit(problem.load_path.front());
+    throw SolverError(
+        fmt::format("no shape beyond {:g} {}, within the range of loads up to {:g} {} "
+                    "that is asked for: {}",
+                    shapes.largest(), unit, largest, unit, shapes.limit));
   }
   return shapes;
 }

@@ -33,15 +33,23 @@ struct Shapes {
   std::vector<Deformation> checks;      ///< between some of them
   std::vector<double> node_magnitudes;  ///< F, q or δ, as the load's type has it
   std::vector<double> check_magnitudes;
+  std::string limit;  ///< why they end below the largest load asked for; empty: they do not
+
+  double largest() const { return node_magnitudes.back(); }
 };
 
 /// Throws InputError unless the case has loads that readings can tell: not of the type
 /// `environment`, on a cilium and in one environment that are the same from all sides.
 void require_load_to_sense(const input::Case& problem);
 
-/// The shapes of the case's load up to the largest magnitude, by the mechanics model. Throws
-/// SolverError if the cilium slips off below it, or the model fails; InputError if the case's
-/// cilium is not the same from all sides (a solid's mesh of the user), or its environment.
+/// The shapes of the case's load up to the largest magnitude, by the mechanics model. Where the
+/// cilium slips off below it, or the model has no shape for another reason, up to there. Throws
+/// SolverError if there is none at all; InputError if the case's cilium is not the same from all
+/// sides (a solid's mesh of the user), or its environment.
+Shapes shapes_within(const input::Case& problem, const std::string& mechanics, double largest,
+                     const Progress& progress = {});
+
+/// The same up to the largest magnitude itself: throws SolverError if they end below it.
 Shapes shapes_up_to(const input::Case& problem, const std::string& mechanics, double largest,
                     const Progress& progress = {});
 

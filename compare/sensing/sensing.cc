@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <boost/math/special_functions/gamma.hpp>
@@ -41,7 +42,7 @@ SenseStatus status_of(const SensedLoad& sensed) {
   if (!sensed.converged) return SenseStatus::failed;
   if (sensed.beyond_range) return SenseStatus::beyond_range;
   if (sensed.misfit_probability < unlikely) return SenseStatus::misfit;
-  if (!(sensed.magnitude_interval() < sensed.magnitude())) return SenseStatus::nothing;
+  if (sensed.is_nothing()) return SenseStatus::nothing;
   return SenseStatus::found;
 }
 
@@ -49,14 +50,22 @@ double Scatter::deviation() const {
   return freedom == 0 ? 0 : std::sqrt(squares / static_cast<double>(freedom));
 }
 
-double SensorReadings::noise_factor(const Sample& sample) const {
-  return std::sqrt(1 / static_cast<double>(sample.rows) + offset_variance);
+ReadingError SensorReadings::error(const Sample& sample) const {
+  return {1 / static_cast<double>(sample.rows) + offset_variance, sample.background};
 }
 
-double SensorReadings::noise_factor() const {
-  double largest = 0;
-  for (const Sample& sample : samples) largest = std::max(largest, noise_factor(sample));
-  return largest;
+double SensorReadings::common_variance(const Sample& sample) const {
+  if (sample.background.size() == 0) return offset_variance;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(sample.background,
+                                                              Eigen::EigenvaluesOnly);
+  return offset_variance + std::max(0.0, solver.eigenvalues().maxCoeff());
+}
+
+std::optional<std::string> range_remark(const Shapes& shapes, double asked, std::string_view unit) {
+  if (shapes.limit.empty()) return std::nullopt;
+  const auto [shown, size] = output::shown_unit(unit);
+  return fmt::format("Loads are looked for up to {:.4g} {}, not {:.4g} {}: {}",
+                     shapes.largest() / size, shown, asked / size, shown, shapes.limit);
 }
 
 std::optional<std::string> scatter_remark(const Scatter& scatter, double noise) {
@@ -114,7 +123,7 @@ std::string sensing_text(const Sensing& s) {
     row.emplace_back(to_string(status_of(sensed)));
   }
   return text + output::text_table(rows, s.flow ? "<>>>>>>><" : "<>>>><") +
-         "Intervals of 95 %, of the noise of reading and offset alone.\n";
+         "Intervals of 95 %, of the noise of reading, offset and background alone.\n";
 }
 
 std::string sensing_json(const Sensing& s, const output::Provenance& provenance) {
@@ -141,7 +150,8 @@ std::string sensing_json(const Sensing& s, const output::Provenance& provenance)
                    {"azimuth_interval", sensed.azimuth_interval()},
                    {"covariance", {{c(0, 0), c(0, 1)}, {c(1, 0), c(1, 1)}}},
                    {"chi_squared", sensed.chi_squared},
-                   {"misfit_probability", sensed.misfit_probability}});
+                   {"misfit_probability", sensed.misfit_probability},
+                   {"nothing_probability", sensed.nothing_probability}});
     if (s.flow) {
       const auto [velocity, low, high] = velocities(*s.flow, sensed);
       sample["velocity"] = velocity;

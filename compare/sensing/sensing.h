@@ -21,6 +21,9 @@ struct Sample {
   Eigen::VectorXd change;           ///< ΔB of all sensors one after the other, T
   std::size_t rows = 1;             ///< whose mean it is; of the sensor with the fewest
   std::optional<double> time = {};  ///< of the first row, s; none if the file has none
+  /// Covariance of the sensors by the noise of the background that is taken off, over σ²; empty:
+  /// none is.
+  Eigen::MatrixXd background = {};
 };
 
 /// How much rows that should read the same differ.
@@ -38,10 +41,11 @@ struct SensorReadings {
   Scatter scatter;               ///< of the rows of each sample, and of the unloaded ones
   std::string remark;            ///< what was read of the file, for people
 
-  /// Standard deviation of ΔB over that of a reading: √(1/m + 1/n) with m rows and n unloaded ones.
-  double noise_factor(const Sample& sample) const;
-  /// The largest of all samples.
-  double noise_factor() const;
+  /// Of ΔB: 1/m + 1/n with m rows and n unloaded ones, and the background's.
+  ReadingError error(const Sample& sample) const;
+  /// The variance over σ² that ΔB of a sample has in common with that of the others: of the offset
+  /// and the background; of several sensors the largest in any combination of them.
+  double common_variance(const Sample& sample) const;
 };
 
 /// Reads readings from a file as loggers write it (logger/file.h, docs/guide/sensing.md) for a case
@@ -52,7 +56,9 @@ struct SensorReadings {
 ///
 ///   ΔB = (B − background(azimuth)) − (B_unloaded − background(azimuth of the unloaded)).
 ///
-/// With `options.unloaded` "model", B itself is left where ΔB should be: `measured_offset` is
+/// Rows of one azimuth of the background are averaged, each with the noise of a reading; what a row
+/// of it adds to both parts of ΔB, its own and the unloaded one, adds no noise. With
+/// `options.unloaded` "model", B itself is left where ΔB should be: `measured_offset` is
 /// false. Without an unloaded row the file is refused. Throws InputError with every fault found, a
 /// line each: `file:line:column: what is wrong`.
 SensorReadings read_sensor_readings(const std::filesystem::path& file,
@@ -63,7 +69,7 @@ SensorReadings read_sensor_readings(const std::filesystem::path& file,
 /// The outcome for a reading.
 enum class SenseStatus {
   found,         ///< a load, with its interval
-  nothing,       ///< the interval holds zero: no load is seen, and no direction known
+  nothing,       ///< SensedLoad::is_nothing(): no load is seen, and no direction known
   beyond_range,  ///< the load is larger than the largest computed
   misfit,        ///< no load explains the reading: noise alone does so once in a thousand times
   failed         ///< the least squares did not converge
@@ -97,6 +103,10 @@ struct Sensing {
   std::vector<std::pair<Sample, SensedLoad>> samples;
 };
 
+/// The range of loads that is looked for, where it ends below the one asked for, and why; none
+/// where it does not.
+std::optional<std::string> range_remark(const Shapes& shapes, double asked, std::string_view unit);
+
 /// A doubt about rows that should read the same and differ by more than the noise (T); none if
 /// noise alone does so once in a thousand times.
 std::optional<std::string> scatter_remark(const Scatter& scatter, double noise);
@@ -106,8 +116,8 @@ std::string sensing_text(const Sensing& sensing);
 /// {"schema": 1, "case", "models", "noise", "unit", "largest", "interpolation_error", "offset",
 /// "remarks", "samples": [{"sample", "rows", "time" (s, if known), "status", "load": [x, y],
 /// "magnitude", "magnitude_interval", "azimuth", "azimuth_interval", "covariance", "chi_squared",
-/// "misfit_probability", "velocity", "velocity_interval": [low, high]}]}; angles in rad,
-/// half-widths of 95 %.
+/// "misfit_probability", "nothing_probability", "velocity", "velocity_interval": [low, high]}]};
+/// angles in rad, half-widths of 95 %.
 std::string sensing_json(const Sensing& sensing, const output::Provenance& provenance);
 /// A line for each sample, units in the header.
 std::string sensing_csv(const Sensing& sensing);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <initializer_list>
-#include <map>
 #include <string_view>
 
 #include "compare/app/case_files.h"
@@ -42,7 +41,7 @@ and which error of the sensor makes them.
 
 Of a case with the load `sweep`: the levels of the surface, in the order of the rows.
 The load found is the least-squares solution with the chosen pair of models, its interval that of
-the noise. `nothing`: the interval holds zero; `misfit`: no load explains the reading; `beyond
+the noise. `nothing`: noise alone makes such a load; `misfit`: no load explains the reading; `beyond
 range`: see --largest (docs/guide/sensing.md).)";
 
 struct SenseOptions {
@@ -155,7 +154,11 @@ ExitCode sense_surface(const input::Case& problem, const SenseOptions& options,
   profile.case_name = problem.name;
   profile.models = pair;
   line.clear();
-  print(support::printable(read.remark) + '\n' + sensing::profile_text(profile));
+  print(support::printable(read.remark) + '\n');
+  if (!curve.limit().empty())
+    print(fmt::format("Interferences are looked for up to {:.4g} mm, not {:.4g} mm: {}\n",
+                      1e3 * curve.largest(), 1e3 * largest, curve.limit()));
+  print(sensing::profile_text(profile));
   if (options.json)
     output::write_file(*options.json, sensing::profile_json(profile, output::provenance(words)));
   if (options.csv) output::write_file(*options.csv, sensing::profile_csv(profile));
@@ -177,30 +180,30 @@ ExitCode sense_readings(const SenseOptions& options, const std::string& words) {
   sensing.models = sensing::parse_pair(options.models);
   sensing.noise = Vector3::Constant(noise_of(options));
   sensing.unit = magnitude_unit(problem.load_path.front());
-  sensing.largest = largest_load(problem, options);
+  const double asked = largest_load(problem, options);
   sensing.flow = sensing::flow_law(problem);
   // Before the models run, which may take a minute.
   const sensing::SensorReadings read = readings_of(options, problem);
   ProgressLine line;
   const sensing::Shapes shapes =
-      sensing::shapes_up_to(problem, sensing.models.mechanics, sensing.largest, line.callback());
+      sensing::shapes_within(problem, sensing.models.mechanics, asked, line.callback());
+  sensing.largest = shapes.largest();
   const sensing::Response response(problem, sensing.models.field, shapes, problem.sensors);
   sensing.interpolation_error = response.interpolation_error();
   sensing.largest_change = response.largest_change();
   sensing.measured_offset = read.measured_offset;
   sensing.remarks.push_back(support::printable(read.remark));
+  if (auto range = sensing::range_remark(shapes, asked, sensing.unit))
+    sensing.remarks.push_back(std::move(*range));
   if (auto doubt = sensing::scatter_remark(read.scatter, sensing.noise.x()))
     sensing.remarks.push_back(std::move(*doubt));
-  std::map<double, sensing::Inversion> inversions;  // by the noise of a mean
-  for (const sensing::Sample& sample : read.samples) {
-    const double factor = read.noise_factor(sample);
-    const auto invert =
-        inversions.try_emplace(factor, response, Vector3(factor * sensing.noise)).first;
+  const sensing::Inversion invert(response, sensing.noise);
+  for (const sensing::Sample& sample : read.samples)
     sensing.samples.emplace_back(
-        sample, invert->second(read.measured_offset
-                                   ? sample.change
-                                   : Eigen::VectorXd(sample.change - response.undeformed())));
-  }
+        sample,
+        invert(read.measured_offset ? sample.change
+                                    : Eigen::VectorXd(sample.change - response.undeformed()),
+               read.error(sample)));
   print(sensing::sensing_text(sensing));
   if (options.json)
     output::write_file(*options.json, sensing::sensing_json(sensing, output::provenance(words)));

@@ -95,7 +95,7 @@ double apart(double a, double b) {
 }
 
 Background::Background(std::string_view text, std::span<const std::string> sensors, Faults& faults)
-    : rows_(sensors.size()) {
+    : of_sensor_(sensors.size()) {
   const std::array<CsvColumn, 5> columns{{{"azimuth", Kind::quantity, quantity::angle, true},
                                           {"Bx", Kind::quantity, quantity::flux_density, true},
                                           {"By", Kind::quantity, quantity::flux_density, true},
@@ -109,39 +109,51 @@ Background::Background(std::string_view text, std::span<const std::string> senso
     const auto sensor = sensor_of(table, 4, i, sensors, faults);
     if (!sensor) continue;
     const double azimuth = table.numbers[0][i] - turn * std::floor(table.numbers[0][i] / turn);
-    for (std::size_t s = for_all ? 0 : *sensor; s < (for_all ? sensors.size() : *sensor + 1); ++s) {
-      if (std::any_of(rows_[s].begin(), rows_[s].end(), [&](const Row& row) {
-            return apart(row.azimuth, azimuth) <= same_azimuth;
-          })) {
-        faults.add(table.rows[i],
-                   fmt::format("there is a second row of the azimuth {:g} deg and sensor {}",
-                               azimuth * 180 / std::numbers::pi, sensors[s]));
-        break;
-      }
-      rows_[s].push_back({azimuth, row_vector(table, 1, i)});
+    std::vector<std::size_t>& known = of_sensor_[*sensor];
+    auto found = std::ranges::find_if(known, [&](std::size_t mean) {
+      return apart(means_[mean].azimuth, azimuth) <= same_azimuth;
+    });
+    if (found == known.end()) {
+      found = known.insert(known.end(), means_.size());
+      means_.push_back({azimuth});
     }
+    Mean& mean = means_[*found];
+    ++mean.rows;
+    mean.B += (row_vector(table, 1, i) - mean.B) / static_cast<double>(mean.rows);
   }
   for (std::size_t s = 0; s < sensors.size(); ++s) {
-    if (rows_[s].empty() && faults.empty())
+    if (for_all) of_sensor_[s] = of_sensor_.front();
+    if (of_sensor_[s].empty() && faults.empty())
       faults.add({}, fmt::format("there is no row of sensor {}", sensors[s]));
-    std::sort(rows_[s].begin(), rows_[s].end(),
-              [](const Row& a, const Row& b) { return a.azimuth < b.azimuth; });
+    std::ranges::sort(of_sensor_[s], {}, [&](std::size_t mean) { return means_[mean].azimuth; });
   }
 }
 
-std::optional<Vector3> Background::at(double azimuth, std::size_t sensor) const {
-  const std::vector<Row>& rows = rows_.at(sensor);
-  for (const Row& row : rows)
-    if (apart(row.azimuth, azimuth) <= same_azimuth) return row.B;
-  if (rows.size() < 2) return std::nullopt;
+std::optional<std::array<Background::Part, 2>> Background::parts(double azimuth,
+                                                                 std::size_t sensor) const {
+  const std::vector<std::size_t>& means = of_sensor_.at(sensor);
+  const auto azimuth_of = [&](std::size_t mean) { return means_[mean].azimuth; };
+  for (const std::size_t mean : means)
+    if (apart(azimuth_of(mean), azimuth) <= same_azimuth)
+      return std::array<Part, 2>{{{mean, 1}, {}}};
+  if (means.size() < 2) return std::nullopt;
   const double phi = azimuth - turn * std::floor(azimuth / turn);
-  const auto above =
-      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.azimuth > phi; });
-  const Row& next = above == rows.end() ? rows.front() : *above;
-  const Row& last = above == rows.begin() ? rows.back() : *(above - 1);
-  const auto from_last = [&](double a) { return a - last.azimuth + (a < last.azimuth ? turn : 0); };
-  const double t = from_last(phi) / from_last(next.azimuth);
-  return (1 - t) * last.B + t * next.B;
+  const auto above = std::ranges::upper_bound(means, phi, {}, azimuth_of);
+  const std::size_t next = above == means.end() ? means.front() : *above;
+  const std::size_t last = above == means.begin() ? means.back() : *(above - 1);
+  const auto from_last = [&](double a) {
+    return a - azimuth_of(last) + (a < azimuth_of(last) ? turn : 0);
+  };
+  const double t = from_last(phi) / from_last(azimuth_of(next));
+  return std::array<Part, 2>{{{last, 1 - t}, {next, t}}};
+}
+
+std::optional<Vector3> Background::at(double azimuth, std::size_t sensor) const {
+  const auto all = parts(azimuth, sensor);
+  if (!all) return std::nullopt;
+  Vector3 sum = Vector3::Zero();
+  for (const Part& part : *all) sum += part.weight * means_[part.mean].B;
+  return sum;
 }
 
 }  // namespace ciliaval::compare::input::external

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -50,22 +52,37 @@ double apart(double a, double b);
 
 inline constexpr double same_azimuth = 1e-9;  ///< rad
 
-/// The ambient field that the sensors see at each azimuth, without the cilium.
+/// The ambient field that the sensors see at each azimuth, without the cilium. Rows of one azimuth
+/// and sensor are averaged.
 class Background {
  public:
   /// Its own faults are added, with their places.
   Background(std::string_view text, std::span<const std::string> sensors, Faults& faults);
 
-  /// At an azimuth (rad): that of the row of this azimuth (to 1e-9), else interpolated linearly
-  /// between the neighbours on the circle. None if there is but a row of another azimuth.
+  /// A part of the field at an azimuth: `weight` times the mean of a number of rows.
+  struct Part {
+    std::size_t mean = 0;  ///< below mean_count()
+    double weight = 0;
+  };
+  /// The parts at an azimuth (rad): the mean of the rows of this azimuth (to 1e-9), else linear
+  /// interpolation between the neighbours on the circle. None if there are but rows of another
+  /// azimuth.
+  std::optional<std::array<Part, 2>> parts(double azimuth, std::size_t sensor) const;
+  /// The sum of the parts, T.
   std::optional<Vector3> at(double azimuth, std::size_t sensor) const;
 
+  std::size_t mean_count() const { return means_.size(); }
+  /// The number of rows of a mean. Sensors that the file does not tell apart share them.
+  std::size_t rows(std::size_t mean) const { return means_.at(mean).rows; }
+
  private:
-  struct Row {
+  struct Mean {
     double azimuth = 0;  ///< rad, in [0, 2π)
     Vector3 B = Vector3::Zero();
+    std::size_t rows = 0;
   };
-  std::vector<std::vector<Row>> rows_;  ///< of each sensor, by azimuth
+  std::vector<Mean> means_;
+  std::vector<std::vector<std::size_t>> of_sensor_;  ///< of each sensor the means, by azimuth
 };
 
 }  // namespace ciliaval::compare::input::external

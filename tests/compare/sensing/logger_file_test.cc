@@ -493,8 +493,8 @@ TEST(LoggedReadings, RepeatedRowsAreAveragedWithTheirScatter) {
   ASSERT_EQ(read.samples.size(), 2U);
   EXPECT_EQ(read.samples[0].name, "a");
   EXPECT_NEAR(read.samples[0].change[0], 2e-6, 1e-20);
-  EXPECT_NEAR(read.noise_factor(read.samples[0]), std::sqrt(1. / 3 + 1. / 2), 1e-15);
-  EXPECT_NEAR(read.noise_factor(read.samples[1]), std::sqrt(1 + 1. / 2), 1e-15);
+  EXPECT_NEAR(read.error(read.samples[0]).variance, 1. / 3 + 1. / 2, 1e-15);
+  EXPECT_NEAR(read.error(read.samples[1]).variance, 1 + 1. / 2, 1e-15);
   EXPECT_EQ(read.scatter.freedom, 9U);
   EXPECT_NEAR(read.scatter.deviation(), std::sqrt(2. / 9) * 1e-6, 1e-20);
   EXPECT_FALSE(scatter_remark(read.scatter, 1e-6));

@@ -45,16 +45,23 @@ const LevelCurve& curve() {
   return value;
 }
 
-SensorReadings readings(std::uint32_t seed) {
+/// `offset_rows`: unloaded readings, whose mean is taken off; 0: none.
+SensorReadings readings(std::uint32_t seed, int offset_rows = 0) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> normal(0, noise);
   SensorReadings result;
   result.measured_offset = true;
+  Eigen::VectorXd offset = Eigen::VectorXd::Zero(6);
+  if (offset_rows > 0) {
+    result.offset_variance = 1. / offset_rows;
+    for (double& component : offset) component = normal(generator) / std::sqrt(offset_rows);
+  }
   for (const auto& step : followed().fields.front().steps) {
     Sample sample{"", Eigen::VectorXd(6)};
     for (std::size_t s = 0; s < 2; ++s)
       sample.change.segment<3>(static_cast<Eigen::Index>(3 * s)) =
           *step->dB[s] + Vector3(normal(generator), normal(generator), normal(generator));
+    sample.change -= offset;
     result.samples.push_back(std::move(sample));
   }
   return result;
@@ -81,6 +88,37 @@ TEST(SensedProfile, StepsOfASurfaceAreFoundWithinTheirIntervals) {
             << 1e6 * errors.back() << '\n';
   EXPECT_GE(inside, 0.85 * levels);
   EXPECT_LT(errors.back(), 20e-6);  // of steps of 1 mm
+}
+
+// The readings of a level have the offset's noise in common: their mean has it too.
+TEST(SensedProfile, IntervalsOfLevelsHoldTheNoiseOfTheOffset) {
+  int levels = 0;
+  int inside = 0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed)
+    for (const Level& level : sense_profile(curve(), readings(seed, 1), noise).levels) {
+      const double truth = level.interference > 1.5e-3 ? 2e-3 : 1e-3;
+      ++levels;
+      inside += std::abs(level.interference - truth) <= level.interval ? 1 : 0;
+    }
+  EXPECT_GE(levels, 100);
+  EXPECT_GE(inside, 0.85 * levels);
+}
+
+// They are of the case's path, not of the curve's.
+TEST(LevelCurve, LeavesExternalModelsOfTheCaseAside) {
+  input::Case c = sweep();
+  input::external::ExternalModel other;
+  other.name = "other";
+  for (std::size_t i = 0; i < c.load_path.size(); ++i) {
+    other.centrelines.push_back(straight_centreline(c.cilium.interfaces()));
+    other.remarks.emplace_back();
+  }
+  c.external = {other};
+  const LevelCurve of_case(c, pair, 4e-3);
+  EXPECT_EQ(of_case.largest(), 4e-3);
+  EXPECT_EQ(of_case.limit(), "");
+  const Eigen::VectorXd change = readings(1).samples.front().change;
+  EXPECT_EQ(of_case.nearest(change).interference, curve().nearest(change).interference);
 }
 
 TEST(SensedProfile, SaysWhereNoLevelSurfaceGivesTheReading) {

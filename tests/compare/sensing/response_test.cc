@@ -10,6 +10,8 @@
 
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
+#include "compare/models/registry.h"
+#include "compare/sensing/sensing.h"
 #include "fem/beam/beam.h"
 #include "problem/error.h"
 #include "tests/support/synthetic.h"
@@ -77,6 +79,27 @@ TEST(Response, ItsDerivativeIsThatOfTheChange) {
   const sensing::Vector2 e = sensing::polar(1, 0.7);
   const Eigen::VectorXd beyond = (response.change(3.6e-3 * e) - response.change(3.4e-3 * e)) / 2e-4;
   EXPECT_LT((beyond - response.derivative(3e-3 * e) * e).norm(), 1e-9 * beyond.norm());
+}
+
+// Oracle: the slip-off that the elastica itself states for one load, and a range just below it.
+TEST(Response, RangesEndAtTheSlipOff) {
+  const input::Case problem = test::paper_case({1e-3});
+  const auto model = models::entry_of(models::mechanics_models(), "elastica").make(problem.options);
+  const double limit = model->solve(problem.cilium, {with_magnitude(problem.load_path[0], 1)})
+                           .steps[0]
+                           .slip_off_force.value();
+  for (const double asked : {1.01 * limit, 7e-3, 1e3}) {
+    const sensing::Shapes shapes = sensing::shapes_within(problem, "elastica", asked);
+    EXPECT_LT(shapes.largest(), limit) << asked;
+    EXPECT_GT(shapes.largest(), 0.9999 * limit) << asked;
+    EXPECT_THAT(shapes.limit, HasSubstr("slips off"));
+    EXPECT_LT(sensing::Response(problem, "volume", shapes, problem.sensors).interpolation_error(),
+              1e-9);  // T, of 4e-4 T
+    EXPECT_THAT(sensing::range_remark(shapes, asked, "N").value_or(""),
+                HasSubstr("Loads are looked for up to 5.8"));
+  }
+  EXPECT_EQ(sensing::shapes_within(problem, "elastica", 0.9 * limit).limit, "");
+  EXPECT_FALSE(sensing::range_remark(sensing::shapes_within(problem, "elastica", 1e-3), 1e-3, "N"));
 }
 
 TEST(Response, RefusesWhatItCannotServe) {

@@ -272,8 +272,25 @@ TEST_F(Sense, BadReadingsAndOptionsAreRefusedWithTheirPlace) {
   expect_error(good, "need a column 'azimuth'", "--background background.csv");
   expect_error("azimuth [deg],Bx [uT],By [uT],Bz [uT]\n10,1,2,3\n", "a single azimuth",
                "--background background.csv --unloaded model");
-  EXPECT_EQ(ciliaval("sense one.toml bad.csv --unloaded model --largest '9 mN'"), 3);
-  EXPECT_THAT(err_, HasSubstr("within the range of loads up to 0.009 N"));
+}
+
+// A range beyond the slip-off ends there, and it is said. Oracle: the limit that `run` states.
+TEST_F(Sense, RangesEndAtTheSlipOff) {
+  write("readings.csv", "sample,dBx [T],dBy [T],dBz [T]\n" + row("0", field(0, "dB")) +
+                            row("1", field(1, "dB")) + row("2", field(2, "dB")));
+  for (const char* largest : {"9 mN", "1 kN"}) {
+    ASSERT_EQ(ciliaval(fmt::format("sense one.toml readings.csv --models beam/line --largest '{}' "
+                                   "--json found.json",
+                                   largest)),
+              0)
+        << err_;
+    expect_the_forces();
+    EXPECT_THAT(out_, HasSubstr("Loads are looked for up to 5.8"));
+    EXPECT_THAT(out_, HasSubstr(fmt::format("not {} ", largest[0] == '9' ? "9" : "1e+06")));
+    const auto json = nlohmann::json::parse(read_text(folder_.path() / "found.json"));
+    EXPECT_LT(json["largest"].get<double>(), 5.9e-3);
+    EXPECT_GT(json["largest"].get<double>(), 5.8e-3);
+  }
 }
 
 // Numbers that no sensor has would end as NaN in the loads found.
