@@ -221,6 +221,16 @@ double stated_force(const Load& load, const Cilium& cilium, const Vector3& tip) 
 }
 
 /// The centrelines of an external model as those of a mechanics model.
+/// Throws InputError unless an external model has a centreline and a reading for each step of the
+/// path, or none.
+void require_of_path(const input::external::ExternalModel& model, const LoadPath& path) {
+  for (const std::size_t count : {model.centrelines.size(), model.readings.size()})
+    if (count != 0 && count != path.size())
+      throw InputError(
+          fmt::format("the external model '{}' is of a path of {} load steps, not of {}",
+                      model.name, count, path.size()));
+}
+
 MechanicsRun external_mechanics(const input::external::ExternalModel& model,
                                 const input::Case& problem) {
   MechanicsRun run{model.name, {}};
@@ -229,7 +239,7 @@ MechanicsRun external_mechanics(const input::external::ExternalModel& model,
     MechanicsStep step;
     step.load = problem.load_path[i];
     step.status = Status::converged;
-    step.message = model.remarks[i];
+    step.message = model.remarks.at(i);
     step.deformation = Deformation{model.centrelines[i], nullptr};
     step.applied_force = stated_force(
         step.load, problem.cilium, model.centrelines[i].at(model.centrelines[i].length()).position);
@@ -341,6 +351,8 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   const std::vector<const MechanicsEntry*> mechanics_entries = chosen(mechanics, problem.mechanics);
   const std::vector<const FieldEntry*> field_entries = chosen(fields, problem.fields);
   CaseResult result{problem, {}, {}};
+  for (const input::external::ExternalModel& model : problem.external)
+    require_of_path(model, problem.load_path);
   for (const MechanicsEntry* entry : mechanics_entries) {
     const auto kept = checkpoints.find(entry->id);
     result.mechanics.push_back(

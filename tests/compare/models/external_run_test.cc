@@ -13,6 +13,7 @@
 #include "compare/models/run.h"
 #include "compare/output/results.h"
 #include "compare/output/table.h"
+#include "problem/error.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
@@ -207,6 +208,25 @@ TEST_F(ExternalRun, UncertaintiesOfReadingsReachTheVerdicts) {
     EXPECT_EQ(c.verdict, models::Verdict::below_uncertainty);
   }
   EXPECT_EQ(count, 2 * 2 * 3);
+}
+
+// A case whose path was changed after its files were read, by a command of the suite.
+TEST_F(ExternalRun, OfAnotherLoadPathIsRefused) {
+  input::Case c = input::read_case(text, (folder_.path() / "case.toml").string(), models::known());
+  input::external::ExternalModel other;
+  other.name = "other";
+  for (int i = 0; i < 2; ++i) {
+    other.centrelines.push_back(straight_centreline(c.cilium.interfaces()));
+    other.remarks.emplace_back();
+  }
+  c.external = {other};
+  const auto run = [&] {
+    return models::run(c, models::mechanics_models(), models::field_models());
+  };
+  EXPECT_EQ(run().mechanics.size(), 2U);
+  c.load_path.push_back(c.load_path.back());
+  EXPECT_THAT(run, testing::ThrowsMessage<InputError>(HasSubstr(
+                       "the external model 'other' is of a path of 2 load steps, not of 3")));
 }
 
 }  // namespace
