@@ -28,7 +28,7 @@ void require_valid(const BeamOptions& options) {
   if (options.max_iterations < 1) throw InputError("beam: max_iterations must be at least 1");
 }
 
-/// Load path of dead and flow loads: the equilibrium is followed from one load to the next.
+/// Dead and flow loads: the equilibrium is followed from the straight cilium to the load.
 class PathSolver {
  public:
   PathSolver(Cilium cilium, BeamOptions options, joints::Corrections corrections)
@@ -132,11 +132,12 @@ std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path
                                       const BeamOptions& options,
                                       const joints::Corrections& corrections,
                                       const Progress& progress) {
-  PathSolver path_solver(cilium, options, corrections);
-  ContactSolver contact_solver(cilium, options, corrections);
   std::vector<MechanicsStep> steps;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const auto start = std::chrono::steady_clock::now();
+    // Anew for each load: a result does not depend on the steps before it.
+    PathSolver path_solver(cilium, options, corrections);
+    ContactSolver contact_solver(cilium, options, corrections);
     steps.push_back(
         solve_step(cilium, path[i], path_solver, contact_solver, told(progress, i, path.size())));
     const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;

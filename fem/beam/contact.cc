@@ -204,7 +204,6 @@ bool ContactSolver::stand_untouched(const Load& load, MechanicsStep& step) {
   beam_ = cilium_beam_with_moving_vertex(cilium_, options_, host_, corrections_);
   current_ = {beam_->system.reference_state(std::max(*arclength - ends[host_], 0.0)), 0};
   last_ = with_magnitude(load, 0);
-  entry_magnitude_ = 0;
   if (!is_bent) return true;
   const PathReport report = advance(
       beam_->system, current_.state, {}, environment_loads(cilium_, load, *beam_),
@@ -212,7 +211,6 @@ bool ContactSolver::stand_untouched(const Load& load, MechanicsStep& step) {
   step.iterations += report.iterations;
   step.message = report.message;
   if (load.is<ProbeLoad>()) last_ = with_magnitude(load, displacement_of(current_.state));
-  entry_magnitude_ = magnitude(*last_);
   return report.converged;
 }
 
@@ -336,42 +334,26 @@ bool ContactSolver::enter_next_segment(const Load& load, MechanicsStep& step) {
     if (!find_force(current_, step)) return false;
     last_ = with_magnitude(*last_, magnitude_of(current_));
   }
-  entry_magnitude_ = magnitude(*last_);
-  if (corrections_.empty() || entry_magnitude_ <= magnitude(load) * (1 + 1e-9)) return true;
+  if (corrections_.empty() || magnitude(*last_) <= magnitude(load) * (1 + 1e-9)) return true;
   step.message = "the contact is at an interface of two segments, between the sides of its joint";
   return false;
-}
-
-bool ContactSolver::goes_on(const Load& load) const {
-  return last_ && type(*last_) == type(load) && contact_height(*last_) == contact_height(load) &&
-         azimuth(*last_) == azimuth(load) && last_->environment() == load.environment() &&
-         magnitude(load) >= entry_magnitude_;
 }
 
 MechanicsStep ContactSolver::solve(const Load& load, const PathProgress& progress) {
   MechanicsStep step;
   step.load = load;
-  const double height = contact_height(load).value();
   const bool probes = load.is<ProbeLoad>();
   const auto is_beyond = [&](const SlipOff& limit) {
     return magnitude(load) > (probes ? limit.displacement : limit.force);
   };
   const auto slip = [&](const SlipOff& limit) {
-    slip_offs_[height] = limit;
     step.status = Status::slipped_off;
     step.slip_off_force = limit.force;
     if (probes) step.slip_off_displacement = limit.displacement;
     step.message = slipped_off(load, limit.force, limit.displacement);
     return step;
   };
-  if (load.environment() != environment_) slip_offs_.clear();
-  environment_ = load.environment();
-  const auto known = slip_offs_.find(height);
-  if (known != slip_offs_.end() && is_beyond(known->second)) return slip(known->second);
-  if (!goes_on(load) && !stand_untouched(load, step)) {
-    last_.reset();
-    return step;
-  }
+  if (!stand_untouched(load, step)) return step;
   Leg leg = follow(load, step, progress);
   while (leg == Leg::end_reached) {
     if (host_ + 1 == cilium_.segments.size())
@@ -381,16 +363,13 @@ MechanicsStep ContactSolver::solve(const Load& load, const PathProgress& progres
   if (leg == Leg::failed) {
     const auto sunk =
         force_that_sinks_the_tip(cilium_, options_, corrections_, load, step.iterations);
-    if (sunk && is_beyond({sunk->force, sunk->deflection})) {
-      last_.reset();
+    if (sunk && is_beyond({sunk->force, sunk->deflection}))
       return slip({sunk->force, sunk->deflection});
-    }
     std::ostringstream text;
     text << "no equilibrium found under " << magnitude(load) << ' ' << magnitude_unit(load) << ": "
          << step.message << "; last converged under " << magnitude(*last_)
-         << "; more cutbacks, elements or smaller load steps may help";
+         << "; more cutbacks or elements may help";
     step.message = text.str();
-    last_.reset();
     return step;
   }
   applied_ = force_at_vertex(current_.force);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <map>
 #include <optional>
 #include <utility>
 
@@ -21,7 +20,8 @@ class ContactSolver {
   ContactSolver(Cilium cilium, BeamOptions options, joints::Corrections corrections)
       : cilium_(std::move(cilium)), options_(options), corrections_(std::move(corrections)) {}
 
-  /// The load is a ContactLoad or a ProbeLoad.
+  /// From the cilium that the environment alone bends; nothing of an earlier load is kept. The load
+  /// is a ContactLoad or a ProbeLoad.
   MechanicsStep solve(const Load& load, const PathProgress& progress);
 
   /// The beam, its state and its loads after a converged step.
@@ -58,8 +58,6 @@ class ContactSolver {
   /// The same at the end of the host; false if it fails or the magnitude is not between `from` and
   /// `aim`.
   bool go_to_end(Loaded crossing, double from, double aim, MechanicsStep& step);
-  /// Whether the equilibrium that is there can be followed to the load.
-  bool goes_on(const Load& load) const;
   /// First increment of the magnitude from the straight cilium.
   double first_increment() const;
   /// The force or the displacement of an equilibrium, whichever the load prescribes.
@@ -75,14 +73,11 @@ class ContactSolver {
   Cilium cilium_;
   BeamOptions options_;
   joints::Corrections corrections_;
-  std::map<double, SlipOff> slip_offs_;  ///< by height, in this environment:
-  surroundings::Environment environment_;
   std::optional<CiliumBeam> beam_;
   Loaded current_;
   Loads applied_;
-  std::optional<Load> last_;    ///< that current_ is in equilibrium with
-  std::size_t host_ = 0;        ///< segment of the vertex
-  double entry_magnitude_ = 0;  ///< with which s_c is at the lower end of the host
+  std::optional<Load> last_;  ///< that current_ is in equilibrium with
+  std::size_t host_ = 0;      ///< segment of the vertex
 };
 
 }  // namespace ciliaval::fem::beam

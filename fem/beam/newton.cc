@@ -267,7 +267,7 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
     text << "no equilibrium found at the fraction " << aim << " of the load increment: "
          << (too_many ? too_many_increments(options.max_iterations) : describe(report.last))
          << "; last converged at the fraction " << report.reached
-         << "; more cutbacks, elements or smaller load steps may help";
+         << "; more cutbacks or elements may help";
     report.message = text.str();
     return report;
   }

@@ -177,13 +177,17 @@ bool LoadPathSolver::cut(Ramp& ramp, bool overshot) const {
   return ramp.step >= std::pow(cut_factor, options_.max_cutbacks + ramp.overshoots);
 }
 
+bool LoadPathSolver::leads_to(const Load& target) const {
+  const Load& aim = now_.ramp ? now_.ramp->target : now_.current.load;
+  return same_place(aim, target) && aim.environment() == target.environment();
+}
+
 LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
                                         const std::function<void()>& on_equilibrium) {
-  if (!same_place(now_.current.load, target)) restart(target);
+  if (!leads_to(target)) restart(target);
   const bool changes = now_.current.load.environment() != target.environment();
   if (!changes || target.is<EnvironmentLoad>())
     return advance_magnitude(target, progress, on_equilibrium);
-  now_.slipped.reset();
   const LoadPathOutcome first = advance_magnitude(
       with_environment(now_.current.load, target.environment()), progress, on_equilibrium);
   if (first.status != Status::converged) return first;

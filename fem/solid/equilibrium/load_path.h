@@ -74,9 +74,9 @@ struct LoadPathState {
 /// Follows a load path from equilibrium to equilibrium. A load is tried from the initial guess,
 /// then from a linear extrapolation of the last two equilibria at the same place (height, section).
 /// A step that fails is cut to a quarter, and doubled after each success; a step that overshoots at
-/// once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new place it starts from the
-/// straight solid: on the way from place to place the cilium might slip off. Where the environment
-/// changes, that comes first, with the magnitude of the last load.
+/// once (det F ≤ 0 after one iteration) may be cut 10 times more. At a new place and in another
+/// environment it starts from the straight solid: on the way the cilium might slip off or buckle,
+/// and a result must not depend on the loads before. The environment comes first, without the load.
 class LoadPathSolver {
  public:
   /// Starts from the straight solid under no load of the path's type. The space, the quadrature,
@@ -112,6 +112,8 @@ class LoadPathSolver {
   /// Narrows the bracket between the current load and the slipped one.
   LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
   void restart(const Load& load);
+  /// Whether the state, or what it is on its way to, has the place and the environment of the load.
+  bool leads_to(const Load& target) const;
   /// advance() to a load of the same place in the present environment, or by an EnvironmentLoad.
   LoadPathOutcome advance_magnitude(const Load& target, const Progress& progress,
                                     const std::function<void()>& on_equilibrium);
