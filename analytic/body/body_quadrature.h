@@ -54,13 +54,18 @@ class PatchIntegral {
   }
 
   /// `inside` (T, the μ₀m of a point in the magnet) plus B of the sources at x, its tolerance
-  /// relative to |B|. Throws SolverError on or too near to a patch.
-  sources::FieldValue field(const Vector3& x, const Vector3& inside, double tolerance) const {
+  /// relative to |B|, as far as the orders bring it. Throws SolverError on or too near to a patch.
+  sources::AdaptiveSum sum(const Vector3& x, const Vector3& inside, double tolerance) const {
     std::vector<Box> boxes;
     for (std::size_t i = 0; i < whole_.size(); ++i) append_graded(whole_[i], balls_[i], x, boxes);
-    return sources::integrate_adaptively(
+    return sources::sum_adaptively(
         boxes, [&](const Box& box, std::size_t order) { return field_of(box, order, x); },
-        {tolerance, dim == 2 ? 24 : 16, name_, x, inside});
+        demand(x, inside, tolerance));
+  }
+
+  /// The sum's demand, for the message of an error.
+  sources::AdaptiveOrder demand(const Vector3& x, const Vector3& inside, double tolerance) const {
+    return {tolerance, dim == 2 ? 24U : 16U, name_, x, inside};
   }
 
  private:
@@ -168,11 +173,12 @@ class PatchIntegral {
     return points;
   }
 
-  static Vector3 field_of(const std::vector<PatchPoint<Strength>>& points, const Vector3& x) {
-    Vector3 B = Vector3::Zero();
+  static sources::FieldValue field_of(const std::vector<PatchPoint<Strength>>& points,
+                                      const Vector3& x) {
+    sources::SourceSum sum(x);
     for (const PatchPoint<Strength>& point : points)
-      B += source_field(point.strength, x - point.position);
-    return B;
+      sum.add(source_field(point.strength, x - point.position), point.position);
+    return sum.value();
   }
 
   static constexpr std::size_t kept_orders = 3;  // 4, 6, 8
@@ -181,7 +187,7 @@ class PatchIntegral {
     std::array<std::vector<PatchPoint<Strength>>, kept_orders> points;
   };
 
-  Vector3 field_of(const Box& box, std::size_t order, const Vector3& x) const {
+  sources::FieldValue field_of(const Box& box, std::size_t order, const Vector3& x) const {
     if (box.is_whole())
       for (std::size_t i = 0; i < kept_orders; ++i) {
         if (sources::quadrature_orders[i] != order) continue;

@@ -72,12 +72,12 @@ Wrench wrench(const Charges& charges, const PointsField& field, const Vector3& a
     Sums now = sums(charges(order), field, about);
     if (last) {
       Wrench& found = now.wrench;
-      found.force_error = (found.force - last->wrench.force).norm();
-      found.torque_error = (found.torque - last->wrench.torque).norm();
-      if (found.force_error <=
-              std::max(tolerance * found.force.norm(), rounding * now.force_size) &&
-          found.torque_error <=
-              std::max(tolerance * found.torque.norm(), rounding * now.torque_size))
+      const double force_change = (found.force - last->wrench.force).norm();
+      const double torque_change = (found.torque - last->wrench.torque).norm();
+      found.force_error = force_change + rounding * now.force_size;
+      found.torque_error = torque_change + rounding * now.torque_size;
+      if (force_change <= std::max(tolerance * found.force.norm(), rounding * now.force_size) &&
+          torque_change <= std::max(tolerance * found.torque.norm(), rounding * now.torque_size))
         return found;
     }
     last = now;

@@ -16,7 +16,7 @@ namespace ciliaval::analytic::forces {
 struct Wrench {
   Vector3 force = Vector3::Zero();   ///< N
   Vector3 torque = Vector3::Zero();  ///< about a stated point, N·m
-  double force_error = 0;            ///< estimate of the quadrature's error, N
+  double force_error = 0;            ///< estimate of the quadrature's error and rounding, N
   double torque_error = 0;           ///< N·m
 
   Wrench& operator+=(const Wrench& other);

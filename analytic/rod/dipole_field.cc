@@ -48,7 +48,7 @@ std::vector<sources::Dipole> dipoles(const Cilium& cilium, const RodMagnet& magn
       result.push_back({Vector3::Zero(), Vector3::Zero()});
     const StretchIntegrals integrals = integrate(magnet, stretch, push_forward);
     result.back().position += integrals.position / cilium.segments[stretch.segment].length;
-    result.back().moment += cilium.area() * integrals.magnetization;
+    result.back().moment += magnet.area * integrals.magnetization;
   }
   return result;
 }
@@ -72,7 +72,7 @@ Field DipoleField::field(const Cilium& cilium, const Deformation& deformation,
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   const std::vector<sources::Dipole> sources = dipoles(cilium, magnet, options_.push_forward);
   return sources::field_at(points, 4096, [&](const Vector3& x) {
-    sources::FieldValue sum;
+    sources::FieldValue sum{Vector3::Zero(), Vector3::Constant(rounding_of_poles(magnet, x))};
     for (const sources::Dipole& dipole : sources) {
       const Vector3 offset = x - dipole.position;
       if (offset.norm() <= 1e-12 * cilium.length())

@@ -40,9 +40,9 @@ sources::FieldValue field_of_end_discs(std::span<const RodEnd> ends, const Vecto
   return sum;
 }
 
-Matrix3 gradient_of_end_discs(std::span<const RodEnd> ends, const Vector3& x) {
+DiscsGradient gradient_of_end_discs(std::span<const RodEnd> ends, const Vector3& x) {
   require_off_the_rims(ends, x);
-  Matrix3 sum = Matrix3::Zero();
+  DiscsGradient sum;
   for (const RodEnd& end : ends) {
     const double R = end.section.radius;
     const Vector3& n = end.section.normal;
@@ -54,10 +54,14 @@ Matrix3 gradient_of_end_discs(std::span<const RodEnd> ends, const Vector3& x) {
     const sources::DiscGradient H = sources::charged_disc_gradient(rho, zeta);
     const Matrix3 mixed = H.mixed_over_rho * n * radial.transpose();
     const Matrix3 axial = n * n.transpose();
-    sum += vacuum_permeability * end.magnetization_jump / R *
-           (H.radial_over_rho * (Matrix3::Identity() - axial) +
-            (H.radial - H.radial_over_rho) * e * e.transpose() + H.axial * axial + mixed +
-            mixed.transpose());
+    const Matrix3 gradient = vacuum_permeability * end.magnetization_jump / R *
+                             (H.radial_over_rho * (Matrix3::Identity() - axial) +
+                              (H.radial - H.radial_over_rho) * e * e.transpose() + H.axial * axial +
+                              mixed + mixed.transpose());
+    sum.value += gradient;
+    sum.rounding +=
+        gradient.norm() * (40 * epsilon + 6 * sources::rounding_of_offset(x, end.section.centre) /
+                                              (R * offset.norm()));
   }
   return sum;
 }

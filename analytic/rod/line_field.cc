@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <optional>
 #include <span>
 
 #include "analytic/rod/field_models.h"
@@ -31,35 +32,90 @@ sources::FieldValue field_of_poles(const RodMagnet& magnet, const Vector3& x) {
   return sum;
 }
 
+sources::AdaptiveOrder demand(const LineOptions& options, const Vector3& x) {
+  return {options.tolerance, 54, "quadrature of the model `line`", x};
+}
+
 /// ∫ kernel(m, x − r) over the dipoles m = A (M₁ d₁ + M₂ d₂) dS + A M₃ dr (F) or A M₃ d₃ dS (R) of
-/// the centreline.
+/// the centreline, as far as the orders bring it; nothing on the centreline, where it diverges.
 template <class Kernel>
-sources::FieldValue sum_over_dipoles(const RodMagnet& magnet, double area,
-                                     const LineOptions& options, const Vector3& x,
-                                     const Kernel& kernel) {
+std::optional<sources::AdaptiveSum> sum_over_dipoles(const RodMagnet& magnet,
+                                                     const LineOptions& options, const Vector3& x,
+                                                     const Kernel& kernel) {
   const auto parts = graded_stretches(
       magnet, [&](const CentrelinePoint& point) { return (x - point.position).norm(); },
       1e-9 * magnet.centreline.length());
-  if (!parts)
-    throw SolverError("the quadrature of the model `line` was asked at " + sources::to_string(x) +
-                      ", on the centreline, where it diverges: move the point, or take the model "
-                      "`volume`");
+  if (!parts) return std::nullopt;
   const auto contribution = [&](const RodStretch& part, std::size_t order) {
     const QuadratureRule& rule = sources::unit_gauss_legendre(order);
     const double length = part.end - part.begin;
-    Vector3 B = Vector3::Zero();
+    sources::SourceSum sum(x);
     for (std::size_t i = 0; i < order; ++i) {
       const CentrelinePoint point = at(magnet, part, part.begin + rule.nodes[i] * length);
       const Vector3 axis =
           options.push_forward == sources::PushForward::F ? point.derivative : point.normal();
-      const double volume = area * rule.weights[i] * length;
-      B += kernel(Vector3(volume * carried_magnetization(part, point, axis)),
-                  Vector3(x - point.position));
+      const double volume = magnet.area * rule.weights[i] * length;
+      sum.add(kernel(Vector3(volume * carried_magnetization(part, point, axis)),
+                     Vector3(x - point.position)),
+              point.position);
     }
-    return B;
+    return sum.value();
   };
-  return sources::integrate_adaptively(
-      *parts, contribution, {options.tolerance, 54, "quadrature of the model `line`", x});
+  return sources::sum_adaptively(*parts, contribution, demand(options, x));
+}
+
+/// The sum over the dipoles to its tolerance.
+template <class Kernel>
+sources::FieldValue quadrature(const RodMagnet& magnet, const LineOptions& options,
+                               const Vector3& x, const Kernel& kernel) {
+  const auto sum = sum_over_dipoles(magnet, options, x, kernel);
+  if (!sum)
+    throw SolverError("the quadrature of the model `line` was asked at " + sources::to_string(x) +
+                      ", on the centreline, where it diverges: move the point, or take the model "
+                      "`volume`");
+  sources::require_reached(*sum, demand(options, x));
+  return sum->value;
+}
+
+/// B of the sum over the dipoles, to which the rounding of the ends belongs.
+sources::FieldValue with_ends(const RodMagnet& magnet, sources::FieldValue value,
+                              const Vector3& x) {
+  value.uncertainty += Vector3::Constant(rounding_of_poles(magnet, x));
+  return value;
+}
+
+/// B of the poles. Where they cancel, far from a magnet that is short beside the distance, B is
+/// that of the dipoles between them.
+sources::FieldValue field_of_poles_or_dipoles(const RodMagnet& magnet, const LineOptions& options,
+                                              const Vector3& x) {
+  const sources::FieldValue poles = field_of_poles(magnet, x);
+  if (sources::is_within(poles, options.tolerance)) return poles;
+  const auto dipoles = sum_over_dipoles(magnet, options, x, sources::dipole_field);
+  if (!dipoles || !(dipoles->reached <= options.tolerance)) return poles;
+  return with_ends(magnet, dipoles->value, x);
+}
+
+/// Derivative of the field of the poles; where they cancel, of that of the dipoles.
+Matrix3 gradient_of_poles(const RodMagnet& magnet, const LineOptions& options, const Vector3& x) {
+  Matrix3 sum = Matrix3::Zero();
+  double rounding = 0;
+  for (const RodEnd& end : magnet.ends) {
+    const Vector3& pole = end.section.centre;
+    const Matrix3 gradient = sources::pole_gradient(pole_strength(end), x - pole);
+    sum += gradient;
+    rounding += gradient.norm() *
+                (8 * epsilon + 3 * sources::rounding_of_offset(x, pole) / (x - pole).norm());
+  }
+  if (rounding <= options.tolerance * sum.norm()) return sum;
+  Matrix3 far;
+  for (int k = 0; k < 3; ++k) {
+    const auto column = sum_over_dipoles(magnet, options, x, [k](const auto& m, const auto& a) {
+      return Vector3(sources::dipole_gradient(m, a).col(k));
+    });
+    if (!column || !(column->reached <= options.tolerance)) return sum;
+    far.col(k) = column->value.B;
+  }
+  return far;
 }
 
 }  // namespace
@@ -69,11 +125,10 @@ Field LineField::field(const Cilium& cilium, const Deformation& deformation,
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   if (options_.method == Method::uniform) return field_of_uniform_line(magnet, options_, points);
   const bool closed_form = has_closed_form(options_, magnet);
-  if (closed_form)
-    return sources::field_at(points, 4096,
-                             [&](const Vector3& x) { return field_of_poles(magnet, x); });
-  return sources::field_at(points, 4, [&](const Vector3& x) {
-    return sum_over_dipoles(magnet, cilium.area(), options_, x, sources::dipole_field);
+  return sources::field_at(points, closed_form ? 4096 : 4, [&](const Vector3& x) {
+    return closed_form
+               ? field_of_poles_or_dipoles(magnet, options_, x)
+               : with_ends(magnet, quadrature(magnet, options_, x, sources::dipole_field), x);
   });
 }
 
@@ -84,18 +139,14 @@ std::vector<Matrix3> LineField::gradient(const Cilium& cilium, const Deformation
         "the gradient of the model `line` was asked by the method `uniform`: take `closed_form` "
         "or `quadrature`");
   const RodMagnet magnet = rod_magnet(cilium, deformation);
-  const double area = cilium.area();
   const bool closed_form = has_closed_form(options_, magnet);
   return sources::gradient_at(points, [&](const Vector3& x) {
-    Matrix3 sum = Matrix3::Zero();
-    if (closed_form)
-      for (const RodEnd& end : magnet.ends)
-        sum += sources::pole_gradient(pole_strength(end), x - end.section.centre);
-    else
-      for (int k = 0; k < 3; ++k)
-        sum.col(k) = sum_over_dipoles(magnet, area, options_, x, [k](const auto& m, const auto& a) {
-                       return Vector3(sources::dipole_gradient(m, a).col(k));
-                     }).B;
+    if (closed_form) return gradient_of_poles(magnet, options_, x);
+    Matrix3 sum;
+    for (int k = 0; k < 3; ++k)
+      sum.col(k) = quadrature(magnet, options_, x, [k](const auto& m, const auto& a) {
+                     return Vector3(sources::dipole_gradient(m, a).col(k));
+                   }).B;
     return sum;
   });
 }

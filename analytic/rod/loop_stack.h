@@ -21,9 +21,9 @@ class LoopStack {
   LoopStack(const LoopStack&) = delete;
   LoopStack& operator=(const LoopStack&) = delete;
 
-  /// B (T) at x, the estimate of its error not above tolerance·|B|: the change from the last orders
-  /// but one plus the rounding of the positions. Throws InputError on the rim of an end face,
-  /// SolverError on the mantle or if the tolerance cannot be reached.
+  /// B (T) at x to tolerance·|B|, as far as the orders bring it. The estimate of its error is the
+  /// change from the last orders but one plus the rounding of the positions. Throws InputError on
+  /// the rim of an end face, SolverError on the mantle.
   sources::FieldValue field(const Vector3& x, double tolerance) const;
 
  private:

@@ -7,8 +7,11 @@
 #include <cstdint>
 #include <numbers>
 
+#include "analytic/sources/charged_rectangle.h"
+#include "analytic/sources/dipole.h"
 #include "problem/cilium.h"
 #include "problem/error.h"
+#include "problem/field_model.h"
 
 namespace ciliaval::analytic::rod {
 namespace {
@@ -84,6 +87,36 @@ void append_ends(RodMagnet& magnet) {
   if (below != nullptr) append(*below, below->end, below->magnetization.z());
 }
 
+void append_segment_ends(RodMagnet& magnet) {
+  for (std::size_t i = 0; i < magnet.stretches.size(); ++i) {
+    const RodStretch& stretch = magnet.stretches[i];
+    const auto is_same = [&](std::size_t other) {
+      return other < magnet.stretches.size() && magnet.stretches[other].segment == stretch.segment;
+    };
+    const double M = stretch.magnetization.norm();
+    if (i == 0 || !is_same(i - 1))
+      magnet.segment_ends.push_back(end_at(magnet, stretch, stretch.begin, M));
+    if (!is_same(i + 1)) magnet.segment_ends.push_back(end_at(magnet, stretch, stretch.end, M));
+  }
+}
+
+/// The error (m) of an end's place along the rod.
+double rounding_of_place(const RodMagnet& magnet, const RodEnd& end) {
+  return 4 * epsilon * (end.section.centre.norm() + magnet.centreline.length());
+}
+
+/// Sum of the reciprocal distances (1/m) of x from the edges of a section.
+double closeness_to_edges(const RodMagnet& magnet, const RodEnd& end, const Vector3& x) {
+  if (end.rectangle)
+    return 1 / sources::distance_from_edge(
+                   end.rectangle->half, end.rectangle->axes.transpose() * (x - end.section.centre));
+  const double outer = 1 / sources::distance_from_line(end.section, x);
+  if (magnet.shape.shape != CrossSection::Shape::tube) return outer;
+  sources::Circle hole = end.section;
+  hole.radius = magnet.shape.inner_diameter / 2;
+  return outer + 1 / sources::distance_from_line(hole, x);
+}
+
 /// Calls `visit(point)` at the nodes of the stretch and at its ends.
 template <class Visit>
 void for_each_node(const RodMagnet& magnet, const RodStretch& stretch, Visit visit) {
@@ -140,7 +173,8 @@ bool append_graded(const RodMagnet& magnet, const RodStretch& stretch,
 
 RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
   if (cilium.segments.empty()) throw InputError("the field of a cilium without segments was asked");
-  RodMagnet magnet{.radius = cilium.radius(), .centreline = deformation.centreline};
+  RodMagnet magnet{
+      .radius = cilium.radius(), .area = cilium.area(), .centreline = deformation.centreline};
   magnet.shape = cilium.section;
   const std::vector<double> interfaces = cilium.interfaces();
   if (!(std::abs(magnet.centreline.length() - interfaces.back()) <= 1e-9 * interfaces.back()))
@@ -154,6 +188,7 @@ RodMagnet rod_magnet(const Cilium& cilium, const Deformation& deformation) {
   }
   append_ends(magnet);
   append_holes(magnet);
+  append_segment_ends(magnet);
   return magnet;
 }
 
@@ -169,6 +204,35 @@ CentrelinePoint at(const RodMagnet& magnet, const RodStretch& stretch, double S)
 
 sources::Circle section(const RodMagnet& magnet, const CentrelinePoint& point) {
   return {point.position, point.normal(), magnet.radius};
+}
+
+double distance_from_section(const RodMagnet& magnet, const CentrelinePoint& point,
+                             const Vector3& x) {
+  if (magnet.shape.shape != CrossSection::Shape::rectangle)
+    return sources::distance_from_disc(section(magnet, point), x);
+  const Vector3 local = axes_of(magnet.shape, point).transpose() * (x - point.position);
+  return std::hypot(std::max(std::abs(local.x()) - magnet.shape.width / 2, 0.0),
+                    std::max(std::abs(local.y()) - magnet.shape.height / 2, 0.0), local.z());
+}
+
+double rounding_of_ends(const RodMagnet& magnet, const Vector3& x) {
+  double sum = 0;
+  for (const RodEnd& end : magnet.segment_ends) {
+    const double a = (x - end.section.centre).norm();
+    const double layer = a > 3 * magnet.radius ? magnet.area / (std::numbers::pi * a * a * a)
+                                               : closeness_to_edges(magnet, end, x);
+    sum += vacuum_permeability * end.magnetization_jump * rounding_of_place(magnet, end) * layer;
+  }
+  return sum;
+}
+
+double rounding_of_poles(const RodMagnet& magnet, const Vector3& x) {
+  double sum = 0;
+  for (const RodEnd& end : magnet.segment_ends)
+    sum += sources::largest_dipole_field(
+        magnet.area * end.magnetization_jump * rounding_of_place(magnet, end),
+        (x - end.section.centre).norm());
+  return sum;
 }
 
 Vector3 stretch_vector(const CentrelinePoint& point, const Vector3& x) {

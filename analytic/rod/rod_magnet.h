@@ -42,9 +42,11 @@ struct RodEnd {
 /// deformation's centreline.
 struct RodMagnet {
   double radius = 0;  ///< of the circle around the section, m
+  double area = 0;    ///< of the section, m²
   const Centreline& centreline;
   std::vector<RodStretch> stretches{};  ///< from base to tip
   std::vector<RodEnd> ends{};           ///< with a jump
+  std::vector<RodEnd> segment_ends{};   ///< both of each segment, with |M| and without holes
   CrossSection shape{};
 };
 
@@ -59,6 +61,17 @@ double pole_strength(const RodEnd& end);
 
 /// The section at S as a circle.
 sources::Circle section(const RodMagnet& magnet, const CentrelinePoint& point);
+
+/// Distance (m) of x from the section at the point; of a tube from the section without its hole.
+double distance_from_section(const RodMagnet& magnet, const CentrelinePoint& point,
+                             const Vector3& x);
+
+/// The error of B (T) at x outside that the rounding of the centreline and of its arc length leaves
+/// in the ends of the segments, 4ε(|r| + L) each. A displaced end is a layer of dipoles: at most
+/// μ₀|M|/(distance from its edge) within three radii and μ₀|M|A/(πa³) beyond.
+double rounding_of_ends(const RodMagnet& magnet, const Vector3& x);
+/// The same of the model `line`, in which a displaced end is a dipole: at most μ₀|M|A/(2πa³).
+double rounding_of_poles(const RodMagnet& magnet, const Vector3& x);
 
 /// ∂x/∂S = r' + κ × (x − r): how the rod map x = r + X d₁ + Y d₂ carries a unit of reference
 /// length at the point x of the section.

@@ -65,13 +65,15 @@ void append_slices(const RodMagnet& magnet, std::span<const RodStretch> segment,
   }
 }
 
-/// B(n), and its difference from B(n/2) (of n = 1: B(2)) as the uncertainty.
-template <class Sum>
+/// B(n), and its difference from B(n/2) (of n = 1: B(2)) and its rounding as the uncertainty.
+template <class Sum, class Rounding>
 Field field_of_sums(std::span<const Vector3> points, std::size_t grain, const Sum& sum,
-                    const Sum& other) {
+                    const Sum& other, const Rounding& rounding_of_the_ends) {
   return sources::field_at(points, grain, [&](const Vector3& x) {
-    const Vector3 B = sum(x);
-    return sources::FieldValue{B, (B - other(x)).cwiseAbs()};
+    sources::FieldValue value = sum(x);
+    value.uncertainty += (value.B - other(x).B).cwiseAbs();
+    value.uncertainty += Vector3::Constant(rounding_of_the_ends(x));
+    return value;
   });
 }
 
@@ -81,14 +83,13 @@ std::size_t other_count(std::size_t n) {
 
 std::vector<sources::Dipole> line_dipoles(const RodMagnet& magnet, const LineOptions& options,
                                           std::size_t n) {
-  const double area = std::numbers::pi * magnet.radius * magnet.radius;
   std::vector<sources::Dipole> dipoles;
   for (const UniformSlice& slice : uniform_slices(magnet, n)) {
     const Vector3 axis = options.push_forward == sources::PushForward::F ? slice.point.derivative
                                                                          : slice.point.normal();
     dipoles.push_back(
         {slice.point.position,
-         area * slice.thickness * carried_magnetization(slice.stretch, slice.point, axis)});
+         magnet.area * slice.thickness * carried_magnetization(slice.stretch, slice.point, axis)});
   }
   return dipoles;
 }
@@ -108,8 +109,8 @@ class VolumeSum {
       }
   }
 
-  Vector3 operator()(const Vector3& x) const {
-    Vector3 B = Vector3::Zero();
+  sources::FieldValue operator()(const Vector3& x) const {
+    sources::SourceSum sum(x);
     for (const UniformSlice& slice : slices_) {
       const Matrix3 directors = slice.point.rotation.toRotationMatrix();
       Vector3 section = Vector3::Zero();
@@ -119,9 +120,9 @@ class VolumeSum {
         section += sources::dipole_field(
             place.area * carried_magnetization(slice.stretch, slice.point, axis), x - y);
       }
-      B += slice.thickness * section;
+      sum.add(slice.thickness * section, slice.point.position);
     }
-    return B;
+    return sum.value();
   }
 
  private:
@@ -154,14 +155,15 @@ Field field_of_uniform_line(const RodMagnet& magnet, const LineOptions& options,
                             std::span<const Vector3> points) {
   const auto sum_of = [&](std::size_t n) {
     return [dipoles = line_dipoles(magnet, options, n)](const Vector3& x) {
-      Vector3 B = Vector3::Zero();
+      sources::SourceSum sum(x);
       for (const sources::Dipole& dipole : dipoles)
-        B += sources::dipole_field(dipole.moment, x - dipole.position);
-      return B;
+        sum.add(sources::dipole_field(dipole.moment, x - dipole.position), dipole.position);
+      return sum.value();
     };
   };
   const std::size_t n = options.elements;
-  return field_of_sums(points, 1 + 4096 / (n + 1), sum_of(n), sum_of(other_count(n)));
+  return field_of_sums(points, 1 + 4096 / (n + 1), sum_of(n), sum_of(other_count(n)),
+                       [&](const Vector3& x) { return rounding_of_poles(magnet, x); });
 }
 
 Field field_of_uniform_volume(const RodMagnet& magnet, const VolumeOptions& options,
@@ -175,7 +177,8 @@ Field field_of_uniform_volume(const RodMagnet& magnet, const VolumeOptions& opti
                         "`closed_form`");
   const std::size_t n = options.elements;
   return field_of_sums(points, 1, VolumeSum(magnet, options, n),
-                       VolumeSum(magnet, options, other_count(n)));
+                       VolumeSum(magnet, options, other_count(n)),
+                       [&](const Vector3& x) { return rounding_of_ends(magnet, x); });
 }
 
 }  // namespace ciliaval::analytic::rod

@@ -22,7 +22,7 @@ struct UniformSlice {
 /// InputError if the centreline does not rise all along, or n is 0.
 std::vector<UniformSlice> uniform_slices(const RodMagnet& magnet, std::size_t n);
 
-/// B (T) by the paper's sum of n dipoles πR²M t dS (Eq. 5–7; M₁ d₁ + M₂ d₂ besides), by the
+/// B (T) by the paper's sum of n dipoles A M t dS (Eq. 5–7; M₁ d₁ + M₂ d₂ besides), by the
 /// midpoint rule. The uncertainty is the change from half as many (of one dipole: to two): for a
 /// rule of second order three times the error. Throws InputError as above, SolverError on a dipole.
 Field field_of_uniform_line(const RodMagnet& magnet, const LineOptions& options,

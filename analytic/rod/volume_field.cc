@@ -21,6 +21,19 @@
 namespace ciliaval::analytic::rod {
 namespace {
 
+/// The closed form if its uncertainty is within the tolerance. Far from a magnet that is short
+/// beside the distance its parts cancel; there the field is that of the dipoles in the volume.
+sources::FieldValue closed_form_or_far_field(const RodMagnet& magnet, const RodInterior& interior,
+                                             VolumeOptions::Slices slices,
+                                             const sources::FieldValue& closed_form,
+                                             const sources::AdaptiveOrder& asked) {
+  if (sources::is_within(closed_form, asked.tolerance)) return closed_form;
+  if (const auto far = far_field_of_rod(magnet, interior, slices, asked.tolerance, asked.x))
+    return *far;
+  sources::require_tolerance(closed_form, asked);
+  return closed_form;
+}
+
 /// B = μ₀ Σ σ H(disc or rectangle) + μ₀ m of the wedge's reference charge on the end sections, and
 /// by quadrature of what is on the mantle.
 Field field_of_discs(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
@@ -39,19 +52,22 @@ Field field_of_discs(const RodMagnet& magnet, double tolerance, std::span<const 
       sum += {inside, Vector3::Constant(40 * epsilon * inside.norm())};
     }
     if (!patches.empty()) {
-      const sources::FieldValue all = mantle.field(x, sum.B, tolerance);
+      const sources::FieldValue all = mantle.sum(x, sum.B, tolerance).value;
       sum = {all.B, sum.uncertainty + all.uncertainty};
     }
-    sources::require_tolerance(sum, {tolerance, 0, "field of the charged end faces", x});
-    return sum;
+    return closed_form_or_far_field(magnet, interior, VolumeOptions::Slices::wedge, sum,
+                                    {tolerance, 0, "field of the charged faces", x});
   });
 }
 
 Field field_of_loops(const RodMagnet& magnet, double tolerance, std::span<const Vector3> points) {
   const LoopStack stack(magnet);
+  const RodInterior interior(magnet);
   return sources::field_at(points, 16, [&](const Vector3& x) {
     require_off_the_rims(magnet.ends, x);
-    return stack.field(x, tolerance);
+    return closed_form_or_far_field(magnet, interior, VolumeOptions::Slices::stacked,
+                                    stack.field(x, tolerance),
+                                    {tolerance, 0, "field of the stacked slices", x});
   });
 }
 
@@ -62,10 +78,11 @@ Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
   const RodMagnet magnet = rod_magnet(cilium, deformation);
   const bool is_wedge = options_.slices == VolumeOptions::Slices::wedge;
   if (cilium.section.shape != CrossSection::Shape::circle &&
+      options_.method != Method::quadrature &&
       !(is_wedge && options_.method == Method::closed_form))
     throw InputError(
         "the model `volume` takes a rectangle or a tube by the slices `wedge` and the method "
-        "`closed_form` only");
+        "`closed_form`, or by the method `quadrature`");
   if (is_wedge) require_body(magnet);
   if (!is_wedge && options_.method == Method::closed_form && is_transverse(magnet))
     throw InputError(
@@ -77,7 +94,7 @@ Field VolumeField::field(const Cilium& cilium, const Deformation& deformation,
   if (options_.method == Method::uniform) return field_of_uniform_volume(magnet, options_, points);
   const RodInterior interior(magnet);
   return sources::field_at(points, 1, [&](const Vector3& x) {
-    require_off_the_rims(magnet.ends, x);
+    if (!cilium.is_rectangular()) require_off_the_rims(magnet.ends, x);
     return rod_field_by_quadrature(magnet, interior, options_.slices, options_.tolerance, x);
   });
 }
@@ -120,7 +137,9 @@ std::vector<Matrix3> VolumeField::gradient(const Cilium& cilium, const Deformati
     if (interior.magnetization_at(x))
       throw InputError("the gradient of the model `volume` was asked at " + sources::to_string(x) +
                        ", inside the magnet: move the point outside");
-    return gradient_of_end_discs(magnet.ends, x);
+    const DiscsGradient discs = gradient_of_end_discs(magnet.ends, x);
+    if (discs.rounding <= options_.tolerance * discs.value.norm()) return discs.value;
+    return far_gradient_of_rod(magnet, interior, options_.tolerance, x).value_or(discs.value);
   });
 }
 

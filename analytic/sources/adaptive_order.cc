@@ -19,7 +19,9 @@ void throw_tolerance_missed(const AdaptiveOrder& asked, double reached) {
   std::snprintf(text, sizeof text, " to %.2g of |B|, but is uncertain by %.2g", asked.tolerance,
                 reached);
   throw SolverError("the " + std::string(asked.integral) + " was asked at " + to_string(asked.x) +
-                    text + ": move the point away from the magnet or ask for a larger tolerance");
+                    text +
+                    ": ask for a larger tolerance; a point beside the magnet's surface may also be "
+                    "moved away from it");
 }
 
 }  // namespace ciliaval::analytic::sources

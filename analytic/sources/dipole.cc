@@ -14,6 +14,10 @@ Vector3 dipole_field(const Vector3& moment, const Vector3& offset) {
   return scale * (3 * moment.dot(offset) / a2 * offset - moment);
 }
 
+double largest_dipole_field(double moment, double a) {
+  return vacuum_permeability / (2 * std::numbers::pi) * moment / (a * a * a);
+}
+
 Vector3 pole_field(double strength, const Vector3& offset) {
   const double a2 = offset.squaredNorm();
   return vacuum_permeability / (4 * std::numbers::pi) * strength / (a2 * std::sqrt(a2)) * offset;

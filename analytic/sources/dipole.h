@@ -14,6 +14,10 @@ struct Dipole {
 ///   B = μ₀/4π [3(m·a)a/a⁵ − m/a³].  Not finite at a = 0.
 Vector3 dipole_field(const Vector3& moment, const Vector3& offset);
 
+/// The largest |B| (T), on the axis, of a dipole of this size (A·m²) at the distance a (m):
+/// μ₀m/(2πa³).
+double largest_dipole_field(double moment, double a);
+
 /// Flux density (T) of a magnetic pole of strength q (A·m) at the offset a (m) from it:
 ///   B = μ₀ q a/(4π a³).  Not finite at a = 0.
 Vector3 pole_field(double strength, const Vector3& offset);

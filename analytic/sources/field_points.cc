@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <vector>
@@ -58,6 +59,12 @@ double rounding_of_offset(const Vector3& x, const Vector3& y) {
 FieldValue with_rounding(const Vector3& B, const Vector3& x, const Vector3& y) {
   const double relative = 8 * epsilon + 4 * rounding_of_offset(x, y) / (x - y).norm();
   return {B, Vector3::Constant(relative * B.norm())};
+}
+
+FieldValue SourceSum::value() const {
+  const double rounding = 4 * epsilon * (x_.norm() + std::sqrt(farthest_));
+  const double relative = 8 * epsilon + 4 * rounding / std::sqrt(nearest_);
+  return {B_, Vector3::Constant(relative * size_)};
 }
 
 }  // namespace ciliaval::analytic::sources

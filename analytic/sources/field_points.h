@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -78,5 +80,26 @@ double rounding_of_offset(const Vector3& x, const Vector3& y);
 /// B of a point source of strength proportional to `B` at the offset x − y: |B| to 8 ε, and the
 /// rounding of the offset times the largest gradient 4|B|/a that a dipole's field has.
 FieldValue with_rounding(const Vector3& B, const Vector3& x, const Vector3& y);
+
+/// Sum of the fields B of point sources at y, seen from x, and its rounding: Σ|B| by the relative
+/// error of with_rounding() for the nearest and the farthest source.
+class SourceSum {
+ public:
+  explicit SourceSum(const Vector3& x) : x_(x) {}
+  void add(const Vector3& B, const Vector3& y) {
+    B_ += B;
+    size_ += B.lpNorm<1>();
+    nearest_ = std::min(nearest_, (x_ - y).squaredNorm());
+    farthest_ = std::max(farthest_, y.squaredNorm());
+  }
+  FieldValue value() const;
+
+ private:
+  Vector3 x_;
+  Vector3 B_ = Vector3::Zero();
+  double size_ = 0;                                           // Σ|B|, T
+  double nearest_ = std::numeric_limits<double>::infinity();  // distance from x squared, m²
+  double farthest_ = 0;                                       // distance from 0 squared, m²
+};
 
 }  // namespace ciliaval::analytic::sources

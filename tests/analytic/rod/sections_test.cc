@@ -74,8 +74,7 @@ TEST(RodSections, RefuseWhatHasNoClosedForm) {
       VolumeField({.slices = VolumeOptions::Slices::stacked}).field(cilium, straight, below),
       InputError);
   EXPECT_THROW(VolumeField({.method = Method::uniform}).field(cilium, straight, below), InputError);
-  EXPECT_THROW(VolumeField({.method = Method::quadrature}).field(cilium, straight, below),
-               InputError);
+  EXPECT_NO_THROW(VolumeField({.method = Method::quadrature}).field(cilium, straight, below));
   const Cilium plate = two_materials({.shape = Shape::rectangle, .width = 4e-3, .height = 1e-3});
   EXPECT_THROW(VolumeField().field(plate, straight, std::vector<Vector3>{{2e-3, 0, 20e-3}}),
                InputError);

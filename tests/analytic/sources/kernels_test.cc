@@ -186,7 +186,7 @@ TEST(AdaptiveOrder, RaisesEachPartAloneAndReturnsItsLastChanges) {
   const auto contribution = [&](const std::size_t& part, std::size_t order) {
     highest[part] = std::max(highest[part], order);
     const double error = std::pow(2.0, -static_cast<double>((part + 1) * order));
-    return Vector3((1 + error) * Vector3::UnitX());
+    return sources::FieldValue{(1 + error) * Vector3::UnitX(), Vector3::Zero()};
   };
   const Vector3 x(0, 0, 0);
   const sources::FieldValue value = sources::integrate_adaptively(
