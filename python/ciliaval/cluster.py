@@ -90,11 +90,11 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
             for future in done:
                 batch = running.pop(future)
                 try:
-                    solutions = future.result()
+                    solved = future.result()
                 except KilledWorker:
                     (deadly if alone else suspects).append(batch)
                     continue
-                for (point, mechanics), solution in zip(batch, solutions):
+                for (point, mechanics), solution in solved:
                     store.keep(point, mechanics, solution)
     except CancelledError as error:
         raise SolverError(_ENDED) from error
@@ -135,13 +135,13 @@ def _packed(files: Iterable[str]) -> tuple[tuple[str, bytes], ...]:
 # In a worker.
 
 
-def _solve(files: tuple, expected: tuple, tasks: list[Task]) -> list[str]:
-    """One batch at a time, whatever the number of the worker's threads: it takes all cores."""
+def _solve(files: tuple, expected: tuple, tasks: list[Task]) -> list[tuple[Task, str]]:
+    """Each task with its solution. One batch at a time, whatever the number of the worker's threads: it takes all cores."""
     # Below srun Open MPI would take each worker for a rank of one program, and end it.
     os.environ.pop("SLURM_NODELIST", None)
     with _one_batch:
         study, _ = _opened(files, expected)
-        return study.solve(tasks)
+        return list(zip(tasks, study.solve(tasks)))
 
 
 @functools.lru_cache(maxsize=1)
