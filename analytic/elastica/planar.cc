@@ -20,6 +20,7 @@ namespace {
 constexpr std::size_t node_count = 16;
 constexpr std::size_t check_count = 4;
 constexpr int max_bisections = 40;
+constexpr std::size_t most_pieces = 10000;  ///< a smooth shape takes some dozens
 
 /// Values of the nodes' Lagrange polynomials at points between nodes near both ends and the middle,
 /// where interpolation errs most.
@@ -64,7 +65,7 @@ class CentrelineBuilder {
         if (!std::isfinite(value)) throw SolverError("elastica: the shape is not finite");
     }
     if (!resolved(nodes, a, b, piece)) {
-      if (bisections == max_bisections)
+      if (bisections == max_bisections || pieces_.size() >= most_pieces)
         throw SolverError(
             "elastica: the shape cannot be interpolated to the tolerance asked; if it is of the "
             "height form, whose quadrature loses digits near 90 deg, use the arc-length form");

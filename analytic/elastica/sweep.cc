@@ -25,8 +25,13 @@ constexpr double shortest_jump = 1e-6;   ///< a shorter slip in the shortest ste
 constexpr double step_imbalance = 1e-5;  ///< of the works of the shortest step, over the energy
 constexpr double longest_search = 1e-3;  ///< step of ξ in a jump, in L
 constexpr double shortest_search = 1e-7;
-constexpr int most_landings = 50;           ///< in a jump
-constexpr double farthest_jump = 4;         ///< in L
+constexpr int most_landings = 50;    ///< in a jump, and as often it may snap through
+constexpr double farthest_jump = 4;  ///< in L
+/// Steps after which a way is given up: a hundred for each that the longest ones would take, and
+/// some for a short way through jumps. Only a tip that gets on by the shortest steps alone comes to
+/// them.
+constexpr double most_steps = 100;
+constexpr double most_steps_anyway = 10000;
 constexpr double cone_slack = 1e-10;        ///< of |T| over μN
 constexpr double touch_depth = 1e-8;        ///< of the first contact, in L
 constexpr int most_changes = 8;             ///< of the touching points at a place
@@ -75,6 +80,7 @@ class Follower {
     if (way == 0) return now_;
     drag_ = sign_of(target.travel - start.travel);
     double at = 0;
+    double steps_left = steps_of(way / longest_step_);
     while (at < 1) {
       double step = step_ / way;
       const double shortest = shortest_step / way;
@@ -85,11 +91,13 @@ class Follower {
           at = next;
           break;
         }
-        if (last_try)
-          throw SolverError((std::ostringstream()
-                             << "elastica: no equilibrium was found beyond the travel "
-                             << now_.place.travel * problem_.length << " m of the surface")
-                                .str());
+        if (last_try || --steps_left < 0)
+          throw SolverError(
+              (std::ostringstream()
+               << "elastica: " << (last_try ? "no equilibrium was found" : "only tiny steps lead")
+               << " beyond the travel " << now_.place.travel * problem_.length
+               << " m of the surface; take another tip, or the beam")
+                  .str());
         step = std::max(step / 4, shortest);
       }
       step_ = std::min(2 * step * way, longest_step_);
@@ -322,6 +330,9 @@ class Follower {
     return true;
   }
 
+  /// Steps after which a way of so many of the longest ones is given up.
+  static double steps_of(double longest) { return most_steps * longest + most_steps_anyway; }
+
   double search_of(double length) const { return std::min(length, longest_search_); }
 
   /// What a tip that has lost the surface comes to.
@@ -402,8 +413,10 @@ class Follower {
                                  double& friction) const {
     TipContact contact = anchored(from, place);
     int landings = from.normal_force > 0 ? 0 : 1;
+    int snaps = 0;
     double step = longest_search_;
-    for (double moved = 0; moved < farthest_jump;) {
+    double steps_left = steps_of(farthest_jump / longest_search_);
+    for (double moved = 0; moved < farthest_jump && steps_left > 0; --steps_left) {
       const double direction = sign_of(contact.friction_force);
       const auto next = held_after(place, contact, -direction * step, step <= shortest_search);
       // A point that has just landed comes nearer to the surface, not away from it.
@@ -413,6 +426,7 @@ class Follower {
         step /= 4;
         if (step > shortest_search / 4) continue;
         if (const auto snapped = next ? std::nullopt : snap(place, contact, -direction)) {
+          if (++snaps > most_landings) return std::nullopt;
           contact = *snapped;
           step = longest_search_;
           continue;

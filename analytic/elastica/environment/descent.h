@@ -8,6 +8,7 @@
 #include "analytic/elastica/environment/equilibrium.h"
 #include "analytic/elastica/environment/series.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::analytic::elastica::environment {
 
@@ -87,6 +88,7 @@ class Descent {
     const Forces forces{rod_.compliance[segment_], rod_.per_length[segment_].along,
                         rod_.per_length[segment_].vertical, rod_.per_height};
     for (int k = 0; k < most_steps; ++k) {
+      support::check_interruption();
       const Series<T> step(state_, forces, target, accuracy_.tolerance, accuracy_.fraction);
       state_ = step.at_end();
       each(step);
