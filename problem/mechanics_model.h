@@ -12,6 +12,7 @@
 #include "problem/cilium.h"
 #include "problem/deformation.h"
 #include "problem/load.h"
+#include "problem/pull_in.h"
 
 namespace ciliaval {
 
@@ -19,6 +20,8 @@ enum class Status {
   converged,
   slipped_off,  ///< the contact force (or the probe's displacement) is larger than in any
                 ///< equilibrium: a result, not an error
+  pulled_in,    ///< a magnet pulls the cilium in: the equilibrium vanishes in a fold before the
+                ///< load is reached: a result, not an error
   failed        ///< the solver did not converge
 };
 
@@ -61,9 +64,10 @@ struct MechanicsStep {
   std::optional<int> unstable_modes;  ///< ways in which the energy decreases; 0: stable
   /// Smallest eigenvalue of the second variation over that of the straight cilium without loads.
   std::optional<double> smallest_eigenvalue;
-  std::size_t unknowns = 0;  ///< of the largest system solved
-  int iterations = 0;        ///< nonlinear iterations, all cutbacks included
-  double seconds = 0;        ///< wall time
+  std::optional<PullIn> pull_in;  ///< there if pulled in, or if it jumps on the way
+  std::size_t unknowns = 0;       ///< of the largest system solved
+  int iterations = 0;             ///< nonlinear iterations, all cutbacks included
+  double seconds = 0;             ///< wall time
 };
 
 /// The largest magnitude that an equilibrium bears, of a contact N, of a probe m, if it is known.

@@ -248,6 +248,7 @@ void add_fields(const Chain& chain, const Computed& computed, std::size_t step, 
 // ---------------------------------------------------------------------------------------- remarks
 
 std::string_view outcome(Status status) {
+  if (status == Status::pulled_in) return "pulled in";
   return status == Status::slipped_off ? "slipped off" : "failed";
 }
 

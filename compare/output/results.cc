@@ -95,6 +95,16 @@ Json balance_json(const EnergyBalance& balance) {
           {"relative_rest", balance.relative_rest()}};
 }
 
+Json pull_in_json(const PullIn& pull_in) {
+  Json json{{"fraction", pull_in.fraction},   {"load", pull_in.load},
+            {"magnet", pull_in.magnet},       {"tip", vector(pull_in.tip)},
+            {"tip_angle", pull_in.tip_angle}, {"approach", Json::array()}};
+  for (const ApproachToFold& at : pull_in.approach)
+    json["approach"].push_back(
+        {{"fraction", at.fraction}, {"smallest_eigenvalue", at.smallest_eigenvalue}});
+  return json;
+}
+
 Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   const MechanicsStep& step = run.result.steps[index];
   Json json{{"status", to_string(step.status)}, {"message", step.message}};
@@ -121,6 +131,7 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
     json["jump"] = {{"energy_lost", *step.contact->energy_lost}};
   if (step.unstable_modes) json["unstable_modes"] = *step.unstable_modes;
   if (step.smallest_eigenvalue) json["smallest_eigenvalue"] = *step.smallest_eigenvalue;
+  if (step.pull_in) json["pull_in"] = pull_in_json(*step.pull_in);
   json["unknowns"] = step.unknowns;
   json["iterations"] = step.iterations;
   json["seconds"] = step.seconds;
@@ -195,6 +206,8 @@ std::string_view to_string(Status status) {
       return "converged";
     case Status::slipped_off:
       return "slipped_off";
+    case Status::pulled_in:
+      return "pulled_in";
     case Status::failed:
       break;
   }

@@ -14,7 +14,7 @@
 
 namespace ciliaval::compare::output {
 
-/// "converged", "slipped_off" or "failed".
+/// "converged", "slipped_off", "pulled_in" or "failed".
 std::string_view to_string(Status status);
 /// "open", "stick" or "slip"; "rim", "mantle" or "surface".
 std::string_view to_string(SurfaceContact::State state);

@@ -41,6 +41,15 @@ const models::Comparison* find(const std::vector<models::Comparison>& comparison
   return it == comparisons.end() ? nullptr : &*it;
 }
 
+/// " 1 at 0, 0.5 at 0.3": the eigenvalues at their fractions.
+std::string approach(const PullIn& pull_in) {
+  std::string text;
+  for (const ApproachToFold& at : pull_in.approach)
+    text += fmt::format("{} {:.3g} at {:.6g}", text.empty() ? "" : ",", at.smallest_eigenvalue,
+                        at.fraction);
+  return text;
+}
+
 std::string mechanics_table(const models::CaseResult& result, std::size_t index) {
   TextRows rows{{"mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)", "force(mN)",
                  "unknowns", "iter.", "time (s)"}};
@@ -69,6 +78,9 @@ std::string mechanics_table(const models::CaseResult& result, std::size_t index)
     if (step.smallest_eigenvalue)
       text += fmt::format("  {}: smallest eigenvalue {:.3g} of that at rest\n", run.model,
                           *step.smallest_eigenvalue);
+    if (step.pull_in && !step.pull_in->approach.empty())
+      text += fmt::format("  {}: smallest eigenvalue of that at rest on the way:{}\n", run.model,
+                          approach(*step.pull_in));
     if (step.status != Status::slipped_off) continue;
     if (step.slip_off_displacement)
       text += fmt::format("  {}: slips off beyond {:.4g} mm\n", run.model,

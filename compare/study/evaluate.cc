@@ -134,7 +134,7 @@ LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const Me
     const MechanicsStep trial =
         solve_one(model, cilium, with_magnitude(step.load, magnitude), progress);
     if (const auto limit = slip_off_limit(trial)) return {*limit, trial.slip_off_uncertainty};
-    if (trial.status == Status::failed)
+    if (trial.status == Status::failed || trial.status == Status::pulled_in)
       throw SolverError(fmt::format("range: under {:g} {} the model failed: {}", magnitude,
                                     magnitude_unit(step.load), trial.message));
   }

@@ -2,6 +2,7 @@
 #include "fem/beam/beam.h"
 
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -10,6 +11,7 @@
 #include "fem/beam/cilium_beam.h"
 #include "fem/beam/contact.h"
 #include "fem/beam/newton.h"
+#include "fem/beam/stability/pull_in.h"
 #include "fem/beam/stability/stability.h"
 #include "fem/beam/sweep/sweep.h"
 #include "problem/error.h"
@@ -43,7 +45,9 @@ class PathSolver {
       eigenvalue_at_rest_.reset();
       state_ = beam_->system.reference_state();
       applied_ = {};
+      magnitude_ = magnitude(nothing_of(load));
     }
+    const State before = state_;
     const Loads from = applied_;
     const Loads to = loads(cilium_, load, *beam_);
     const auto unstable_modes = [this](const State& state, const Loads& at) {
@@ -61,6 +65,11 @@ class PathSolver {
     step.message = report.message;
     step.iterations = report.iterations;
     if (may_buckle && report.converged) judge(unstable_modes(state_, to), step);
+    const stability::Way way{before, from, to, magnitude_, magnitude(load)};
+    stability::judge_pull_in(cilium_, *beam_, way, newton, state_, step);
+    // The next step starts from the straight cilium.
+    if (step.status == Status::pulled_in) beam_.reset();
+    magnitude_ = std::lerp(magnitude_, magnitude(load), report.reached);
     return step;
   }
 
@@ -91,6 +100,7 @@ class PathSolver {
   std::optional<double> eigenvalue_at_rest_;
   State state_;
   Loads applied_;
+  double magnitude_ = 0;  ///< of the load that is applied
 };
 
 PathProgress told(const Progress& progress, std::size_t step, std::size_t steps) {
@@ -116,13 +126,8 @@ MechanicsStep solve_step(const Cilium& cilium, const Load& load, PathSolver& pat
         -reaction.dot(direction(load)) - environment_force(cilium, load) -
         system.force_of_magnets(solver.state(), solver.applied()).dot(direction(load));
     step.deformation = Deformation{centreline(system, solver.state()), nullptr};
-    if (const auto touched = surroundings::touched_magnet(acting_environment(load), cilium,
-                                                          step.deformation->centreline)) {
-      step.status = Status::failed;
-      step.message = "the bent cilium touches the magnet '" + *touched +
-                     "', whose contact is not modelled: move the magnet away";
+    if (stability::touches_magnet(cilium, step.deformation->centreline, step))
       step.deformation.reset();
-    }
     return step;
   };
   return contact_height(load) ? finished(contact) : finished(path);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fem/beam/centreline.h"
+#include "fem/beam/stability/pull_in.h"
 
 namespace ciliaval::fem::beam {
 namespace {
@@ -171,12 +172,16 @@ std::optional<double> ContactSolver::untouched_arclength(const Load& load,
   const double height = contact_height(load).value();
   CiliumBeam beam = cilium_beam(cilium_, options_, {}, corrections_);
   State state = beam.system.reference_state();
-  const PathReport report = advance(
-      beam.system, state, {}, environment_loads(cilium_, load, beam),
-      {options_.tolerance, options_.max_iterations, options_.max_cutbacks, {}, largest_turn(load)});
+  const Loads loads = environment_loads(cilium_, load, beam);
+  const NewtonOptions newton{
+      options_.tolerance, options_.max_iterations, options_.max_cutbacks, {}, largest_turn(load)};
+  const PathReport report = advance(beam.system, state, {}, loads, newton);
   step.iterations += report.iterations;
   if (!report.converged) {
     step.message = report.message;
+    // The environment alone may pull it in.
+    stability::judge_pull_in(cilium_, beam, {beam.system.reference_state(), {}, loads}, newton,
+                             state, step);
     return std::nullopt;
   }
   const Centreline line = centreline(beam.system, state);

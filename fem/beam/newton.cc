@@ -209,17 +209,12 @@ NewtonReport newton(System& system, State& state, const Loads& loads, const Newt
   return report;
 }
 
-namespace {
-
-/// The largest angle between a section in one state and in the other, rad.
 double turn_between(const State& a, const State& b) {
   double turn = 0;
   for (std::size_t j = 0; j < a.rotation.size(); ++j)
     turn = std::max(turn, a.rotation[j].angularDistance(b.rotation[j]));
   return turn;
 }
-
-}  // namespace
 
 PathReport advance(System& system, State& state, const Loads& from, const Loads& to,
                    const NewtonOptions& options, std::span<const Condition> conditions,

@@ -27,6 +27,8 @@ struct NewtonOptions {
 };
 /// largest_turn under an environment.
 inline constexpr double turn_in_environment = 0.5;
+/// The largest angle between a section in one state and in the other, rad.
+double turn_between(const State& a, const State& b);
 
 /// Increments of one load after which it is given up: with few iterations and many cutbacks they
 /// may be ever so small, and all converge.

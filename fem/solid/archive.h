@@ -148,11 +148,23 @@ void serialize(Archive& archive, ciliaval::fem::solid::contact::FollowerState& s
 }
 
 template <class Archive>
+void serialize(Archive& archive, ciliaval::ApproachToFold& at, unsigned int /*version*/) {
+  auto& [fraction, smallest_eigenvalue] = at;
+  archive& fraction& smallest_eigenvalue;
+}
+
+template <class Archive>
+void serialize(Archive& archive, ciliaval::PullIn& pull_in, unsigned int /*version*/) {
+  auto& [fraction, load, magnet, tip, tip_angle, approach] = pull_in;
+  archive& fraction& load& magnet& tip& tip_angle& approach;
+}
+
+template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
          slip_off_uncertainty, contact_arclength, contact, tip_uncertainty, tip_angle_uncertainty,
-         applied_force_uncertainty, unstable_modes, smallest_eigenvalue, unknowns, iterations,
-         seconds] = step;
+         applied_force_uncertainty, unstable_modes, smallest_eigenvalue, pull_in, unknowns,
+         iterations, seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
   // Estimated anew.
   static_cast<void>(tip_uncertainty);
@@ -160,7 +172,7 @@ void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*v
   static_cast<void>(applied_force_uncertainty);
   archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
       slip_off_uncertainty& contact_arclength& contact& unstable_modes& smallest_eigenvalue&
-          unknowns& iterations& seconds;
+          pull_in& unknowns& iterations& seconds;
 }
 
 }  // namespace boost::serialization

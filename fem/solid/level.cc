@@ -12,6 +12,7 @@
 #include "fem/parallel.h"
 #include "fem/solid/equilibrium/initial_guess.h"
 #include "fem/solid/loads/dead_forces.h"
+#include "fem/solid/loads/environment_forces.h"
 #include "fem/solid/postprocessing/body.h"
 #include "fem/solid/postprocessing/centreline.h"
 #include "meshes/gmsh/gmsh_mesh.h"
@@ -242,7 +243,7 @@ Guess Level::initial_guess(const Load& load, const Progress& progress) const {
     result = guess(load, coarser_->solver().current(), pairs(state(), before ? &*before : nullptr));
   result.slip_off =
       outcome.slip_off_displacement ? outcome.slip_off_displacement : outcome.slip_off_force;
-  result.lost = outcome.status == Status::failed;
+  result.lost = outcome.status == Status::failed || outcome.status == Status::pulled_in;
   return result;
 }
 
@@ -303,8 +304,36 @@ Deformation Level::undeformed(double azimuth) const {
   return deformation(space_->undeformed(), azimuth);
 }
 
-std::optional<SecondVariation> Level::second_variation() {
-  const Equilibrium& now = solver().current();
+PullIn Level::pull_in(const LoadPathOutcome& outcome, double mesh_azimuth) {
+  const auto& [fraction, last] = outcome.way_to_fold.back();
+  const Centreline line = deformation(last, mesh_azimuth).centreline;
+  const surroundings::Environment environment = acting_environment(last.load);
+  if (const auto touched = surroundings::touched_magnet(
+          surroundings::turned(environment, mesh_azimuth), cilium_, line))
+    throw SolverError(touches_magnet(*touched));
+  PullIn result;
+  result.fraction = fraction;
+  result.load = outcome.load_at_fold;
+  const CentrelinePoint tip = line.at(line.length());
+  result.tip = tip.position;
+  result.tip_angle = tip.theta();
+  double largest = -1;
+  for (const surroundings::magnets::Magnet& magnet : environment.magnets) {
+    surroundings::Environment one = environment;
+    one.magnets = {magnet};
+    const double force = force_of_magnets(*space_, cilium_, one, last.state.displacement).norm();
+    if (force > largest) {
+      largest = force;
+      result.magnet = magnet.name;
+    }
+  }
+  for (const OnTheWay& at : outcome.way_to_fold)
+    if (const auto variation = second_variation(at.equilibrium))
+      result.approach.push_back({at.fraction, variation->smallest_eigenvalue});
+  return result;
+}
+
+std::optional<SecondVariation> Level::second_variation(const Equilibrium& now) {
   if (!has_potential(now.load)) return std::nullopt;
   const auto of = [this](const ExternalForces& external, const SolidState& state) {
     const auto modes = [&](const std::vector<DirichletCondition>& supports) {

@@ -86,7 +86,13 @@ class Level {
   /// Of the level's state in all displacements of the whole body, with the smallest eigenvalue over
   /// that of the straight cilium without loads. None if the load has no potential, or as
   /// Newton::second_variation(), whose errors it throws.
-  std::optional<equilibrium::SecondVariation> second_variation();
+  std::optional<equilibrium::SecondVariation> second_variation() {
+    return second_variation(solver().current());
+  }
+  /// The last equilibrium before a magnet pulls the cilium in, with the smallest eigenvalue on the
+  /// way there, of an outcome of advance() with the status pulled_in. `mesh_azimuth` as of
+  /// deformation(). Throws SolverError if the cilium touches a magnet there.
+  PullIn pull_in(const equilibrium::LoadPathOutcome& outcome, double mesh_azimuth);
   std::size_t unknowns() const { return space_->unknowns(); }
 
   // For solvers that make their own way, apart from the level's load path.
@@ -104,6 +110,8 @@ class Level {
   /// The space on the triangulation and its mapping.
   void discretise(discretisation::Extent extent, std::span<const material::Hyperelastic> materials);
   void start_from_rest(const Load& first);
+  /// Of an equilibrium of the level, as above.
+  std::optional<equilibrium::SecondVariation> second_variation(const equilibrium::Equilibrium& now);
   /// From the coarser level, which it solves under the load; without one, from the beam.
   equilibrium::Guess initial_guess(const Load& load, const Progress& progress) const;
   /// The coarser level's equilibrium with the load, interpolated, and corrected by the levels'

@@ -117,6 +117,18 @@ void judge(Level& level, MechanicsStep& step) {
   if (*step.unstable_modes > 0) remark(step, not_stable(*step.unstable_modes));
 }
 
+/// States where a magnet pulls the cilium in.
+void state_pull_in(Level& level, const LoadPathOutcome& outcome, double mesh_azimuth,
+                   MechanicsStep& step) {
+  try {
+    step.pull_in = level.pull_in(outcome, mesh_azimuth);
+    step.message = pulled_in(*step.pull_in);
+  } catch (const SolverError& error) {
+    step.status = Status::failed;
+    step.message = error.what();
+  }
+}
+
 }  // namespace
 
 std::optional<std::string> fold_remark(const postprocessing::MantleCompression& compression) {
@@ -293,6 +305,8 @@ MechanicsStep PathRun::solve(std::size_t i, bool keep) {
     if (own && other)
       step.slip_off_uncertainty = outcome.slip_off_bracket + std::abs(*own - *other);
   }
+  if (step.status == Status::pulled_in)
+    state_pull_in(finest(), outcome, mesh_azimuth(options_, path_[i]), step);
   if (step.status == Status::failed) step.message = label(i) + step.message;
   step.seconds = seconds_since(start);
   return step;

@@ -31,7 +31,7 @@ def bend(
     options: those of the model, as in a case file, in SI units: refinement=2.
 
     Raises InputError, SolverError. A load that is too large gives a Shape with the status
-    "slipped_off" or "failed", whose numbers raise SolverError when they are asked for.
+    "slipped_off", "pulled_in" or "failed", whose numbers raise SolverError when they are asked for.
 
     >>> import ciliaval as cv
     >>> base = cv.Segment(length=3e-3, young_modulus=0.1e6)

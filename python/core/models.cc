@@ -152,7 +152,7 @@ py::dict field(const BentShape& shape, const Array& where, const Text& model_nam
   result["dB"] = vectors(step.dB);
   result["B_uncertainty"] = with_mechanics(step.uncertainty, step.from_mechanics);
   result["dB_uncertainty"] = with_mechanics(step.dB_uncertainty, step.dB_from_mechanics);
-  result["message"] = step.failure;
+  result["message"] = step.failure.empty() ? step.remark : step.failure;
   return result;
 }
 
@@ -284,6 +284,19 @@ py::object positions(const BentShape& shape) {
   return array(all);
 }
 
+py::object pull_in(const BentShape& shape) {
+  const std::optional<PullIn>& found = shape.step().pull_in;
+  if (!found) return py::none();
+  std::vector<double> approach;
+  for (const ApproachToFold& at : found->approach)
+    approach.insert(approach.end(), {at.fraction, at.smallest_eigenvalue});
+  const auto n = static_cast<py::ssize_t>(found->approach.size());
+  return py::dict(py::arg("fraction") = found->fraction, py::arg("load") = found->load,
+                  py::arg("magnet") = found->magnet, py::arg("tip") = array(found->tip),
+                  py::arg("tip_angle") = found->tip_angle,
+                  py::arg("approach") = array(std::move(approach), {n, 2}));
+}
+
 template <class Entries>
 py::dict described(const Entries& entries) {
   py::dict result;
@@ -309,7 +322,9 @@ void bind_models(py::module_& module) {
       .def_property_readonly(
           "status",
           [](const BentShape& s) { return std::string(output::to_string(s.step().status)); },
-          "'converged', 'slipped_off' (the load is larger than any equilibrium bears) or 'failed'.")
+          "'converged', 'slipped_off' (the load is larger than any equilibrium bears), "
+          "'pulled_in'\n"
+          "(a magnet pulls the cilium in: see pull_in) or 'failed'.")
       .def_property_readonly("message", [](const BentShape& s) { return s.step().message; })
       .def_property_readonly(
           "tip", [](const BentShape& s) { return array(s.tip().position); }, "(3,), m.")
@@ -335,6 +350,12 @@ void bind_models(py::module_& module) {
           "smallest_eigenvalue", [](const BentShape& s) { return s.step().smallest_eigenvalue; },
           "Smallest eigenvalue of the second variation over that of the straight cilium without "
           "loads; None: not known.")
+      .def_property_readonly(
+          "pull_in", &pull_in,
+          "Where a magnet pulls the cilium in: a dict of fraction (of this load and its\n"
+          "environment), load, magnet, tip (3,), m, tip_angle, rad, of the last equilibrium, and\n"
+          "approach (n, 2): fractions, and the smallest eigenvalue over that of the straight\n"
+          "cilium there. None: it is not pulled in.")
       .def_property_readonly(
           "magnet_forces",
           [](const BentShape& s) {

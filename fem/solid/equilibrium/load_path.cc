@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "fem/solid/equilibrium/fold.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/environment_forces.h"
 #include "fem/solid/loads/probe.h"
@@ -184,6 +185,12 @@ bool LoadPathSolver::leads_to(const Load& target) const {
 
 LoadPathOutcome LoadPathSolver::advance(const Load& target, const Progress& progress,
                                         const std::function<void()>& on_equilibrium) {
+  LoadPathOutcome outcome = advance_in_legs(target, progress, on_equilibrium);
+  return outcome.status == Status::failed ? pulled_in(target, std::move(outcome)) : outcome;
+}
+
+LoadPathOutcome LoadPathSolver::advance_in_legs(const Load& target, const Progress& progress,
+                                                const std::function<void()>& on_equilibrium) {
   if (!leads_to(target)) restart(target);
   const bool changes = now_.current.load.environment() != target.environment();
   if (!changes || target.is<EnvironmentLoad>())
@@ -253,6 +260,21 @@ LoadPathOutcome LoadPathSolver::follow_ramp(const Progress& progress,
     }
   }
   return {Status::converged, {}, {}, {}, 0};
+}
+
+LoadPathOutcome LoadPathSolver::pulled_in(const Load& target, LoadPathOutcome failed) {
+  if (target.environment().magnets.empty()) return failed;
+  // A contact begins at the cilium that the environment alone bends.
+  const Load free = contact_height(target) ? with_environment(EnvironmentLoad{1, azimuth(target)},
+                                                              target.environment())
+                                           : target;
+  failed.way_to_fold = FoldSearch(space_, quadrature_, cilium_, newton_, options_).find(free);
+  if (failed.way_to_fold.empty()) return failed;
+  failed.status = Status::pulled_in;
+  failed.load_at_fold =
+      contact_height(target) ? 0 : failed.way_to_fold.back().fraction * magnitude(target);
+  restart(target);
+  return failed;
 }
 
 LoadPathOutcome LoadPathSolver::slip_off(const Progress& progress,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fem/solid/discretisation/space.h"
 #include "fem/solid/equilibrium/newton.h"
@@ -41,6 +42,12 @@ struct LoadPathOptions {
   double kernel_width = 0.5e-3;   ///< half-width of the contact kernel, m
 };
 
+/// An equilibrium at the fraction t of the way from one load to another.
+struct OnTheWay {
+  double fraction = 0;
+  Equilibrium equilibrium;
+};
+
 struct LoadPathOutcome {
   Status status = Status::failed;
   std::string message;
@@ -48,6 +55,9 @@ struct LoadPathOutcome {
   std::optional<double> slip_off_displacement;  ///< of a probe, m
   double slip_off_bracket = 0;  ///< width of the bracket above it, N, or m of a probe
   int iterations = 0;
+  /// If a magnet pulls the cilium in: equilibria on the way to the fold, which is the last.
+  std::vector<OnTheWay> way_to_fold{};
+  double load_at_fold = 0;  ///< magnitude, N, N/m or a factor
 };
 
 /// The way from one load to the next, as far as it is gone.
@@ -109,6 +119,12 @@ class LoadPathSolver {
   bool cut(Ramp& ramp, bool overshot) const;
   LoadPathOutcome follow_ramp(const Progress& progress,
                               const std::function<void()>& on_equilibrium);
+  /// First to the target's environment, then to its magnitude.
+  LoadPathOutcome advance_in_legs(const Load& target, const Progress& progress,
+                                  const std::function<void()>& on_equilibrium);
+  /// The outcome of a load that has failed, as pulled in if beside magnets there is a fold on the
+  /// way to it; then the next load starts from the straight solid.
+  LoadPathOutcome pulled_in(const Load& target, LoadPathOutcome failed);
   /// Narrows the bracket between the current load and the slipped one.
   LoadPathOutcome slip_off(const Progress& progress, const std::function<void()>& on_equilibrium);
   void restart(const Load& load);

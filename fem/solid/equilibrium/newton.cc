@@ -156,6 +156,20 @@ std::optional<SecondVariation> Newton::second_variation(
   return equilibrium::second_variation(space_, constraints, matrix, solver_->rows(), communicator_);
 }
 
+Vector Newton::response(const ExternalForces& external, const ExternalForces& rate,
+                        const SolidState& state) {
+  const auto internal = internal_forces(space_, state);
+  if (!internal) throw SolverError("det F is not positive at a quadrature point");
+  assemble_tangent(external, state, *internal, solver_->new_tangent());
+  solver_->prepare();
+  Vector forces = forces_at(state.displacement, space_, rate);
+  constraints_.set_zero(forces);
+  Vector result = space_.vector();
+  solver_->solve(forces, result, step_reduction);
+  constraints_.set_zero(result);
+  return result;
+}
+
 Newton::Step Newton::own_tangents_step(const SolidState& state, const Vector& residual,
                                        BorderedSystem* bordered) {
   Step step;

@@ -72,6 +72,12 @@ class Newton {
   NewtonResult solve(loads::UnknownForce& force, discretisation::SolidState& state,
                      const NewtonOptions& options, const NewtonProgress& progress = {});
 
+  /// K⁻¹ ∂f/∂t at an equilibrium, m, `rate` the derivative of the external forces by a parameter t.
+  /// Throws SolverError.
+  discretisation::Vector response(const loads::ExternalForces& external,
+                                  const loads::ExternalForces& rate,
+                                  const discretisation::SolidState& state);
+
   /// At an equilibrium under external forces that have a potential, in the displacements that the
   /// constraints leave free. None with the iterative solver, for meshes of its size have large
   /// factors. Throws SolverError as equilibrium::second_variation().

@@ -47,7 +47,7 @@ def study_blocks(study: dict[str, Any]) -> list[Block]:
 def _exceptions(study: dict[str, Any]) -> list[str]:
     lines = []
     for pair in study["pairs"]:
-        for status in ("slipped_off", "failed"):
+        for status in ("slipped_off", "pulled_in", "failed"):
             found = [p["pairs"][pair] for p in study["points"] if p["pairs"][pair]["status"] == status]
             if found:
                 message = next((f["message"] for f in found if f.get("message")), "")

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -122,6 +123,77 @@ TEST(CommandLine, RunsACaseAndWritesItsResults) {
   EXPECT_TRUE(fs::exists(results / "vtk" / "field_beam_volume.pvd"));
   // What was run is written back and can be run again.
   EXPECT_EQ(ciliaval(folder.path(), "validate out/quick/case.toml").code, 0);
+}
+
+// A brick of 1.2 T at 12 mm leaves no equilibrium: a result, exit code 0, and the path goes on.
+TEST(CommandLine, ACiliumThatAMagnetPullsInIsAResult) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "magnet.toml") << R"([case]
+name = "magnet"
+[cilium]
+diameter = "3 mm"
+[[cilium.segment]]
+name = "base"
+length = "3 mm"
+young_modulus = "0.1 MPa"
+poisson_ratio = 0.49
+[[cilium.segment]]
+name = "magnet"
+length = "17 mm"
+young_modulus = "3 MPa"
+poisson_ratio = 0.49
+magnetization = "75 kA/m"
+[environment]
+[[environment.magnet]]
+name = "brick"
+shape = "cuboid"
+position = ["12 mm", "0 mm", "20 mm"]
+axis = [1, 0, 0]
+edges = ["6 mm", "4 mm", "5 mm"]
+remanence = "1.2 T"
+[load]
+type = "environment"
+scale = [1, 0.02]
+[sensor]
+position = ["0 mm", "0 mm", "-2.1 mm"]
+[models]
+mechanics = ["beam"]
+fields = ["line"]
+)";
+  const Outcome run = ciliaval(folder.path(), "run magnet.toml --quiet");
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("pulled_in"));
+  EXPECT_THAT(run.out, HasSubstr("the magnet 'brick' pulls the cilium in"));
+  const auto summary =
+      nlohmann::json::parse(read_text(folder.path() / "results" / "magnet" / "summary.json"));
+  const auto& beam = summary["steps"][0]["mechanics"]["beam"];
+  EXPECT_EQ(beam["status"], "pulled_in");
+  EXPECT_TRUE(beam["tip"].is_null());
+  const auto& pull_in = beam["pull_in"];
+  EXPECT_EQ(pull_in["magnet"], "brick");
+  EXPECT_GT(pull_in["fraction"].get<double>(), 0);
+  EXPECT_LT(pull_in["fraction"].get<double>(), 1);
+  EXPECT_EQ(pull_in["load"], pull_in["fraction"]);
+  EXPECT_EQ(pull_in["tip"].size(), 3U);
+  EXPECT_LT(std::abs(pull_in["approach"].back()["smallest_eigenvalue"].get<double>()), 1e-2);
+  EXPECT_EQ(summary["steps"][1]["mechanics"]["beam"]["status"], "converged");
+  EXPECT_TRUE(summary["steps"][1]["fields"].contains("beam/line"));
+
+  std::ofstream(folder.path() / "strength.study.toml") << R"([study]
+name = "strength"
+case = "magnet.toml"
+pairs = ["beam/line"]
+[[parameter]]
+path = "load.scale"
+values = [0.02, 1]
+)";
+  std::string one_step = read_text(folder.path() / "magnet.toml");
+  const std::string path = "[1, 0.02]";
+  one_step.replace(one_step.find(path), path.size(), "1");
+  std::ofstream(folder.path() / "magnet.toml") << one_step;
+  const Outcome study = ciliaval(folder.path(), "study strength.study.toml --quiet");
+  EXPECT_EQ(study.code, 0) << study.err;
+  EXPECT_THAT(study.out, HasSubstr("beam/line: pulled_in at 1 of 2 points"));
 }
 
 // One Newton iteration and no cutback are too few for the beam; the elastica's results are written.
