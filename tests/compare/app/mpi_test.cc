@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 using test::read_text;
 using test::TemporaryFolder;
 
-struct Outcome {
+struct RanksOutcome {
   int code = -1;
   std::string out;
 };
 
 /// Runs a command, for mpirun also as root and on a single core.
-Outcome execute(const fs::path& folder, const std::string& words) {
+RanksOutcome execute(const fs::path& folder, const std::string& words) {
   const std::string command =
       "cd '" + folder.string() +
       "' && OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
@@ -39,15 +39,15 @@ Outcome execute(const fs::path& folder, const std::string& words) {
 }
 
 /// `ciliaval run` on one or two ranks.
-Outcome run(const fs::path& folder, int ranks, const std::string& results,
-            const std::string& file = "case.toml") {
+RanksOutcome run(const fs::path& folder, int ranks, const std::string& results,
+                 const std::string& file = "case.toml") {
   const std::string launcher =
       ranks == 1 ? "" : "'" CILIAVAL_MPIEXEC "' -n " + std::to_string(ranks) + " ";
   return execute(folder, launcher + "'" CILIAVAL_PROGRAM "' run " + file + " -o " + results);
 }
 
-void write_case(const fs::path& folder, const std::string& solid,
-                const std::string& forces = R"("1 mN")") {
+void write_mpi_case(const fs::path& folder, const std::string& solid,
+                    const std::string& forces = R"("1 mN")") {
   std::ofstream(folder / "case.toml") << test::case_text({.name = "mpi", .force = forces},
                                                          R"(mechanics = ["elastica", "solid"]
 fields = ["line", "mesh"]
@@ -73,9 +73,9 @@ void expect_same_tip(const fs::path& results, const fs::path& reference, std::si
 TEST(Mpi, TwoRanksGiveTheTipOfOneTo1e9AndWriteOnce) {
   for (const std::string solver : {"direct", "iterative"}) {
     const TemporaryFolder folder;
-    write_case(folder.path(), "solver = \"" + solver + "\"\n");
+    write_mpi_case(folder.path(), "solver = \"" + solver + "\"\n");
     ASSERT_EQ(run(folder.path(), 1, "one").code, 0);
-    const Outcome two = run(folder.path(), 2, "two");
+    const RanksOutcome two = run(folder.path(), 2, "two");
     ASSERT_EQ(two.code, 0) << read_text(folder.path() / "err.txt");
     EXPECT_EQ(two.out.find("Results: "), two.out.rfind("Results: ")) << two.out;
     expect_same_tip(folder.path() / "two", folder.path() / "one", 0, 1e-9, solver);
@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(Solvers, MpiSolver, testing::Values("direct", "iterativ
 /// run on one rank.
 void expect_load_path_of_one(const std::string& solver, int ranks) {
   const TemporaryFolder folder;
-  write_case(folder.path(), solver, R"(["2 mN", "2 mN", "3 mN", "1 mN", "7 mN", "2 mN"])");
+  write_mpi_case(folder.path(), solver, R"(["2 mN", "2 mN", "3 mN", "1 mN", "7 mN", "2 mN"])");
   std::string text = read_text(folder.path() / "case.toml");
   const std::string height = "height = \"16 mm\"";
   text.replace(text.find(height), height.size(),
@@ -133,7 +133,7 @@ TEST_P(MpiSolverSlow, TwoRanksFollowAnyLoadPathAsOneDoes) {
 // Oracle: the run on one rank.
 TEST_P(MpiSolver, TwoRanksFindTheForceOfAProbe) {
   const TemporaryFolder folder;
-  write_case(folder.path(), solver(), R"(["1 mm", "3 mm"])");
+  write_mpi_case(folder.path(), solver(), R"(["1 mm", "3 mm"])");
   std::string text = read_text(folder.path() / "case.toml");
   text.replace(text.find("\"contact\""), 9, "\"probe\"");
   text.replace(text.find("force ="), 7, "displacement =");
@@ -151,9 +151,9 @@ TEST_P(MpiSolver, TwoRanksFindTheForceOfAProbe) {
 // Oracle: the run on one rank, with the field of the gathered body.
 TEST_P(MpiSolver, RanksShareAUsersMesh) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "");
+  write_mpi_case(folder.path(), "");
   ASSERT_EQ(execute(folder.path(), "'" CILIAVAL_PROGRAM "' mesh case.toml -o cilium.msh").code, 0);
-  write_case(folder.path(), "mesh = \"cilium.msh\"\n" + solver());
+  write_mpi_case(folder.path(), "mesh = \"cilium.msh\"\n" + solver());
   std::vector<double> field;
   for (const int ranks : {1, 2, 3}) {
     const std::string results = std::to_string(ranks);
@@ -231,8 +231,8 @@ tolerance = 1e-2
 // A transport that there is not, asked for by the user: Open MPI must hear of it.
 TEST(Mpi, WhatTheUserAsksOfOpenMpiStands) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "");
-  const Outcome outcome = execute(
+  write_mpi_case(folder.path(), "");
+  const RanksOutcome outcome = execute(
       folder.path(), "OMPI_MCA_pml=nowhere '" CILIAVAL_PROGRAM "' run case.toml -o results");
   EXPECT_NE(outcome.code, 0);
   EXPECT_NE(read_text(folder.path() / "err.txt").find("nowhere"), std::string::npos)
@@ -242,7 +242,7 @@ TEST(Mpi, WhatTheUserAsksOfOpenMpiStands) {
 // Oracle: the contract of the exit codes.
 TEST(Mpi, AFailureEndsAllRanksWithItsExitCode) {
   const TemporaryFolder folder;
-  write_case(folder.path(), "max_iterations = 1\nmax_cutbacks = 0\n");
+  write_mpi_case(folder.path(), "max_iterations = 1\nmax_cutbacks = 0\n");
   EXPECT_EQ(run(folder.path(), 2, "two").code, 3);
   EXPECT_EQ(solid_step(folder.path() / "two").at("status"), "failed");
   EXPECT_EQ(run(folder.path(), 2, "two", "none.toml").code, 2);
@@ -261,8 +261,8 @@ void interrupt_two_ranks(const fs::path& folder) {
 }
 
 /// Goes on from there, as soon as the killed run's ranks have noticed and are gone.
-Outcome go_on(const fs::path& folder, int ranks) {
-  Outcome outcome;
+RanksOutcome go_on(const fs::path& folder, int ranks) {
+  RanksOutcome outcome;
   for (int attempt = 0; attempt < 100; ++attempt) {
     outcome = run(folder, ranks, "out");
     if (read_text(folder / "err.txt").find("another run writes to") == std::string::npos) break;
@@ -274,8 +274,8 @@ Outcome go_on(const fs::path& folder, int ranks) {
 // Oracle: an undisturbed run on two ranks.
 TEST_P(MpiSolverSlow, AKilledRunOfTwoRanksGoesOnOnAnyNumber) {
   const TemporaryFolder folder;
-  write_case(folder.path(), solver(),
-             R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN", "2.5 mN", "3 mN", "3.5 mN", "4 mN"])");
+  write_mpi_case(folder.path(), solver(),
+                 R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN", "2.5 mN", "3 mN", "3.5 mN", "4 mN"])");
   ASSERT_EQ(run(folder.path(), 2, "undisturbed").code, 0);
   for (const int ranks : {2, 1, 3}) {
     fs::remove_all(folder.path() / "out");
@@ -306,9 +306,9 @@ void expect_fault_of_one_rank_ends_all(const fs::path& folder,
       fs::remove_all(folder / "out");
       const std::string faulty = "env LD_PRELOAD='" CILIAVAL_FAILING_NEW "' CILIAVAL_FAIL_AT=" +
                                  std::to_string(allocation) + " " + program;
-      const Outcome outcome = execute(folder, "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 " +
-                                                  (failing == 0 ? faulty : program) + " : -n 1 " +
-                                                  (failing == 1 ? faulty : program));
+      const RanksOutcome outcome = execute(
+          folder, "timeout 60 '" CILIAVAL_MPIEXEC "' -n 1 " + (failing == 0 ? faulty : program) +
+                      " : -n 1 " + (failing == 1 ? faulty : program));
       const std::string said = read_text(folder / "err.txt");
       const std::string what =
           "rank " + std::to_string(failing) + ", allocation " + std::to_string(allocation);
@@ -322,7 +322,7 @@ void expect_fault_of_one_rank_ends_all(const fs::path& folder,
 
 TEST_P(MpiSolverSlow, AFaultOfOneRankAloneEndsAllOfThem) {
   const TemporaryFolder folder;
-  write_case(folder.path(), solver());
+  write_mpi_case(folder.path(), solver());
   expect_fault_of_one_rank_ends_all(folder.path(), {1, 20});
 }
 

@@ -153,7 +153,8 @@ std::vector<std::string> other_values(const std::string& value, const Key& key) 
   if (value == "true") all.emplace_back("false");
   if (value == "false") all.emplace_back("true");
   for (const std::string_view choice : key.choices)
-    all.push_back(fmt::format(value.starts_with('[') ? "[\"{}\"]" : "\"{}\"", choice));
+    all.push_back(value.starts_with('[') ? fmt::format("[\"{}\"]", choice)
+                                         : fmt::format("\"{}\"", choice));
   for (std::size_t at = 0; at < value.size();) {
     const bool begins =
         at == 0 || std::string_view(" \"[").find(value[at - 1]) != std::string::npos;

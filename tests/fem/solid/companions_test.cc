@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fem/parallel.h"
 #include "fem/solid/path_run.h"
 #include "fem/solid/sweep_run.h"
 #include "problem/error.h"
