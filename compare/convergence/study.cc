@@ -75,6 +75,15 @@ std::string failure_of(const models::CaseResult& result, const ModelRefinement& 
   return {};
 }
 
+/// Why a field model does not know the error of this level; else empty.
+std::string unknown_error_of(const models::CaseResult& result, const ModelRefinement& refinement) {
+  if (!refinement.is_field) return {};
+  for (const models::FieldRun& run : result.fields)
+    for (const auto& step : run.steps)
+      if (step && !step->remark.empty()) return step->remark;
+  return {};
+}
+
 double seconds_of(const models::CaseResult& result, bool is_field) {
   double seconds = 0;
   if (is_field)
@@ -309,6 +318,12 @@ RefinementStudy refinement_study(const input::Case& problem, const ModelRefineme
       study.failure = fmt::format("{} {:g}: {}", refinement.option.name, values[i], failure);
   }
   if (study.failure.empty()) extrapolate_all(levels, refinement, study);
+  // No level is known to keep its tolerance, and close values may share an error.
+  if (const std::string reason = unknown_error_of(results.back(), refinement); !reason.empty())
+    for (ConvergedQuantity& quantity : study.quantities) {
+      quantity.extrapolation = {};
+      quantity.extrapolation.reason = reason;
+    }
   return study;
 }
 
@@ -321,6 +336,8 @@ std::string study_text(const std::vector<RefinementStudy>& studies, bool list) {
     const Judgement judgement = judge(study);
     text += study.failure.empty() ? fmt::format("  {}\n", describe(judgement))
                                   : fmt::format("  inconclusive: {}\n", study.failure);
+    if (judgement.conclusive == 0 && !study.quantities.empty())
+      text += fmt::format("  {}\n", study.quantities.front().extrapolation.reason);
     if (list && study.failure.empty()) text += quantity_table(study);
     all.add(judgement);
   }

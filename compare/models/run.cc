@@ -83,6 +83,7 @@ void append_field(const FieldModel& model, const Cilium& cilium, const Deformati
   try {
     const Field field = checked_field(model, cilium, deformation, points);
     step.mesh = field.mesh;
+    step.remark = field.remark;
     for (std::size_t i = 0; i < points.size(); ++i) {
       step.B.emplace_back(field.B[i]);
       step.uncertainty.push_back(field.uncertainty.empty() ? std::nullopt
@@ -220,7 +221,6 @@ double stated_force(const Load& load, const Cilium& cilium, const Vector3& tip) 
   return magnitude(load) * (load.is<DeadLoad>() ? cilium.length() : 1);
 }
 
-/// The centrelines of an external model as those of a mechanics model.
 /// Throws InputError unless an external model has a centreline and a reading for each step of the
 /// path, or none.
 void require_of_path(const input::external::ExternalModel& model, const LoadPath& path) {
@@ -231,6 +231,7 @@ void require_of_path(const input::external::ExternalModel& model, const LoadPath
                       model.name, count, path.size()));
 }
 
+/// The centrelines of an external model as those of a mechanics model.
 MechanicsRun external_mechanics(const input::external::ExternalModel& model,
                                 const input::Case& problem) {
   MechanicsRun run{model.name, {}};
@@ -350,9 +351,9 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
                const std::map<std::string, Checkpoint>& checkpoints) {
   const std::vector<const MechanicsEntry*> mechanics_entries = chosen(mechanics, problem.mechanics);
   const std::vector<const FieldEntry*> field_entries = chosen(fields, problem.fields);
-  CaseResult result{problem, {}, {}};
   for (const input::external::ExternalModel& model : problem.external)
     require_of_path(model, problem.load_path);
+  CaseResult result{problem, {}, {}};
   for (const MechanicsEntry* entry : mechanics_entries) {
     const auto kept = checkpoints.find(entry->id);
     result.mechanics.push_back(

@@ -37,6 +37,7 @@ struct FieldStep {
   std::vector<std::optional<double>> dB_from_mechanics;
   std::shared_ptr<const FieldMesh> mesh;  ///< what B was computed from, if it can be drawn
   double seconds = 0;                     ///< wall time
+  std::string remark;   ///< of the field model: why an uncertainty is not known; else empty
   std::string failure;  ///< why a value of B or ΔB is missing, at which sensors; else empty
 
   /// Whether there is B or ΔB at any sensor.

@@ -141,7 +141,7 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
 
 Json field_json(const models::FieldStep& step) {
   return {{"status", step.failure.empty() ? "computed" : "failed"},
-          {"message", step.failure},
+          {"message", step.failure.empty() ? step.remark : step.failure},
           {"B", rows(step.B)},
           {"dB", rows(step.dB)},
           {"uncertainty", rows(step.uncertainty)},

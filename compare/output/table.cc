@@ -147,8 +147,9 @@ std::string fields_table(const models::CaseResult& result,
       row.push_back(number_cell(component(field.B[sensor], i), 1e-3, "{:.4f}"));
     for (Eigen::Index i = 0; i < 3; ++i)
       row.push_back(number_cell(component(field.dB[sensor], i), 1e-6, "{:.2f}"));
-    row.push_back(
-        number_cell(models::change_uncertainty(result, run, step, sensor), 1e-6, "{:.1g}"));
+    const std::optional<double> uncertainty = models::change_uncertainty(result, run, step, sensor);
+    row.push_back(field.dB[sensor] && !uncertainty ? "not known"
+                                                   : number_cell(uncertainty, 1e-6, "{:.1g}"));
     for (const char* axis : axis_names)
       row.push_back(&run == reference ? "ref."
                                       : percent(find(comparisons, step, "dB", axis, "value",
@@ -158,12 +159,13 @@ std::string fields_table(const models::CaseResult& result,
   return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
 }
 
-/// Why values are missing.
+/// Why values are missing, or their errors not known.
 std::string failures(const models::CaseResult& result, std::size_t step) {
   std::string text;
   for (const models::FieldRun& run : result.fields)
-    if (run.steps[step] && !run.steps[step]->failure.empty())
-      text += fmt::format("  {}: {}\n", run.name(), run.steps[step]->failure);
+    if (run.steps[step])
+      for (const std::string& message : {run.steps[step]->failure, run.steps[step]->remark})
+        if (!message.empty()) text += fmt::format("  {}: {}\n", run.name(), message);
   return text;
 }
 

@@ -448,12 +448,21 @@ bool agrees_with_last(const std::vector<PotentialCycle>& cycles) {
 
 }  // namespace
 
+bool has_untested_jump(const PotentialProblem& problem) {
+  const auto is_untested = [](double mu) { return std::max(mu, 1 / mu) > largest_tested_jump; };
+  return is_untested(problem.relative_permeability) ||
+         std::ranges::any_of(problem.plates, [&](const PermeableBox& plate) {
+           return is_untested(plate.relative_permeability);
+         });
+}
+
 PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control) {
   start_mpi();
   require_valid(problem, control);
   Adaptive adaptive(problem, control);
   adaptive.make_first_mesh();
   PotentialResult result;
+  const bool is_known = !has_untested_jump(problem);
   while (true) {
     result.cycles.push_back(adaptive.solve());
     const PotentialCycle& cycle = result.cycles.back();
@@ -464,7 +473,10 @@ PotentialResult solve_potential(const PotentialProblem& problem, const Potential
       result.uncertainty.push_back(safety * cycle.estimate(i));
       worst = std::max(worst, result.uncertainty.back().norm() / cycle.B[i].norm());
     }
-    if (worst <= control.tolerance && agrees_with_last(result.cycles)) {
+    const bool is_exhausted =
+        !is_known && cycle.unknowns > std::min(control.untested_unknowns, control.max_unknowns);
+    if ((worst <= control.tolerance && agrees_with_last(result.cycles)) || is_exhausted) {
+      if (!is_known) result.uncertainty.clear();
       result.mesh = adaptive.mesh();
       return result;
     }

@@ -12,6 +12,12 @@
 
 namespace ciliaval::fem::potential {
 
+/// Ratio μ_r or 1/μ_r of a body to vacuum up to which the stated uncertainty holds against oracles
+/// (docs/evidence/potential.md#permeability). Where a body's surface cuts leaves, polynomials
+/// cannot follow the jump of ∇ψ; the estimate sees less and less of this error the larger the jump
+/// is.
+inline constexpr double largest_tested_jump = 1.05;
+
 /// −∇·(μ₀μ_r ∇ψ) + ∇·B_r = 0 in all of space, B = −μ₀μ_r∇ψ + B_r.
 struct PotentialProblem {
   Magnet magnet;                     ///< carries m = B_r/μ₀
@@ -23,7 +29,9 @@ struct PotentialProblem {
 
 struct PotentialControl {
   double tolerance = 2e-3;            ///< uncertainty of B at each point, relative to |B|
-  std::size_t max_unknowns = 600000;  ///< of the solution that B is taken from
+  std::size_t max_unknowns = 100000;  ///< of the solution that B is taken from
+  /// The same where the uncertainty is not known: more unknowns would not make it known.
+  std::size_t untested_unknowns = 30000;
   double box = 16;  ///< half-width of the octree over the radius of all bodies and points
   MPI_Comm communicator = MPI_COMM_WORLD;  ///< of the ranks that share the work
 };
@@ -44,14 +52,19 @@ struct PotentialCycle {
 
 struct PotentialResult {
   std::vector<Vector3> B;            ///< T
-  std::vector<Vector3> uncertainty;  ///< T
+  std::vector<Vector3> uncertainty;  ///< T; empty where a body's μ_r is beyond the tested ones
   std::vector<PotentialCycle> cycles;
   std::shared_ptr<const FieldMesh> mesh;  ///< the solution that B is taken from
 };
 
-/// Refines until the uncertainties are below the tolerance. Collective. Throws InputError if a
-/// point is not finite, in a body or too close to one, a permeability is not positive or two bodies
-/// meet; SolverError if the tolerance is not reached with the unknowns allowed.
+/// Whether the permeability of the magnet or of a plate is beyond `largest_tested_jump`.
+bool has_untested_jump(const PotentialProblem& problem);
+
+/// Refines until the uncertainties are below the tolerance. Where a permeability is beyond the
+/// tested ones the uncertainty is not known: the mesh is refined until the estimate is below the
+/// tolerance, but not beyond `untested_unknowns`. Collective. Throws InputError if a point is not
+/// finite, in a body or too close to one, a permeability is not positive or two bodies meet;
+/// SolverError if the tolerance is not reached with the unknowns allowed.
 PotentialResult solve_potential(const PotentialProblem& problem, const PotentialControl& control);
 
 }  // namespace ciliaval::fem::potential

@@ -2,6 +2,7 @@
 #include "fem/potential/potential.h"
 
 #include <exception>
+#include <sstream>
 #include <utility>
 
 #include "fem/parallel.h"
@@ -26,7 +27,17 @@ Field Potential::field(const Cilium& cilium, const Deformation& deformation,
     control.max_unknowns = options_.max_unknowns;
     control.communicator = communicator_;
     PotentialResult result = solve_potential(problem, control);
-    return {std::move(result.B), std::move(result.uncertainty), std::move(result.mesh)};
+    Field field{std::move(result.B), std::move(result.uncertainty), std::move(result.mesh)};
+    if (has_untested_jump(problem)) {
+      std::ostringstream remark;
+      remark.precision(3);
+      remark << "the error of B is not known: its estimate is tested for a relative_permeability "
+                "from "
+             << 1 / largest_tested_jump << " to " << largest_tested_jump
+             << " and may be far too small beyond (docs/evidence/potential.md)";
+      field.remark = remark.str();
+    }
+    return field;
   } catch (const std::exception& error) {
     if (rank_count(communicator_) > 1) require_failure_of_all_ranks(error.what());
     throw;

@@ -16,15 +16,15 @@ struct PotentialOptions {
   double relative_permeability = 1.05;
   MagnetPushForward push_forward = MagnetPushForward::F;
   double tolerance = 2e-3;             ///< uncertainty of B over |B|, at each sensor
-  unsigned int max_unknowns = 600000;  ///< of the solution that B is taken from
+  unsigned int max_unknowns = 100000;  ///< of the solution that B is taken from
   std::vector<PermeableBox> plates;    ///< at rest, below or beside the sensors
 };
 
 /// The field of the deformed magnet, with its recoil permeability, and of permeable plates, by a
 /// scalar potential in all of space (docs/theory/potential.md): finite elements on an octree,
-/// refined for B at the sensors. Field::uncertainty is twice the estimate of the error. field() is
-/// collective on the communicator's ranks, which share the work; it starts MPI. Throws as
-/// solve_potential().
+/// refined for B at the sensors. Field::uncertainty is twice the estimate of the error; it is empty
+/// and there is a remark where a permeability is beyond the tested ones. field() is collective on
+/// the communicator's ranks, which share the work; it starts MPI. Throws as solve_potential().
 class Potential : public FieldModel {
  public:
   explicit Potential(PotentialOptions options = {}, MPI_Comm communicator = MPI_COMM_WORLD);

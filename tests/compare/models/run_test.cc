@@ -6,7 +6,9 @@
 #include <limits>
 #include <memory>
 
+#include "compare/models/errors.h"
 #include "compare/models/registry.h"
+#include "compare/output/table.h"
 #include "problem/error.h"
 #include "tests/support/synthetic.h"
 
@@ -125,6 +127,44 @@ TEST(Run, ASensorWhereTheFieldDivergesLeavesTheOthers) {
   EXPECT_EQ(field.undeformed.dB[0].value(), Vector3(0, 0, 0));
   EXPECT_FALSE(field.undeformed.dB[4]);
   EXPECT_FALSE(models::all_solved(result));  // exit code 3: values are missing
+}
+
+/// B whose error is not known, and says why.
+class Untested : public FieldModel {
+ public:
+  Field field(const Cilium&, const Deformation& deformation,
+              std::span<const Vector3> points) const override {
+    Field field;
+    for (const Vector3& x : points) field.B.push_back(tip_dipole(deformation, x));
+    field.remark = "the estimate is not tested here";
+    return field;
+  }
+};
+
+TEST(Run, AnErrorThatAFieldModelDoesNotKnowIsNoneAndSaidWhy) {
+  input::Case c = paper_case({1e-3});
+  c.mechanics = {"bend"};
+  c.fields = {"untested", "dipole"};
+  models::FieldEntry untested = field_entry("untested", tip_dipole);
+  untested.make = [](const input::ModelOptions&) { return std::make_unique<Untested>(); };
+  const std::vector<models::MechanicsEntry> mechanics{bend("bend")};
+  const std::vector<models::FieldEntry> fields{untested,
+                                               field_entry("dipole", tip_dipole, Vector3::Zero())};
+  const models::CaseResult result = models::run(c, mechanics, fields);
+  const models::FieldStep& step = *result.fields.at(0).steps[0];
+  EXPECT_TRUE(step.B[0] && step.dB[0]);
+  EXPECT_FALSE(step.uncertainty[0] || step.dB_uncertainty[0]);
+  EXPECT_EQ(step.remark, "the estimate is not tested here");
+  EXPECT_TRUE(models::all_solved(result));
+  for (const models::Comparison& comparison : models::compare_models(result))
+    if (comparison.quantity == "dB" || comparison.quantity == "B") {
+      EXPECT_EQ(comparison.verdict, models::Verdict::inconclusive);
+      EXPECT_FALSE(comparison.uncertainty);
+    }
+  const std::string text =
+      output::table(result, models::compare_models(result), output::Footnotes::reference);
+  EXPECT_NE(text.find("not known"), std::string::npos);
+  EXPECT_NE(text.find("bend/untested: the estimate is not tested here"), std::string::npos);
 }
 
 /// One system for all points: its solver fails, or it refuses the points at x = 3.

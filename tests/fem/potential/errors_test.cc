@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <utility>
 
 #include "bodies.h"
+#include "fem/potential/adaptive.h"
 #include "fem/potential/potential.h"
 #include "problem/error.h"
 
@@ -72,6 +74,58 @@ TEST(BadInput, AnAccuracyThatCannotBeReachedIsAnError) {
   options.max_unknowns = 20000;
   EXPECT_THAT(message_of<SolverError>(options, test::paper_sensor()),
               HasSubstr("allow more unknowns"));
+}
+
+/// The paper's straight cilium over a plate.
+PotentialProblem over_a_plate(double plate, double magnet) {
+  PotentialProblem problem;
+  problem.magnet = Magnet(test::paper_cilium(), test::arc(0), MagnetPushForward::F);
+  problem.relative_permeability = magnet;
+  problem.plates = {{{Vector3(-1e-2, -1e-2, -6e-3), Vector3(1e-2, 1e-2, -4e-3)}, plate}};
+  problem.points = {{0, 0, -2.1e-3}};
+  return problem;
+}
+
+// A tolerance that cannot be kept: the work ends, for more of it would not make the error known.
+TEST(UntestedPermeability, HasNoUncertaintyAndBoundedWork) {
+  PotentialControl control;
+  control.tolerance = 1e-6;
+  control.untested_unknowns = 3000;
+  for (const auto& [plate, magnet] :
+       {std::pair(4000.0, 1.0), std::pair(1.0, 2.1), std::pair(0.4, 1.05)}) {
+    const PotentialProblem problem = over_a_plate(plate, magnet);
+    EXPECT_TRUE(has_untested_jump(problem));
+    const PotentialResult result = solve_potential(problem, control);
+    EXPECT_TRUE(result.uncertainty.empty());
+    EXPECT_TRUE(result.B.at(0).allFinite());
+    for (std::size_t i = 0; i + 1 < result.cycles.size(); ++i)
+      EXPECT_LE(result.cycles[i].unknowns, control.untested_unknowns);
+  }
+}
+
+TEST(UntestedPermeability, BeginsBeyondTheTestedOnes) {
+  PotentialControl control;
+  control.tolerance = 0.2;
+  const PotentialProblem problem = over_a_plate(largest_tested_jump, 1);
+  EXPECT_FALSE(has_untested_jump(problem));
+  EXPECT_EQ(solve_potential(problem, control).uncertainty.size(), 1U);
+}
+
+TEST(UntestedPermeability, IsSaidWithTheField) {
+  PotentialOptions options;
+  options.tolerance = 0.1;
+  options.relative_permeability = 3;
+  const Vector3 point = test::paper_sensor();
+  const auto field_of = [&] {
+    return Potential(options).field(test::paper_cilium(), test::arc(0), std::span(&point, 1));
+  };
+  const Field field = field_of();
+  EXPECT_TRUE(field.uncertainty.empty());
+  EXPECT_THAT(field.remark, HasSubstr("not known"));
+  EXPECT_THAT(field.remark, HasSubstr("relative_permeability"));
+  options.relative_permeability = 1.05;
+  EXPECT_EQ(field_of().remark, "");
+  EXPECT_EQ(field_of().uncertainty.size(), 1U);
 }
 
 }  // namespace
