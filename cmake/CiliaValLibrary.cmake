@@ -22,6 +22,9 @@ set(text_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <filesystem> 
 ciliaval_precompile(text LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json HEADERS ${text_headers})
 ciliaval_precompile(commands LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11
   HEADERS ${text_headers} <CLI/CLI.hpp>)
+foreach(name text commands) # as compare/ is compiled
+  target_compile_options(precompiled_${name} PRIVATE $<$<CONFIG:Release>:-O2>)
+endforeach()
 
 # ciliaval_library(name SOURCES files… PUBLIC targets… PRIVATE targets…): one library of the suite, CiliaVal::name.
 function(ciliaval_library name)
