@@ -221,10 +221,12 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
                    const PathProgress& progress) {
   PathReport report;
   double step = 1;
-  unsigned int halvings = 0;
+  const double part = std::ldexp(1.0, -static_cast<int>(options.max_cutbacks));
   int allowed = options.unstable_modes ? options.unstable_modes(state, from) : 0;
   for (int increments = 1; report.reached < 1; ++increments) {
     const double aim = std::min(1.0, report.reached + step);
+    // The way from rest may bend the beam most at its very beginning.
+    const double smallest = part * std::max(report.reached, part);
     const bool is_judged = options.largest_turn || options.unstable_modes;
     const State before = is_judged ? state : State{};
     const Loads loads = combine(1 - aim, from, aim, to);
@@ -237,7 +239,7 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
     }
     if (options.unstable_modes && report.last.converged) {
       const int modes = options.unstable_modes(state, loads);
-      if (modes > allowed && halvings < options.max_cutbacks) {
+      if (modes > allowed && (aim - report.reached) / 2 >= smallest) {
         state = before;
         report.last.converged = false;
         report.last.reason = "the equilibrium is less stable";
@@ -250,14 +252,12 @@ PathReport advance(System& system, State& state, const Loads& from, const Loads&
     if (report.last.converged) {
       report.reached = aim;
       step *= 2;
-      halvings = halvings > 0 ? halvings - 1 : 0;
     } else {
       step = (aim - report.reached) / 2;
       ++report.cutbacks;
-      ++halvings;
     }
     const bool too_many = increments >= most_increments && report.reached < 1;
-    if (halvings <= options.max_cutbacks && !too_many) continue;
+    if (step >= smallest && !too_many) continue;
     std::ostringstream text;
     text << "no equilibrium found at the fraction " << aim << " of the load increment: "
          << (too_many ? too_many_increments(options.max_iterations) : describe(report.last))

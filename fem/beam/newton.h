@@ -14,7 +14,8 @@ namespace ciliaval::fem::beam {
 struct NewtonOptions {
   double tolerance = 1e-12;  ///< of the dimensionless residual and of the dimensionless increment
   unsigned int max_iterations = 30;
-  unsigned int max_cutbacks = 8;  ///< halvings of one load increment
+  /// The smallest increment is 2^−this of the way so far; at its beginning of 2^−this of the whole.
+  unsigned int max_cutbacks = 8;
   /// Of the increment, if not the same: the state's error is of the order of its square.
   std::optional<double> increment_tolerance = {};
   /// Of a section in one increment of a path, rad: where equilibria are several, as in a field, a
@@ -22,7 +23,7 @@ struct NewtonOptions {
   std::optional<double> largest_turn = {};
   /// Ways in which the energy decreases at an equilibrium of a path, if it is asked for: an
   /// increment that ends with more than it started from may have leapt over a bifurcation, and is
-  /// halved. After max_cutbacks halvings the path itself leads there.
+  /// halved. At the smallest increment the path itself leads there.
   std::function<int(const State&, const Loads&)> unstable_modes = {};
 };
 /// largest_turn under an environment.
