@@ -29,7 +29,7 @@ compare/validation: $shared compare/study
 compare/claims: $shared compare/sensing compare/signal compare/study analytic/rod/field_models.h
 compare/report: $shared compare/budget compare/convergence
 compare/app: .
-python/core: problem compare/input compare/models compare/output compare/study compare/validation
+python/core: problem compare/input compare/models compare/output compare/study compare/validation fem/solid/archive.h
 tests: ."
 git ls-files '*.h' '*.cc' | xargs awk '
   function complain(text) { print FILENAME ":" FNR ": " text; failed = 1 }
