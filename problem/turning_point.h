@@ -24,9 +24,11 @@ struct BranchPoint {
 /// t, and a small angle. Newton's method may leap to another branch.
 inline bool is_same_branch(const BranchPoint& from, const BranchPoint& to, double s) {
   constexpr double tolerance = 0.02;
+  constexpr double rounding = 1e-8;  // of t, where both rates are near 0
   constexpr double smallest_cosine = 0.95;
   const double gap = to.fraction - from.fraction - s * (from.rate + to.rate) / 2;
-  return std::abs(gap) <= tolerance * s * std::max(std::abs(from.rate), std::abs(to.rate)) &&
+  return std::abs(gap) <=
+             rounding + tolerance * s * std::max(std::abs(from.rate), std::abs(to.rate)) &&
          to.cosine >= smallest_cosine;
 }
 
