@@ -27,7 +27,7 @@ void for_ranges(std::size_t count, std::size_t longest,
     try {
       support::check_interruption();
       work(i * longest, std::min(count, (i + 1) * longest));
-    } catch (...) {
+    } catch (const std::exception&) {  // Interrupted goes on, and TBB begins no other range
       errors[i] = std::current_exception();
     }
   });

@@ -17,6 +17,7 @@
 #include "fem/solid/postprocessing/centreline.h"
 #include "meshes/gmsh/gmsh_mesh.h"
 #include "problem/error.h"
+#include "problem/support/interruption.h"
 
 namespace ciliaval::fem::solid {
 using namespace material;
@@ -132,6 +133,7 @@ MPI_Comm Level::ranks_of_mesh(double unknowns) {
 }
 
 void Level::discretise(Extent extent, std::span<const Hyperelastic> materials) {
+  support::check_interruption();
   space_ = std::make_unique<SolidSpace>(*triangulation_, *mapping_, materials);
   quadrature_ = std::make_unique<ExtrudedQuadrature>(*space_, extent);
 }

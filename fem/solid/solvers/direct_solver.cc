@@ -127,6 +127,7 @@ DirectSolver::DirectSolver(const SparsityPattern& pattern, Kind kind, RowRange r
 DirectSolver::~DirectSolver() = default;
 
 void DirectSolver::analyse(const SparsityPattern& pattern) {
+  support::check_interruption();
   Mumps& m = *mumps_;
   const bool symmetric = kind_ == Kind::symmetric_part;
   std::size_t entries = 0;

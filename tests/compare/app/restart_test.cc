@@ -31,8 +31,8 @@ using testing::HasSubstr;
 using Seconds = std::chrono::duration<double>;
 
 /// A short cilium and small steps, solved on the coarse mesh in some seconds.
-void write_case(const fs::path& folder, const std::string& solid = "",
-                const std::string& forces = R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN"])") {
+void write_restart_case(const fs::path& folder, const std::string& solid = "",
+                        const std::string& forces = R"(["0.5 mN", "1 mN", "1.5 mN", "2 mN"])") {
   std::ofstream(folder / "case.toml") << test::case_text(
       {.name = "killed", .magnet_length = "3 mm", .force = forces, .height = "4.5 mm"},
       R"(mechanics = ["elastica", "solid"]
@@ -42,7 +42,7 @@ refinement = 0
 )" + solid);
 }
 
-struct Outcome {
+struct RestartOutcome {
   bool killed = false;
   int code = -1;
   std::string err;
@@ -50,8 +50,8 @@ struct Outcome {
 
 /// Runs `ciliaval run case.toml -o out …` and kills it with SIGKILL as soon as `kill_now()` says
 /// so.
-Outcome run(const fs::path& folder, const std::vector<std::string>& arguments,
-            const std::function<bool()>& kill_now) {
+RestartOutcome run(const fs::path& folder, const std::vector<std::string>& arguments,
+                   const std::function<bool()>& kill_now) {
   const pid_t child = fork();
   if (child == 0) {
     const auto redirect = [](const char* file, int to) {
@@ -74,7 +74,7 @@ Outcome run(const fs::path& folder, const std::vector<std::string>& arguments,
     if (kill_now()) kill(child, SIGKILL);
     std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
-  Outcome outcome;
+  RestartOutcome outcome;
   outcome.killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
   if (WIFEXITED(status)) outcome.code = WEXITSTATUS(status);
   outcome.err = read_text(folder / "err.txt");
@@ -127,7 +127,7 @@ void kill_and_compare(int kills_wanted) {
   const TemporaryFolder folder;
   // The page would take most of the time, and most runs would be killed while it is made.
   setenv("CILIAVAL_PYTHON", "none", 1);
-  write_case(folder.path());
+  write_restart_case(folder.path());
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(run(folder.path(), {"-o", "reference"}, never).code, 0);
   const Seconds whole = std::chrono::steady_clock::now() - start;
@@ -138,7 +138,7 @@ void kill_and_compare(int kills_wanted) {
   int continued = 0;
   while (kills < kills_wanted || (continued == 0 && kills < 10 * kills_wanted)) {
     fs::remove_all(folder.path() / "out");
-    Outcome outcome;
+    RestartOutcome outcome;
     for (int i = 0; outcome.code != 0; ++i) {
       outcome = run(folder.path(), to_out, i < 5 ? after(moment(random) * whole) : never);
       kills += outcome.killed;
@@ -163,7 +163,7 @@ TEST(RestartSlow, ARunKilledAtTwentyRandomMomentsEndsWithTheSameDigits) {
 /// Leaves the store of a run that was killed after its second step. SQLite writes the two columns
 /// of an entry's name side by side.
 void interrupt(const fs::path& folder) {
-  const Outcome outcome = run(folder, to_out, [&] {
+  const RestartOutcome outcome = run(folder, to_out, [&] {
     for (const char* log : {"", "-wal"})
       if (const fs::path file = store_in(folder).string() + log;
           fs::exists(file) && read_text(file).find("solid2") != std::string::npos) {
@@ -177,15 +177,15 @@ void interrupt(const fs::path& folder) {
 
 TEST(Restart, SaysWhereItGoesOnAndFreshStartsAnew) {
   const TemporaryFolder folder;
-  write_case(folder.path());
+  write_restart_case(folder.path());
   interrupt(folder.path());
-  const Outcome again = run(folder.path(), to_out, never);
+  const RestartOutcome again = run(folder.path(), to_out, never);
   EXPECT_EQ(again.code, 0);
   EXPECT_THAT(again.err, testing::ContainsRegex("case \"killed\": solid goes on at step [34]/4"));
   EXPECT_THAT(again.err, HasSubstr("--fresh"));
   fs::remove_all(folder.path() / "out");
   interrupt(folder.path());
-  const Outcome fresh = run(folder.path(), {"-o", "out", "--fresh", "--quiet"}, never);
+  const RestartOutcome fresh = run(folder.path(), {"-o", "out", "--fresh", "--quiet"}, never);
   EXPECT_EQ(fresh.code, 0);
   EXPECT_EQ(fresh.err, "");
   EXPECT_FALSE(fs::exists(store_in(folder.path())));
@@ -195,7 +195,7 @@ TEST(Restart, SaysWhereItGoesOnAndFreshStartsAnew) {
 // checkpoint is still there. What does not touch the solid may be changed.
 TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   const TemporaryFolder folder;
-  write_case(folder.path());
+  write_restart_case(folder.path());
   interrupt(folder.path());
   const fs::path file = store_in(folder.path());
   {
@@ -204,7 +204,7 @@ TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   const std::string good = read_text(file);
   const auto refused = [&](const std::string& why) {
     const std::string before = read_text(file);
-    const Outcome outcome = run(folder.path(), to_out, never);
+    const RestartOutcome outcome = run(folder.path(), to_out, never);
     EXPECT_EQ(outcome.code, 4) << why;
     EXPECT_THAT(outcome.err, HasSubstr("out/.killed.sqlite"));
     EXPECT_THAT(outcome.err, HasSubstr(why));
@@ -217,23 +217,23 @@ TEST(Restart, ACheckpointThatCannotBeUsedIsRefused) {
   std::ofstream(file, std::ios::binary) << std::string(good).replace(good.size() / 2, 8, 8, '!');
   refused("damaged");
   std::ofstream(file, std::ios::binary) << good;
-  write_case(folder.path(), "newton_tolerance = 1e-8\n");
+  write_restart_case(folder.path(), "newton_tolerance = 1e-8\n");
   refused("models.solid.newton_tolerance was");
-  write_case(folder.path(), "", R"(["0.5 mN", "1 mN", "1.25 mN", "2 mN"])");
+  write_restart_case(folder.path(), "", R"(["0.5 mN", "1 mN", "1.25 mN", "2 mN"])");
   refused("load.force was");
-  write_case(folder.path(), "max_iterations = 30\n[models.line]\ntolerance = 1e-9\n");
+  write_restart_case(folder.path(), "max_iterations = 30\n[models.line]\ntolerance = 1e-9\n");
   EXPECT_EQ(run(folder.path(), to_out, never).code, 0);
 }
 
 // Behind a link to anything, a store included, nothing is read or deleted.
 TEST(Restart, ALinkInPlaceOfTheStoreIsRefusedByFreshToo) {
   const TemporaryFolder folder;
-  write_case(folder.path());
+  write_restart_case(folder.path());
   fs::create_directory(folder.path() / "out");
   std::ofstream(folder.path() / "thesis") << "all of it";
   fs::create_symlink("../thesis", store_in(folder.path()));
   for (const std::vector<std::string>& arguments : {to_out, {"-o", "out", "--fresh"}}) {
-    const Outcome outcome = run(folder.path(), arguments, never);
+    const RestartOutcome outcome = run(folder.path(), arguments, never);
     EXPECT_EQ(outcome.code, 4);
     EXPECT_THAT(outcome.err, HasSubstr("out/.killed.sqlite` cannot be used and was left as it is: "
                                        "it is a link"));
@@ -244,8 +244,8 @@ TEST(Restart, ALinkInPlaceOfTheStoreIsRefusedByFreshToo) {
 // One run at a time has the store.
 TEST(Restart, ASecondRunOfTheSameCaseIsRefusedWhileTheFirstGoesOn) {
   const TemporaryFolder folder;
-  write_case(folder.path());
-  Outcome second;
+  write_restart_case(folder.path());
+  RestartOutcome second;
   run(folder.path(), to_out, [&] {
     if (second.code >= 0) return true;
     if (!fs::exists(store_in(folder.path()))) return false;
@@ -264,8 +264,8 @@ TEST(Restart, AFailedStepCanBeGoneOnFromWithMoreIterations) {
   const TemporaryFolder folder;
   const std::string forces = R"(["1e-6 mN", "4 mN"])";
   const std::string options = "initial_guess = \"none\"\nmax_cutbacks = 0\nmax_iterations = ";
-  write_case(folder.path(), options + "3\n", forces);
-  const Outcome failed = run(folder.path(), to_out, never);
+  write_restart_case(folder.path(), options + "3\n", forces);
+  const RestartOutcome failed = run(folder.path(), to_out, never);
   EXPECT_EQ(failed.code, 3);
   EXPECT_THAT(failed.err, HasSubstr("out/.killed.sqlite"));
   EXPECT_THAT(failed.err, HasSubstr("max_iterations"));
@@ -278,8 +278,8 @@ TEST(Restart, AFailedStepCanBeGoneOnFromWithMoreIterations) {
   EXPECT_THAT(message, HasSubstr("step 2/2"));
   EXPECT_THAT(message, HasSubstr("relative residuals"));
   EXPECT_THAT(message, HasSubstr("the last load that converged is 1e-09 N"));
-  write_case(folder.path(), options + "25\n", forces);
-  const Outcome again = run(folder.path(), to_out, never);
+  write_restart_case(folder.path(), options + "25\n", forces);
+  const RestartOutcome again = run(folder.path(), to_out, never);
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("goes on at step 2/2"));
   EXPECT_EQ(solid()["status"], "converged");

@@ -85,7 +85,7 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
       rod("[cilium.section]\nshape = \"rectangle\"\nwidth = \"3 mm\"\nheight = \"2 mm\"\n"
           "orientation = \"10 deg\"\n") +
           "[load]\ntype = \"section\"\nforce = \"1 mN\"\narclength = \"15 mm\"\n"
-          "azimuth = \"5 deg\"\n[models]\nmechanics = [\"solid\"]\n",
+          "azimuth = \"10 deg\"\n[models]\nmechanics = [\"solid\"]\n",
       rod(round_section + "[cilium.section]\nshape = \"tube\"\ninner_diameter = \"1 mm\"\n") +
           "[load]\ntype = \"dead\"\nforce_per_length = \"0.1 N/m\"\n[models]\nmechanics = "
           "[\"solid\"]\n",
@@ -165,7 +165,7 @@ std::vector<std::string> other_values(const std::string& value, const Key& key) 
       ++at;
       continue;
     }
-    for (const double other : {number * 1.01, number * 0.99, number + 1, number - 1})
+    for (const double other : {number * 1.01, number * 0.99, number + 1, number - 1, number + 90})
       all.push_back(value.substr(0, at) + fmt::format("{:.12g}", other) + value.substr(end));
     at = end;
   }
@@ -241,7 +241,6 @@ TEST(Fingerprint, ChangesWithTheContentOfAFileAndNotWithItsPlace) {
   EXPECT_EQ(models::fingerprint(c, solid_entry()), before);
   c.surface.file = folder.write("profile.csv", content + "0.1,0.0001\n");
   EXPECT_NE(models::fingerprint(c, solid_entry()), before);
-  EXPECT_NE(models::fingerprint(c), models::fingerprint(read(texts(folder).at(14))));
 }
 
 TEST(Fingerprint, HasSensorsAndFieldModelsWhereTheErrorOfTheFieldIsLimited) {

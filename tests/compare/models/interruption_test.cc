@@ -56,8 +56,9 @@ double seconds_to_the_end(const Work& work) {
     kill(getpid(), SIGINT);
   });
   bool is_interrupted = false;
+  const auto limit = Clock::now() + std::chrono::minutes(1);
   try {
-    work();
+    while (Clock::now() < limit) work();  // a quick machine may do it several times
   } catch (const Interrupted&) {
     is_interrupted = true;
   }
@@ -96,8 +97,8 @@ TEST(Interruption, IsSeenWhileAWatchLivesAndNotAfterwards) {
 /// Many forces, up to nearly those that slip off.
 std::string forces() {
   std::string text;
-  for (int i = 1; i <= 20000; ++i)
-    text += (text.empty() ? "[" : ", ") + ("\"" + std::to_string(4e-4 * i / 2) + " mN\"");
+  for (int i = 1; i <= 1000; ++i)
+    text += (text.empty() ? "[" : ", ") + ("\"" + std::to_string(4e-3 * i) + " mN\"");
   return text + "]";
 }
 

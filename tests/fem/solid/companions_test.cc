@@ -49,18 +49,18 @@ MechanicsResult bent(Levels levels, const Checkpoint& checkpoint = {}) {
 
 /// The coarsest mesh, the result's and that of the section's companion, which throws without a
 /// plane at the loaded section.
-Levels path_levels(const std::vector<double>& planes_of_companion, unsigned int iterations = 25) {
+Levels path_levels(const std::vector<double>& planes_of_companion) {
   Levels levels;
   add_level(levels, false, {15e-3});
   add_level(levels, true, {15e-3});
-  add_level(levels, true, planes_of_companion, iterations);
+  add_level(levels, true, planes_of_companion);
   levels.finest = 1;
   levels.companions = {0, 0, 2};
   levels.error_parts = {{"all directions", 0, 1, 1}, {"section", 3, 2, 1}};
   return levels;
 }
 
-TEST(Companions, OfAPathThatThrowOrFailCostTheEstimateAlone) {
+TEST(Companions, OfAPathThatThrowCostTheEstimateAlone) {
   fem::start_mpi();
   const MechanicsResult usual = bent(path_levels({15e-3}));
   for (const MechanicsStep& step : usual.steps) {
@@ -79,7 +79,6 @@ TEST(Companions, OfAPathThatThrowOrFailCostTheEstimateAlone) {
     }
   };
   expect_no_estimate(bent(path_levels({})), "no plane at the loaded section");
-  expect_no_estimate(bent(path_levels({15e-3}, 1)), "no equilibrium with this load on the mesh");
 }
 
 TEST(Companions, OfASweepThatDoNotStartOrAreLostCostTheEstimateAlone) {
