@@ -9,8 +9,8 @@
 
 #include "fem/beam/centreline.h"
 #include "fem/beam/stability/stability.h"
+#include "problem/continuation/turning_point.h"
 #include "problem/error.h"
-#include "problem/turning_point.h"
 
 namespace ciliaval::fem::beam::stability {
 namespace {
@@ -48,7 +48,7 @@ class BeamBranch {
     set_tangent(now_, nullptr);
   }
 
-  BranchPoint start() const { return {now_.fraction, now_.rate}; }
+  continuation::BranchPoint start() const { return {now_.fraction, now_.rate}; }
   const Point& accepted() const { return now_; }
   const Point& found() const { return found_; }
   Loads loads(double t) const { return combine(1 - t, way_.from, t, way_.to); }
@@ -57,7 +57,7 @@ class BeamBranch {
     return smallest_eigenvalue(system_, point.state, loads(point.fraction), 0).value;
   }
 
-  std::optional<BranchPoint> find(double s) {
+  std::optional<continuation::BranchPoint> find(double s) {
     try {
       return corrected(s);
     } catch (const SolverError&) {  // inside a magnet, or a singular tangent
@@ -67,7 +67,7 @@ class BeamBranch {
   void accept() { now_ = found_; }
 
  private:
-  std::optional<BranchPoint> corrected(double s) {
+  std::optional<continuation::BranchPoint> corrected(double s) {
     Point trial = now_;
     system_.update(trial.state, s * now_.tangent);
     trial.fraction += s * now_.rate;
@@ -86,7 +86,7 @@ class BeamBranch {
       if (std::max(nodal_size(change), std::abs(t)) > increment_tolerance) continue;
       set_tangent(trial, &now_.along);
       found_ = std::move(trial);
-      return BranchPoint{found_.fraction, found_.rate, now_.along.dot(found_.along)};
+      return continuation::BranchPoint{found_.fraction, found_.rate, now_.along.dot(found_.along)};
     }
     return std::nullopt;
   }
@@ -178,12 +178,12 @@ std::optional<Fold> find_fold(CiliumBeam& beam, const Way& way, const NewtonOpti
         result.approach.push_back({point.fraction, branch.eigenvalue(point) / at_rest});
     };
     note(branch.accepted());
-    const Branch steps{[&](double s) { return branch.find(s); },
-                       [&] {
-                         branch.accept();
-                         note(branch.accepted());
-                       }};
-    const auto fold = turning_point(steps, branch.start(), first_part);
+    const continuation::Branch steps{[&](double s) { return branch.find(s); },
+                                     [&] {
+                                       branch.accept();
+                                       note(branch.accepted());
+                                     }};
+    const auto fold = continuation::turning_point(steps, branch.start(), first_part);
     if (!fold) return std::nullopt;
     note(branch.found());
     result.fraction = fold->fraction;

@@ -6,8 +6,8 @@
 
 #include "fem/solid/discretisation/assembly.h"
 #include "fem/solid/loads/external_forces.h"
+#include "problem/continuation/turning_point.h"
 #include "problem/error.h"
-#include "problem/turning_point.h"
 
 namespace ciliaval::fem::solid::equilibrium {
 using namespace discretisation;
@@ -34,12 +34,12 @@ class FoldSearch::SolidBranch {
     set_tangent(now_, nullptr);
   }
 
-  BranchPoint start() const { return {now_.at.fraction, now_.rate}; }
+  continuation::BranchPoint start() const { return {now_.at.fraction, now_.rate}; }
   const OnTheWay& accepted() const { return now_.at; }
   const OnTheWay& found() const { return found_.at; }
   void accept() { now_ = found_; }
 
-  std::optional<BranchPoint> find(double s) {
+  std::optional<continuation::BranchPoint> find(double s) {
     try {
       return corrected(s);
     } catch (const SolverError&) {  // inside a magnet, or a singular tangent
@@ -62,7 +62,7 @@ class FoldSearch::SolidBranch {
     return external_forces(search_.space_, search_.quadrature_, search_.cilium_, load(t),
                            search_.options_.kernel_width);
   }
-  std::optional<BranchPoint> corrected(double s) {
+  std::optional<continuation::BranchPoint> corrected(double s) {
     const SolidSpace& space = search_.space_;
     const SolidState& before = now_.at.equilibrium.state;
     Point trial = now_;
@@ -88,7 +88,7 @@ class FoldSearch::SolidBranch {
     trial.at.equilibrium.load = load(unknown.amplitude);
     set_tangent(trial, &now_.along);
     found_ = std::move(trial);
-    return BranchPoint{found_.at.fraction, found_.rate, now_.along * found_.along};
+    return continuation::BranchPoint{found_.at.fraction, found_.rate, now_.along * found_.along};
   }
 
   /// dt/ds and c at an equilibrium; the first goes the way of t, others that of `before`.
@@ -113,12 +113,12 @@ std::vector<OnTheWay> FoldSearch::find(const Load& load) const {
   try {
     SolidBranch branch(*this, load);
     std::vector<OnTheWay> way{branch.accepted()};
-    const Branch steps{[&](double s) { return branch.find(s); },
-                       [&] {
-                         branch.accept();
-                         way.push_back(branch.accepted());
-                       }};
-    if (!turning_point(steps, branch.start(), first_part)) return {};
+    const continuation::Branch steps{[&](double s) { return branch.find(s); },
+                                     [&] {
+                                       branch.accept();
+                                       way.push_back(branch.accepted());
+                                     }};
+    if (!continuation::turning_point(steps, branch.start(), first_part)) return {};
     way.push_back(branch.found());
     return way;
   } catch (const SolverError&) {  // no statement

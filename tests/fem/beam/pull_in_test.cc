@@ -17,7 +17,7 @@
 
 #include "beams.h"
 #include "fem/beam/beam.h"
-#include "problem/turning_point.h"
+#include "problem/continuation/turning_point.h"
 
 namespace ciliaval::fem::beam {
 namespace pull_in {
@@ -290,13 +290,14 @@ TEST(TurningPoint, OfAPlateOnASpringIsAtAThirdOfTheGap) {
   for (const double first : {1e-3, 0.125, 1.0}) {
     double accepted = 0;
     double x = 0;
-    const Branch branch{[&](double s) -> std::optional<BranchPoint> {
-                          x = accepted + s;
-                          if (x >= 1) return std::nullopt;
-                          return BranchPoint{x * (1 - x) * (1 - x), (1 - x) * (1 - 3 * x)};
-                        },
-                        [&] { accepted = x; }};
-    const auto fold = turning_point(branch, {0, 1}, first);
+    const continuation::Branch branch{
+        [&](double s) -> std::optional<continuation::BranchPoint> {
+          x = accepted + s;
+          if (x >= 1) return std::nullopt;
+          return continuation::BranchPoint{x * (1 - x) * (1 - x), (1 - x) * (1 - 3 * x)};
+        },
+        [&] { accepted = x; }};
+    const auto fold = continuation::turning_point(branch, {0, 1}, first);
     ASSERT_TRUE(fold) << first;
     EXPECT_NEAR(fold->fraction, 4.0 / 27, 1e-12);
     EXPECT_NEAR(x, 1.0 / 3, 1e-6);
@@ -307,13 +308,14 @@ TEST(TurningPoint, OfAPlateOnASpringIsAtAThirdOfTheGap) {
 TEST(TurningPoint, BeyondTheEndOfTheWayIsNone) {
   double accepted = 0;
   double x = 0;
-  const Branch branch{[&](double s) -> std::optional<BranchPoint> {
-                        x = accepted + s;
-                        if (x >= 1) return std::nullopt;
-                        return BranchPoint{7 * x * (1 - x) * (1 - x), 7 * (1 - x) * (1 - 3 * x)};
-                      },
-                      [&] { accepted = x; }};
-  EXPECT_FALSE(turning_point(branch, {0, 7}, 0.125));
+  const continuation::Branch branch{
+      [&](double s) -> std::optional<continuation::BranchPoint> {
+        x = accepted + s;
+        if (x >= 1) return std::nullopt;
+        return continuation::BranchPoint{7 * x * (1 - x) * (1 - x), 7 * (1 - x) * (1 - 3 * x)};
+      },
+      [&] { accepted = x; }};
+  EXPECT_FALSE(continuation::turning_point(branch, {0, 7}, 0.125));
 }
 
 }  // namespace pull_in

@@ -10,7 +10,7 @@
 
 #include "problem/error.h"
 
-namespace ciliaval {
+namespace ciliaval::continuation {
 
 /// A point on a branch of equilibria x(s), t(s): t the fraction of the way from one load to the
 /// next, s a length along the branch.
@@ -88,4 +88,4 @@ inline std::optional<BranchPoint> turning_point(const Branch& branch, const Bran
   return std::nullopt;
 }
 
-}  // namespace ciliaval
+}  // namespace ciliaval::continuation
