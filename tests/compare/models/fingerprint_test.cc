@@ -193,11 +193,16 @@ bool is_of_a_file(const Key& key) {
          key.table == "models.external";
 }
 
-/// Choices with keys of their own, of which the texts above have all; and the baseline's
-/// references.
+/// Keys of which no other value is right by itself: choices with keys of their own, of which the
+/// texts above have all; the baseline's references; the four numbers of a unit quaternion; what was
+/// measured, with its unit; an error limit in place of a refinement, which has a test below.
 bool is_changed_with_others(std::string_view key) {
-  return key == "cilium.section.shape" || key == "load.type" || key == "environment.magnet.shape" ||
-         key == "case.references";
+  for (const std::string_view with_others :
+       {"cilium.section.shape", "load.type", "environment.magnet.shape", "surface.profile",
+        "case.references", "environment.magnet.rotation", "measurement.quantity",
+        "models.solid.tolerance", "models.solid.tolerance_of"})
+    if (key == with_others) return true;
+  return false;
 }
 
 TEST(Fingerprint, ChangesWithEveryKeyOfACaseFile) {
@@ -261,6 +266,10 @@ TEST(Fingerprint, HasSensorsAndFieldModelsWhereTheErrorOfTheFieldIsLimited) {
     return models::fingerprint(read(text), solid_entry()) !=
            models::fingerprint(read(replaced(text, part, by)), solid_entry());
   };
+  EXPECT_NE(models::fingerprint(read(usual), solid_entry()),
+            models::fingerprint(read(limited), solid_entry()));
+  EXPECT_TRUE(differs(limited, "\"1 %\"", "\"2 %\""));
+  EXPECT_TRUE(differs(limited, "\"field\"", "\"tip\""));
   EXPECT_TRUE(differs(limited, "\"-2 mm\"", "\"-3 mm\""));
   EXPECT_TRUE(differs(limited, "tolerance = 1e-7", "tolerance = 1e-6"));
   EXPECT_FALSE(differs(usual, "\"-2 mm\"", "\"-3 mm\""));
