@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "problem/cilium.h"
+#include "problem/continuation/pull_in.h"
 #include "problem/deformation.h"
 #include "problem/load.h"
-#include "problem/pull_in.h"
 
 namespace ciliaval {
 
@@ -64,10 +64,10 @@ struct MechanicsStep {
   std::optional<int> unstable_modes;  ///< ways in which the energy decreases; 0: stable
   /// Smallest eigenvalue of the second variation over that of the straight cilium without loads.
   std::optional<double> smallest_eigenvalue;
-  std::optional<PullIn> pull_in;  ///< there if pulled in, or if it jumps on the way
-  std::size_t unknowns = 0;       ///< of the largest system solved
-  int iterations = 0;             ///< nonlinear iterations, all cutbacks included
-  double seconds = 0;             ///< wall time
+  std::optional<continuation::PullIn> pull_in;  ///< there if pulled in, or if it jumps on the way
+  std::size_t unknowns = 0;                     ///< of the largest system solved
+  int iterations = 0;                           ///< nonlinear iterations, all cutbacks included
+  double seconds = 0;                           ///< wall time
 };
 
 /// The largest magnitude that an equilibrium bears, of a contact N, of a probe m, if it is known.

@@ -95,11 +95,11 @@ Json balance_json(const EnergyBalance& balance) {
           {"relative_rest", balance.relative_rest()}};
 }
 
-Json pull_in_json(const PullIn& pull_in) {
+Json pull_in_json(const continuation::PullIn& pull_in) {
   Json json{{"fraction", pull_in.fraction},   {"load", pull_in.load},
             {"magnet", pull_in.magnet},       {"tip", vector(pull_in.tip)},
             {"tip_angle", pull_in.tip_angle}, {"approach", Json::array()}};
-  for (const ApproachToFold& at : pull_in.approach)
+  for (const continuation::ApproachToFold& at : pull_in.approach)
     json["approach"].push_back(
         {{"fraction", at.fraction}, {"smallest_eigenvalue", at.smallest_eigenvalue}});
   return json;

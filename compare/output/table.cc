@@ -42,9 +42,9 @@ const models::Comparison* find(const std::vector<models::Comparison>& comparison
 }
 
 /// " 1 at 0, 0.5 at 0.3": the eigenvalues at their fractions.
-std::string approach(const PullIn& pull_in) {
+std::string approach(const continuation::PullIn& pull_in) {
   std::string text;
-  for (const ApproachToFold& at : pull_in.approach)
+  for (const continuation::ApproachToFold& at : pull_in.approach)
     text += fmt::format("{} {:.3g} at {:.6g}", text.empty() ? "" : ",", at.smallest_eigenvalue,
                         at.fraction);
   return text;

@@ -148,13 +148,15 @@ void serialize(Archive& archive, ciliaval::fem::solid::contact::FollowerState& s
 }
 
 template <class Archive>
-void serialize(Archive& archive, ciliaval::ApproachToFold& at, unsigned int /*version*/) {
+void serialize(Archive& archive, ciliaval::continuation::ApproachToFold& at,
+               unsigned int /*version*/) {
   auto& [fraction, smallest_eigenvalue] = at;
   archive& fraction& smallest_eigenvalue;
 }
 
 template <class Archive>
-void serialize(Archive& archive, ciliaval::PullIn& pull_in, unsigned int /*version*/) {
+void serialize(Archive& archive, ciliaval::continuation::PullIn& pull_in,
+               unsigned int /*version*/) {
   auto& [fraction, load, magnet, tip, tip_angle, approach] = pull_in;
   archive& fraction& load& magnet& tip& tip_angle& approach;
 }

@@ -306,14 +306,14 @@ Deformation Level::undeformed(double azimuth) const {
   return deformation(space_->undeformed(), azimuth);
 }
 
-PullIn Level::pull_in(const LoadPathOutcome& outcome, double mesh_azimuth) {
+continuation::PullIn Level::pull_in(const LoadPathOutcome& outcome, double mesh_azimuth) {
   const auto& [fraction, last] = outcome.way_to_fold.back();
   const Centreline line = deformation(last, mesh_azimuth).centreline;
   const surroundings::Environment environment = acting_environment(last.load);
   if (const auto touched = surroundings::touched_magnet(
           surroundings::turned(environment, mesh_azimuth), cilium_, line))
-    throw SolverError(touches_magnet(*touched));
-  PullIn result;
+    throw SolverError(continuation::touches_magnet(*touched));
+  continuation::PullIn result;
   result.fraction = fraction;
   result.load = outcome.load_at_fold;
   const CentrelinePoint tip = line.at(line.length());

@@ -92,7 +92,7 @@ class Level {
   /// The last equilibrium before a magnet pulls the cilium in, with the smallest eigenvalue on the
   /// way there, of an outcome of advance() with the status pulled_in. `mesh_azimuth` as of
   /// deformation(). Throws SolverError if the cilium touches a magnet there.
-  PullIn pull_in(const equilibrium::LoadPathOutcome& outcome, double mesh_azimuth);
+  continuation::PullIn pull_in(const equilibrium::LoadPathOutcome& outcome, double mesh_azimuth);
   std::size_t unknowns() const { return space_->unknowns(); }
 
   // For solvers that make their own way, apart from the level's load path.

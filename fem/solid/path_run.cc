@@ -122,7 +122,7 @@ void state_pull_in(Level& level, const LoadPathOutcome& outcome, double mesh_azi
                    MechanicsStep& step) {
   try {
     step.pull_in = level.pull_in(outcome, mesh_azimuth);
-    step.message = pulled_in(*step.pull_in);
+    step.message = continuation::pulled_in(*step.pull_in);
   } catch (const SolverError& error) {
     step.status = Status::failed;
     step.message = error.what();

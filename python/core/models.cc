@@ -285,10 +285,10 @@ py::object positions(const BentShape& shape) {
 }
 
 py::object pull_in(const BentShape& shape) {
-  const std::optional<PullIn>& found = shape.step().pull_in;
+  const std::optional<continuation::PullIn>& found = shape.step().pull_in;
   if (!found) return py::none();
   std::vector<double> approach;
-  for (const ApproachToFold& at : found->approach)
+  for (const continuation::ApproachToFold& at : found->approach)
     approach.insert(approach.end(), {at.fraction, at.smallest_eigenvalue});
   const auto n = static_cast<py::ssize_t>(found->approach.size());
   return py::dict(py::arg("fraction") = found->fraction, py::arg("load") = found->load,

@@ -158,7 +158,7 @@ bool has_potential(const Loads& loads) {
 
 /// A fold with the centreline there.
 struct Fold {
-  PullIn pull_in;
+  continuation::PullIn pull_in;
   Centreline centreline;
 };
 
@@ -169,7 +169,7 @@ std::optional<Fold> find_fold(CiliumBeam& beam, const Way& way, const NewtonOpti
   try {
     System& system = beam.system;
     BeamBranch branch(system, way, options);
-    PullIn result;
+    continuation::PullIn result;
     double at_rest = 1;
     const bool is_judged = has_potential(way.from) && has_potential(way.to);
     if (is_judged) at_rest = smallest_eigenvalue(system, system.reference_state(), {}, 0).value;
@@ -206,7 +206,7 @@ bool touches_magnet(const Cilium& cilium, const Centreline& centreline, Mechanic
       surroundings::touched_magnet(acting_environment(step.load), cilium, centreline);
   if (!touched) return false;
   step.status = Status::failed;
-  step.message = ciliaval::touches_magnet(*touched);
+  step.message = continuation::touches_magnet(*touched);
   return true;
 }
 
@@ -217,11 +217,11 @@ void judge_pull_in(const Cilium& cilium, CiliumBeam& beam, const Way& way,
   step.pull_in = std::move(fold->pull_in);
   if (step.status == Status::converged &&
       !touches_magnet(cilium, centreline(beam.system, end), step)) {
-    step.message += (step.message.empty() ? "" : "; ") + jumps(*step.pull_in);
+    step.message += (step.message.empty() ? "" : "; ") + continuation::jumps(*step.pull_in);
     return;
   }
   step.status = Status::pulled_in;
-  step.message = pulled_in(*step.pull_in);
+  step.message = continuation::pulled_in(*step.pull_in);
 }
 
 }  // namespace ciliaval::fem::beam::stability

@@ -56,7 +56,7 @@ constexpr std::string_view one_field = R"(["0 mT", "10 mT", "2 mT"])";
 constexpr std::string_view three_fields =
     R"([["0 mT", "0 mT", "0 mT"], ["0 mT", "0 mT", "1 mT"], ["0 mT", "-10 mT", "2 mT"]])";
 
-std::string with_load(std::string_view load, std::string_view text = weight_and_field) {
+std::string loaded(std::string_view load, std::string_view text = weight_and_field) {
   return replaced(text, "[models]", std::string("[load]\n").append(load).append("\n[models]"));
 }
 
@@ -103,7 +103,7 @@ TEST(EnvironmentCase, BendsInThePlaneOfGravityWithoutAHorizontalField) {
 
 TEST(EnvironmentCase, SurroundsEveryStepOfALoad) {
   const input::Case c =
-      read(with_load("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 "
+      read(loaded("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 "
                      "mm\"\nazimuth = \"90 deg\""));
   ASSERT_EQ(c.load_path.size(), 2U);
   for (const Load& load : c.load_path) {
@@ -115,7 +115,7 @@ TEST(EnvironmentCase, SurroundsEveryStepOfALoad) {
 TEST(EnvironmentCase, GivesEachStepItsField) {
   const std::string text = replaced(weight_and_field, one_field, three_fields);
   const input::Case listed =
-      read(with_load("type = \"section\"\nforce = [\"1 mN\", \"2 mN\", \"3 mN\"]\narclength = \"20 "
+      read(loaded("type = \"section\"\nforce = [\"1 mN\", \"2 mN\", \"3 mN\"]\narclength = \"20 "
                      "mm\"\nazimuth = "
                      "\"90 deg\"",
                      text));
@@ -123,7 +123,7 @@ TEST(EnvironmentCase, GivesEachStepItsField) {
   EXPECT_EQ(magnitude(listed.load_path[2]), 3e-3);
   EXPECT_EQ(listed.load_path[2].environment().uniform_field.y(), -0.01);
   const input::Case single =
-      read(with_load("type = \"flow\"\nvelocity = \"0.5 m/s\"\nazimuth = \"90 deg\"", text));
+      read(loaded("type = \"flow\"\nvelocity = \"0.5 m/s\"\nazimuth = \"90 deg\"", text));
   ASSERT_EQ(single.load_path.size(), 3U);
   EXPECT_EQ(magnitude(single.load_path[2]), magnitude(single.load_path[0]));
   EXPECT_EQ(single.load_path[1].environment().uniform_field.z(), 0.001);
@@ -132,7 +132,7 @@ TEST(EnvironmentCase, GivesEachStepItsField) {
 
 TEST(EnvironmentCase, ScalesMakeAPath) {
   const input::Case c =
-      read(with_load("type = \"environment\"\nscale = [0, 0.5, 1]\nazimuth = \"90 deg\""));
+      read(loaded("type = \"environment\"\nscale = [0, 0.5, 1]\nazimuth = \"90 deg\""));
   ASSERT_EQ(c.load_path.size(), 3U);
   EXPECT_EQ(acting_environment(c.load_path[1]).uniform_field.y(), 0.005);
 }
@@ -149,9 +149,9 @@ TEST(EnvironmentCase, IsWrittenBack) {
       replaced(replaced(weight_and_field, "uniform_field = [\"0 mT\", \"10 mT\", \"2 mT\"]\n", ""),
                "magnetic_energy = \"R\"\n", "");
   for (const std::string& text :
-       {std::string(weight_and_field), fields, field_alone, weight_alone, with_load(contact),
-        with_load(contact, fields), with_load(contact, weight_alone),
-        with_load("type = \"flow\"\nvelocity = \"0.5 m/s\"\nazimuth = \"90 deg\"", fields),
+       {std::string(weight_and_field), fields, field_alone, weight_alone, loaded(contact),
+        loaded(contact, fields), loaded(contact, weight_alone),
+        loaded("type = \"flow\"\nvelocity = \"0.5 m/s\"\nazimuth = \"90 deg\"", fields),
         replaced(weight_alone, "-9.81", "0"),
         replaced(weight_and_field, one_field, R"(["0 mT", "0 mT", "0 mT"])"),
         replaced(field_alone, three_fields, R"(["0 mT", "0 mT", "0 mT"])")}) {
@@ -243,12 +243,12 @@ TEST(EnvironmentCase, ListsAsManyFieldsAsTheLoadHasSteps) {
   const std::string text = replaced(weight_and_field, one_field, three_fields);
   EXPECT_THAT(
       faults_of(
-          with_load("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 mm\"", text)),
+          loaded("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 mm\"", text)),
       StartsWith("bad.toml:21:17: 'uniform_field' lists 3 fields, but the load has 2 steps"));
 }
 
 TEST(EnvironmentCase, IsFoundByItsName) {
-  EXPECT_THAT(faults_of(replaced(with_load("type = \"section\"\nforce = \"1 mN\"\narclength = "
+  EXPECT_THAT(faults_of(replaced(loaded("type = \"section\"\nforce = \"1 mN\"\narclength = "
                                            "\"20 mm\""),
                                  "[environment]", "[enviroment]")),
               StartsWith("bad.toml:18:2: unknown key 'enviroment' in the case file (valid: case, "
@@ -276,7 +276,7 @@ TEST(EnvironmentCase, ListsAThousandFieldsAtMost) {
 
 TEST(EnvironmentCase, TheLoadTypeOfItNeedsIt) {
   const std::string text =
-      replaced(replaced(with_load("type = \"environment\"\nazimuth = \"90 deg\""),
+      replaced(replaced(loaded("type = \"environment\"\nazimuth = \"90 deg\""),
                         weight_and_field.substr(weight_and_field.find("[environment]"),
                                                 weight_and_field.find("[models]") -
                                                     weight_and_field.find("[environment]")),
@@ -288,16 +288,16 @@ TEST(EnvironmentCase, TheLoadTypeOfItNeedsIt) {
 }
 
 TEST(EnvironmentCase, TheElasticaTellsItsPlane) {
-  EXPECT_THAT(faults_of(with_load("type = \"environment\"\nazimuth = \"60 deg\"")),
+  EXPECT_THAT(faults_of(loaded("type = \"environment\"\nazimuth = \"60 deg\"")),
               HasSubstr("along the azimuth 60 deg, and the environment points out of it: change "
                         "the azimuth, or use 'beam' or 'solid'"));
-  EXPECT_EQ(faults_of(replaced(with_load("type = \"environment\"\nazimuth = \"60 deg\""),
+  EXPECT_EQ(faults_of(replaced(loaded("type = \"environment\"\nazimuth = \"60 deg\""),
                                "\"elastica\", ", "")),
             "");
 }
 
 TEST(EnvironmentCase, TheHeightFormTakesNone) {
-  EXPECT_THAT(faults_of(with_load("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
+  EXPECT_THAT(faults_of(loaded("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
                                   "azimuth = \"90 deg\"") +
                         "[models.elastica]\nform = \"height\"\n"),
               HasSubstr("bad.toml:31:8: the elastica's form 'height' (Eq. 1-4) takes no "
@@ -305,7 +305,7 @@ TEST(EnvironmentCase, TheHeightFormTakesNone) {
 }
 
 TEST(EnvironmentCase, TheElasticasCorrectedJointsTakeNone) {
-  EXPECT_THAT(faults_of(with_load("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
+  EXPECT_THAT(faults_of(loaded("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
                                   "azimuth = \"90 deg\"") +
                         "[models.elastica]\njoints = \"corrected\"\n"),
               HasSubstr("bad.toml:31:10: the elastica takes no corrected joints in an "

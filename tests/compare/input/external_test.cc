@@ -12,6 +12,7 @@
 #include "compare/input/external/background.h"
 #include "compare/models/registry.h"
 #include "problem/error.h"
+#include "tests/support/case_texts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
@@ -95,12 +96,6 @@ class External : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
-
-std::string replaced(std::string text, const std::string& old, const std::string& with) {
-  const auto at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return text.replace(at, old.size(), with);
-}
 
 TEST_F(External, ReadsUnitsAsTheHeaderStatesThem) {
   write("a.csv",

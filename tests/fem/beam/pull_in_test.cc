@@ -158,7 +158,7 @@ TEST(PullIn, AgreesWithTheElasticaAboutTheFold) {
 TEST(PullIn, TheSmallestEigenvalueVanishesAsASquareRoot) {
   const MechanicsStep step = solved(beams::paper_cilium(), {brick({12e-3, 0, 20e-3})});
   ASSERT_EQ(step.status, Status::pulled_in) << step.message;
-  const std::vector<ApproachToFold>& way = step.pull_in->approach;
+  const std::vector<continuation::ApproachToFold>& way = step.pull_in->approach;
   ASSERT_GT(way.size(), 3U);
   EXPECT_EQ(way.front().fraction, 0);
   EXPECT_NEAR(way.front().smallest_eigenvalue, 1, 1e-9);

@@ -42,7 +42,7 @@ TEST(SolidPullInSlow, AgreesWithTheBeam) {
   options.max_cutbacks = 1;  // it fails in any case
   const auto steps = Solid(options).solve(stub_and_magnet(), path).steps;
   ASSERT_EQ(steps[0].status, Status::pulled_in) << steps[0].message;
-  const PullIn& solid = *steps[0].pull_in;
+  const continuation::PullIn& solid = *steps[0].pull_in;
   const MechanicsStep beam = beam::Beam({.joints = joints::Correction::corrected})
                                  .solve(stub_and_magnet(), {path[0]})
                                  .steps[0];

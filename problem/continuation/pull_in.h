@@ -10,7 +10,7 @@
 
 #include "problem/types.h"
 
-namespace ciliaval {
+namespace ciliaval::continuation {
 
 /// An equilibrium on the way to a fold.
 struct ApproachToFold {
@@ -62,4 +62,4 @@ inline std::string pulled_in(const PullIn& pull_in) {
   return text.str();
 }
 
-}  // namespace ciliaval
+}  // namespace ciliaval::continuation
