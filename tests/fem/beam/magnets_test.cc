@@ -233,14 +233,21 @@ TEST(BeamMagnets, RefusesAMagnetThatTouches) {
   environment.magnets[0].position = {3e-3, 0, 18e-3};
   EXPECT_THROW(Beam().solve(cilium(), {with_environment(EnvironmentLoad{1, 0}, environment)}),
                InputError);
-  // The south pole of a strong magnet draws the tip to itself.
+  // A force pushes the cilium into a magnet that is too weak to pull it in.
   environment.magnets[0].position = {7e-3, 0, 20e-3};
   environment.magnets[0].rotation = Quaternion::Identity();
+  environment.magnets[0].magnetization = {1, 0, 0};
+  const auto beside_it = [&](const Load& load) {
+    return Beam().solve(cilium(), {with_environment(load, environment)}).steps.at(0);
+  };
+  const MechanicsStep pushed = beside_it(SectionLoad{1.2e-3, 20e-3, 0});
+  EXPECT_EQ(pushed.status, Status::failed);
+  EXPECT_NE(pushed.message.find("touches the magnet"), std::string::npos) << pushed.message;
+  // The south pole of a strong magnet draws the tip to itself.
   environment.magnets[0].magnetization = {1e6, 0, 0};
-  const MechanicsStep step =
-      Beam().solve(cilium(), {with_environment(EnvironmentLoad{1, 0}, environment)}).steps.at(0);
-  EXPECT_EQ(step.status, Status::failed);
-  EXPECT_NE(step.message.find("magnet"), std::string::npos) << step.message;
+  const MechanicsStep drawn = beside_it(EnvironmentLoad{1, 0});
+  EXPECT_EQ(drawn.status, Status::pulled_in);
+  EXPECT_NE(drawn.message.find("magnet"), std::string::npos) << drawn.message;
 }
 
 }  // namespace
