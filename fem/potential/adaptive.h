@@ -29,7 +29,7 @@ struct PotentialProblem {
 
 struct PotentialControl {
   double tolerance = 2e-3;            ///< uncertainty of B at each point, relative to |B|
-  std::size_t max_unknowns = 100000;  ///< of the solution that B is taken from
+  std::size_t max_unknowns = 600000;  ///< of the solution that B is taken from
   /// The same where the uncertainty is not known: more unknowns would not make it known.
   std::size_t untested_unknowns = 30000;
   double box = 16;  ///< half-width of the octree over the radius of all bodies and points

@@ -16,7 +16,7 @@ struct PotentialOptions {
   double relative_permeability = 1.05;
   MagnetPushForward push_forward = MagnetPushForward::F;
   double tolerance = 2e-3;             ///< uncertainty of B over |B|, at each sensor
-  unsigned int max_unknowns = 100000;  ///< of the solution that B is taken from
+  unsigned int max_unknowns = 600000;  ///< of the solution that B is taken from
   std::vector<PermeableBox> plates;    ///< at rest, below or beside the sensors
 };
 
