@@ -25,7 +25,7 @@ if(CILIAVAL_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
-# What was compiled before is not compiled again, in another clone either. A precompiled header is then known by its text (-fpch-preprocess).
+# ccache keeps what it has compiled. It takes a precompiled header only with -fpch-preprocess.
 find_program(CILIAVAL_CCACHE ccache)
 if(CILIAVAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1

@@ -5,7 +5,7 @@ if(NOT EXISTS ${program})
   add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)
   return()
 endif()
-# Tests of earlier builds are listed again only if the program is newer.
+# The suites are listed anew only if the program is newer than the list.
 if(NOT EXISTS ${suites} OR ${program} IS_NEWER_THAN ${suites})
   execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
