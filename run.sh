@@ -60,6 +60,7 @@ pictures() {
 
 install_packages
 build release ciliaval ciliaval_python # the pages are made by Python
+tell_openblas_the_processor release
 mkdir -p results
 if [ $# -gt 0 ]; then
   step run "$@" -o results

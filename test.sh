@@ -31,6 +31,7 @@ configure_options=(-D CILIAVAL_BENCHMARKS=$all)
 build "$preset"
 scripts/paraview.sh >/dev/null || say "no ParaView: its tests are skipped"
 say "testing"
+tell_openblas_the_processor "$preset"
 # One thread a test: ctest runs two of them side by side.
 export DEAL_II_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 ctest --preset "$preset" -j "$(nproc)" "${labels[@]}"

@@ -19,6 +19,8 @@ set(ciliaval_dealii_headers <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <deal.II/do
 ciliaval_precompile(dealii LIBRARIES CiliaVal::dealii Eigen3::Eigen HEADERS ${ciliaval_dealii_headers})
 set(text_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <filesystem> <fmt/core.h> <fmt/ranges.h> <fstream> <functional> <map>
   <nlohmann/json.hpp> <sstream> <string> <vector>)
+ciliaval_precompile(numbers LIBRARIES Eigen3::Eigen HEADERS <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <algorithm> <cmath> <functional> <map> <memory> <optional> <string>
+  <vector>)
 ciliaval_precompile(text LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json HEADERS ${text_headers})
 ciliaval_precompile(commands LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11
   HEADERS ${text_headers} <CLI/CLI.hpp>)

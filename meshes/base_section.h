@@ -4,14 +4,9 @@
 #include <deal.II/fe/mapping.h>
 #include <deal.II/grid/tria.h>
 
-namespace ciliaval::meshes {
+#include "meshes/section_properties.h"
 
-/// Area (m²) and second moments about the centroid's x and y axes (m⁴) of a meshed section.
-struct SectionProperties {
-  double area = 0;
-  double about_x = 0;  ///< ∫ (y − y₀)² dA
-  double about_y = 0;  ///< ∫ (x − x₀)² dA
-};
+namespace ciliaval::meshes {
 
 /// Those of the faces with base_id, integrated exactly for a mapping of degree 2.
 SectionProperties base_section(const dealii::Triangulation<3>& triangulation,

@@ -3,6 +3,9 @@
 
 #include <deal.II/base/types.h>
 
+#include <string>
+#include <vector>
+
 namespace ciliaval::meshes {
 
 /// Boundary ids of every mesh of a cilium.
@@ -10,5 +13,8 @@ inline constexpr dealii::types::boundary_id base_id = 0;      ///< Z = 0
 inline constexpr dealii::types::boundary_id mantle_id = 1;    ///< X² + Y² = R²
 inline constexpr dealii::types::boundary_id tip_id = 2;       ///< Z = L
 inline constexpr dealii::types::boundary_id symmetry_id = 3;  ///< Y = 0 of the half cylinder
+
+/// Of the first three, by their ids: as files name these surfaces.
+inline const std::vector<std::string> boundary_names{"base", "mantle", "tip"};
 
 }  // namespace ciliaval::meshes

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <deal.II/fe/mapping.h>
-#include <deal.II/grid/tria.h>
+#include <deal.II/base/point.h>
 
 #include <array>
 #include <cstddef>
 #include <vector>
+
+// By name alone: who only writes a mesh need not compile deal.II's headers.
+namespace dealii {
+template <int dim, int spacedim>
+class Triangulation;
+template <int dim, int spacedim>
+class Mapping;
+}  // namespace dealii
 
 namespace ciliaval::meshes {
 
@@ -28,7 +35,7 @@ struct MeshNodes {
 
 /// The active cells and boundary faces of a mesh, its curved geometry taken at the nodes of
 /// quadratic elements: exact for a mapping of degree 2 or less.
-MeshNodes mesh_nodes(const dealii::Triangulation<3>& triangulation,
-                     const dealii::Mapping<3>& mapping);
+MeshNodes mesh_nodes(const dealii::Triangulation<3, 3>& triangulation,
+                     const dealii::Mapping<3, 3>& mapping);
 
 }  // namespace ciliaval::meshes

@@ -35,3 +35,10 @@ build() {
   log=$(cmake --preset "$1" "${configure_options[@]}" 2>&1) || { printf '%s\n' "$log" >&2; die "configuring the preset '$1' failed"; }
   cmake --build --preset "$1" ${2:+--target "${@:2}"} >&2 || die "the build failed"
 }
+
+# OpenBLAS 0.3.21 takes a processor that is newer than itself for one of 2004, and the solid takes a quarter longer.
+# tell_openblas_the_processor PRESET, once it is built: Haswell's kernels run on every processor with AVX2.
+tell_openblas_the_processor() {
+  [ -z "${OPENBLAS_CORETYPE:-}" ] && grep -qsw avx2 /proc/cpuinfo || return 0
+  ! OPENBLAS_VERBOSE=2 "build/$1/ciliaval" --version 2>&1 >/dev/null | grep -q "Core: Prescott" || export OPENBLAS_CORETYPE=Haswell
+}

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <array>
 #include <cmath>
 #include <mutex>
@@ -15,6 +14,7 @@
 #include "analytic/sources/field_points.h"
 #include "problem/error.h"
 #include "problem/support/interruption.h"
+#include "problem/support/rotation.h"
 
 namespace ciliaval::analytic::body {
 namespace {
@@ -88,9 +88,7 @@ PatchPoint<Vector3> moment(const LagrangeBasis& nodes, const SolidCell& cell,
     throw SolverError("det F is not positive in a cell of the magnet near " +
                       sources::to_string(point.current) +
                       ", so that F has no rotation: refine the solid model or lower the load");
-  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Matrix3 R = svd.matrixU() * svd.matrixV().transpose();
-  return {point.current, R * cell.magnetization * (J * volume)};
+  return {point.current, support::polar_rotation(F) * cell.magnetization * (J * volume)};
 }
 
 /// The dipoles of the magnetised cells. They are made at the first point that needs them; several

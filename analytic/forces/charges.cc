@@ -6,6 +6,7 @@
 
 #include "analytic/rod/mantle.h"
 #include "problem/lagrange.h"
+#include "problem/support/rotation.h"
 
 namespace ciliaval::analytic::forces {
 namespace {
@@ -61,7 +62,7 @@ void append_ball(const Magnet& magnet, std::size_t order, std::vector<PointCharg
 
 /// Any two axes across a unit vector, and it.
 Matrix3 axes_about(const Vector3& normal) {
-  return Quaternion::FromTwoVectors(Vector3::UnitZ(), normal).toRotationMatrix();
+  return support::turn_to(normal).toRotationMatrix();
 }
 
 }  // namespace

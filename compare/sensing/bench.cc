@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <random>
 
+#include "compare/sensing/distributions.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::sensing {
@@ -78,8 +78,8 @@ BenchErrors errors_of(const std::vector<Found>& all, const std::optional<FlowLaw
   for (const auto& [draw, sum] : squares_of_draw)
     variance += std::pow(sum / (n / draws) - e.azimuth_rms * e.azimuth_rms, 2);
   const double standard_error = std::sqrt(variance / (draws - 1) / draws);
-  e.azimuth_rms_interval = boost::math::quantile(boost::math::students_t(draws - 1), 0.975) *
-                           standard_error / (2 * e.azimuth_rms);
+  e.azimuth_rms_interval =
+      student_t_quantile(draws - 1, 0.975) * standard_error / (2 * e.azimuth_rms);
   return e;
 }
 

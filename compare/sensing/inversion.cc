@@ -7,12 +7,11 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/complement.hpp>
 #include <cmath>
 #include <numbers>
 #include <unsupported/Eigen/LevenbergMarquardt>
 
+#include "compare/sensing/distributions.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::sensing {
@@ -143,8 +142,7 @@ SensedLoad Inversion::operator()(const Eigen::VectorXd& change, const ReadingErr
   const Eigen::MatrixXd J = whitened(response_.derivative(result.load));
   result.covariance = Eigen::Matrix2d(J.transpose() * J).inverse();
   const auto probability = [](double chi_squared, Eigen::Index freedom) {
-    const boost::math::chi_squared distribution(static_cast<double>(freedom));
-    return boost::math::cdf(boost::math::complement(distribution, std::max(0.0, chi_squared)));
+    return chi_squared_above(std::max(0.0, chi_squared), static_cast<double>(freedom));
   };
   result.misfit_probability = probability(result.chi_squared, weights_.size() - load_components);
   result.nothing_probability =

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
+#include "compare/sensing/distributions.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::sensing {
@@ -141,8 +141,7 @@ SensedProfile sense_profile(const LevelCurve& curve, const SensorReadings& readi
     const double sigma = std::hypot(common, noise / std::sqrt(static_cast<double>(sample.rows)));
     const LevelCurve::Place place = curve.nearest(sample.change);
     const auto freedom = static_cast<double>(sample.change.size() - 1);
-    const double far =
-        sigma * std::sqrt(quantile(complement(boost::math::chi_squared(freedom), rare)));
+    const double far = sigma * std::sqrt(chi_squared_limit(rare, freedom));
     HeightReading reading{HeightReading::Status::level, place.interference,
                           two_sided_95 * sigma / place.slope, two_sided_95 * common / place.slope};
     if (place.is_end)

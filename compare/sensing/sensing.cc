@@ -6,7 +6,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
+#include "compare/sensing/distributions.h"
 
 namespace ciliaval::compare::sensing {
 namespace {
@@ -71,7 +71,7 @@ std::optional<std::string> range_remark(const Shapes& shapes, double asked, std:
 std::optional<std::string> scatter_remark(const Scatter& scatter, double noise) {
   if (scatter.freedom == 0) return std::nullopt;
   const double chi_squared = scatter.squares / (noise * noise);
-  if (boost::math::gamma_q(static_cast<double>(scatter.freedom) / 2, chi_squared / 2) >= unlikely)
+  if (chi_squared_above(chi_squared, static_cast<double>(scatter.freedom)) >= unlikely)
     return std::nullopt;
   return fmt::format(
       "Rows that are averaged differ by {:.3g} uT (standard deviation), more than the noise of "

@@ -2,7 +2,6 @@
 #include "fem/potential/magnet.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,15 +12,10 @@
 #include "problem/cilium.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
+#include "problem/support/rotation.h"
 
 namespace ciliaval::fem::potential {
 namespace {
-
-/// The rotation R of F = R·U.
-Matrix3 rotation_of(const Matrix3& F) {
-  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
-}
 
 /// Of a point of a rod's section from its centre.
 Vector3 on_section(const CentrelinePoint& section, double r, double phi) {
@@ -110,7 +104,7 @@ MagnetSample Magnet::in_cell(const SolidCell& cell, const Vector3& xi) const {
   const double J = F.determinant();
   const Vector3 moment = push_forward_ == MagnetPushForward::F
                              ? Vector3(F * cell.magnetization)
-                             : Vector3(J * (rotation_of(F) * cell.magnetization));
+                             : Vector3(J * (support::polar_rotation(F) * cell.magnetization));
   return {point.current, J * reference_volume, reference_volume * moment};
 }
 

@@ -203,7 +203,7 @@ void PathRun::go_on_from_checkpoint() {
     MechanicsStep step;
     std::vector<std::optional<Equilibrium>> companions;
     std::optional<SolidState> state;
-    deserialize(kept.at(std::to_string(i)), step, state, companions);
+    support::deserialize(kept.at(std::to_string(i)), step, state, companions);
     const double turn = mesh_azimuth(options_, step.load);
     if (state)
       step.deformation =
@@ -218,7 +218,7 @@ void PathRun::go_on_from_checkpoint() {
     result_.steps.push_back(std::move(step));
   }
   std::vector<std::optional<LoadPathState>> states;
-  deserialize(kept.at(state_name), states);
+  support::deserialize(kept.at(state_name), states);
   for (std::size_t i = 0; i < states.size(); ++i) levels_.all.at(i)->restore(std::move(states[i]));
 }
 
@@ -228,7 +228,7 @@ void PathRun::save(const MechanicsStep* finished) const {
     for (const auto& level : levels_.all)
       states.push_back(level->state() != nullptr ? std::optional(level->to_keep(*level->state()))
                                                  : std::nullopt);
-    Checkpoint::Entries entries{{state_name, serialized(states)}};
+    Checkpoint::Entries entries{{state_name, support::serialized(states)}};
     if (finished != nullptr) {
       std::optional<SolidState> state;
       std::vector<std::optional<Equilibrium>> companions(levels_.companions.size());
@@ -239,7 +239,7 @@ void PathRun::save(const MechanicsStep* finished) const {
             companions[i] = companion(i).to_keep(companion(i).state()->current);
       }
       entries.emplace(std::to_string(result_.steps.size() + 1),
-                      serialized(*finished, state, companions));
+                      support::serialized(*finished, state, companions));
     }
     return entries;
   });

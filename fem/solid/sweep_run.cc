@@ -217,14 +217,14 @@ void SweepRun::go_on_from_checkpoint() {
   for (std::size_t i = 1; kept.contains(std::to_string(i)); ++i) {
     std::vector<MechanicsStep> steps;
     std::vector<std::optional<SolidState>> states;
-    deserialize(kept.at(std::to_string(i)), steps, states);
+    support::deserialize(kept.at(std::to_string(i)), steps, states);
     restore(ways_.front(), result_, std::move(steps.at(0)), states.at(0));
     for (std::size_t c = 0; c < companions_.size(); ++c)
       restore(ways_[companions_[c]], result_.companions[c], std::move(steps.at(c + 1)),
               states.at(c + 1));
   }
   std::vector<std::pair<FollowerState, std::string>> states;
-  deserialize(kept.at(sweep_state_name), states);
+  support::deserialize(kept.at(sweep_state_name), states);
   for (std::size_t w = 0; w < ways_.size(); ++w) {
     auto& [state, failure] = states.at(w);
     ways_[w].level->require_own(state.now.solid);
@@ -248,8 +248,9 @@ void SweepRun::save() const {
       add(result_.companions[c].steps.back(), ways_[companions_[c]]);
     std::vector<std::pair<FollowerState, std::string>> ways;
     for (const Way& way : ways_) ways.emplace_back(way.follower->state(), way.failure);
-    return Checkpoint::Entries{{sweep_state_name, serialized(ways)},
-                               {std::to_string(result_.steps.size()), serialized(steps, states)}};
+    return Checkpoint::Entries{
+        {sweep_state_name, support::serialized(ways)},
+        {std::to_string(result_.steps.size()), support::serialized(steps, states)}};
   });
 }
 

@@ -44,7 +44,7 @@ std::string surface_element(const UserMesh& mesh, const GmshElement& element, un
   for (const std::size_t n : element.nodes)
     x += mesh.file.nodes[n] / static_cast<double>(element.nodes.size());
   return fmt::format("element {} of the physical surface '{}' at ({:.4g}, {:.4g}, {:.4g})",
-                     element.tag, boundary_names()[id], x[0], x[1], x[2]);
+                     element.tag, boundary_names[id], x[0], x[1], x[2]);
 }
 
 /// The boundary face with these four vertices; empty for an inner face, throws if there is no face.
@@ -99,7 +99,7 @@ void check_boundaries(UserMesh& mesh, const Extrusion& extrusion, const Section&
                             surface_element(mesh, element, id->second)));
     if (face->boundary != id->second)
       mesh.fail(fmt::format("{} lies on the {}", surface_element(mesh, element, id->second),
-                            boundary_names()[face->boundary]));
+                            boundary_names[face->boundary]));
     missing.erase(*face);
   }
   if (missing.empty()) return;
@@ -109,7 +109,7 @@ void check_boundaries(UserMesh& mesh, const Extrusion& extrusion, const Section&
   mesh.fail(
       fmt::format("the physical surface '{}' is not closed: {} of its {} faces are missing, "
                   "the first that of {}; {}",
-                  boundary_names()[face.boundary], open[face.boundary], total[face.boundary],
+                  boundary_names[face.boundary], open[face.boundary], total[face.boundary],
                   mesh.hexahedron(element),
                   face.boundary == base_id ? "all faces on Z = 0 belong to it, for they are clamped"
                                            : "add the missing surfaces"));

@@ -14,9 +14,6 @@
 
 namespace ciliaval::meshes::gmsh {
 
-/// "base", "mantle", "tip" by boundary id: the names of the physical surfaces.
-const std::vector<std::string>& boundary_names();
-
 /// A user's mesh.
 struct GmshMesh {
   std::unique_ptr<dealii::Triangulation<3>> triangulation;

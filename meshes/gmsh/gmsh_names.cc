@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "meshes/boundary_ids.h"
 #include "meshes/gmsh/gmsh_mesh.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
@@ -83,11 +84,6 @@ std::string UserMesh::hexahedron(std::size_t index) const {
                      x[2]);
 }
 
-const std::vector<std::string>& boundary_names() {
-  static const std::vector<std::string> names{"base", "mantle", "tip"};
-  return names;
-}
-
 void find_segments(UserMesh& mesh) {
   std::vector<std::string> names;
   for (const Segment& segment : mesh.cilium.segments) names.push_back(segment.name);
@@ -110,7 +106,7 @@ void find_segments(UserMesh& mesh) {
 }
 
 std::map<int, unsigned int> find_boundaries(UserMesh& mesh) {
-  const std::vector<std::string>& names = boundary_names();
+  const std::vector<std::string>& names = boundary_names;
   const auto entities = name_entities(mesh, 2, names, [&](const GmshGroup& group) {
     mesh.remarks.push_back(fmt::format("the physical surface '{}' is not used (used are '{}')",
                                        group.name, fmt::join(names, "', '")));

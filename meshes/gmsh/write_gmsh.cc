@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "meshes/boundary_ids.h"
 #include "meshes/gmsh/gmsh_file.h"
 #include "meshes/gmsh/gmsh_mesh.h"
 #include "meshes/gmsh/gmsh_process.h"
@@ -67,19 +68,19 @@ void build_model(const MeshNodes& mesh, const std::vector<std::string>& segments
   const GmshElementType face_type = gmsh_element_type(2, format.quadratic);
   for (std::size_t i = 0; i < segments.size(); ++i)
     ::gmsh::model::addDiscreteEntity(3, static_cast<int>(i) + 1);
-  for (std::size_t i = 0; i < boundary_names().size(); ++i)
+  for (std::size_t i = 0; i < boundary_names.size(); ++i)
     ::gmsh::model::addDiscreteEntity(2, static_cast<int>(i) + 1);
   add_nodes(mesh, format);
 
   std::vector<std::vector<std::size_t>> cells(segments.size());
-  std::vector<std::vector<std::size_t>> faces(boundary_names().size());
+  std::vector<std::vector<std::size_t>> faces(boundary_names.size());
   for (const MeshNodes::Cell& cell : mesh.cells)
     append_nodes(cell.nodes, cell_type, format.quadratic, cells.at(cell.material));
   for (const MeshNodes::Face& face : mesh.faces)
     append_nodes(face.nodes, face_type, format.quadratic, faces.at(face.boundary));
   std::size_t next_element = 1;
   for (unsigned int i = 0; i < faces.size(); ++i)
-    add_named(2, i, boundary_names()[i], face_type, faces[i], next_element);
+    add_named(2, i, boundary_names[i], face_type, faces[i], next_element);
   for (unsigned int i = 0; i < cells.size(); ++i)
     add_named(3, i, segments[i], cell_type, cells[i], next_element);
 }
@@ -108,7 +109,7 @@ void write_gmsh(const MeshNodes& mesh, const Cilium& cilium, const std::filesyst
       throw InputError(fmt::format("a cell has the material {}, the cilium has {} segments",
                                    cell.material, cilium.segments.size()));
   for (const MeshNodes::Face& face : mesh.faces)
-    if (face.boundary >= boundary_names().size())
+    if (face.boundary >= boundary_names.size())
       throw InputError(
           fmt::format("a boundary face has the id {}, which has no name", face.boundary));
   std::vector<std::string> segments;

@@ -5,6 +5,7 @@
 
 #include "compare/input/environment/magnet.h"
 #include "problem/error.h"
+#include "problem/support/rotation.h"
 #include "problem/surroundings/magnets/field.h"
 #include "problem/surroundings/magnets/magnet.h"
 #include "python/core/calls.h"
@@ -29,7 +30,7 @@ Magnet magnet(Shape shape, const Text& name, const Array& position, const Array&
   result.magnetization = magnetization(M, keys::magnet_magnetization);
   const Vector3 direction = vector(axis, keys::magnet_axis);
   if (direction.isZero(0)) throw InputError("the `axis` of a magnet must point somewhere");
-  result.rotation = surroundings::magnets::turn_to(direction);
+  result.rotation = support::turn_to(direction);
   return result;
 }
 

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "compare/output/provenance.h"
-#include "fem/solid/archive.h"
 #include "problem/error.h"
 #include "problem/mechanics_model.h"
+#include "problem/support/archive.h"
 
 // A member that is added to one of these types and forgotten here does not compile.
 namespace boost::serialization {
@@ -109,14 +109,14 @@ namespace py = pybind11;
 
 template <class T>
 py::bytes packed(const T& value) {
-  return fem::solid::serialized(value);
+  return support::serialized(value);
 }
 
 template <class T>
 T unpacked(const py::bytes& bytes) {
   T value;
   try {
-    fem::solid::deserialize(bytes, value);
+    support::deserialize(bytes, value);
   } catch (const std::exception& error) {
     throw InputError(std::string("the pickle is damaged: ") + error.what());
   }

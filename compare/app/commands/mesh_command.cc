@@ -14,10 +14,8 @@
 #include "compare/output/vtk/datasets.h"
 #include "compare/output/vtk/files.h"
 #include "fem/solid/solid.h"
-#include "meshes/base_section.h"
-#include "meshes/cylinder/cylinder_mesh.h"
-#include "meshes/gmsh/gmsh_mesh.h"
 #include "meshes/gmsh/write_gmsh.h"
+#include "meshes/plain_mesh.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
@@ -31,35 +29,20 @@ struct MeshOptions {
   std::optional<unsigned int> refinement;
 };
 
-struct CaseMesh {
-  meshes::MeshNodes nodes;
-  meshes::SectionProperties section;
-  std::vector<std::string> remarks;
-};
-
-CaseMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refinement) {
+meshes::PlainMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refinement) {
   auto options = problem.options.of<fem::solid::SolidOptions>();
   if (options.mesh.empty()) {
-    dealii::Triangulation<3> triangulation;
     options.symmetry = false;
     if (refinement) options.refinement = *refinement;
-    meshes::cylinder::make_cylinder(problem.cilium,
-                                    fem::solid::cylinder_mesh_options(options, problem.load_path),
-                                    triangulation);
-    const auto mapping = meshes::cylinder::cylinder_mapping(triangulation);
-    return {meshes::mesh_nodes(triangulation, *mapping),
-            meshes::base_section(triangulation, *mapping),
-            {}};
+    return meshes::plain_cylinder(problem.cilium,
+                                  fem::solid::cylinder_mesh_options(options, problem.load_path));
   }
   if (refinement)
     throw InputError(
         fmt::format("the case has a mesh of its own ({}), which has no refinement: "
                     "leave out --refinement",
                     options.mesh.string()));
-  meshes::gmsh::GmshMesh mesh =
-      meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium);
-  return {meshes::mesh_nodes(*mesh.triangulation, *mesh.mapping),
-          meshes::base_section(*mesh.triangulation, *mesh.mapping), std::move(mesh.remarks)};
+  return meshes::plain_gmsh({options.mesh, options.mesh_unit}, problem.cilium);
 }
 
 /// The meshed section against the exact one, whose sides are along x and y if it has any.
@@ -90,7 +73,7 @@ ExitCode execute_mesh(const MeshOptions& options, const std::string& words) {
                     output.string()));
   input::Case in_frame = problem;  // as the solid meshes it: a rectangle's sides along the axes
   in_frame.cilium = turned(problem.cilium, -azimuth(problem.load_path.front()));
-  const CaseMesh mesh = make_mesh(in_frame, options.refinement);
+  const meshes::PlainMesh mesh = make_mesh(in_frame, options.refinement);
   output::write_file(output, [&](const fs::path& file) {
     if (extension == ".msh") {
       meshes::gmsh::write_gmsh(mesh.nodes, problem.cilium, file);

@@ -12,6 +12,7 @@
 
 #include "compare/input/case_sections.h"
 #include "problem/field_model.h"
+#include "problem/support/rotation.h"
 #include "problem/support/words.h"
 
 namespace ciliaval::compare::input::environment {
@@ -55,7 +56,7 @@ void read_pose(Section& table, Magnet& magnet) {
   if (direction && direction->isZero(0))
     faults.add(place(*axis), "'axis' must point somewhere: it is zero");
   else if (direction)
-    magnet.rotation = surroundings::magnets::turn_to(*direction);
+    magnet.rotation = support::turn_to(*direction);
 }
 
 void read_magnetization(Section& table, Magnet& magnet) {

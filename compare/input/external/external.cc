@@ -14,6 +14,7 @@
 #include "problem/centreline.h"
 #include "problem/error.h"
 #include "problem/lagrange.h"
+#include "problem/support/rotation.h"
 
 namespace ciliaval::compare::input::external {
 namespace {
@@ -136,7 +137,7 @@ Centreline interpolated(const Points& points, const Cilium& cilium, const Load& 
       else
         normal = std::sin(points.theta[ends[p] + i]) * e +
                  std::cos(points.theta[ends[p] + i]) * Vector3::UnitZ();
-      state.rotation = Quaternion::FromTwoVectors(Vector3::UnitZ(), normal);
+      state.rotation = support::turn_to(normal);
       piece.states.push_back(state);
     }
     differentiate_rotation(piece);

@@ -8,8 +8,7 @@
 #include "compare/input/case.h"
 #include "compare/models/entries/values.h"
 #include "fem/solid/material/hyperelastic.h"
-#include "meshes/cylinder/cylinder_mesh.h"
-#include "meshes/gmsh/gmsh_mesh.h"
+#include "meshes/plain_mesh.h"
 #include "problem/cilium.h"
 
 namespace ciliaval::compare::models::entries {
@@ -91,7 +90,7 @@ std::vector<std::string> remarks(const input::Case& problem) {
   const auto& options = problem.options.of<SolidOptions>();
   if (options.mesh.empty()) return {};
   std::vector<std::string> remarks =
-      meshes::gmsh::read_gmsh({options.mesh, options.mesh_unit}, problem.cilium).remarks;
+      meshes::plain_gmsh({options.mesh, options.mesh_unit}, problem.cilium).remarks;
   for (std::string& remark : remarks) remark = fmt::format("{}: {}", options.mesh.string(), remark);
   return remarks;
 }

@@ -26,7 +26,7 @@
 
 #include "compare/output/results.h"
 #include "compare/output/vtk/files.h"
-#include "meshes/gmsh/gmsh_mesh.h"
+#include "meshes/boundary_ids.h"
 #include "problem/cilium.h"
 
 namespace ciliaval::compare::output::vtk {
@@ -459,7 +459,7 @@ vtkSmartPointer<vtkUnstructuredGrid> mesh_grid(const meshes::MeshNodes& mesh,
   std::vector<std::string> names;
   for (const Segment& segment : cilium.segments) names.push_back(segment.name);
   add_strings(*grid, "materials", names);
-  add_strings(*grid, "boundaries", meshes::gmsh::boundary_names());
+  add_strings(*grid, "boundaries", meshes::boundary_names);
   add_strings(*grid, "units", {"points: m"});
   return grid;
 }

@@ -4,13 +4,13 @@
 #include <deal.II/lac/full_matrix.h>
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <functional>
 #include <vector>
 
 #include "fem/parallel.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "problem/cilium.h"
+#include "problem/support/rotation.h"
 
 namespace ciliaval::fem::solid::loads {
 using namespace discretisation;
@@ -115,9 +115,8 @@ Field live_field(const Environment& environment) {
 }  // namespace
 
 TurnedMagnet turned_magnet(const Matrix3& F, const Vector3& magnetization, const Vector3& field) {
-  const Eigen::JacobiSVD<Matrix3> svd(F, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Matrix3 R = svd.matrixU() * svd.matrixV().transpose();
-  const Matrix3 U = svd.matrixV() * svd.singularValues().asDiagonal() * svd.matrixV().transpose();
+  const Matrix3 R = support::polar_rotation(F);
+  const Matrix3 U = R.transpose() * F;
   const Matrix3 inverse = (U.trace() * Matrix3::Identity() - U).inverse();
   const Vector3 b = R.transpose() * field;
   const Vector3 y = inverse * magnetization.cross(b);

@@ -67,12 +67,6 @@ bool Magnet::operator==(const Magnet& other) const {
          length == other.length && edges == other.edges && magnetization == other.magnetization;
 }
 
-Quaternion turn_to(const Vector3& direction) {
-  const Vector3 axis = direction.normalized();
-  if (axis.z() < -1 + 1e-15) return Quaternion(0, 1, 0, 0);
-  return Quaternion::FromTwoVectors(Vector3::UnitZ(), axis);
-}
-
 double volume(const Magnet& magnet) {
   const double section = std::numbers::pi * magnet.diameter * magnet.diameter / 4;
   switch (magnet.shape) {

@@ -30,10 +30,6 @@ struct Magnet {
   bool operator==(const Magnet& other) const;
 };
 
-/// The shortest turn from the third axis to the direction, which is not zero; half a turn about the
-/// first, if it is the opposite one.
-Quaternion turn_to(const Vector3& direction);
-
 double volume(const Magnet& magnet);   ///< m³
 Vector3 moment(const Magnet& magnet);  ///< in the axes of space, A·m²
 double radius(const Magnet& magnet);   ///< of the ball around the magnet, about its centre, m

@@ -18,6 +18,7 @@
 #include "beams.h"
 #include "fem/beam/beam.h"
 #include "problem/continuation/turning_point.h"
+#include "problem/support/rotation.h"
 
 namespace ciliaval::fem::beam {
 namespace pull_in {
@@ -33,7 +34,7 @@ Magnet brick(const Vector3& position, double remanence = 1.2) {
   return {"brick",
           Shape::cuboid,
           position,
-          surroundings::magnets::turn_to(Vector3::UnitX()),
+          support::turn_to(Vector3::UnitX()),
           0,
           0,
           {6e-3, 4e-3, 5e-3},

@@ -9,6 +9,7 @@
 #include "fem/beam/beam.h"
 #include "fem/solid/solid.h"
 #include "problem/joints/joints.h"
+#include "problem/support/rotation.h"
 #include "tests/fem/solid/cilia.h"
 
 namespace ciliaval::fem::solid {
@@ -24,7 +25,7 @@ Environment beside_a_brick() {
   environment.magnets = {{"brick",
                           Shape::cuboid,
                           {12e-3, 0, 20e-3},
-                          surroundings::magnets::turn_to(Vector3::UnitX()),
+                          support::turn_to(Vector3::UnitX()),
                           0,
                           0,
                           {6e-3, 4e-3, 5e-3},
