@@ -28,11 +28,11 @@ endif()
 # GCC collects its garbage from 30 MB on by default; with precompiled headers of 800 MB that is a twentieth of the compile time.
 add_compile_options("$<$<COMPILE_LANG_AND_ID:CXX,GNU>:SHELL:--param ggc-min-heapsize=1000000>")
 
-# ccache keeps what it has compiled. It takes a precompiled header only with -fpch-preprocess. The headers are not read twice (depend
-# mode), and what is kept has room for precompiled headers: a sixteenth of the size must hold two of them.
+# ccache keeps what it has compiled. It takes a precompiled header only with -fpch-preprocess. A sixteenth of its size must hold two of
+# these headers, or it throws them away and finds nothing that was compiled with them.
 find_program(CILIAVAL_CCACHE ccache)
 if(CILIAVAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_DEPEND=1
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
     CCACHE_MAXSIZE=10G CCACHE_SLOPPINESS=pch_defines,time_macros ${CILIAVAL_CCACHE})
   add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess>)
 endif()
