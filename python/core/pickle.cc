@@ -96,7 +96,7 @@ template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsResult& result, unsigned int /*version*/) {
   auto& [undeformed, steps, companions, error_parts, algebraic_error] = result;
   archive& undeformed& steps& companions& error_parts& algebraic_error;
-  // The solid's archive leaves these to the solid.
+  // The archive of a step leaves these out, for the solid makes them anew.
   for (ciliaval::MechanicsStep& step : steps)
     archive& step.deformation& step.tip_uncertainty& step.tip_angle_uncertainty& step
         .applied_force_uncertainty;
