@@ -25,9 +25,6 @@ if(CILIAVAL_SANITIZE)
   add_compile_definitions(EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
-# GCC collects its garbage from 30 MB on by default; with precompiled headers of 800 MB that is a twentieth of the compile time.
-add_compile_options("$<$<COMPILE_LANG_AND_ID:CXX,GNU>:SHELL:--param ggc-min-heapsize=1000000>")
-
 # ccache keeps what it has compiled. It takes a precompiled header only with -fpch-preprocess. A sixteenth of its size must hold two of
 # these headers, or it throws them away and finds nothing that was compiled with them.
 find_program(CILIAVAL_CCACHE ccache)

@@ -17,10 +17,10 @@ set(ciliaval_dealii_headers <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <deal.II/do
   <deal.II/fe/fe_q.h> <deal.II/fe/fe_values.h> <deal.II/grid/grid_tools.h> <deal.II/grid/tria.h> <deal.II/lac/affine_constraints.h>
   <deal.II/lac/dynamic_sparsity_pattern.h> <deal.II/lac/sparse_matrix.h> <deal.II/lac/vector.h>)
 ciliaval_precompile(dealii LIBRARIES CiliaVal::dealii Eigen3::Eigen HEADERS ${ciliaval_dealii_headers})
+ciliaval_precompile(numbers LIBRARIES Eigen3::Eigen
+  HEADERS <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <algorithm> <cmath> <functional> <map> <memory> <optional> <string> <vector>)
 set(text_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <filesystem> <fmt/core.h> <fmt/ranges.h> <fstream> <functional> <map>
   <nlohmann/json.hpp> <sstream> <string> <vector>)
-ciliaval_precompile(numbers LIBRARIES Eigen3::Eigen HEADERS <Eigen/Core> <Eigen/Geometry> <Eigen/LU> <algorithm> <cmath> <functional> <map> <memory> <optional> <string>
-  <vector>)
 ciliaval_precompile(text LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json HEADERS ${text_headers})
 ciliaval_precompile(commands LIBRARIES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json CLI11::CLI11
   HEADERS ${text_headers} <CLI/CLI.hpp>)
