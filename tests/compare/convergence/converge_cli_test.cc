@@ -239,5 +239,25 @@ TEST(Converge, WhatCannotBeRefinedIsSaid) {
   EXPECT_THAT(read_text(folder.path() / "out.txt"), HasSubstr("inconclusive: tolerance 0.01:"));
 }
 
+// Levels that all keep their tolerances by an estimate that is not tested: their agreement says
+// nothing. Half a minute of the potential.
+TEST(ConvergeSlow, NoNumberHasAnIntervalWhereTheErrorIsNotKnown) {
+  const TemporaryFolder folder;
+  write_case(folder.path(),
+             "mechanics = [\"elastica\"]\nfields = [\"potential\"]\n"
+             "[models.potential]\nrelative_permeability = 3.0\n");
+  EXPECT_EQ(ciliaval(folder.path(), "converge one.toml --json one.json"), 3);
+  EXPECT_THAT(read_text(folder.path() / "out.txt"),
+              AllOf(HasSubstr("the error of B is not known"), HasSubstr("Verdict: converged in part")));
+  const auto json = nlohmann::json::parse(read_text(folder.path() / "one.json"));
+  const auto& quantities = json["studies"].back()["quantities"];
+  EXPECT_FALSE(quantities.empty());
+  for (const auto& quantity : quantities) {
+    EXPECT_FALSE(quantity["conclusive"]);
+    EXPECT_TRUE(quantity["uncertainty"].is_null());
+    EXPECT_THAT(quantity["reason"].get<std::string>(), HasSubstr("not known"));
+  }
+}
+
 }  // namespace
 }  // namespace ciliaval
