@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Folder: what it may include beside itself. The longest folder that fits a file counts; tests may include everything.
-shared="problem compare/input compare/models compare/output compare/plot"
+shared="problem compare/input compare/models compare/output"
 export rules="
 problem:
 analytic: problem
@@ -18,7 +18,6 @@ fem/calculix: problem meshes fem
 compare/input: problem compare/signal
 compare/models: problem analytic fem meshes compare/input
 compare/output: problem meshes analytic/rod/field_models.h analytic/sources/push_forward.h compare/input compare/models ciliaval_version.h
-compare/plot: problem compare/output
 compare/regression: $shared
 compare/convergence: $shared compare/regression
 compare/budget: $shared analytic/elastica/elastica.h analytic/rod/field_models.h analytic/body/mesh_field.h fem/beam/beam.h fem/potential/potential.h
@@ -27,7 +26,6 @@ compare/signal: problem
 compare/study: $shared compare/budget analytic/elastica/elastica.h
 compare/validation: $shared compare/study
 compare/claims: $shared compare/sensing compare/signal compare/study analytic/rod/field_models.h
-compare/report: $shared compare/budget compare/convergence
 compare/app: .
 python/core: problem compare/input compare/models compare/output compare/study compare/validation fem/solid/archive.h
 tests: ."

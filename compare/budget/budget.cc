@@ -354,32 +354,4 @@ Budget error_budget(const input::Case& problem, std::span<const models::Mechanic
   return budget;
 }
 
-std::string fault(const BudgetRow& row) {
-  const std::string place = fmt::format("step {}, {}{}{}", row.step + 1, row.quantity,
-                                        row.component.empty() ? "" : " ", row.component);
-  if (row.links.empty()) return place + ": there are no links";
-  double sum = 0;
-  double size = std::abs(row.paper) + std::abs(row.best);
-  std::string at = row.total.from;
-  for (const BudgetLink& link : row.links) {
-    if (link.from != at)
-      return fmt::format("{}: the link to {} begins at {}, not at {}", place, link.to, link.from,
-                         at);
-    at = link.to;
-    sum += link.value;
-    size += std::abs(link.value);
-  }
-  if (at != row.total.to)
-    return fmt::format("{}: the links end at {}, not at {}", place, at, row.total.to);
-  // Each difference and each sum rounds by half an ε of numbers no larger than `size`.
-  const double rounding =
-      static_cast<double>(row.links.size() + 1) * std::numeric_limits<double>::epsilon() * size;
-  const double difference = row.best - row.paper;
-  for (const double total : {sum, row.total.value})
-    if (!(std::abs(total - difference) <= rounding))
-      return fmt::format("{}: the links add up to {}, the total is {}, and the models differ by {}",
-                         place, sum, row.total.value, difference);
-  return {};
-}
-
 }  // namespace ciliaval::compare::budget

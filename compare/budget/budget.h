@@ -116,8 +116,4 @@ Budget error_budget(const input::Case& problem, std::span<const models::Mechanic
                     std::span<const models::FieldEntry> fields,
                     const std::vector<std::string>& without, const Progress& progress = {});
 
-/// The fault of a row's links: they must lead from the paper's model to the best one and
-/// add up to their difference to rounding. Empty if nothing is.
-std::string fault(const BudgetRow& row);
-
 }  // namespace ciliaval::compare::budget

@@ -25,7 +25,6 @@ namespace ciliaval::compare::input {
 struct Case {
   std::string name;        ///< a plain file name: the results go to DIR/name
   std::string title;       ///< for people
-  std::string references;  ///< those of the baseline, "12 91f161de": number and checksum, or empty
   Cilium cilium;
   LoadPath load_path;
   /// Values along the path of each parameter of the load type's LoadStatement (a flow's velocity,

@@ -283,8 +283,6 @@ void read_name_and_title(Section& table, std::string& name, std::string& title) 
 void read_header(Section& root, Case& c) {
   Section table = require_section(root, "case");
   read_name_and_title(table, c.name, c.title);
-  if (const toml::node* node = table.find("references"))
-    c.references = read_line(*node, "references", longest_name, root.faults()).value_or("");
   table.finish();
 }
 

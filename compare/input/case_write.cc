@@ -174,7 +174,6 @@ std::string models(const Case& c, const Models& known) {
 std::string to_toml(const Case& c, const Models& known) {
   std::string text =
       fmt::format("[case]\nname = {}\ntitle = {}\n", toml_text(c.name), toml_text(c.title));
-  if (!c.references.empty()) text += fmt::format("references = {}\n", toml_text(c.references));
   text += cilium(c);
   if (!c.load_path.empty()) {
     text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));

@@ -11,14 +11,11 @@ namespace ciliaval::compare::output {
 
 /// Reads JSON from a regular file of at most 256 MiB, of a `kind` ("baseline", "result") that
 /// messages name. Throws InputError `file: what is wrong`.
-nlohmann::ordered_json read_json(const std::filesystem::path& file, std::string_view kind,
-                                 std::string_view skipped = {});
+nlohmann::ordered_json read_json(const std::filesystem::path& file, std::string_view kind);
 
-/// Parses JSON; `name` is the file in messages. Values under the key `skipped` of the outermost
-/// object are left out. Throws InputError if the text is no JSON, an object has a key twice, or
+/// Parses JSON; `name` is the file in messages. Throws InputError if the text is no JSON, an object has a key twice, or
 /// values are nested more than 100 deep: copying and writing such values recurses.
-nlohmann::ordered_json parse_json(std::string_view text, std::string_view name,
-                                  std::string_view skipped = {});
+nlohmann::ordered_json parse_json(std::string_view text, std::string_view name);
 
 /// The value, or null; nlohmann itself writes what is not finite as null.
 nlohmann::ordered_json or_null(const std::optional<double>& value);

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/output/output_folder.h"
 
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): kill() is POSIX
-#include <stdio.h>   // NOLINT(modernize-deprecated-headers): renameat2() is Linux
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <climits>
+#include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <fstream>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -21,10 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "compare/models/registry.h"
-#include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
-#include "compare/output/results.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::output {
@@ -66,8 +62,7 @@ bool is_alive(pid_t pid) {
 }
 
 /// Takes away what processes of this host that are no longer alive have left. Where one was killed
-/// between the two renames of a file system that cannot exchange, its old results go back to their
-/// place.
+/// between its two renames, the old results go back to their place.
 void remove_stale(const fs::path& directory, const fs::path& target, const std::string& name) {
   for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
     const auto pid = owner(entry.path(), name);
@@ -79,88 +74,36 @@ void remove_stale(const fs::path& directory, const fs::path& target, const std::
   }
 }
 
-/// The series of files that a run writes: the names in the folder of a case without step and
-/// extension.
-struct Series {
-  std::set<std::string> csv;
-  std::set<std::string> vtk{"sensors", "surface"};
+/// The hidden file with the names of all that a run has written, a line each.
+constexpr const char* list_name = ".ciliaval";
 
-  void add(const std::string& mechanics, const std::vector<std::string>& fields) {
-    csv.insert(mechanics);
-    for (const char* kind : {"body", "centreline", "contact", "dipoles"})
-      vtk.insert(fmt::format("{}_{}", kind, mechanics));
-    for (const std::string& field : fields)
-      vtk.insert(fmt::format("field_{}_{}", mechanics, field));
-  }
-};
-
-/// The name of the series if the file is called SERIES_STEP; else empty.
-std::string series_of(const fs::path& file) {
-  const std::string stem = file.stem().string();
-  const std::size_t end = stem.find_last_not_of("0123456789");
-  if (end == std::string::npos || stem[end] != '_' || stem.size() - end - 1 < 4) return {};
-  return stem.substr(0, end);
+/// What lies in the folder, relative to it, in alphabetical order.
+std::set<fs::path> contents(const fs::path& folder) {
+  std::set<fs::path> names;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    names.insert(entry.path().lexically_relative(folder));
+  return names;
 }
 
-/// Whether a run writes a file of this name, relative to the folder of its case.
-bool is_result(const fs::path& name, const Series& series) {
-  for (const char* file : {"summary.json", "report.html", "errors.csv", "fields.csv", "sweep.csv",
-                           "signal.csv", "case.toml", "vtk/open.py"})
-    if (name == file) return true;
-  const std::string extension = name.extension().string();
-  if (!name.has_parent_path()) return extension == ".csv" && series.csv.contains(series_of(name));
-  if (name.parent_path() != "vtk") return false;
-  if (extension == ".pvd") return series.vtk.contains(name.stem().string());
-  const bool is_vtk = extension == ".vtp" || extension == ".vtu" || extension == ".vti";
-  return is_vtk && series.vtk.contains(series_of(name));
+void write_list(const fs::path& folder) {
+  std::string text;
+  for (const fs::path& name : contents(folder)) text += name.generic_string() + '\n';
+  write_file(folder / list_name, text);
 }
 
-/// The series of a run of this case with any model of the program and with the external ones that
-/// its summary names; none if there is no such summary. The list of comparisons, which may be long,
-/// is skipped.
-std::optional<Series> series_in(const fs::path& folder, const std::string& case_name) {
-  using Json = nlohmann::ordered_json;
-  Json summary;
-  try {
-    summary = read_json(folder / "summary.json", "result", "comparisons");
-  } catch (const InputError&) {  // then nothing in the folder is known to be ours
-    return std::nullopt;
-  }
-  if (!summary.is_object() || !summary.contains("schema") ||
-      !summary["schema"].is_number_integer() || summary.value("case", Json()) != case_name)
-    return std::nullopt;
-  std::vector<std::string> fields;
-  for (const models::FieldEntry& entry : models::field_models()) fields.push_back(entry.id);
-  Series series;
-  for (const models::MechanicsEntry& entry : models::mechanics_models())
-    series.add(entry.id, fields);
-  for (const Json& step : summary.value("steps", Json::array())) {
-    if (!step.is_object()) continue;
-    const Json mechanics = step.value("mechanics", Json::object());
-    for (const auto& [id, result] : mechanics.items()) series.add(id, fields);
-  }
-  return series;
-}
-
-/// The first file (in alphabetical order) in the folder of a case's results that is not one of
-/// those that a run writes (docs/guide/results.md): it is the user's. Every file is, if there is no
-/// summary.json of a run of this case. None in an empty folder.
-std::optional<fs::path> foreign_file(const fs::path& folder, const std::string& case_name) {
-  const std::optional<Series> series = series_in(folder, case_name);
-  std::optional<fs::path> first;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const fs::path name = entry.path().lexically_relative(folder);
-    const fs::file_status status = entry.symlink_status();
-    const bool is_ours = series && (fs::is_directory(status)
-                                        ? name == "vtk"
-                                        : fs::is_regular_file(status) && is_result(name, *series));
-    if (!is_ours && (!first || name < *first)) first = name;
-  }
-  return first;
+/// The first file in the folder that its list does not have: it is the user's. None in an empty
+/// folder. A page that `ciliaval report` has made may be made again.
+std::optional<fs::path> foreign_file(const fs::path& folder) {
+  std::set<fs::path> ours{list_name, "report.html"};
+  std::ifstream list(folder / list_name);
+  for (std::string line; std::getline(list, line);) ours.insert(line);
+  for (const fs::path& name : contents(folder))
+    if (!ours.contains(name)) return name;
+  return std::nullopt;
 }
 
 /// Throws FileError if the results may not take the place of what is there.
-void check_target(const fs::path& target, const std::string& name) {
+void check_target(const fs::path& target) {
   const fs::file_status status = fs::symlink_status(target);
   if (!fs::exists(status)) return;
   if (fs::is_symlink(status))
@@ -170,11 +113,11 @@ void check_target(const fs::path& target, const std::string& name) {
   if (!fs::is_directory(status))
     throw FileError("cannot write the folder `" + target.string() +
                     "`: a file has that name; remove it or choose another folder with -o DIR");
-  if (const auto foreign = foreign_file(target, name))
+  if (const auto foreign = foreign_file(target))
     throw FileError("the results would replace the folder `" + target.string() + "`, but `" +
                     foreign->string() +
-                    "` in it is not from a run of this case and would be deleted; move it away or "
-                    "choose another folder with -o DIR");
+                    "` in it is not from a run of this version and would be deleted; move it away "
+                    "or choose another folder with -o DIR");
 }
 
 /// Whether a file lies in a folder, links resolved.
@@ -193,7 +136,7 @@ OutputFolder::OutputFolder(const fs::path& directory, const std::string& name,
   try {
     fs::create_directories(directory);
     remove_stale(directory, target_, name);
-    check_target(target_, name);
+    check_target(target_);
     for (const fs::path& input : inputs)
       if (is_inside(input, target_))
         throw InputError(fmt::format(
@@ -232,7 +175,8 @@ void OutputFolder::commit() {
     throw FileError(reason + "\nThe new results are in `" + kept.string() + "`.");
   };
   try {
-    check_target(target_, name);  // again: the run may have taken hours
+    write_list(temporary_);
+    check_target(target_);  // again: the run may have taken hours
     replace();
   } catch (const std::runtime_error& error) {
     keep(error.what());
@@ -249,18 +193,14 @@ void OutputFolder::replace() {
     return;
   }
   if (errno != ENOTEMPTY && errno != EEXIST) fail(errno);
-  if (renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
-    if (errno != EINVAL && errno != ENOSYS) fail(errno);
-    const fs::path old =
-        target_.parent_path() / temporary_name(target_.filename().string(), ".old");
-    if (rename(target_.c_str(), old.c_str()) != 0) fail(errno);
-    if (rename(temporary_.c_str(), target_.c_str()) != 0) {
-      const int error = errno;
-      if (rename(old.c_str(), target_.c_str()) != 0) fail(errno);
-      fail(error);
-    }
-    temporary_ = old;
+  const fs::path old = target_.parent_path() / temporary_name(target_.filename().string(), ".old");
+  if (rename(target_.c_str(), old.c_str()) != 0) fail(errno);
+  if (rename(temporary_.c_str(), target_.c_str()) != 0) {
+    const int error = errno;
+    if (rename(old.c_str(), target_.c_str()) != 0) fail(errno);
+    fail(error);
   }
+  temporary_ = old;
   std::error_code ignored;  // the new results are in place; the next run removes the old ones
   fs::remove_all(temporary_, ignored);
   temporary_.clear();

@@ -8,15 +8,16 @@
 namespace ciliaval::compare::output {
 
 /// The results of one case, never half-written: everything goes into the temporary folder
-/// DIR/.NAME.HOST.PID.tmp, which commit() exchanges with DIR/NAME in one step. Whenever the program
-/// ends, DIR/NAME holds either the old results or the new ones, complete. What the user has put
-/// there is never deleted.
+/// DIR/.NAME.HOST.PID.tmp, which commit() puts in the place of DIR/NAME. Whenever the program ends,
+/// DIR/NAME holds either the old results or the new ones, complete; killed just between the two
+/// renames, the next run puts the old ones back. What the user has put there is never deleted: a
+/// run leaves the list of its own files in DIR/NAME/.ciliaval.
 class OutputFolder {
  public:
   /// Makes DIR and the temporary folder, and removes temporary folders of the same name that
   /// processes of this host which are no longer alive have left. Throws FileError with the path and
   /// the reason if they cannot be made and written, or if DIR/NAME is a file, a link or a folder
-  /// that holds anything but former results of this case; InputError if one of the `inputs` lies in
+  /// that holds anything but a former run's files; InputError if one of the `inputs` lies in
   /// it.
   OutputFolder(const std::filesystem::path& directory, const std::string& name,
                const std::vector<std::filesystem::path>& inputs = {});

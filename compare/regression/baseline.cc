@@ -13,7 +13,6 @@
 #include "compare/models/registry.h"
 #include "compare/output/json_file.h"
 #include "problem/error.h"
-#include "problem/support/fingerprint.h"
 
 namespace ciliaval::compare::regression {
 namespace {
@@ -256,18 +255,6 @@ AllowedDeviation allowed_deviation(const Measurement& quantity) {
                : std::max(accuracy_class(quantity.mechanics), accuracy_class(quantity.field));
   // Two digits, so that rounding of the group does not show in the file.
   return {estimate ? 1e-3 : part, std::stod(fmt::format("{:.1e}", part * quantity.size()))};
-}
-
-std::string references(const Baseline& baseline) {
-  std::size_t count = 0;
-  std::string list;
-  for (const Expected& expected : baseline.quantities)
-    if (const auto& r = expected.reference) {
-      ++count;
-      list += fmt::format("{}\t{}\t{}\t{}\t{}\n", expected.id, r->label, r->value,
-                          r->allowed.relative, r->allowed.absolute);
-    }
-  return count == 0 ? "" : fmt::format("{} {:08x}", count, support::checksum(list));
 }
 
 Baseline make_baseline(const input::Case& problem, const Measurements& measured,

@@ -74,10 +74,6 @@ std::string to_json(const Baseline& baseline);
 /// the spread between machines, kernels and ranks (docs/evidence/regression.md).
 AllowedDeviation allowed_deviation(const Measurement& quantity);
 
-/// The number of the baseline's references and the checksum of their list, "12 91f161de"; empty
-/// without references. The case states it too, so that none is lost or loosened in silence.
-std::string references(const Baseline& baseline);
-
 /// A baseline of measurements. It keeps the references of `old`, and its values where they differ
 /// by less than their tolerance; `changes` lists the others. Throws SolverError if something failed
 /// or is not finite: that is no baseline.

@@ -17,7 +17,7 @@ struct Finding {
   bool passed = false;
   std::string id;       ///< of the quantity or outcome, or "case", "comparison", …
   std::string against;  ///< "baseline", or the label of the reference
-  std::string message;  ///< of a failure: the fault, and the mistake that it looks like
+  std::string message;  ///< of a failure
   std::string unit;
   std::optional<double> measured;     ///< in `unit`
   std::optional<double> expected;     ///< in `unit`
@@ -42,9 +42,7 @@ struct CheckReport {
 /// not computed, or a result that has no entry; another unit or status; a number that is not
 /// finite, or differs by more than its tolerance from the accepted value or from the reference; a
 /// tolerance wider than its models' accuracy class, a reference's wider than a tenth of its
-/// group; other references than the case states; ΔB that is not B − B(undeformed); two models
-/// that give the same bits, hence are one; nothing that is compared with anything but its own past;
-/// no number at all. `asked` is the case as the file states it. Models of it that `result` leaves
+/// group; no number at all. `asked` is the case as the file states it. Models of it that `result` leaves
 /// out on purpose are in `left_out`; all others must be there.
 CheckReport check(const input::Case& asked, const models::CaseResult& result,
                   const Baseline& baseline, const std::vector<std::string>& left_out = {});

@@ -288,9 +288,6 @@ std::vector<Key> all_keys(const Models& models) {
            "Name of the results' folder: letters, digits, `.`, `_`, `-`, not starting with `.` or "
            "`-`, at most 100."),
       text("case", "title", "the name", "A line for people, at most 200 characters."),
-      text("case", "references", "none",
-           "Number and checksum of the references in the case's baseline, as `check` states "
-           "them."),
       number(key::diameter),
       choice({key::section_shapes.begin(), key::section_shapes.end()},
              text(key::section_table, key::section_shape, "",

@@ -54,6 +54,7 @@ class Store {
     void operator()(sqlite3* database) const;
   };
   bool open(bool fresh);
+  void require_ours() const;
   void verify() const;
   void put(std::string_view owner, std::string_view name, std::string_view bytes);
   void execute(const char* sql) const;

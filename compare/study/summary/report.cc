@@ -4,8 +4,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "compare/input/units.h"
@@ -42,49 +40,6 @@ std::string point_table(const StudyResult& result, std::size_t pair) {
       row.push_back(cell(study, result.points[point][pair], o));
   }
   return output::text_table(rows);
-}
-
-/// What the outputs do along the parameter.
-std::string trend_text(const StudyResult& result, std::size_t pair, std::size_t output) {
-  const Study& study = result.study;
-  const Parameter& p = study.parameters.front();
-  const Trend t = trend(result, pair, output);
-  const double unit = unit_of(study.outputs[output], study).size;
-  const std::string from_to = fmt::format("from {:.5g} to {:.5g}", t.first / unit, t.last / unit);
-  const std::string at =
-      fmt::format("{:.5g} at {} = {}", t.largest / unit, p.name, format_value(p, t.extreme_at));
-  // There is none from or to zero, or from one sign to the other.
-  const double factor = std::max(t.last / t.first, t.first / t.last);
-  const std::string ratio =
-      factor > 0 && std::isfinite(factor) ? fmt::format(" ({:.4g} times)", factor) : "";
-  const std::string settled = fmt::format("; 95 % of it by {}", format_value(p, t.settled_at));
-  switch (t.kind) {
-    case Trend::Kind::none:
-      return "too few values";
-    case Trend::Kind::constant:
-      return fmt::format("constant, {:.5g}", t.first / unit);
-    case Trend::Kind::rising:
-    case Trend::Kind::falling:
-      return (t.kind == Trend::Kind::rising ? "rises " : "falls ") + from_to + ratio + settled;
-    case Trend::Kind::peak:
-    case Trend::Kind::trough:
-      return (t.kind == Trend::Kind::peak ? "peak " : "trough ") + at;
-    case Trend::Kind::other:
-      break;
-  }
-  return from_to + ", neither monotone nor with one peak";
-}
-
-std::string trends(const StudyResult& result) {
-  const Study& study = result.study;
-  if (study.parameters.size() > 1 && !study.is_zipped) return {};
-  output::TextRows rows;
-  for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
-    for (std::size_t o = 0; o < study.outputs.size(); ++o)
-      rows.push_back({study.pairs[pair].name(), std::string(symbol(study.outputs[o])),
-                      unit_of(study.outputs[o], study).name, trend_text(result, pair, o)});
-  return fmt::format("\nAlong {}:\n{}", study.parameters.front().name,
-                     output::text_table(rows, "<"));
 }
 
 /// How many points of each pair slipped off, were pulled in or failed, and why the first one did.
@@ -133,7 +88,7 @@ std::string text(const StudyResult& result) {
                         shown, count - shown);
   for (std::size_t pair = 0; pair < study.pairs.size(); ++pair)
     text += fmt::format("\n{}\n{}", study.pairs[pair].name(), point_table(result, pair));
-  return text + trends(result) + exceptions(result);
+  return text + exceptions(result);
 }
 
 void add_csv_header(output::CsvWriter& csv, const Study& study,

@@ -19,8 +19,8 @@ std::string heading(Output output, const Study& study);
 /// An output of a result in its unit for people, or what has become of it.
 std::string cell(const Study& study, const PairResult& result, std::size_t output);
 
-/// For a terminal: a table of the points, thinned to at most 25 of them, then what each output does
-/// along the parameter if there is one alone: monotone, or its peak.
+/// For a terminal: a table of the points, thinned to at most 25 of them, then those without a
+/// result.
 std::string text(const StudyResult& result);
 
 /// study.csv: a header, a comment line with the units, a line for each point and pair in their

@@ -194,12 +194,12 @@ bool is_of_a_file(const Key& key) {
 }
 
 /// Keys of which no other value is right by itself: choices with keys of their own, of which the
-/// texts above have all; the baseline's references; the four numbers of a unit quaternion; what was
+/// texts above have all; the four numbers of a unit quaternion; what was
 /// measured, with its unit; an error limit in place of a refinement, which has a test below.
 bool is_changed_with_others(std::string_view key) {
   for (const std::string_view with_others :
        {"cilium.section.shape", "load.type", "environment.magnet.shape", "surface.profile",
-        "case.references", "environment.magnet.rotation", "measurement.quantity",
+        "environment.magnet.rotation", "measurement.quantity",
         "models.solid.tolerance", "models.solid.tolerance_of"})
     if (key == with_others) return true;
   return false;

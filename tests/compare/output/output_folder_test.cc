@@ -14,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "compare/output/results.h"
 #include "problem/error.h"
 #include "tests/support/synthetic.h"
 
@@ -53,10 +52,9 @@ std::size_t entries(const fs::path& folder) {
       std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
-/// What tells results apart below: a summary as a run writes it, with a title.
-std::string summary(const std::string& title, const std::string& name = "case") {
-  return R"({"schema": 1, "case": ")" + name + R"(", "title": ")" + title +
-         R"(", "sensors": [[0, 0, 0]], "steps": [{"case": "none"}], "comparisons": []})";
+/// What tells results apart below.
+std::string summary(const std::string& title) {
+  return R"({"schema": 1, "title": ")" + title + "\"}";
 }
 
 void write_results_of(const fs::path& directory, const std::string& title) {
@@ -165,15 +163,13 @@ TEST(OutputFolder, SaysWhichFolderCannotBeWrittenAndWhy) {
   EXPECT_EQ(entries(out.path()), 2u);
 }
 
-/// Every kind of file that a run writes, as of three models and two steps.
-void write_all_kinds(const fs::path& folder) {
-  fs::create_directories(folder / "vtk");
-  output::write_file(folder / "summary.json", summary("old"));
-  for (const char* name :
-       {"errors.csv", "case.toml", "elastica_0000.csv", "solid_12345.csv", "vtk/open.py",
-        "vtk/body_solid.pvd", "vtk/body_solid_0001.vtu", "vtk/centreline_beam_0000.vtp",
-        "vtk/dipoles_elastica.pvd", "vtk/field_beam_volume_0001.vti", "vtk/sensors_0001.vtp"})
-    output::write_file(folder / name, "result");
+/// Files of a run.
+void write_run(const fs::path& directory) {
+  output::OutputFolder folder(directory, "case");
+  fs::create_directories(folder.path() / "vtk");
+  for (const char* name : {"summary.json", "elastica_0000.csv", "vtk/open.py"})
+    output::write_file(folder.path() / name, "result");
+  folder.commit();
 }
 
 std::string refusal(const fs::path& directory) {
@@ -189,7 +185,10 @@ TEST(OutputFolder, ReplacesAFormerResultOfTheCaseAndAnEmptyFolder) {
   const TemporaryFolder out;
   fs::create_directory(out.path() / "case");
   EXPECT_EQ(refusal(out.path()), "accepted");
-  write_all_kinds(out.path() / "case");
+  write_run(out.path());
+  EXPECT_EQ(refusal(out.path()), "accepted");
+  output::write_file(out.path() / "case" / "report.html", "by `ciliaval report`");
+  fs::remove(out.path() / "case" / "elastica_0000.csv");
   EXPECT_EQ(refusal(out.path()), "accepted");
 }
 
@@ -197,7 +196,7 @@ TEST(OutputFolder, RefusesToReplaceWhatItDidNotWrite) {
   for (const char* name : {"notes.txt", "view.pvsm", "measured_0001.csv", "vtk/picture.png",
                            "vtk/body_mine.pvd", ".hidden", "summary.json.bak", "vtk/old/open.py"}) {
     const TemporaryFolder out;
-    write_all_kinds(out.path() / "case");
+    write_run(out.path());
     fs::create_directories((out.path() / "case" / name).parent_path());
     output::write_file(out.path() / "case" / name, "precious");
     const std::string first = name == std::string("vtk/old/open.py") ? "vtk/old" : name;
@@ -208,18 +207,12 @@ TEST(OutputFolder, RefusesToReplaceWhatItDidNotWrite) {
   }
 }
 
-TEST(OutputFolder, RefusesAFolderWithoutASummaryOfTheCase) {
+TEST(OutputFolder, RefusesAFolderWithoutItsList) {
   const TemporaryFolder out;
-  const fs::path file = out.path() / "case" / "summary.json";
-  write_all_kinds(out.path() / "case");
-  for (const std::string& text : {std::string("not JSON"), std::string("{}"), std::string("[1]"),
-                                  summary("old", "another")}) {
-    output::write_file(file, text);
-    EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`case.toml`")) << text;
-  }
-  fs::remove(file);
-  EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`case.toml`"));
-  EXPECT_TRUE(fs::exists(out.path() / "case" / "errors.csv"));
+  write_run(out.path());
+  fs::remove(out.path() / "case" / ".ciliaval");
+  EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`elastica_0000.csv`"));
+  EXPECT_TRUE(fs::exists(out.path() / "case" / "summary.json"));
 }
 
 TEST(OutputFolder, RefusesALinkBeforeAnythingRuns) {
