@@ -8,6 +8,8 @@
 #include <array>
 #include <utility>
 
+#include "compare/input/described.h"
+#include "problem/description/cilium.h"
 #include "problem/support/words.h"
 
 namespace ciliaval::compare::input {
@@ -23,29 +25,11 @@ bool has_control_character(std::string_view text) {
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
-/// A number, which is axial, or three.
-void read_magnetization(Section& table, Segment& segment) {
-  const toml::node* node = table.find(key::magnetization.name);
-  if (node == nullptr || !node->is_array()) {
-    segment.magnetization = table.value(key::magnetization).value_or(0);
-    return;
-  }
-  const Vector3 M = read_point(*node, key::magnetization, table.faults()).value_or(Vector3::Zero());
-  segment.transverse_magnetization = {M.x(), M.y()};
-  segment.magnetization = M.z();
-}
-
 void read_segments(Section& cilium, std::vector<Segment>& segments) {
   cilium.require("segment");
   cilium.tables("segment", 1, most_segments, [&](Section& table) {
     Segment segment;
-    if (const toml::node* node = table.require("name"))
-      segment.name = read_line(*node, "name", longest_name, table.faults()).value_or("");
-    segment.length = table.value(key::segment_length).value_or(0);
-    segment.young_modulus = table.value(key::young_modulus).value_or(0);
-    segment.poisson_ratio = table.value(key::poisson_ratio).value_or(0);
-    read_magnetization(table, segment);
-    segment.density = table.value(key::density).value_or(0);
+    read(table, description::fields<Segment>(), segment);
     const bool known = std::any_of(segments.begin(), segments.end(),
                                    [&](const Segment& s) { return s.name == segment.name; });
     if (known && !segment.name.empty())
@@ -77,63 +61,10 @@ std::vector<std::string> read_ids(const toml::node& node, std::string_view name,
   return result;
 }
 
-std::optional<std::array<double, 2>> read_pair(const toml::node& node, const Option& option,
-                                               Faults& faults) {
-  const toml::array* list = node.as_array();
-  if (list == nullptr || list->size() != 2) {
-    faults.add(
-        place(node),
-        fmt::format("'{}' must be a list of two numbers, such as {}, found {}", option.name,
-                    to_toml(option, option.get(ModelOptions{})),
-                    list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
-    return std::nullopt;
-  }
-  const auto first = read_value((*list)[0], option.name, option.quantity, option.range, faults);
-  const auto second = read_value((*list)[1], option.name, option.quantity, option.range, faults);
-  if (!first || !second) return std::nullopt;
-  return std::array{*first, *second};
-}
-
-void read_option(const Option& option, const toml::node& node, ModelOptions& options,
-                 Faults& faults) {
-  const OptionValue fallback = option.get(options);
-  if (!option.choices.empty()) {
-    if (auto text = read_choice(node, option.name, option.choices, faults))
-      option.set(options, *text);
-  } else if (std::holds_alternative<std::string>(fallback)) {
-    if (const auto text = read_text(node, option.name, faults);
-        text && has_control_character(*text))
-      faults.add(place(node), fmt::format("'{}' must not have control characters", option.name));
-    else if (text)
-      option.set(options, *text);
-  } else if (std::holds_alternative<bool>(fallback)) {
-    if (const auto* flag = node.as_boolean())
-      option.set(options, flag->get());
-    else
-      faults.add(place(node),
-                 fmt::format("'{}' must be true or false, found {}", option.name, describe(node)));
-  } else if (std::holds_alternative<unsigned int>(fallback)) {
-    if (const auto number = read_whole_number(node, option.name, option.range, faults))
-      option.set(options, *number);
-  } else if (std::holds_alternative<std::array<double, 2>>(fallback)) {
-    if (const auto pair = read_pair(node, option, faults)) option.set(options, *pair);
-  } else if (const auto value =
-                 read_value(node, option.name, option.quantity, option.range, faults)) {
-    option.set(options, *value);
-  }
-}
-
 void read_options(Section& models, const Models& known, ModelOptions& options) {
   known.for_each([&](const auto& entry) {
     Section table = models.section(entry.id);
-    for (const Option& option : entry.options)
-      if (const toml::node* node = table.find(option.name))
-        read_option(option, *node, options, table.faults());
-    for (const Option& option : entry.options)
-      if (const toml::node* node = table.find(option.name);
-          node != nullptr && !belongs(option, options))
-        table.faults().add(place(*node),
-                           fmt::format("'{}' goes with {} only", option.name, option.goes_with));
+    read(table, entry.options, options);
     if (entry.tables.read) entry.tables.read(table, options);
     table.finish();
   });
@@ -141,44 +72,21 @@ void read_options(Section& models, const Models& known, ModelOptions& options) {
 
 /// Diameter, and [cilium.section] where it is not the full circle.
 void read_cross_section(Section& cilium, Cilium& result) {
-  using Shape = CrossSection::Shape;
   Faults& faults = cilium.faults();
   CrossSection& section = result.section;
   Section table = cilium.section("section");
-  if (table.exists()) {
-    const toml::node* node = table.require(key::section_shape);
-    const auto shape = node != nullptr
-                           ? read_choice(*node, key::section_shape, key::section_shapes, faults)
-                           : std::nullopt;
-    if (!shape) {  // the other keys are right or wrong by it
-      for (const QuantityKey& k : {key::section_width, key::section_height,
-                                   key::section_orientation, key::section_inner_diameter})
-        table.find(k.name);
-      table.finish();
-      cilium.find(key::diameter.name);
-      return;
-    }
-    section.shape = static_cast<Shape>(std::ranges::find(key::section_shapes, *shape) -
-                                       key::section_shapes.begin());
-    if (section.shape == Shape::rectangle) {
-      section.width = table.value(key::section_width).value_or(0);
-      section.height = table.value(key::section_height).value_or(0);
-      section.orientation = table.value(key::section_orientation).value_or(0);
-    }
-    if (section.shape == Shape::tube)
-      section.inner_diameter = table.value(key::section_inner_diameter).value_or(0);
-    table.finish();
-  }
-  const toml::node* diameter = section.shape == Shape::rectangle
-                                   ? cilium.find(key::diameter.name)
-                                   : cilium.require(key::diameter.name);
-  if (section.shape == Shape::rectangle) {
+  const std::size_t before = faults.size();
+  if (table.exists()) read(table, description::fields<CrossSection>(), section);
+  table.finish();
+  const toml::node* diameter = cilium.find("diameter");
+  if (section.shape == CrossSection::Shape::rectangle) {
     if (diameter != nullptr)
       faults.add(place(*diameter), "a rectangle has 'width' and 'height' in place of 'diameter'");
     return;
   }
-  result.diameter = cilium.value(key::diameter).value_or(0);
-  if (const toml::node* hole = table.find(key::section_inner_diameter.name);
+  if (faults.size() != before && diameter == nullptr) return;  // it may be a rectangle
+  read(cilium, description::fields<Cilium>(), result);
+  if (const toml::node* hole = table.find("inner_diameter");
       hole != nullptr && diameter != nullptr && result.diameter > 0 &&
       section.inner_diameter >= result.diameter)
     faults.add(place(*hole), fmt::format("the hole of a tube is narrower than its 'diameter', {}",
@@ -220,7 +128,8 @@ bool is_plain_file_name(std::string_view name) {
          name.front() != '-' && name.find_first_not_of(plain) == std::string_view::npos;
 }
 
-std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults) {
+std::optional<Vector3> read_point(const toml::node& node, const description::Key& k,
+                                  Faults& faults) {
   const toml::array* list = node.as_array();
   if (list == nullptr || list->size() != 3) {
     const std::string what =
@@ -242,6 +151,14 @@ std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, 
     right = right && value;
   }
   return right ? std::optional<Vector3>(point) : std::nullopt;
+}
+
+std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults) {
+  description::Key key;
+  key.name = k.name;
+  key.quantity = k.quantity;
+  key.range = k.range;
+  return read_point(node, key, faults);
 }
 
 std::optional<std::string> read_line(const toml::node& node, std::string_view name,

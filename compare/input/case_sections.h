@@ -51,6 +51,8 @@ void check_together(const toml::table& root, const Case& c, const Models& known,
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
 
 /// A point or vector of three components, each as the key says, or a fault.
+std::optional<Vector3> read_point(const toml::node& node, const description::Key& k,
+                                  Faults& faults);
 std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults);
 
 /// A text for people: a line, not empty, of at most `longest` bytes. Adds a fault otherwise.

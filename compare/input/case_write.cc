@@ -9,8 +9,10 @@
 #include "compare/input/case.h"
 #include "compare/input/case_keys.h"
 #include "compare/input/case_sections.h"
+#include "compare/input/described.h"
 #include "compare/input/environment/environment.h"
 #include "problem/cilium.h"
+#include "problem/description/cilium.h"
 
 namespace ciliaval::compare::input {
 namespace {
@@ -76,35 +78,12 @@ std::string parameters(const Case& c) {
   return text;
 }
 
-std::string magnetization_line(const Segment& segment) {
-  const Vector3 M = magnetization(segment);
-  if (M.head<2>().isZero(0)) return line(key::magnetization, M.z());
-  std::vector<std::string> components;
-  for (const double component : M) components.push_back(value(key::magnetization, component));
-  return fmt::format("{} = {}\n", key::magnetization.name, list(components));
-}
-
 std::string cilium(const Case& c) {
-  using Shape = CrossSection::Shape;
-  const CrossSection& section = c.cilium.section;
-  std::string text = "\n[cilium]\n";
-  if (section.shape != Shape::rectangle) text += line(key::diameter, c.cilium.diameter);
-  if (section.shape != Shape::circle) {
-    text += fmt::format(
-        "\n[{}]\n{} = {}\n", key::section_table, key::section_shape,
-        toml_text(std::string(key::section_shapes.at(static_cast<std::size_t>(section.shape)))));
-    if (section.shape == Shape::tube)
-      text += line(key::section_inner_diameter, section.inner_diameter);
-    else
-      text += line(key::section_width, section.width) + line(key::section_height, section.height) +
-              line(key::section_orientation, section.orientation);
-  }
-  for (const Segment& s : c.cilium.segments) {
-    text += fmt::format("\n[[cilium.segment]]\nname = {}\n", toml_text(s.name));
-    text += line(key::segment_length, s.length) + line(key::young_modulus, s.young_modulus) +
-            line(key::poisson_ratio, s.poisson_ratio) + magnetization_line(s);
-    if (s.density != 0) text += line(key::density, s.density);
-  }
+  std::string text = "\n[cilium]\n" + lines(description::fields<Cilium>(), c.cilium);
+  if (c.cilium.section.shape != CrossSection::Shape::circle)
+    text += "\n[cilium.section]\n" + lines(description::fields<CrossSection>(), c.cilium.section);
+  for (const Segment& segment : c.cilium.segments)
+    text += "\n[[cilium.segment]]\n" + lines(description::fields<Segment>(), segment);
   return text;
 }
 
@@ -160,9 +139,7 @@ std::string models(const Case& c, const Models& known) {
       fmt::format("\n[models]\nmechanics = {}\nfields = {}\n", ids(c.mechanics), ids(c.fields));
   known.for_each([&](const auto& entry) {
     if (!entry.options.empty()) text += fmt::format("\n[models.{}]\n", entry.id);
-    for (const Option& option : entry.options)
-      if (belongs(option, c.options))
-        text += fmt::format("{} = {}\n", option.name, to_toml(option, option.get(c.options)));
+    text += lines(entry.options, c.options);
     if (entry.tables.write) text += entry.tables.write(c.options);
   });
   for (const external::ExternalModel& given : c.external) text += external(given);

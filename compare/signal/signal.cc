@@ -113,7 +113,7 @@ Signal record(std::span<const double> times, std::span<const Vector3> B,
   result.time = sample_times(times.front(), times.back(), options.sampling_rate);
   result.raw = interpolate(times, B, result.time);
   if (options.noise > 0) add_noise(result.raw, options, sensor);
-  result.filtered = options.order == 0 ? result.raw : filtered(result.raw, options);
+  result.filtered = options.cutoff == 0 ? result.raw : filtered(result.raw, options);
   return result;
 }
 

@@ -15,9 +15,9 @@ struct SignalOptions {
 
   double sampling_rate = 0;     ///< f_s, Hz
   double noise = 0;             ///< standard deviation of each component's noise, T; 0: none
-  std::uint32_t seed = 0;       ///< of the noise
-  unsigned int order = 0;       ///< of the Butterworth high-pass filter; 0: no filter
-  double cutoff = 0;            ///< of the filter, Hz
+  std::uint32_t seed = 1;       ///< of the noise
+  unsigned int order = 4;       ///< of the Butterworth high-pass filter; 4: the paper's
+  double cutoff = 0;            ///< of the filter, Hz; 0: no filter
   Phase phase = Phase::causal;  ///< as a filter in the logger, or of the whole record afterwards
 };
 

@@ -11,6 +11,7 @@
 #include "compare/input/environment/environment.h"
 #include "compare/input/environment/magnet.h"
 #include "compare/models/registry.h"
+#include "problem/description/cilium.h"
 
 namespace ciliaval::compare::study {
 namespace {
@@ -25,23 +26,49 @@ CaseNumber plain(std::string path, const QuantityKey& k,
           Order::plain,    std::move(sets), std::move(get), std::move(set)};
 }
 
+/// The numbers of a described part of the case that it has. Of a vector along an axis the component
+/// along it.
+template <class Part, class Access>
+void append_numbers(const description::Fields<Part>& fields, const std::string& table,
+                    const input::Case& c, const Access& part, std::vector<CaseNumber>& all) {
+  using description::Key;
+  for (const description::Field<Part>& field : fields) {
+    const bool is_left_out =
+        field.absence == Key::Absence::nothing && field.get(part(c)) == field.initial;
+    if (!(field.is_number() || field.may_be_axial) || !field.belongs(part(c)) || is_left_out)
+      continue;
+    const std::string path = fmt::format("{}.{}", table, field.name);
+    CaseNumber number{path,
+                      field.quantity,
+                      field.range,
+                      std::string(field.doc),
+                      field.is_whole_number(),
+                      Order::plain,
+                      path,
+                      {},
+                      {}};
+    if (field.may_be_axial) {
+      number.get = [=](const input::Case& x) { return std::get<Vector3>(field.get(part(x))).z(); };
+      number.set = [=](input::Case& x, double v) {
+        auto vector = std::get<Vector3>(field.get(part(x)));
+        vector.z() = v;
+        field.set(part(x), vector);
+      };
+    } else {
+      number.get = [=](const input::Case& x) { return field.number(part(x)); };
+      number.set = [=](input::Case& x, double v) { field.set_number(part(x), v); };
+    }
+    all.push_back(std::move(number));
+  }
+}
+
 void append_segments(const input::Case& c, std::vector<CaseNumber>& all) {
   static constexpr Range proportion_range{0, 1, true, "a segment is a part of the cilium"};
-  using Member = std::pair<const QuantityKey*, double Segment::*>;
-  const std::array<Member, 5> members{{{&input::key::segment_length, &Segment::length},
-                                       {&input::key::young_modulus, &Segment::young_modulus},
-                                       {&input::key::poisson_ratio, &Segment::poisson_ratio},
-                                       {&input::key::magnetization, &Segment::magnetization},
-                                       {&input::key::density, &Segment::density}}};
   for (std::size_t i = 0; i < c.cilium.segments.size(); ++i) {
     const std::string table = "cilium.segment." + c.cilium.segments[i].name;
-    for (const auto& [k, member] : members) {
-      if (k == &input::key::density && c.cilium.segments[i].density == 0) continue;
-      all.push_back(plain(
-          fmt::format("{}.{}", table, k->name), *k,
-          [=, m = member](const input::Case& x) { return x.cilium.segments[i].*m; },
-          [=, m = member](input::Case& x, double v) { x.cilium.segments[i].*m = v; }));
-    }
+    append_numbers(
+        description::fields<Segment>(), table,
+        c, [i](auto& x) -> auto& { return x.cilium.segments[i]; }, all);
     if (c.cilium.segments.size() < 2) continue;
     all.push_back(
         {table + ".proportion", quantity::number, proportion_range,
@@ -59,21 +86,11 @@ void append_segments(const input::Case& c, std::vector<CaseNumber>& all) {
 
 void append_cilium(const input::Case& c, std::vector<CaseNumber>& all) {
   static constexpr Range ratio_range{0.1, 1e4, false, "a cilium is longer than it is thick"};
-  if (c.cilium.is_rectangular()) {
-    const auto side = [&](const QuantityKey& k, double CrossSection::*member) {
-      all.push_back(plain(
-          fmt::format("{}.{}", k.table, k.name), k,
-          [=](const input::Case& x) { return x.cilium.section.*member; },
-          [=](input::Case& x, double v) { x.cilium.section.*member = v; }));
-    };
-    side(input::key::section_width, &CrossSection::width);
-    side(input::key::section_height, &CrossSection::height);
-  } else {
-    all.push_back(plain(
-        "cilium.diameter", input::key::diameter,
-        [](const input::Case& x) { return x.cilium.diameter; },
-        [](input::Case& x, double v) { x.cilium.diameter = v; }));
-  }
+  append_numbers(
+      description::fields<Cilium>(), "cilium", c, [](auto& x) -> auto& { return x.cilium; }, all);
+  append_numbers(
+      description::fields<CrossSection>(), "cilium.section", c,
+      [](auto& x) -> auto& { return x.cilium.section; }, all);
   append_segments(c, all);
   all.push_back({"cilium.length", quantity::length, length_range,
                  "The total length, the segments in proportion.", false, Order::total_length,
@@ -199,14 +216,8 @@ void append_magnets(const input::Case& c, std::vector<CaseNumber>& all) {
 
 void append_options(const input::Case& c, std::vector<CaseNumber>& all) {
   models::known().for_each([&](const auto& entry) {
-    for (const input::Option& option : entry.options) {
-      if (!input::belongs(option, c.options) || !option.number(c.options)) continue;
-      const std::string path = fmt::format("models.{}.{}", entry.id, option.name);
-      all.push_back({path, option.quantity, option.range, std::string(option.doc),
-                     option.is_whole_number(), Order::plain, path,
-                     [option](const input::Case& x) { return option.number(x.options).value(); },
-                     [option](input::Case& x, double v) { option.set_number(x.options, v); }});
-    }
+    append_numbers(
+        entry.options, "models." + entry.id, c, [](auto& x) -> auto& { return x.options; }, all);
   });
 }
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <variant>
 
+#include "compare/input/described.h"
 #include "compare/input/units.h"
 #include "python/core/calls.h"
 
@@ -20,7 +21,7 @@ namespace ciliaval::python::core {
 namespace py = pybind11;
 using compare::input::ModelOptions;
 using compare::input::Option;
-using compare::input::OptionValue;
+using description::Key;
 namespace {
 
 /// What NumPy takes the values from.
@@ -53,10 +54,10 @@ std::optional<double> as_quantity(py::handle value, const Quantity& quantity) {
 }
 
 /// The value of an option of the type of its present one; none if it is of another type.
-std::optional<OptionValue> as_option(const Option& option, const OptionValue& present,
-                                     py::handle value) {
+std::optional<description::Value> as_option(const Key& option, const description::Value& present,
+                                            py::handle value) {
   return std::visit(
-      [&](const auto& old) -> std::optional<OptionValue> {
+      [&](const auto& old) -> std::optional<description::Value> {
         using T = std::decay_t<decltype(old)>;
         if constexpr (std::is_same_v<T, bool>) {
           return as_flag(value);
@@ -65,8 +66,10 @@ std::optional<OptionValue> as_option(const Option& option, const OptionValue& pr
         } else if constexpr (std::is_same_v<T, double>) {
           return as_quantity(value, option.quantity);
         } else if constexpr (std::is_same_v<T, std::string>) {
-          return option.file == Option::File::none ? text(value, option.name)
-                                                   : file_name(value, option.name);
+          return option.file == Key::File::none ? text(value, option.name)
+                                                : file_name(value, option.name);
+        } else if constexpr (std::is_same_v<T, Vector3>) {
+          return vector(py::reinterpret_borrow<py::object>(value), option.name, option.quantity);
         } else {
           const auto pair = list_by<double>(value, option.name, "two numbers",
                                             [&](py::handle each, const std::string& name) {
@@ -79,7 +82,8 @@ std::optional<OptionValue> as_option(const Option& option, const OptionValue& pr
       present);
 }
 
-OptionValue converted(const Option& option, const OptionValue& present, py::handle value) {
+description::Value converted(const Key& option, const description::Value& present,
+                             py::handle value) {
   std::string fault = "is not what it takes";
   try {
     if (const auto found = as_option(option, present, value)) return *found;
@@ -90,22 +94,24 @@ OptionValue converted(const Option& option, const OptionValue& present, py::hand
                                shown(value), fault, to_toml(option, present)));
 }
 
-void require_in_range(const Option& option, const OptionValue& value) {
+/// `kind`: "option ", or nothing.
+void require_in_range(const Key& key, const description::Value& value, std::string_view kind) {
   const auto require = [&](double number) {
-    if (option.range.lower != option.range.upper && !option.range.contains(number))
-      throw InputError(fmt::format("option `{}`: {} is not between {} and {}{}{}", option.name,
-                                   number, option.range.lower, option.range.upper,
-                                   option.range.reason.empty() ? "" : ": ", option.range.reason));
+    if (key.range.lower != key.range.upper && !key.range.contains(number))
+      throw InputError(fmt::format("{}`{}`: {} is not between {} and {}{}{}", kind, key.name,
+                                   number, key.range.lower, key.range.upper,
+                                   key.range.reason.empty() ? "" : ": ", key.range.reason));
   };
   if (const auto* number = std::get_if<double>(&value)) require(*number);
   if (const auto* number = std::get_if<unsigned int>(&value)) require(*number);
   if (const auto* pair = std::get_if<std::array<double, 2>>(&value))
     std::ranges::for_each(*pair, require);
+  if (const auto* vector = std::get_if<Vector3>(&value)) std::ranges::for_each(*vector, require);
   const auto* text = std::get_if<std::string>(&value);
-  if (text != nullptr && !option.choices.empty() &&
-      std::ranges::find(option.choices, *text) == option.choices.end())
-    throw InputError(fmt::format("option `{}`: \"{}\" is none of {}", option.name, *text,
-                                 fmt::join(option.choices, ", ")));
+  if (text != nullptr && !key.choices.empty() &&
+      std::ranges::find(key.choices, *text) == key.choices.end())
+    throw InputError(fmt::format("{}`{}`: \"{}\" is none of {}", kind, key.name, *text,
+                                 fmt::join(key.choices, ", ")));
 }
 
 }  // namespace
@@ -277,6 +283,41 @@ Vector3 magnetization(const py::object& value, const QuantityKey& key) {
   return is_axial ? Vector3(number(value, key) * Vector3::UnitZ()) : vector(value, key);
 }
 
+description::Value value_of(py::handle value, const Key& key) {
+  const description::Value found = std::visit(
+      [&](const auto& kind) -> description::Value {
+        using T = std::decay_t<decltype(kind)>;
+        if constexpr (std::is_same_v<T, std::string>) {
+          return text(value, key.name);
+        } else if constexpr (std::is_same_v<T, double>) {
+          return number(value, key.name, key.quantity);
+        } else if constexpr (std::is_same_v<T, Vector3>) {
+          const bool is_axial =
+              key.may_be_axial && (PyUnicode_Check(value.ptr()) || as_number(value));
+          if (is_axial) return Vector3(0, 0, number(value, key.name, key.quantity));
+          return vector(py::reinterpret_borrow<py::object>(value), key.name, key.quantity);
+        } else {
+          return converted(key, key.initial, value);
+        }
+      },
+      key.initial);
+  if (found != key.initial) require_in_range(key, found, "");
+  return found;
+}
+
+py::object to_python(const Key& key, const description::Value& value) {
+  return std::visit(
+      [&](const auto& v) -> py::object {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, Vector3>) {
+          if (key.may_be_axial && v.template head<2>().isZero(0)) return py::float_(v.z());
+          return py::make_tuple(v.x(), v.y(), v.z());
+        } else {
+          return py::cast(v);
+        }
+      },
+      value);
+}
+
 void set_options(const std::string& model, const std::vector<Option>& options,
                  const py::dict& named, ModelOptions& values) {
   for (const auto& [key, value] : named) {
@@ -289,8 +330,8 @@ void set_options(const std::string& model, const std::vector<Option>& options,
           fmt::format("model `{}` has no option `{}`; it has: {}", model, name,
                       known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
     }
-    const OptionValue wanted = converted(*option, option->get(values), value);
-    require_in_range(*option, wanted);
+    const description::Value wanted = converted(*option, option->get(values), value);
+    require_in_range(*option, wanted, "option ");
     option->set(values, wanted);
   }
 }

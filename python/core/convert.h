@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compare/input/option.h"
+#include "problem/description/cilium.h"
 #include "problem/error.h"
 #include "problem/mechanics_model.h"
 #include "problem/parameter.h"
@@ -72,6 +73,30 @@ Vector3 vector(const pybind11::object& value, std::string_view name, const Quant
 Vector3 vector(const pybind11::object& value, const QuantityKey& key);
 /// M along z, or its three components. Throws as above.
 Vector3 magnetization(const pybind11::object& value, const QuantityKey& key);
+/// The value of a key in its range, which the argument has its name of; of a vector that may be
+/// axial, a number is its third component. Throws as above.
+description::Value value_of(pybind11::handle value, const description::Key& key);
+pybind11::object to_python(const description::Key& key, const description::Value& value);
+
+/// Sets the member that the key describes.
+template <class T>
+void set_field(T& owner, std::string_view name, pybind11::handle value) {
+  for (const description::Field<T>& field : description::fields<T>())
+    if (field.name == name) field.set(owner, value_of(value, field));
+}
+
+/// An attribute for each key of the struct.
+template <class T>
+void define_attributes(pybind11::class_<T>& of) {
+  for (const description::Field<T>& field : description::fields<T>())
+    of.def_property(
+        std::string(field.name).c_str(),
+        [&field](const T& owner) { return to_python(field, field.get(owner)); },
+        [&field](T& owner, const pybind11::object& value) {
+          field.set(owner, value_of(value, field));
+        },
+        std::string(field.doc).c_str());
+}
 
 /// The name of a bound class.
 template <class T>

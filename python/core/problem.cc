@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "compare/input/case_keys.h"
 #include "compare/input/environment/environment.h"
 #include "problem/cilium.h"
 #include "problem/error.h"
@@ -21,7 +20,6 @@
 
 namespace ciliaval::python::core {
 namespace py = pybind11;
-namespace key = compare::input::key;
 namespace names = compare::input::environment;
 namespace {
 
@@ -134,19 +132,6 @@ std::string representation(const Segment& segment) {
       segment.density);
 }
 
-/// Along the axis, or three components.
-void set_magnetization(Segment& segment, const Array& value) {
-  const Vector3 M = magnetization(value, key::magnetization);
-  segment.transverse_magnetization = {M.x(), M.y()};
-  segment.magnetization = M.z();
-}
-
-py::object get_magnetization(const Segment& segment) {
-  const Vector3 M = magnetization(segment);
-  if (M.head<2>().isZero(0)) return py::float_(M.z());
-  return py::make_tuple(M.x(), M.y(), M.z());
-}
-
 std::string representation(const Cilium& cilium) {
   std::string segments;
   for (const Segment& segment : cilium.segments)
@@ -165,16 +150,6 @@ std::string representation(const Cilium& cilium) {
   }
 }
 
-/// A number of a segment as an attribute.
-template <double Segment::*member>
-double get(const Segment& segment) {
-  return segment.*member;
-}
-template <double Segment::*member, const QuantityKey& key>
-void set(Segment& segment, const Number& value) {
-  segment.*member = number(value, key);
-}
-
 Cilium valid(Cilium cilium) {
   require_valid(cilium);
   return cilium;
@@ -184,58 +159,52 @@ Cilium valid(Cilium cilium) {
 
 void bind_problem(py::module_& module) {
   bind_magnets(module);
-  py::class_<Segment>(
+  py::class_<Segment> segment_class(
       module, "Segment",
       "A segment of a cilium: one material.\n\n"
       "length in m, young_modulus in Pa, poisson_ratio, magnetization M along the\n"
       "axis in A/m (M = B_r / mu_0; 0: not magnetic) or its three components, name\n"
-      "for people, density in kg/m^3 (0: not known), which gravity needs.")
+      "for people, density in kg/m^3 (0: not known), which gravity needs.");
+  segment_class
       .def(py::init([](const Number& length, const Number& young_modulus,
                        const Number& poisson_ratio, const Array& M, const Text& name,
                        const Number& density) {
-             Segment segment{text(name, "name"),
-                             number(length, key::segment_length),
-                             number(young_modulus, key::young_modulus),
-                             number(poisson_ratio, key::poisson_ratio),
-                             0,
-                             number(density, key::density)};
-             set_magnetization(segment, M);
+             Segment segment;
+             set_field(segment, "length", length);
+             set_field(segment, "young_modulus", young_modulus);
+             set_field(segment, "poisson_ratio", poisson_ratio);
+             set_field(segment, "magnetization", M);
+             set_field(segment, "name", name);
+             set_field(segment, "density", density);
              return segment;
            }),
            py::arg("length"), py::arg("young_modulus"), py::arg("poisson_ratio") = 0.49,
            py::arg("magnetization") = 0.0, py::arg("name") = "", py::arg("density") = 0.0)
-      .def_property("length", &get<&Segment::length>, &set<&Segment::length, key::segment_length>)
-      .def_property("young_modulus", &get<&Segment::young_modulus>,
-                    &set<&Segment::young_modulus, key::young_modulus>)
-      .def_property("poisson_ratio", &get<&Segment::poisson_ratio>,
-                    &set<&Segment::poisson_ratio, key::poisson_ratio>)
-      .def_property("magnetization", &get_magnetization, &set_magnetization)
-      .def_property(
-          "name", [](const Segment& segment) { return segment.name; },
-          [](Segment& segment, const Text& name) { segment.name = text(name, "name"); })
-      .def_property("density", &get<&Segment::density>, &set<&Segment::density, key::density>)
       .def(pickled<Segment>())
       .def("__repr__", [](const Segment& segment) { return representation(segment); });
+  define_attributes(segment_class);
 
   py::class_<Cilium>(module, "Cilium",
                      "A straight cylinder of segments, from the base up. diameter in m.\n"
                      "Cilium.rectangle and Cilium.tube have other sections.\n\n"
                      "Raises InputError if a number is impossible.")
-      .def(
-          py::init([](const Number& diameter, const py::object& segments) {
-            return valid({number(diameter, key::diameter), list_of<Segment>(segments, "segments")});
-          }),
-          py::arg("diameter"), py::arg("segments"))
+      .def(py::init([](const Number& diameter, const py::object& segments) {
+             Cilium cilium{0, list_of<Segment>(segments, "segments")};
+             set_field(cilium, "diameter", diameter);
+             return valid(std::move(cilium));
+           }),
+           py::arg("diameter"), py::arg("segments"))
       .def_static(
           "rectangle",
           [](const Number& width, const Number& height, const py::object& segments,
              const Number& orientation) {
-            return valid({0,
+            Cilium cilium{0,
                           list_of<Segment>(segments, "segments"),
-                          {.shape = CrossSection::Shape::rectangle,
-                           .width = number(width, key::section_width),
-                           .height = number(height, key::section_height),
-                           .orientation = number(orientation, key::section_orientation)}});
+                          {.shape = CrossSection::Shape::rectangle}};
+            set_field(cilium.section, "width", width);
+            set_field(cilium.section, "height", height);
+            set_field(cilium.section, "orientation", orientation);
+            return valid(std::move(cilium));
           },
           "Of rectangular section: width along x and height along y, m, turned by orientation, "
           "rad.",
@@ -243,10 +212,11 @@ void bind_problem(py::module_& module) {
       .def_static(
           "tube",
           [](const Number& diameter, const Number& inner_diameter, const py::object& segments) {
-            return valid({number(diameter, key::diameter),
-                          list_of<Segment>(segments, "segments"),
-                          {.shape = CrossSection::Shape::tube,
-                           .inner_diameter = number(inner_diameter, key::section_inner_diameter)}});
+            Cilium cilium{
+                0, list_of<Segment>(segments, "segments"), {.shape = CrossSection::Shape::tube}};
+            set_field(cilium, "diameter", diameter);
+            set_field(cilium.section, "inner_diameter", inner_diameter);
+            return valid(std::move(cilium));
           },
           "A tube: outer and inner diameter, m.", py::arg("diameter"), py::arg("inner_diameter"),
           py::arg("segments"))

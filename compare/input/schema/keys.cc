@@ -9,11 +9,13 @@
 #include <variant>
 
 #include "compare/input/case_keys.h"
+#include "compare/input/described.h"
 #include "compare/input/environment/environment.h"
 #include "compare/input/environment/magnet.h"
 #include "compare/input/measurement/measurement.h"
 #include "compare/input/sweep/signal.h"
 #include "compare/input/sweep/surface.h"
+#include "problem/description/cilium.h"
 #include "problem/load.h"
 
 namespace ciliaval::compare::input::schema {
@@ -53,26 +55,47 @@ Key number(const QuantityKey& k, Kind kind = Kind::quantity) {
   return key;
 }
 
-Key of_option(std::string_view model, const Option& option) {
-  const OptionValue fallback = option.get(ModelOptions{});
-  Key key = text(fmt::format("models.{}", model), option.name,
-                 fmt::format("`{}`", to_toml(option, fallback)), std::string(option.doc));
-  key.quantity = option.quantity;
-  key.range = option.range;
-  key.choices = option.choices;
-  if (!option.choices.empty())
-    key.kind = Kind::choice;
-  else if (std::holds_alternative<std::string>(fallback))
-    key.kind = Kind::file;
-  else if (std::holds_alternative<bool>(fallback))
-    key.kind = Kind::flag;
-  else if (std::holds_alternative<unsigned int>(fallback))
-    key.kind = Kind::whole_number;
-  else if (std::holds_alternative<std::array<double, 2>>(fallback))
-    key.kind = Kind::pair;
-  else
-    key.kind = Kind::quantity;
+Key of_key(std::string_view table, const description::Key& k) {
+  const std::string initial = fmt::format("`{}`", to_toml(k, k.initial));
+  const bool is_required = k.absence == description::Key::Absence::fault;
+  Key key = text(table, k.name,
+                 !k.fallback.empty() ? k.fallback
+                 : is_required       ? ""
+                                     : initial,
+                 std::string(k.doc));
+  key.quantity = k.quantity;
+  key.range = k.range;
+  key.choices = k.choices;
+  const std::array kinds{Kind::flag, Kind::whole_number, Kind::quantity,
+                         Kind::text, Kind::pair,         Kind::point};  // as Value has them
+  key.kind = kinds.at(k.initial.index());
+  if (key.kind == Kind::text && k.longest == 0) key.kind = Kind::file;
+  if (!k.choices.empty()) key.kind = Kind::choice;
+  if (k.may_be_axial) key.kind = Kind::quantities;
   return key;
+}
+
+/// The values of the table's choice with which the field goes; all: none.
+template <class Owner>
+std::vector<std::string_view> values_with(const description::Field<Owner>& field,
+                                          const description::Fields<Owner>& fields) {
+  std::vector<std::string_view> values;
+  const auto choice = std::ranges::find_if(
+      fields, [](const description::Key& key) { return !key.choices.empty(); });
+  if (!field.condition || choice == fields.end()) return values;
+  for (const std::string_view value : choice->choices) {
+    Owner owner{};
+    choice->set(owner, std::string(value));
+    if (field.belongs(owner)) values.push_back(value);
+  }
+  return values;
+}
+
+template <class Owner>
+void add_table(std::vector<Key>& keys, std::string_view table,
+               const description::Fields<Owner>& fields) {
+  for (const description::Field<Owner>& field : fields)
+    keys.push_back(only_with(values_with(field, fields), of_key(table, field)));
 }
 
 /// "`mesh` takes `calculix` and `solid` only".
@@ -156,18 +179,6 @@ void add_surface(std::vector<Key>& keys) {
   for (const QuantityKey& k : {sweep::friction, sweep::tilt}) keys.push_back(number(k));
 }
 
-void add_signal(std::vector<Key>& keys) {
-  keys.push_back(of_kind(Kind::whole_number,
-                         text("signal", "seed", "1", "Of the noise; each sensor has its own.")));
-  keys.push_back(of_kind(Kind::whole_number,
-                         text("signal", "order", "4 (the paper's)", "Of the filter, 1 to 20.")));
-  keys.push_back(choice(sweep::phase_names(),
-                        text("signal", "phase", "causal",
-                             "A filter in the logger, or one of the whole record that shifts "
-                             "nothing.")));
-  for (const QuantityKey& k : sweep::signal_keys()) keys.push_back(number(k));
-}
-
 void add_sensor_and_readings(std::vector<Key>& keys) {
   keys.push_back(text("sensor", "name", "its number",
                       "`[[sensor]]`, a table for each sensor with its `position`: the name in "
@@ -203,7 +214,7 @@ void add_models(const Models& models, std::vector<Key>& keys) {
                                          limits_of_pairs(models))),
                         Kind::choices));
   models.for_each([&](const auto& entry) {
-    for (const Option& option : entry.options) keys.push_back(of_option(entry.id, option));
+    for (const Option& option : entry.options) keys.push_back(of_key("models." + entry.id, option));
     for (const QuantityKey* k : entry.tables.keys) {
       const std::vector<std::string_view>& points = entry.tables.points;
       const bool is_point = std::ranges::find(points, k->name) != points.end();
@@ -287,24 +298,14 @@ std::vector<Key> all_keys(const Models& models) {
       text("case", "name", "",
            "Name of the results' folder: letters, digits, `.`, `_`, `-`, not starting with `.` or "
            "`-`, at most 100."),
-      text("case", "title", "the name", "A line for people, at most 200 characters."),
-      number(key::diameter),
-      choice({key::section_shapes.begin(), key::section_shapes.end()},
-             text(key::section_table, key::section_shape, "",
-                  "Shape of the section, if it is not the full circle of `diameter`.")),
-      only_with({"rectangle"}, number(key::section_width)),
-      only_with({"rectangle"}, number(key::section_height)),
-      only_with({"rectangle"}, number(key::section_orientation)),
-      only_with({"tube"}, number(key::section_inner_diameter)),
-      text("cilium.segment", "name", "", "Name of the segment, different from the others'.")};
-  for (const QuantityKey& k : {key::segment_length, key::young_modulus, key::poisson_ratio})
-    keys.push_back(number(k));
-  keys.push_back(number(key::magnetization, Kind::quantities));
-  keys.push_back(number(key::density));
+      text("case", "title", "the name", "A line for people, at most 200 characters.")};
+  add_table(keys, "cilium", description::fields<Cilium>());
+  add_table(keys, "cilium.section", description::fields<CrossSection>());
+  add_table(keys, "cilium.segment", description::fields<Segment>());
   add_load(keys);
   add_environment(keys);
   add_surface(keys);
-  add_signal(keys);
+  add_table(keys, "signal", description::fields<signal::SignalOptions>());
   add_sensor_and_readings(keys);
   add_models(models, keys);
   add_measurements(keys);

@@ -3,20 +3,20 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "compare/signal/signal.h"
-#include "problem/parameter.h"
+#include "problem/description/field.h"
+
+namespace ciliaval::description {
+template <>
+const Fields<compare::signal::SignalOptions>& fields<compare::signal::SignalOptions>();
+}
 
 namespace ciliaval::compare::input {
 class Section;
 }
 
 namespace ciliaval::compare::input::sweep {
-
-/// The quantities of the table [signal]; it has `seed`, `order` and `phase` besides.
-const std::vector<QuantityKey>& signal_keys();
-std::vector<std::string_view> phase_names();
 
 /// Reads the table [signal]; none if there is none.
 std::optional<signal::SignalOptions> read_signal(Section& root);

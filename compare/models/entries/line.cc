@@ -23,7 +23,7 @@ input::FieldEntry line() {
                     "`uniform`: n dipoles in each magnetic segment."));
   input::Refinement sums =
       pieces({16, 32, 64, 128, 256, 512, 1024, 2048, 4096}, "length of the pieces, in segments");
-  sums.applies = elements.belongs;
+  sums.applies = elements.condition;
   input::Refinement integrals = tolerances({1e-2, 1e-4, 1e-6, 1e-8, 1e-10});
   integrals.applies = is_line_integrated;
   return {

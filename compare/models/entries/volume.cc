@@ -43,7 +43,7 @@ input::FieldEntry volume() {
                               {1, 400, false, "more than 400^3 dipoles take too long"},
                               "`uniform`: n³ dipoles in each magnetic segment, n in z, r and φ."));
   input::Refinement sums = pieces({16, 32, 64, 128, 256}, "height of the slices, in segments");
-  sums.applies = elements.belongs;
+  sums.applies = elements.condition;
   input::Refinement integrals = tolerances({1e-2, 1e-4, 1e-6, 1e-8, 1e-10});
   integrals.applies = is_volume_integrated;
   return {

@@ -451,8 +451,7 @@ TEST(Options, AreAllInTheListAbove) {
   const input::ModelOptions refined = read(with_tolerance()).options;
   for (const auto& [model, option] : all_options()) {
     const auto is_set = [&option = option](const input::ModelOptions& options) {
-      return input::belongs(option, options) &&
-             option.get(options) != option.get(input::ModelOptions{});
+      return option.belongs(options) && option.get(options) != option.get(input::ModelOptions{});
     };
     EXPECT_TRUE(is_set(set) || is_set(mooney) || is_set(refined)) << model << '.' << option.name;
   }
@@ -467,7 +466,7 @@ TEST(Options, HaveAToleranceInPlaceOfARefinement) {
 
 TEST(Options, HaveDefaultsInTheirRange) {
   for (const auto& [model, option] : all_options()) {
-    const input::OptionValue value = option.get(input::ModelOptions{});
+    const description::Value value = option.get(input::ModelOptions{});
     if (const auto* number = std::get_if<double>(&value)) {
       EXPECT_TRUE(option.range.contains(*number)) << model << '.' << option.name;
     }
@@ -511,7 +510,7 @@ TEST(WrittenCase, StatesEveryOptionWithItsValue) {
   const input::Case c = read(good_case);
   const std::string written = input::to_toml(c, models::known());
   for (const auto& [model, option] : all_options()) {
-    if (!input::belongs(option, c.options)) {
+    if (!option.belongs(c.options)) {
       EXPECT_THAT(written, Not(testing::HasSubstr(std::string(option.name)))) << model;
       continue;
     }

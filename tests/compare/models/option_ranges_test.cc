@@ -16,8 +16,8 @@ namespace ciliaval::compare {
 namespace {
 
 /// The ends of the range of an option that is a number; otherwise none.
-std::vector<input::OptionValue> ends(const input::Option& option) {
-  const input::OptionValue fallback = option.get(input::ModelOptions{});
+std::vector<description::Value> ends(const input::Option& option) {
+  const description::Value fallback = option.get(input::ModelOptions{});
   if (std::holds_alternative<double>(fallback)) return {option.range.lower, option.range.upper};
   if (std::holds_alternative<unsigned int>(fallback))
     return {static_cast<unsigned int>(option.range.lower),
@@ -26,7 +26,7 @@ std::vector<input::OptionValue> ends(const input::Option& option) {
 }
 
 /// Options in which a beam is small, with one option at one end of its range.
-input::ModelOptions options_with(const input::Option& option, const input::OptionValue& value) {
+input::ModelOptions options_with(const input::Option& option, const description::Value& value) {
   input::ModelOptions options;
   options.of<fem::beam::BeamOptions>().degree = 1;
   options.of<fem::beam::BeamOptions>().refinement = 0;
@@ -48,7 +48,7 @@ TEST(OptionRanges, BothEndsAreTakenByTheMechanicsModel) {
   int count = 0;
   for (const models::MechanicsEntry& entry : models::mechanics_models())
     for (const input::Option& option : entry.options) {
-      for (const input::OptionValue& value : ends(option)) {
+      for (const description::Value& value : ends(option)) {
         SCOPED_TRACE(entry.id + '.' + std::string(option.name) + " = " +
                      input::to_toml(option, value));
         std::unique_ptr<MechanicsModel> model;
@@ -66,7 +66,7 @@ TEST(OptionRanges, BothEndsAreTakenByTheFieldModel) {
   int count = 0;
   for (const models::FieldEntry& entry : models::field_models())
     for (const input::Option& option : entry.options) {
-      for (const input::OptionValue& value : ends(option)) {
+      for (const description::Value& value : ends(option)) {
         EXPECT_NO_THROW(entry.make(options_with(option, value)))
             << entry.id << '.' << option.name << " = " << input::to_toml(option, value);
         ++count;

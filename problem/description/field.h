@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "problem/parameter.h"
+#include "problem/types.h"
+
+/// What a person can state of a plain struct: its keys, each described once. Case files are read
+/// and written by it; the JSON schema, the tables of the guide, the numbers of studies and Python's
+/// attributes follow from it.
+namespace ciliaval::description {
+
+/// The value of a key, whatever the member's type is.
+using Value = std::variant<bool, unsigned int, double, std::string, std::array<double, 2>, Vector3>;
+
+/// A key of a table of a case file.
+struct Key {
+  enum class File {
+    none,
+    mesh,     ///< read in place of the model's own mesh, beside the case file
+    program,  ///< with a slash beside the case file, else in PATH
+    folder    ///< written to, beside the case file; empty: nothing is kept
+  };
+  /// What a file says that leaves the key out.
+  enum class Absence {
+    its_initial_value,  ///< which is written back
+    nothing,            ///< the member's initial value stands for it, and is not written back
+    fault               ///< the key is required
+  };
+  std::string_view name;
+  Quantity quantity = quantity::number;     ///< of a number or each of several
+  Range range{};                            ///< likewise
+  std::vector<std::string_view> choices{};  ///< of a text
+  std::string_view doc;                     ///< one sentence
+  Value initial;                            ///< the member's, which says what kind of value it is
+  Absence absence = Absence::its_initial_value;
+  std::string fallback{};     ///< the initial value as a person would state it; empty: its TOML
+  std::size_t longest = 0;    ///< bytes of a text for people, of one line and not empty; 0: any
+  bool may_be_axial = false;  ///< of a vector: one number is its third component
+  File file = File::none;
+  std::string goes_with{};  ///< what makes it belong, as a file would state it
+
+  /// A single number, whole or not.
+  bool is_number() const { return std::holds_alternative<double>(initial) || is_whole_number(); }
+  bool is_whole_number() const { return std::holds_alternative<unsigned int>(initial); }
+};
+
+/// A key of a struct.
+template <class Owner>
+struct Field : Key {
+  std::function<Value(const Owner&)> get{};
+  std::function<void(Owner&, const Value&)> set{};
+  /// Whether the key means anything beside the other ones; empty: it always does. A file that
+  /// states it where it does not is refused, and it is not written back.
+  std::function<bool(const Owner&)> condition{};
+
+  bool belongs(const Owner& owner) const { return !condition || condition(owner); }
+  /// The value of a key that is a number.
+  double number(const Owner& owner) const {
+    const Value value = get(owner);
+    return is_whole_number() ? std::get<unsigned int>(value) : std::get<double>(value);
+  }
+  void set_number(Owner& owner, double value) const {
+    set(owner, is_whole_number() ? Value(static_cast<unsigned int>(value + 0.5)) : Value(value));
+  }
+};
+
+template <class Owner>
+using Fields = std::vector<Field<Owner>>;
+
+/// The keys of a struct that a case can state.
+template <class T>
+const Fields<T>& fields();
+
+/// A key whose value is a member: a number, a flag, a text, two numbers or a vector.
+template <class Owner, class T>
+Field<Owner> field(T Owner::*member, std::string_view name, const Quantity& quantity,
+                   const Range& range, std::string_view doc) {
+  Field<Owner> result;
+  result.name = name;
+  result.quantity = quantity;
+  result.range = range;
+  result.doc = doc;
+  result.initial = Owner{}.*member;
+  result.get = [=](const Owner& owner) { return Value(owner.*member); };
+  result.set = [=](Owner& owner, const Value& value) { owner.*member = std::get<T>(value); };
+  return result;
+}
+
+/// The same without a unit.
+template <class Owner, class T>
+Field<Owner> field(T Owner::*member, std::string_view name, const Range& range,
+                   std::string_view doc) {
+  return field(member, name, quantity::number, range, doc);
+}
+
+/// The same without a range: a flag, a text.
+template <class Owner, class T>
+Field<Owner> field(T Owner::*member, std::string_view name, std::string_view doc) {
+  return field(member, name, quantity::number, Range{}, doc);
+}
+
+/// The values of an enumeration by their names.
+template <class T>
+using Choices = std::vector<std::pair<std::string_view, T>>;
+
+template <class Owner, class T>
+Field<Owner> choice(T Owner::*member, std::string_view name,
+                    const std::type_identity_t<Choices<T>>& values, std::string_view doc) {
+  Field<Owner> result;
+  result.name = name;
+  result.doc = doc;
+  for (const auto& [text, value] : values) result.choices.push_back(text);
+  result.get = [=](const Owner& owner) {
+    const auto at = std::ranges::find(values, owner.*member, &Choices<T>::value_type::second);
+    return Value(std::string(at->first));
+  };
+  result.set = [=](Owner& owner, const Value& value) {
+    const auto& text = std::get<std::string>(value);
+    owner.*member = std::ranges::find(values, text, &Choices<T>::value_type::first)->second;
+  };
+  result.initial = result.get(Owner{});
+  return result;
+}
+
+/// The name of a file; empty: none.
+template <class Owner>
+Field<Owner> file(std::filesystem::path Owner::*member, std::string_view name, Key::File kind,
+                  std::string_view doc) {
+  Field<Owner> result;
+  result.name = name;
+  result.doc = doc;
+  result.initial = std::string();
+  result.get = [=](const Owner& owner) { return Value((owner.*member).string()); };
+  result.set = [=](Owner& owner, const Value& value) {
+    owner.*member = std::get<std::string>(value);
+  };
+  result.file = kind;
+  return result;
+}
+
+template <class Owner>
+Field<Owner> required(Field<Owner> field) {
+  field.absence = Key::Absence::fault;
+  return field;
+}
+
+/// The initial value stands for what is not stated: "not known".
+template <class Owner>
+Field<Owner> optional(Field<Owner> field, std::string_view words) {
+  field.absence = Key::Absence::nothing;
+  field.fallback = words;
+  return field;
+}
+
+/// With words for its initial value: "0 deg".
+template <class Owner>
+Field<Owner> falls_back_to(Field<Owner> field, std::string_view words) {
+  field.fallback = words;
+  return field;
+}
+
+/// The key, which goes with one value of another one only; `other` is that as a file states it.
+template <class Owner, class T>
+Field<Owner> only_with(T Owner::*member, std::type_identity_t<T> value, std::string_view other,
+                       Field<Owner> field) {
+  field.condition = [=](const Owner& owner) { return owner.*member == value; };
+  field.goes_with = other;
+  return field;
+}
+
+/// The fields of a part as those of the whole; `part` gives a reference to it.
+template <class Whole, class Part, class Function>
+Field<Whole> of_part(const Field<Part>& field, const Function& part) {
+  Field<Whole> result;
+  static_cast<Key&>(result) = field;
+  result.get = [=, get = field.get](const Whole& whole) { return get(part(whole)); };
+  result.set = [=, set = field.set](Whole& whole, const Value& value) { set(part(whole), value); };
+  if (field.condition)
+    result.condition = [=, condition = field.condition](const Whole& whole) {
+      return condition(part(whole));
+    };
+  return result;
+}
+
+}  // namespace ciliaval::description
