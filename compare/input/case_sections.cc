@@ -20,11 +20,6 @@ constexpr std::size_t most_sensors = 10000;
 constexpr std::size_t longest_title = 200;  ///< bytes
 constexpr std::size_t longest_name = 100;
 
-bool has_control_character(std::string_view text) {
-  return std::any_of(text.begin(), text.end(),
-                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-}
-
 void read_segments(Section& cilium, std::vector<Segment>& segments) {
   cilium.require("segment");
   cilium.tables("segment", 1, most_segments, [&](Section& table) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_faults = 50;  ///< that a report lists
 
-Place place(const toml::source_region& region) {
+Place start_of(const toml::source_region& region) {
   if (region.begin.line == 0) return {};
   return {region.begin.line, region.begin.column};
 }
@@ -67,11 +67,11 @@ std::string out_of_range(const toml::node& node, std::string_view name, double v
 }  // namespace
 
 Place place(const toml::node& node) {
-  return place(node.source());
+  return start_of(node.source());
 }
 
 Place place(const toml::key& key) {
-  return place(key.source());
+  return start_of(key.source());
 }
 
 std::string Faults::report(std::string_view file) const {
@@ -171,6 +171,11 @@ void Section::finish() const {
   }
   for (const std::string& key : missing)
     faults_->add(where_, fmt::format("{} needs '{}'", name_, key));
+}
+
+bool has_control_character(std::string_view text) {
+  return std::ranges::any_of(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
 std::string toml_text(const std::string& text) {

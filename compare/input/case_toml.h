@@ -100,6 +100,8 @@ std::optional<double> read_value(const toml::node& node, std::string_view name,
 std::optional<unsigned int> read_whole_number(const toml::node& node, std::string_view name,
                                               const Range& range, Faults& faults);
 
+bool has_control_character(std::string_view text);
+
 /// The text in quotes, escaped where TOML wants it.
 std::string toml_text(const std::string& text);
 

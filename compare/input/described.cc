@@ -19,11 +19,6 @@ namespace {
 using description::Key;
 using description::Value;
 
-bool has_control_character(std::string_view text) {
-  return std::ranges::any_of(
-      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-}
-
 std::optional<Value> read_as_text(const toml::node& node, const Key& key, Faults& faults) {
   std::optional<std::string> text;
   if (!key.choices.empty())

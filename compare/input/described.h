@@ -27,6 +27,7 @@ bool is_written(const description::Key& key, const description::Value& value);
 /// read. The table is the caller's to finish.
 template <class Owner>
 void read(Section& table, const description::Fields<Owner>& fields, Owner& owner) {
+  for (const description::Field<Owner>& field : fields) table.find(field.name);  // their order
   bool is_known = true;  // which keys belong
   for (const description::Field<Owner>& field : fields) {
     if (!field.condition) {

@@ -141,7 +141,7 @@ Field<Owner> file(std::filesystem::path Owner::*member, std::string_view name, K
   Field<Owner> result;
   result.name = name;
   result.doc = doc;
-  result.initial = std::string();
+  result.initial = (Owner{}.*member).string();
   result.get = [=](const Owner& owner) { return Value((owner.*member).string()); };
   result.set = [=](Owner& owner, const Value& value) {
     owner.*member = std::get<std::string>(value);

@@ -91,7 +91,7 @@ description::Value converted(const Key& option, const description::Value& presen
     fault = fmt::format("is not what it takes ({})", error.what());
   }
   throw InputError(fmt::format("option `{}`: {} {}; a case file would state it as {}", option.name,
-                               shown(value), fault, to_toml(option, present)));
+                               shown(value), fault, compare::input::to_toml(option, present)));
 }
 
 /// `kind`: "option ", or nothing.

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "compare/input/described.h"
 #include "compare/models/estimates.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/models/registry.h"
@@ -304,7 +305,7 @@ py::dict described(const Entries& entries) {
     py::dict options;
     for (const input::Option& option : entry.options)
       options[py::str(std::string(option.name))] =
-          fmt::format("{} (default {})", option.doc, to_toml(option, option.get({})));
+          fmt::format("{} (default {})", option.doc, input::to_toml(option, option.initial));
     result[py::str(entry.id)] =
         py::dict(py::arg("description") = entry.description, py::arg("options") = options);
   }

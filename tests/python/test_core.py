@@ -215,7 +215,7 @@ class BadInput(unittest.TestCase):
             (lambda: cv.Load("contact", force=1), "needs `height`"),
             (lambda: cv.Load("contact", force=1, hight=1), "has no `hight`"),
             (lambda: cv.Cilium(-3e-3, cilium.segments), "diameter"),
-            (lambda: cv.Cilium(3e-3, [cv.Segment(1e-3, 1e6, 0.5)]), "Poisson"),
+            (lambda: cv.Cilium(3e-3, [cv.Segment(1e-3, 1e6, 0.5)]), "poisson_ratio"),
             (lambda: cv.Case("no such file.toml"), "does not exist"),
             (lambda: cv.bend(cilium, contact(1e-3)).B([0, 0]), "shape"),
             (lambda: cv.bend(cilium, contact(1e-3)).B(SENSOR, model="mesh"), "body"),

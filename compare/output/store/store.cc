@@ -19,6 +19,7 @@ using namespace std::chrono_literals;
 constexpr auto flush_interval = 1s;
 /// "CiVb": the file is a store of this form and not another database.
 constexpr std::string_view application_id = "1130976866";
+constexpr std::size_t page_size = 4096;
 constexpr const char* schema = R"(
 BEGIN;
 PRAGMA application_id = 1130976866;
@@ -113,7 +114,7 @@ void Store::fail() const {
                     "with -o DIR",
                     file_.string()));
   if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB || code == SQLITE_ERROR)
-    refuse(file_, "it is damaged: " + reason);
+    refuse_foreign(file_, "it is damaged: " + reason);
   throw CheckpointError(fmt::format(
       "cannot write to `{}`: {}; make room on the disk if it is full, or choose another "
       "folder with -o DIR",
@@ -126,6 +127,9 @@ void Store::execute(const char* sql) const {
 
 bool Store::open(bool fresh) {
   require_regular(file_);
+  std::error_code none;  // SQLite says why there is no size
+  if (const auto size = fs::file_size(file_, none); !none && size > 1 && size % page_size != 0)
+    refuse_foreign(file_, "it is no store of this version of CiliaVal, or damaged: cut short");
   sqlite3* database = nullptr;
   const int opened = sqlite3_open_v2(file_.c_str(), &database,
                                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
@@ -156,16 +160,15 @@ void Store::require_ours() const {
   const bool is_read = statement.step() == SQLITE_ROW;
   if (!is_read && sqlite3_errcode(database_.get()) != SQLITE_NOTADB) fail();
   // A kill may leave a database without tables.
-  if (!is_read ||
-      (statement.column(0) != application_id &&
-       Statement(database_.get(), "SELECT 1 FROM sqlite_schema").step() != SQLITE_DONE))
+  if (!is_read || (statement.column(0) != application_id &&
+                   Statement(database_.get(), "SELECT 1 FROM sqlite_schema").step() != SQLITE_DONE))
     refuse_foreign(file_, "it is no store of this version of CiliaVal, or its start is damaged");
 }
 
 void Store::verify() const {
   Statement structure(database_.get(), "PRAGMA integrity_check(1)");
   if (structure.step() != SQLITE_ROW) fail();
-  if (structure.column(0) != "ok") refuse(file_, "it is damaged: " + structure.column(0));
+  if (structure.column(0) != "ok") refuse_foreign(file_, "it is damaged: " + structure.column(0));
 }
 
 void Store::require_fingerprint(std::string_view owner, const support::Fingerprint& fingerprint) {

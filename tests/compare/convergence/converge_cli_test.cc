@@ -246,9 +246,9 @@ TEST(ConvergeSlow, NoNumberHasAnIntervalWhereTheErrorIsNotKnown) {
   write_case(folder.path(),
              "mechanics = [\"elastica\"]\nfields = [\"potential\"]\n"
              "[models.potential]\nrelative_permeability = 3.0\n");
-  EXPECT_EQ(ciliaval(folder.path(), "converge one.toml --json one.json"), 3);
-  EXPECT_THAT(read_text(folder.path() / "out.txt"),
-              AllOf(HasSubstr("the error of B is not known"), HasSubstr("Verdict: converged in part")));
+  EXPECT_EQ(ciliaval(folder.path(), "converge one.toml --json one.json"), 0);
+  EXPECT_THAT(read_text(folder.path() / "out.txt"), AllOf(HasSubstr("the error of B is not known"),
+                                                          HasSubstr("Verdict: converged in part")));
   const auto json = nlohmann::json::parse(read_text(folder.path() / "one.json"));
   const auto& quantities = json["studies"].back()["quantities"];
   EXPECT_FALSE(quantities.empty());

@@ -15,7 +15,7 @@
 #include "analytic/elastica/elastica.h"
 #include "analytic/rod/field_models.h"
 #include "compare/input/case.h"
-#include "compare/input/case_keys.h"
+#include "compare/input/described.h"
 #include "compare/models/registry.h"
 #include "fem/beam/beam.h"
 #include "fem/calculix/calculix_model.h"

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "compare/input/case_keys.h"
+#include "compare/input/described.h"
 #include "compare/models/registry.h"
 #include "fem/beam/beam.h"
 

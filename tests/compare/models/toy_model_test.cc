@@ -13,7 +13,7 @@
 
 #include "compare/app/commands/commands.h"
 #include "compare/input/case.h"
-#include "compare/input/case_keys.h"
+#include "compare/input/described.h"
 #include "compare/models/registry.h"
 #include "compare/study/case_number.h"
 #include "problem/error.h"

@@ -66,8 +66,11 @@ void write_results_of(const fs::path& directory, const std::string& title) {
 TEST(OutputFolder, PutsTheNewResultsInThePlaceOfTheOld) {
   const TemporaryFolder out;
   const fs::path directory = out.path() / "deep" / "results";
-  write_results_of(directory, "old");
-  output::write_file(directory / "case" / "beam_0007.csv", "only in the old results");
+  {
+    output::OutputFolder folder(directory, "case");
+    output::write_file(folder.path() / "beam_0007.csv", "only in the old results");
+    folder.commit();
+  }
   write_results_of(directory, "new");
   EXPECT_EQ(read_text(directory / "case" / "summary.json"), summary("new"));
   EXPECT_FALSE(fs::exists(directory / "case" / "beam_0007.csv"));
@@ -140,8 +143,8 @@ TEST(OutputFolder, DoesNotTouchWhatAnotherHostWrites) {
 TEST(OutputFolder, PutsOldResultsBackThatWereMovedAsideWhenTheProgramWasKilled) {
   const TemporaryFolder out;
   const fs::path aside = temporary_of(out.path(), "case", this_host(), dead_process(), ".old");
-  fs::create_directory(aside);
-  output::write_file(aside / "summary.json", summary("old"));
+  write_results_of(out.path(), "old");
+  fs::rename(out.path() / "case", aside);
   { const output::OutputFolder folder(out.path(), "case"); }
   EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("old"));
   EXPECT_EQ(entries(out.path()), 1u);

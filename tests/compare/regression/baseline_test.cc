@@ -227,9 +227,6 @@ TEST(JsonFile, RefusesAKeyTwiceInOneObjectAndDepthBeyondItsBound) {
   EXPECT_THROW(parse(nested(101)), InputError);
   EXPECT_THROW(parse(R"({"a": [{"b": 1, "c": {}, "b": 2}]})"), InputError);
   EXPECT_NO_THROW(parse(R"({"a": {"b": 1}, "b": [{"b": 1}, {"b": {"b": 2}}]})"));
-  const Json partly = output::parse_json(R"({"a": {"b": 1}, "b": [2]})", "f", "b");
-  EXPECT_FALSE(partly.contains("b"));
-  EXPECT_EQ(partly["a"]["b"], 1);
 }
 
 regression::CheckReport some_report() {
