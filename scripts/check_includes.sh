@@ -50,5 +50,6 @@ git ls-files '*.h' '*.cc' | xargs awk '
   }
   other != "" && !/^(struct|class) [A-Za-z]+;$/ { complain("namespace " other " in place of " space) }  # forward declarations may
   { other = "" }
-  /^namespace ciliaval/ && key != "tests" && index($2 "::", space "::") != 1 { other = $2 }
+  # The description of a struct stands beside what reads it.
+  /^namespace ciliaval/ && key != "tests" && $2 != "ciliaval::description" && index($2 "::", space "::") != 1 { other = $2 }
   END { exit failed }'

@@ -23,8 +23,8 @@ namespace ciliaval::compare::input {
 
 /// A validation case, as a case file states it (docs/guide/cases.md), in SI units.
 struct Case {
-  std::string name;        ///< a plain file name: the results go to DIR/name
-  std::string title;       ///< for people
+  std::string name;   ///< a plain file name: the results go to DIR/name
+  std::string title;  ///< for people
   Cilium cilium;
   LoadPath load_path;
   /// Values along the path of each parameter of the load type's LoadStatement (a flow's velocity,

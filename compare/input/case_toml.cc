@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <utility>
 
+#include "compare/input/units.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
 
@@ -72,6 +74,17 @@ Place place(const toml::node& node) {
 
 Place place(const toml::key& key) {
   return start_of(key.source());
+}
+
+std::string describe(const Range& range, const Quantity& quantity) {
+  const bool is_angle = quantity.unit == quantity::angle.unit;
+  const std::string_view name = is_angle ? "deg" : quantity.unit;
+  const double factor = is_angle ? 180 / std::numbers::pi : 1;
+  const std::string unit = name.empty() ? "" : fmt::format(" {}", name);
+  const std::string lower = fmt::format("{:g}{}", range.lower * factor, unit);
+  const std::string upper = fmt::format("{:g}{}", range.upper * factor, unit);
+  if (range.excludes_ends) return fmt::format("between {} and {}, both excluded", lower, upper);
+  return fmt::format("from {} to {}", lower, upper);
 }
 
 std::string Faults::report(std::string_view file) const {

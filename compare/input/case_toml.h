@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/input/case_keys.h"
+#include "problem/parameter.h"
 
 namespace ciliaval::compare::input {
 
@@ -41,6 +41,9 @@ class Faults {
   };
   std::vector<Fault> faults_;
 };
+
+/// "from 1e-09 m to 100 m" or "between -1 and 0.5, both excluded"; angles in deg.
+std::string describe(const Range& range, const Quantity& quantity);
 
 /// A table of a file that remembers which keys it was asked for, so that the others can be refused.
 class Section {

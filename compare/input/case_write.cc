@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "compare/input/case.h"
-#include "compare/input/case_keys.h"
 #include "compare/input/case_sections.h"
 #include "compare/input/described.h"
 #include "compare/input/environment/environment.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "compare/input/case.h"
-#include "compare/input/case_keys.h"
 
 namespace ciliaval::compare::study {
 

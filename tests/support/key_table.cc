@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "compare/input/case_keys.h"
+#include "compare/input/case_toml.h"
 #include "compare/input/schema/keys.h"
 
 namespace ciliaval::test {

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "compare/input/case_keys.h"
+#include "compare/input/case_sections.h"
 #include "compare/input/environment/environment.h"
 #include "compare/input/environment/magnet.h"
 #include "compare/input/measurement/measurement.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "compare/input/case_keys.h"
+#include "compare/input/case_sections.h"
 #include "compare/input/described.h"
 #include "compare/input/environment/environment.h"
 #include "compare/input/environment/magnet.h"

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "compare/input/case.h"
-#include "compare/input/case_keys.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/provenance.h"
