@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/input/units.h"
 #include "problem/parameter.h"
 
 namespace ciliaval::compare::input {

@@ -23,32 +23,37 @@ std::string to_toml(const description::Key& key, const description::Value& value
 /// Whether a file states the value.
 bool is_written(const description::Key& key, const description::Value& value);
 
-/// Reads the keys of the struct. Keys that go with a value that has a fault are allowed, and not
-/// read. The table is the caller's to finish.
+/// Reads the keys of the struct. Which keys belong is not known where one that always does has a
+/// fault or is a choice that is missing: they must then be right by themselves alone. The table is
+/// the caller's to finish.
 template <class Owner>
 void read(Section& table, const description::Fields<Owner>& fields, Owner& owner) {
+  using description::Key;
   for (const description::Field<Owner>& field : fields) table.find(field.name);  // their order
-  bool is_known = true;  // which keys belong
-  for (const description::Field<Owner>& field : fields) {
+  const std::size_t before = table.faults().size();
+  const auto read_one = [&](const description::Field<Owner>& field, bool is_required) {
+    const toml::node* node = is_required ? table.require(field.name) : table.find(field.name);
+    const auto value = node != nullptr ? read_value(*node, field, table.faults()) : std::nullopt;
+    if (value) field.set(owner, *value);
+    return node != nullptr;
+  };
+  bool is_known = true;
+  for (const description::Field<Owner>& field : fields)
     if (!field.condition) {
-      const bool is_required = field.absence == description::Key::Absence::fault;
-      const toml::node* node = is_required ? table.require(field.name) : table.find(field.name);
-      const auto value = node != nullptr ? read_value(*node, field, table.faults()) : std::nullopt;
-      if (value) field.set(owner, *value);
-      if (!field.choices.empty() && !value && (node != nullptr || is_required)) is_known = false;
+      const bool is_required = field.absence == Key::Absence::fault;
+      const bool is_there = read_one(field, is_required);
+      if (is_required && !is_there && !field.choices.empty()) is_known = false;
     }
-  }
+  is_known = is_known && table.faults().size() == before;
   for (const description::Field<Owner>& field : fields) {
     if (!field.condition) continue;
-    const bool belongs = is_known && field.belongs(owner);
-    const bool is_required = belongs && field.absence == description::Key::Absence::fault;
-    const toml::node* node = is_required ? table.require(field.name) : table.find(field.name);
-    if (node == nullptr || !is_known) continue;
-    if (!belongs)
+    const bool belongs = field.belongs(owner);
+    const toml::node* node = table.find(field.name);
+    if (is_known && !belongs && node != nullptr)
       table.faults().add(place(*node),
                          fmt::format("'{}' goes with {} only", field.name, field.goes_with));
-    else if (const auto value = read_value(*node, field, table.faults()))
-      field.set(owner, *value);
+    else
+      read_one(field, is_known && belongs && field.absence == Key::Absence::fault);
   }
 }
 

@@ -9,12 +9,13 @@
 
 namespace ciliaval::compare::output {
 
-/// Reads JSON from a regular file of at most 256 MiB, of a `kind` ("baseline", "result") that
+/// Reads JSON from a regular file of at most 256 MiB, of a `kind` ("baseline") that
 /// messages name. Throws InputError `file: what is wrong`.
 nlohmann::ordered_json read_json(const std::filesystem::path& file, std::string_view kind);
 
-/// Parses JSON; `name` is the file in messages. Throws InputError if the text is no JSON, an object has a key twice, or
-/// values are nested more than 100 deep: copying and writing such values recurses.
+/// Parses JSON; `name` is the file in messages. Throws InputError if the text is no JSON, an object
+/// has a key twice, or values are nested more than 100 deep: copying and writing such values
+/// recurses.
 nlohmann::ordered_json parse_json(std::string_view text, std::string_view name);
 
 /// The value, or null; nlohmann itself writes what is not finite as null.

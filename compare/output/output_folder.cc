@@ -61,21 +61,22 @@ bool is_alive(pid_t pid) {
   return pid != getpid() && (kill(pid, 0) == 0 || errno != ESRCH);
 }
 
-/// Takes away what processes of this host that are no longer alive have left. Where one was killed
-/// between its two renames, the old results go back to their place.
-void remove_stale(const fs::path& directory, const fs::path& target, const std::string& name) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
-    const auto pid = owner(entry.path(), name);
-    if (!pid || is_alive(*pid)) continue;
-    if (entry.path().extension() == ".old" && !fs::exists(target))
-      fs::rename(entry.path(), target);
-    else
-      fs::remove_all(entry.path());
-  }
-}
-
 /// The hidden file with the names of all that a run has written, a line each.
 constexpr const char* list_name = ".ciliaval";
+
+/// Takes away what processes of this host that are no longer alive have left. Where one was killed
+/// between its two renames, the new results, which are complete, go to their place.
+void remove_stale(const fs::path& directory, const fs::path& target, const std::string& name) {
+  for (const std::string_view extension : {".tmp", ".old"})
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory)) {
+      const auto pid = owner(entry.path(), name);
+      if (!pid || is_alive(*pid) || entry.path().extension() != extension) continue;
+      if (!fs::exists(target) && fs::exists(entry.path() / list_name))
+        fs::rename(entry.path(), target);
+      else
+        fs::remove_all(entry.path());
+    }
+}
 
 /// What lies in the folder, relative to it, in alphabetical order.
 std::set<fs::path> contents(const fs::path& folder) {
@@ -94,9 +95,11 @@ void write_list(const fs::path& folder) {
 /// The first file in the folder that its list does not have: it is the user's. None in an empty
 /// folder. A page that `ciliaval report` has made may be made again.
 std::optional<fs::path> foreign_file(const fs::path& folder) {
-  std::set<fs::path> ours{list_name, "report.html"};
-  std::ifstream list(folder / list_name);
-  for (std::string line; std::getline(list, line);) ours.insert(line);
+  std::set<fs::path> ours;
+  if (std::ifstream list(folder / list_name); list.is_open()) {
+    ours = {list_name, "report.html"};
+    for (std::string line; std::getline(list, line);) ours.insert(line);
+  }
   for (const fs::path& name : contents(folder))
     if (!ours.contains(name)) return name;
   return std::nullopt;

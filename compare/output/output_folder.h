@@ -9,9 +9,10 @@ namespace ciliaval::compare::output {
 
 /// The results of one case, never half-written: everything goes into the temporary folder
 /// DIR/.NAME.HOST.PID.tmp, which commit() puts in the place of DIR/NAME. Whenever the program ends,
-/// DIR/NAME holds either the old results or the new ones, complete; killed just between the two
-/// renames, the next run puts the old ones back. What the user has put there is never deleted: a
-/// run leaves the list of its own files in DIR/NAME/.ciliaval.
+/// DIR/NAME holds either the old results or the new ones, complete. (If it is killed just between
+/// the two renames that this takes, they have hidden names until the next run of the case.) What
+/// the user has put there is never deleted: a run leaves the list of its own files in
+/// DIR/NAME/.ciliaval.
 class OutputFolder {
  public:
   /// Makes DIR and the temporary folder, and removes temporary folders of the same name that

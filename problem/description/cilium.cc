@@ -8,8 +8,10 @@ namespace {
 
 constexpr std::size_t longest_name = 100;  ///< bytes
 
-// A member that is added and not described does not compile.
-[[maybe_unused]] void every_member(const Segment& segment, const CrossSection& section) {
+// A member that is added does not compile until it stands here; describe it below.
+[[maybe_unused]] void every_member(const Cilium& cilium, const Segment& segment,
+                                   const CrossSection& section) {
+  [[maybe_unused]] const auto& [diameter, segments, of_cilium] = cilium;
   [[maybe_unused]] const auto& [name, length, modulus, ratio, axial, density, transverse] = segment;
   [[maybe_unused]] const auto& [shape, width, height, inner_diameter, orientation] = section;
 }
@@ -96,7 +98,7 @@ const Fields<Cilium>& fields<Cilium>() {
         field(&Cilium::diameter, "diameter", quantity::length, length_range,
               "Diameter d of the section, the same all along; of a tube the outer one.");
     diameter.condition = [](const Cilium& cilium) { return !cilium.is_rectangular(); };
-    diameter.goes_with = "a circle or a tube: a rectangle has 'width' and 'height'; it";
+    diameter.goes_with = "a circle or a tube";
     return required(falls_back_to(diameter, "none of a rectangle"));
   }()};
   return all;

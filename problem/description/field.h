@@ -175,7 +175,9 @@ Field<Owner> falls_back_to(Field<Owner> field, std::string_view words) {
 template <class Owner, class T>
 Field<Owner> only_with(T Owner::*member, std::type_identity_t<T> value, std::string_view other,
                        Field<Owner> field) {
-  field.condition = [=](const Owner& owner) { return owner.*member == value; };
+  field.condition = [=, other_condition = field.condition](const Owner& owner) {
+    return owner.*member == value && (!other_condition || other_condition(owner));
+  };
   field.goes_with = other;
   return field;
 }

@@ -98,8 +98,9 @@ description::Value converted(const Key& option, const description::Value& presen
 void require_in_range(const Key& key, const description::Value& value, std::string_view kind) {
   const auto require = [&](double number) {
     if (key.range.lower != key.range.upper && !key.range.contains(number))
-      throw InputError(fmt::format("{}`{}`: {} is not between {} and {}{}{}", kind, key.name,
-                                   number, key.range.lower, key.range.upper,
+      throw InputError(fmt::format("{}`{}` is {:g}{}{}, but must be {}{}{}", kind, key.name, number,
+                                   key.quantity.unit.empty() ? "" : " ", key.quantity.unit,
+                                   compare::input::describe(key.range, key.quantity),
                                    key.range.reason.empty() ? "" : ": ", key.range.reason));
   };
   if (const auto* number = std::get_if<double>(&value)) require(*number);
@@ -301,7 +302,9 @@ description::Value value_of(py::handle value, const Key& key) {
         }
       },
       key.initial);
-  if (found != key.initial) require_in_range(key, found, "");
+  // A value that stands for one that is not stated may lie beyond.
+  if (key.absence != Key::Absence::nothing || found != key.initial)
+    require_in_range(key, found, "");
   return found;
 }
 

@@ -3,9 +3,11 @@
 
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,8 +83,10 @@ pybind11::object to_python(const description::Key& key, const description::Value
 /// Sets the member that the key describes.
 template <class T>
 void set_field(T& owner, std::string_view name, pybind11::handle value) {
-  for (const description::Field<T>& field : description::fields<T>())
-    if (field.name == name) field.set(owner, value_of(value, field));
+  const auto& fields = description::fields<T>();
+  const auto field = std::ranges::find(fields, name, &description::Field<T>::name);
+  if (field == fields.end()) throw std::logic_error("no field " + std::string(name));
+  field->set(owner, value_of(value, *field));
 }
 
 /// An attribute for each key of the struct.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <utility>
-#include <variant>
 
 #include "compare/input/case_sections.h"
 #include "compare/input/described.h"
@@ -81,7 +80,7 @@ std::vector<std::string_view> values_with(const description::Field<Owner>& field
                                           const description::Fields<Owner>& fields) {
   std::vector<std::string_view> values;
   const auto choice = std::ranges::find_if(
-      fields, [](const description::Key& key) { return !key.choices.empty(); });
+      fields, [](const auto& key) { return !key.choices.empty() && !key.condition; });
   if (!field.condition || choice == fields.end()) return values;
   for (const std::string_view value : choice->choices) {
     Owner owner{};

@@ -4,6 +4,9 @@
 #include <fmt/core.h>
 #include <sqlite3.h>
 
+#include <array>
+#include <cstring>
+#include <fstream>
 #include <initializer_list>
 #include <system_error>
 #include <utility>
@@ -17,14 +20,16 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
 constexpr auto flush_interval = 1s;
-/// "CiVb": the file is a store of this form and not another database.
-constexpr std::string_view application_id = "1130976866";
+constexpr std::string_view magic("SQLite format 3\0", 16);
+/// "CiVa" and where SQLite's file format keeps it: the file is a store and not another database.
+constexpr std::string_view application("CiVa");
+constexpr std::size_t application_place = 68;
 constexpr std::size_t page_size = 4096;
 constexpr const char* schema = R"(
 BEGIN;
-PRAGMA application_id = 1130976866;
+PRAGMA application_id = 0x43695661;
 CREATE TABLE fingerprints (owner TEXT, name TEXT, value TEXT);
-CREATE TABLE entries (owner TEXT, name TEXT, bytes BLOB, PRIMARY KEY (owner, name));
+CREATE TABLE entries (owner TEXT, name TEXT, bytes BLOB, checksum TEXT, PRIMARY KEY (owner, name));
 COMMIT)";
 
 [[noreturn]] void refuse(const fs::path& file, std::string_view reason) {
@@ -54,6 +59,25 @@ void require_regular(const fs::path& file) {
                            : fs::is_directory(status) ? "it is a folder"
                                                       : "it is not a regular file");
   }
+}
+
+/// Throws if the file is another program's. An empty one is not, nor a database of one page, which
+/// has no table: a kill may leave them.
+void require_ours(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in.is_open()) return;  // not there, or SQLite says why
+  std::string start(page_size + 1, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(in.gcount()));
+  if (start.empty()) return;
+  if (start.starts_with(magic) &&
+      (start.size() <= page_size || start.compare(application_place, 4, application) == 0))
+    return;
+  refuse_foreign(file, "it is no store of CiliaVal, or its start is damaged");
+}
+
+std::string checksum_of(std::string_view owner, std::string_view name, std::string_view bytes) {
+  return fmt::format("{:08x}", support::checksum(fmt::format("{}\n{}\n{}", owner, name, bytes)));
 }
 
 /// An SQL statement with its parameters ?1, ?2, …; they must outlive it.
@@ -114,7 +138,7 @@ void Store::fail() const {
                     "with -o DIR",
                     file_.string()));
   if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB || code == SQLITE_ERROR)
-    refuse_foreign(file_, "it is damaged: " + reason);
+    refuse(file_, "it is damaged: " + reason);
   throw CheckpointError(fmt::format(
       "cannot write to `{}`: {}; make room on the disk if it is full, or choose another "
       "folder with -o DIR",
@@ -127,9 +151,7 @@ void Store::execute(const char* sql) const {
 
 bool Store::open(bool fresh) {
   require_regular(file_);
-  std::error_code none;  // SQLite says why there is no size
-  if (const auto size = fs::file_size(file_, none); !none && size > 1 && size % page_size != 0)
-    refuse_foreign(file_, "it is no store of this version of CiliaVal, or damaged: cut short");
+  require_ours(file_);
   sqlite3* database = nullptr;
   const int opened = sqlite3_open_v2(file_.c_str(), &database,
                                      SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
@@ -137,7 +159,6 @@ bool Store::open(bool fresh) {
   if (opened != SQLITE_OK) fail();
   // In this mode SQLite keeps the lock until the file is closed.
   execute("PRAGMA locking_mode = EXCLUSIVE");
-  require_ours();
   if (fresh) {
     sqlite3_db_config(database, SQLITE_DBCONFIG_RESET_DATABASE, 1, nullptr);
     execute("VACUUM");
@@ -155,20 +176,19 @@ bool Store::open(bool fresh) {
   return true;
 }
 
-void Store::require_ours() const {
-  Statement statement(database_.get(), "PRAGMA application_id");
-  const bool is_read = statement.step() == SQLITE_ROW;
-  if (!is_read && sqlite3_errcode(database_.get()) != SQLITE_NOTADB) fail();
-  // A kill may leave a database without tables.
-  if (!is_read || (statement.column(0) != application_id &&
-                   Statement(database_.get(), "SELECT 1 FROM sqlite_schema").step() != SQLITE_DONE))
-    refuse_foreign(file_, "it is no store of this version of CiliaVal, or its start is damaged");
-}
-
 void Store::verify() const {
   Statement structure(database_.get(), "PRAGMA integrity_check(1)");
   if (structure.step() != SQLITE_ROW) fail();
-  if (structure.column(0) != "ok") refuse_foreign(file_, "it is damaged: " + structure.column(0));
+  if (structure.column(0) != "ok") refuse(file_, "it is damaged: " + structure.column(0));
+  if (Statement(database_.get(), "SELECT 1 FROM sqlite_schema").step() == SQLITE_DONE) return;
+  // SQLite has no checksum of contents.
+  Statement all(database_.get(), "SELECT owner, name, bytes, checksum FROM entries");
+  int result = all.step();
+  for (; result == SQLITE_ROW; result = all.step())
+    if (checksum_of(all.column(0), all.column(1), all.column(2)) != all.column(3))
+      refuse(file_, fmt::format("it is damaged: the checksum of {} of {} is wrong", all.column(1),
+                                all.column(0)));
+  if (result != SQLITE_DONE) fail();
 }
 
 void Store::require_fingerprint(std::string_view owner, const support::Fingerprint& fingerprint) {
@@ -203,8 +223,9 @@ Entries Store::read(std::string_view owner) const {
 }
 
 void Store::put(std::string_view owner, std::string_view name, std::string_view bytes) {
-  Statement statement(database_.get(), "INSERT OR REPLACE INTO entries VALUES (?1, ?2, ?3)",
-                      {owner, name});
+  const std::string sum = checksum_of(owner, name, bytes);
+  Statement statement(database_.get(), "INSERT OR REPLACE INTO entries VALUES (?1, ?2, ?4, ?3)",
+                      {owner, name, sum});
   statement.bind(bytes);
   if (statement.step() != SQLITE_DONE) fail();
 }

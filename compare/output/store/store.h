@@ -29,8 +29,8 @@ using Entries = std::map<std::string, std::string>;
 class Store {
  public:
   /// Opens the file, or makes it, and verifies all of it; `fresh` empties it first. Refused are a
-  /// file that another process has, a damaged one, and anything that is not a store; the last two
-  /// are never emptied.
+  /// file that another process has, a damaged one, and anything that is not a store, which is never
+  /// emptied.
   explicit Store(std::filesystem::path file, bool fresh = false);
   /// Deletes the file if it has no entries.
   ~Store();
@@ -54,7 +54,6 @@ class Store {
     void operator()(sqlite3* database) const;
   };
   bool open(bool fresh);
-  void require_ours() const;
   void verify() const;
   void put(std::string_view owner, std::string_view name, std::string_view bytes);
   void execute(const char* sql) const;

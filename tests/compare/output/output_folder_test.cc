@@ -150,6 +150,20 @@ TEST(OutputFolder, PutsOldResultsBackThatWereMovedAsideWhenTheProgramWasKilled) 
   EXPECT_EQ(entries(out.path()), 1u);
 }
 
+// Killed between the two renames: the new results are complete.
+TEST(OutputFolder, PutsNewResultsInPlaceWhereTheOldOnesWereMovedAside) {
+  const TemporaryFolder out;
+  const pid_t pid = dead_process();
+  write_results_of(out.path(), "old");
+  fs::rename(out.path() / "case", temporary_of(out.path(), "case", this_host(), pid, ".old"));
+  write_results_of(out.path() / "elsewhere", "new");
+  fs::rename(out.path() / "elsewhere" / "case", temporary_of(out.path(), "case", this_host(), pid));
+  fs::remove(out.path() / "elsewhere");
+  { const output::OutputFolder folder(out.path(), "case"); }
+  EXPECT_EQ(read_text(out.path() / "case" / "summary.json"), summary("new"));
+  EXPECT_EQ(entries(out.path()), 1u);
+}
+
 TEST(OutputFolder, SaysWhichFolderCannotBeWrittenAndWhy) {
   const TemporaryFolder out;
   output::write_file(out.path() / "file", "a regular file");
@@ -214,6 +228,7 @@ TEST(OutputFolder, RefusesAFolderWithoutItsList) {
   const TemporaryFolder out;
   write_run(out.path());
   fs::remove(out.path() / "case" / ".ciliaval");
+  output::write_file(out.path() / "case" / "report.html", "kept alone, it is the user's too");
   EXPECT_THAT(refusal(out.path()), testing::HasSubstr("`elastica_0000.csv`"));
   EXPECT_TRUE(fs::exists(out.path() / "case" / "summary.json"));
 }

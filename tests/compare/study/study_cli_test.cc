@@ -37,7 +37,7 @@ TEST(StudyCommand, ItsNumbersAreThoseOfRun) {
       run_program(folder.path(), "study varied.study.toml -o out --json again.json --quiet");
   ASSERT_EQ(study.code, 0) << study.err;
   EXPECT_EQ(study.err, "");
-  EXPECT_THAT(study.out, HasSubstr("Along E1:"));
+  EXPECT_THAT(study.out, HasSubstr("E1(MPa)"));
   const fs::path out = folder.path() / "out/varied";
   for (const char* name : {"study.csv", "dB_x.svg", "dB_y.svg", "dB_z.svg", "dB_norm.svg"})
     EXPECT_TRUE(fs::exists(out / name)) << name;
