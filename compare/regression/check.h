@@ -42,8 +42,8 @@ struct CheckReport {
 /// not computed, or a result that has no entry; another unit or status; a number that is not
 /// finite, or differs by more than its tolerance from the accepted value or from the reference; a
 /// tolerance wider than its models' accuracy class, a reference's wider than a tenth of its
-/// group; no number at all. `asked` is the case as the file states it. Models of it that `result` leaves
-/// out on purpose are in `left_out`; all others must be there.
+/// group; no number at all. `asked` is the case as the file states it. Models of it that `result`
+/// leaves out on purpose are in `left_out`; all others must be there.
 CheckReport check(const input::Case& asked, const models::CaseResult& result,
                   const Baseline& baseline, const std::vector<std::string>& left_out = {});
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -72,7 +73,8 @@ struct Field : Key {
     return is_whole_number() ? std::get<unsigned int>(value) : std::get<double>(value);
   }
   void set_number(Owner& owner, double value) const {
-    set(owner, is_whole_number() ? Value(static_cast<unsigned int>(value + 0.5)) : Value(value));
+    set(owner,
+        is_whole_number() ? Value(static_cast<unsigned int>(std::lround(value))) : Value(value));
   }
 };
 

@@ -104,7 +104,7 @@ TEST(EnvironmentCase, BendsInThePlaneOfGravityWithoutAHorizontalField) {
 TEST(EnvironmentCase, SurroundsEveryStepOfALoad) {
   const input::Case c =
       read(loaded("type = \"contact\"\nforce = [\"1 mN\", \"2 mN\"]\nheight = \"16 "
-                     "mm\"\nazimuth = \"90 deg\""));
+                  "mm\"\nazimuth = \"90 deg\""));
   ASSERT_EQ(c.load_path.size(), 2U);
   for (const Load& load : c.load_path) {
     EXPECT_TRUE(load.is<ContactLoad>());
@@ -116,9 +116,9 @@ TEST(EnvironmentCase, GivesEachStepItsField) {
   const std::string text = replaced(weight_and_field, one_field, three_fields);
   const input::Case listed =
       read(loaded("type = \"section\"\nforce = [\"1 mN\", \"2 mN\", \"3 mN\"]\narclength = \"20 "
-                     "mm\"\nazimuth = "
-                     "\"90 deg\"",
-                     text));
+                  "mm\"\nazimuth = "
+                  "\"90 deg\"",
+                  text));
   ASSERT_EQ(listed.load_path.size(), 3U);
   EXPECT_EQ(magnitude(listed.load_path[2]), 3e-3);
   EXPECT_EQ(listed.load_path[2].environment().uniform_field.y(), -0.01);
@@ -249,7 +249,7 @@ TEST(EnvironmentCase, ListsAsManyFieldsAsTheLoadHasSteps) {
 
 TEST(EnvironmentCase, IsFoundByItsName) {
   EXPECT_THAT(faults_of(replaced(loaded("type = \"section\"\nforce = \"1 mN\"\narclength = "
-                                           "\"20 mm\""),
+                                        "\"20 mm\""),
                                  "[environment]", "[enviroment]")),
               StartsWith("bad.toml:18:2: unknown key 'enviroment' in the case file (valid: case, "
                          "cilium, load, environment, surface, sensor, readings, signal, models, "
@@ -298,7 +298,7 @@ TEST(EnvironmentCase, TheElasticaTellsItsPlane) {
 
 TEST(EnvironmentCase, TheHeightFormTakesNone) {
   EXPECT_THAT(faults_of(loaded("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
-                                  "azimuth = \"90 deg\"") +
+                               "azimuth = \"90 deg\"") +
                         "[models.elastica]\nform = \"height\"\n"),
               HasSubstr("bad.toml:31:8: the elastica's form 'height' (Eq. 1-4) takes no "
                         "[environment]"));
@@ -306,7 +306,7 @@ TEST(EnvironmentCase, TheHeightFormTakesNone) {
 
 TEST(EnvironmentCase, TheElasticasCorrectedJointsTakeNone) {
   EXPECT_THAT(faults_of(loaded("type = \"contact\"\nforce = \"1 mN\"\nheight = \"16 mm\"\n"
-                                  "azimuth = \"90 deg\"") +
+                               "azimuth = \"90 deg\"") +
                         "[models.elastica]\njoints = \"corrected\"\n"),
               HasSubstr("bad.toml:31:10: the elastica takes no corrected joints in an "
                         "[environment]: use 'beam'"));

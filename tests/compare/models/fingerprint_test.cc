@@ -199,8 +199,8 @@ bool is_of_a_file(const Key& key) {
 bool is_changed_with_others(std::string_view key) {
   for (const std::string_view with_others :
        {"cilium.section.shape", "load.type", "environment.magnet.shape", "surface.profile",
-        "environment.magnet.rotation", "measurement.quantity",
-        "models.solid.tolerance", "models.solid.tolerance_of"})
+        "environment.magnet.rotation", "measurement.quantity", "models.solid.tolerance",
+        "models.solid.tolerance_of"})
     if (key == with_others) return true;
   return false;
 }
