@@ -33,7 +33,7 @@ struct Key {
     program,  ///< with a slash beside the case file, else in PATH
     folder    ///< written to, beside the case file; empty: nothing is kept
   };
-  /// What a file says that leaves the key out.
+  /// A file that leaves the key out means this.
   enum class Absence {
     its_initial_value,  ///< which is written back
     nothing,            ///< the member's initial value stands for it, and is not written back
@@ -62,7 +62,7 @@ template <class Owner>
 struct Field : Key {
   std::function<Value(const Owner&)> get{};
   std::function<void(Owner&, const Value&)> set{};
-  /// Whether the key means anything beside the other ones; empty: it always does. A file that
+  /// True where the key means anything beside the other ones; empty: it always does. A file that
   /// states it where it does not is refused, and it is not written back.
   std::function<bool(const Owner&)> condition{};
 
@@ -100,14 +100,14 @@ Field<Owner> field(T Owner::*member, std::string_view name, const Quantity& quan
   return result;
 }
 
-/// The same without a unit.
+/// A key that is a plain number or several.
 template <class Owner, class T>
 Field<Owner> field(T Owner::*member, std::string_view name, const Range& range,
                    std::string_view doc) {
   return field(member, name, quantity::number, range, doc);
 }
 
-/// The same without a range: a flag, a text.
+/// A key that is a flag or a text.
 template <class Owner, class T>
 Field<Owner> field(T Owner::*member, std::string_view name, std::string_view doc) {
   return field(member, name, quantity::number, Range{}, doc);
@@ -152,6 +152,7 @@ Field<Owner> file(std::filesystem::path Owner::*member, std::string_view name, K
   return result;
 }
 
+/// The key, which a file must state.
 template <class Owner>
 Field<Owner> required(Field<Owner> field) {
   field.absence = Key::Absence::fault;
@@ -166,7 +167,7 @@ Field<Owner> optional(Field<Owner> field, std::string_view words) {
   return field;
 }
 
-/// With words for its initial value: "0 deg".
+/// The key, whose initial value has these words in documentation: "0 deg".
 template <class Owner>
 Field<Owner> falls_back_to(Field<Owner> field, std::string_view words) {
   field.fallback = words;
@@ -184,7 +185,7 @@ Field<Owner> only_with(T Owner::*member, std::type_identity_t<T> value, std::str
   return field;
 }
 
-/// The fields of a part as those of the whole; `part` gives a reference to it.
+/// A field of a part, as one of the whole; `part` gives a reference to the part.
 template <class Whole, class Part, class Function>
 Field<Whole> of_part(const Field<Part>& field, const Function& part) {
   Field<Whole> result;
