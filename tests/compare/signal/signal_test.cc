@@ -200,6 +200,12 @@ TEST(Record, FiltersEachComponentByTheChosenPhase) {
   }
 }
 
+TEST(Record, WithoutACutOffTheRecordIsTheRawOne) {
+  const Signal result = noise({.sampling_rate = 50, .noise = 1, .seed = 2, .order = 3}, 10);
+  EXPECT_GT(result.raw.size(), 400U);
+  EXPECT_EQ(result.filtered, result.raw);
+}
+
 TEST(Record, BadInputsAreInputErrors) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
@@ -237,7 +243,7 @@ TEST(Record, BadInputsAreInputErrors) {
   for (const double bad : {-1e-9, nan, infinity})
     EXPECT_THAT(with([&](SignalOptions& o) { o.noise = bad; }), HasSubstr("standard deviation"));
   EXPECT_THAT(with([](SignalOptions& o) { o.order = 21; }), HasSubstr("1 to 20, not 21"));
-  for (const double bad : {0.0, -1.0, 25.0, nan})
+  for (const double bad : {-1.0, 1e-9, 25.0, nan})
     EXPECT_THAT(with([&](SignalOptions& o) { o.cutoff = bad; }), HasSubstr("the cut-off"));
   EXPECT_THAT(with([](SignalOptions& o) { o.sampling_rate = 0.4; }),
               HasSubstr("shorter than one interval"));
