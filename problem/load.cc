@@ -14,37 +14,69 @@ using Site = LoadParameter::Site;
 constexpr double milli = 1e3;                                     ///< from SI to mN or mm
 constexpr double two_turns = 4 * std::numbers::pi * (1 + 1e-12);  ///< rad, 720 deg included
 
-constexpr LoadParameter parameter(std::string_view name, const Quantity& quantity,
-                                  const Range& range, std::string_view fallback,
-                                  std::string_view doc, std::string_view words,
-                                  double display_factor = 1, double fallback_value = 0,
-                                  Site site = Site::none) {
-  return {
-      {"load", name, quantity, range, fallback, doc}, words, display_factor, fallback_value, site};
-}
-
 constexpr Range any_magnitude{0, 1e9, false, turn_round};
 
-constexpr LoadParameter force_parameter =
-    parameter("force", quantity::force, any_magnitude, "",
-              "`contact`, `section`: the horizontal force.", ", force {:g} mN", milli);
-constexpr LoadParameter contact_height_parameter = parameter(
-    "height", quantity::length, length_range, "",
-    "`contact`, `probe`: the height z at which the force stays; between the base and the tip.",
-    " at height {:g} mm", milli, 0, Site::height);
-constexpr LoadParameter azimuth_parameter =
-    parameter("azimuth", quantity::angle,
-              {-two_turns, two_turns, false, "more than two turns is taken for a slip in the unit"},
-              "0 deg", "Direction of the load in the plane, from +x towards +y.",
-              ", azimuth {:g} deg", 180 / std::numbers::pi);
+/// The parameter, for which a value stands that these words say.
+LoadParameter falls_back_to(LoadParameter parameter, double value, std::string_view words) {
+  parameter.absence = description::Key::Absence::its_initial_value;
+  parameter.initial = value;
+  parameter.fallback = words;
+  return parameter;
+}
+
+LoadParameter force_parameter() {
+  return load_parameter("force", quantity::force, any_magnitude,
+                        "`contact`, `section`: the horizontal force.", ", force {:g} mN", milli);
+}
+
+LoadParameter contact_height_parameter() {
+  return load_parameter(
+      "height", quantity::length, length_range,
+      "`contact`, `probe`: the height z at which the force stays; between the base and the tip.",
+      " at height {:g} mm", milli, Site::height);
+}
+
+LoadParameter azimuth_parameter() {
+  return falls_back_to(load_parameter("azimuth", quantity::angle,
+                                      {-two_turns, two_turns, false,
+                                       "more than two turns is taken for a slip in the unit"},
+                                      "Direction of the load in the plane, from +x towards +y.",
+                                      ", azimuth {:g} deg", 180 / std::numbers::pi),
+                       0, "0 deg");
+}
+
+/// One of the values of a statement.
+description::Field<LoadStatement::Values> stated(std::size_t place, std::string_view name,
+                                                 const Quantity& quantity, const Range& range,
+                                                 double value, std::string_view fallback,
+                                                 std::string_view doc) {
+  using Values = LoadStatement::Values;
+  description::Field<Values> field;
+  field.name = name;
+  field.quantity = quantity;
+  field.range = range;
+  field.doc = doc;
+  field.initial = value;
+  field.fallback = fallback;
+  field.is_along_path = true;
+  field.get = [place](const Values& values) { return description::Value(values.at(place)); };
+  field.set = [place](Values& values, const description::Value& v) {
+    values.at(place) = std::get<double>(v);
+  };
+  return field;
+}
 
 /// q = ½ρv²C_d d (paper, Eq. 11), N/m, of v, ρ and C_d.
-double drag_per_height(std::span<const double> values, const Cilium& cilium) {
+double drag_per_height(const LoadStatement::Values& values, const Cilium& cilium) {
   if (cilium.is_rectangular())
     throw InputError(
         "the drag of a rectangle is not known from a velocity: state force_per_height");
   const double velocity = values[0];
   return values[1] * velocity * velocity * values[2] * cilium.diameter / 2;
+}
+
+double minus_the_clearance(const LoadStatement::Values& values, const Cilium& /*cilium*/) {
+  return -values[0];
 }
 
 std::vector<const LoadType*>& all_types() {
@@ -72,11 +104,49 @@ std::optional<double> value_at(const Load& load, Site site) {
 
 }  // namespace
 
+LoadParameter load_parameter(std::string_view name, const Quantity& quantity, const Range& range,
+                             std::string_view doc, std::string_view words, double display_factor,
+                             Site site) {
+  LoadParameter result;
+  result.name = name;
+  result.quantity = quantity;
+  result.range = range;
+  result.doc = doc;
+  result.initial = 0.0;
+  result.absence = description::Key::Absence::fault;
+  result.is_along_path = true;
+  result.words = words;
+  result.display_factor = display_factor;
+  result.site = site;
+  return result;
+}
+
+LoadType::LoadType(std::string_view its_name, std::string_view its_description,
+                   std::vector<LoadParameter> its_parameters,
+                   std::optional<LoadStatement> its_statement,
+                   std::optional<std::pair<std::string_view, std::string_view>> its_result)
+    : name(its_name),
+      description(its_description),
+      parameters(std::move(its_parameters)),
+      statement(std::move(its_statement)),
+      result(std::move(its_result)) {
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    parameters[i].get = [i](const Load& load) { return description::Value(load.values()[i]); };
+    parameters[i].set = [i](Load& load, const description::Value& value) {
+      load.set_value(i, std::get<double>(value));
+    };
+  }
+}
+
+description::Fields<Load> LoadType::keys(bool with_magnitude) const {
+  return {parameters.begin() + (with_magnitude ? 0 : 1), parameters.end()};
+}
+
 const LoadType& ContactLoad::type() {
   static const LoadType type{
       "contact",
       "horizontal force that stays at a height while the cilium slides under it",
-      {force_parameter, contact_height_parameter, azimuth_parameter}};
+      {force_parameter(), contact_height_parameter(), azimuth_parameter()}};
   return type;
 }
 
@@ -84,20 +154,21 @@ const LoadType& FlowLoad::type() {
   static const LoadType type{
       "flow",
       "horizontal force per unit of current height: drag",
-      {parameter("force_per_height", quantity::force_per_length, any_magnitude, "from `velocity`",
-                 "`flow`: the force q per unit of current height; this or `velocity`.",
-                 ", {:g} N per metre of height"),
-       azimuth_parameter},
+      {falls_back_to(
+           load_parameter("force_per_height", quantity::force_per_length, any_magnitude,
+                          "`flow`: the force q per unit of current height; this or `velocity`.",
+                          ", {:g} N per metre of height"),
+           0, "from `velocity`"),
+       azimuth_parameter()},
       LoadStatement{
-          {parameter("velocity", quantity::velocity, {0, 1e4, false, turn_round}, "none",
-                     "`flow`: the fluid's velocity v, q = density v^2 drag_coefficient d/2 "
-                     "(paper, Eq. 11).",
-                     ""),
-           parameter("density", quantity::density, {1e-9, 1e6, false, unit_slip}, "1000 kg/m^3",
-                     "`flow` by `velocity`: the fluid's density.", "", 1, 1000),
-           parameter("drag_coefficient", quantity::number,
-                     {1e-6, 1e6, false, "a drag coefficient is near 1"}, "1",
-                     "`flow` by `velocity`: the drag coefficient C_d.", "", 1, 1)},
+          {stated(0, "velocity", quantity::velocity, {0, 1e4, false, turn_round}, 0, "none",
+                  "`flow`: the fluid's velocity v, q = density v^2 drag_coefficient d/2 "
+                  "(paper, Eq. 11)."),
+           stated(1, "density", quantity::density, {1e-9, 1e6, false, unit_slip}, 1000,
+                  "1000 kg/m^3", "`flow` by `velocity`: the fluid's density."),
+           stated(2, "drag_coefficient", quantity::number,
+                  {1e-6, 1e6, false, "a drag coefficient is near 1"}, 1, "1",
+                  "`flow` by `velocity`: the drag coefficient C_d.")},
           &drag_per_height}};
   return type;
 }
@@ -106,11 +177,11 @@ const LoadType& SectionLoad::type() {
   static const LoadType type{
       "section",
       "dead force on one material cross-section",
-      {force_parameter,
-       parameter("arclength", quantity::length, length_range, "",
-                 "`section`: the arc length of the loaded section; not beyond the tip.",
-                 " at arc length {:g} mm", milli, 0, Site::arclength),
-       azimuth_parameter}};
+      {force_parameter(),
+       load_parameter("arclength", quantity::length, length_range,
+                      "`section`: the arc length of the loaded section; not beyond the tip.",
+                      " at arc length {:g} mm", milli, Site::arclength),
+       azimuth_parameter()}};
   return type;
 }
 
@@ -118,9 +189,9 @@ const LoadType& DeadLoad::type() {
   static const LoadType type{
       "dead",
       "dead force per unit of reference length",
-      {parameter("force_per_length", quantity::force_per_length, any_magnitude, "",
-                 "`dead`: the force per reference length.", ", {:g} N per metre of length"),
-       azimuth_parameter}};
+      {load_parameter("force_per_length", quantity::force_per_length, any_magnitude,
+                      "`dead`: the force per reference length.", ", {:g} N per metre of length"),
+       azimuth_parameter()}};
   return type;
 }
 
@@ -128,13 +199,13 @@ const LoadType& ProbeLoad::type() {
   static const LoadType type{
       "probe",
       "displacement of the contact point at a height: the contact force is a result",
-      {parameter("displacement", quantity::length,
-                 {0, 100, false,
-                  "a displacement is not negative (to turn it round, add 180 deg to the azimuth) "
-                  "and a larger one is taken for a slip in the unit"},
-                 "", "`probe`: the deflection of the contact point; the force is a result.",
-                 ", displacement {:g} mm", milli),
-       contact_height_parameter, azimuth_parameter},
+      {load_parameter("displacement", quantity::length,
+                      {0, 100, false,
+                       "a displacement is not negative (to turn it round, add 180 deg to the "
+                       "azimuth) and a larger one is taken for a slip in the unit"},
+                      "`probe`: the deflection of the contact point; the force is a result.",
+                      ", displacement {:g} mm", milli),
+       contact_height_parameter(), azimuth_parameter()},
       std::nullopt,
       {{"force",
         "'force' is a result of the load type 'probe', whose 'displacement' is given: leave it out "
@@ -146,24 +217,26 @@ const LoadType& SweepLoad::type() {
   static const LoadType type{
       "sweep",
       "a rigid surface that passes over the tip: [surface]",
-      {parameter("interference", quantity::length, {-100, 100, false, unit_slip},
-                 "from `clearance`",
-                 "`sweep`: how far the surface (profile height 0) lies below the straight "
-                 "cilium's tip; this or `clearance`.",
-                 ", interference {:g} mm", milli),
-       parameter(SweepLoad::travel_key, quantity::length, {0, 100, false, unit_slip}, "",
-                 "`sweep`: how far the surface moves along the azimuth.", ", travel {:g} mm",
-                 milli),
-       parameter("speed", quantity::velocity, {1e-9, 1e3, false, unit_slip}, "10 mm/s",
-                 "`sweep`: of the surface; it makes times of the travel, nothing else.", "", 1,
-                 0.01),
-       azimuth_parameter},
+      {falls_back_to(
+           load_parameter("interference", quantity::length, {-100, 100, false, unit_slip},
+                          "`sweep`: how far the surface (profile height 0) lies below the straight "
+                          "cilium's tip; this or `clearance`.",
+                          ", interference {:g} mm", milli),
+           0, "from `clearance`"),
+       load_parameter("travel", quantity::length, {0, 100, false, unit_slip},
+                      "`sweep`: how far the surface moves along the azimuth.", ", travel {:g} mm",
+                      milli),
+       falls_back_to(
+           load_parameter("speed", quantity::velocity, {1e-9, 1e3, false, unit_slip},
+                          "`sweep`: of the surface; it makes times of the travel, nothing else.",
+                          ""),
+           0.01, "10 mm/s"),
+       azimuth_parameter()},
       LoadStatement{
-          {parameter("clearance", quantity::length, {-100, 100, false, unit_slip}, "none",
-                     "`sweep`: how far the surface lies above the straight cilium's "
-                     "tip, minus the interference.",
-                     "")},
-          [](std::span<const double> values, const Cilium& /*cilium*/) { return -values[0]; }}};
+          {stated(0, "clearance", quantity::length, {-100, 100, false, unit_slip}, 0, "none",
+                  "`sweep`: how far the surface lies above the straight cilium's "
+                  "tip, minus the interference.")},
+          &minus_the_clearance}};
   return type;
 }
 
@@ -171,10 +244,12 @@ const LoadType& EnvironmentLoad::type() {
   static const LoadType type{
       "environment",
       "nothing but the environment: weight, field",
-      {parameter("scale", quantity::number, {0, 1e6, false, turn_round}, "1",
-                 "`environment`: a factor on gravity and field of [environment].",
-                 ", environment times {:g}", 1, 1),
-       azimuth_parameter}};
+      {falls_back_to(load_parameter("scale", quantity::number, {0, 1e6, false, turn_round},
+                                    "`environment`: a factor on gravity and field of "
+                                    "[environment].",
+                                    ", environment times {:g}"),
+                     1, "1"),
+       azimuth_parameter()}};
   return type;
 }
 
@@ -192,18 +267,17 @@ const LoadType* find_load_type(std::string_view name) {
   return nullptr;
 }
 
-Load::Load(const LoadType& type, std::span<const double> values,
-           std::shared_ptr<const surroundings::Surface> surface)
-    : type_(&type), surface_(std::move(surface)) {
-  if (values.size() != count() || count() > most_parameters)
+Load::Load(const LoadType& type) : type_(&type) {
+  if (count() > most_parameters)
     throw InputError("the load type '" + std::string(type.name) + "' has " +
-                     std::to_string(count()) + " parameters, not " + std::to_string(values.size()));
-  std::copy(values.begin(), values.end(), values_.begin());
+                     std::to_string(count()) + " parameters, more than " +
+                     std::to_string(most_parameters));
+  for (const LoadParameter& parameter : type.parameters) parameter.set(*this, parameter.initial);
 }
 
 std::optional<double> Load::value(std::string_view parameter) const {
   for (std::size_t i = 0; i < count(); ++i)
-    if (type_->parameters[i].key.name == parameter) return values_[i];
+    if (type_->parameters[i].name == parameter) return values_[i];
   return std::nullopt;
 }
 
@@ -225,7 +299,7 @@ double magnitude(const Load& load) {
 }
 
 std::string_view magnitude_unit(const Load& load) {
-  return load.type().parameters.front().key.quantity.unit;
+  return load.type().parameters.front().quantity.unit;
 }
 
 std::optional<double> contact_height(const Load& load) {
@@ -312,25 +386,26 @@ void require_one_surface(const LoadPath& path) {
       throw InputError("the steps of a sweep have one surface and one azimuth");
 }
 
+Load with_travel(const Load& sweep, double travel) {
+  SweepLoad place = sweep.as<SweepLoad>().value();
+  place.travel = travel;
+  return with_environment(Load(place, sweep.surface()), sweep.environment());
+}
+
 LoadPath sweep_path(const Load& start, const SweepWay& way) {
   if (way.samples < 2) throw InputError("a sweep needs two samples or more");
-  constexpr std::size_t travel = 1;
-  const double from = start.values()[travel];
+  const double from = start.as<SweepLoad>().value().travel;
   LoadPath path;
-  for (std::size_t i = 0; i < way.samples; ++i) {
-    path.push_back(start);
-    path.back().set_value(
-        travel,
-        std::lerp(from, way.travel, static_cast<double>(i) / static_cast<double>(way.samples - 1)));
-  }
-  for (std::size_t i = way.samples - 1; way.there_and_back && i > 0; --i)
+  for (unsigned int i = 0; i < way.samples; ++i)
+    path.push_back(with_travel(start, std::lerp(from, way.travel, i / (way.samples - 1.0))));
+  for (unsigned int i = way.samples - 1; way.there_and_back && i > 0; --i)
     path.push_back(path[i - 1]);
   return path;
 }
 
 SweepWay sweep_way(const LoadPath& path) {
   const auto travel = [&](std::size_t i) { return path[i].as<SweepLoad>().value().travel; };
-  const std::size_t n = path.size();
+  const auto n = static_cast<unsigned int>(path.size());
   if (n > 2 && travel(n - 1) == travel(0)) return {travel(n / 2), n / 2 + 1, true};
   return {travel(n - 1), n, false};
 }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "problem/cilium.h"
+#include "problem/description/field.h"
 #include "problem/parameter.h"
 #include "problem/surroundings/environment.h"
 #include "problem/surroundings/surface.h"
@@ -22,21 +23,27 @@
 
 namespace ciliaval {
 
-/// One parameter of a load type.
-struct LoadParameter {
-  QuantityKey key;            ///< name, quantity, range and meaning in [load]
+class Load;
+
+/// One parameter of a load type: a key of [load].
+struct LoadParameter : description::Field<Load> {
   std::string_view words;     ///< how a table says it, as a format of the value: "force {:g} mN"
   double display_factor = 1;  ///< from SI to the unit of `words`
-  double fallback = 0;        ///< SI value that stands for a missing key, if key.fallback says so
   enum class Site { none, height, arclength };
   Site site = Site::none;  ///< height: 0 < z < L; arclength: 0 < S ≤ L
 };
+/// A parameter that a file must state; the load type tells its place among the others.
+LoadParameter load_parameter(std::string_view name, const Quantity& quantity, const Range& range,
+                             std::string_view doc, std::string_view words,
+                             double display_factor = 1,
+                             LoadParameter::Site site = LoadParameter::Site::none);
 
-/// Other parameters from which a file may state the magnitude of a load.
+/// Values from which a file may state the magnitude of a load.
 struct LoadStatement {
-  std::vector<LoadParameter> parameters;  ///< the first is required
+  using Values = std::vector<double>;
+  description::Fields<Values> parameters;  ///< the first is required
   /// The magnitude, SI, from their values.
-  double (*magnitude)(std::span<const double> values, const Cilium& cilium) = nullptr;
+  double (*magnitude)(const Values& values, const Cilium& cilium) = nullptr;
 };
 
 /// Name, description and parameters of a load type: the one declaration from which case files,
@@ -45,9 +52,15 @@ struct LoadType {
   std::string_view name;
   std::string_view description;           ///< a line of `ciliaval list`
   std::vector<LoadParameter> parameters;  ///< the magnitude first, the azimuth last
-  std::optional<LoadStatement> statement{};
+  std::optional<LoadStatement> statement;
   /// A key that [load] must not have, and why.
-  std::optional<std::pair<std::string_view, std::string_view>> result{};
+  std::optional<std::pair<std::string_view, std::string_view>> result;
+
+  LoadType(std::string_view name, std::string_view description,
+           std::vector<LoadParameter> parameters, std::optional<LoadStatement> statement = {},
+           std::optional<std::pair<std::string_view, std::string_view>> result = {});
+  /// The parameters as keys, or all but the magnitude.
+  description::Fields<Load> keys(bool with_magnitude = true) const;
 };
 
 /// A plain struct of doubles with the parameters of a load type, in the order of its declaration.
@@ -107,7 +120,6 @@ struct ProbeLoad {
 /// A rigid surface that passes over the cilium along e: z = L − δ − p(x − s), x along e, p the
 /// height of its profile. The steps of a path lead from place to place on straight lines.
 struct SweepLoad {
-  static constexpr std::string_view travel_key = "travel";
   static const LoadType& type();
   double interference =
       0;               ///< δ, m, how far p = 0 lies below the straight cilium's tip; may be < 0
@@ -140,9 +152,8 @@ class Load {
   Load(const SweepLoad& load, std::shared_ptr<const surroundings::Surface> surface) : Load(load) {
     surface_ = std::move(surface);
   }
-  /// Throws InputError unless there are as many values as the type has parameters.
-  Load(const LoadType& type, std::span<const double> values,
-       std::shared_ptr<const surroundings::Surface> surface = nullptr);
+  /// With the values that stand for keys that are not stated.
+  explicit Load(const LoadType& type);
 
   const LoadType& type() const { return *type_; }
   std::span<const double> values() const { return std::span(values_).first(count()); }
@@ -151,6 +162,9 @@ class Load {
   void set_value(std::size_t parameter, double value) { values_.at(parameter) = value; }
   /// The surface of a sweep; null of another load.
   const std::shared_ptr<const surroundings::Surface>& surface() const { return surface_; }
+  void set_surface(std::shared_ptr<const surroundings::Surface> surface) {
+    surface_ = std::move(surface);
+  }
   /// What surrounds the cilium; see acting_environment() for what acts on it.
   const surroundings::Environment& environment() const { return environment_; }
   void set_environment(const surroundings::Environment& environment) { environment_ = environment; }
@@ -230,8 +244,8 @@ void require_one_surface(const LoadPath& path);
 
 /// The way of a sweep.
 struct SweepWay {
-  double travel = 0;        ///< of the last place (if there_and_back, of the one in the middle), m
-  std::size_t samples = 2;  ///< places on the way there, both ends included
+  double travel = 0;  ///< of the last place (if there_and_back, of the one in the middle), m
+  unsigned int samples = 101;  ///< places on the way there, both ends included
   bool there_and_back = false;
 };
 /// Steps at places of equal distance, from `start` on: there, and back again over the same places.
@@ -239,5 +253,7 @@ struct SweepWay {
 LoadPath sweep_path(const Load& start, const SweepWay& way);
 /// The way of a path that sweep_path() made.
 SweepWay sweep_way(const LoadPath& path);
+/// The load at another place of the sweep, m.
+Load with_travel(const Load& sweep, double travel);
 
 }  // namespace ciliaval

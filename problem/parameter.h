@@ -42,16 +42,6 @@ struct Range {
   }
 };
 
-/// A quantity or number of a case file: its place, range, default and meaning.
-struct QuantityKey {
-  std::string_view table;  ///< "cilium.segment"
-  std::string_view name;   ///< "length"
-  Quantity quantity;
-  Range range;
-  std::string_view fallback;  ///< default as the file would state it; empty: the key is required
-  std::string_view doc;       ///< one sentence
-};
-
 inline constexpr std::string_view unit_slip =
     "a value beyond is taken for a slip in the sign or the unit";
 inline constexpr Range length_range{1e-9, 100, false, unit_slip};

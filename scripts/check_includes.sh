@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # Folder: what it may include beside itself. The longest folder that fits a file counts; tests may include everything.
-shared="problem compare/input compare/models compare/output"
+shared="problem compare/input compare/models compare/results compare/output"
 export rules="
 problem:
 analytic: problem
@@ -17,7 +17,8 @@ fem/solid: problem meshes fem
 fem/calculix: problem meshes fem
 compare/input: problem compare/signal
 compare/models: problem analytic fem meshes compare/input
-compare/output: problem meshes analytic/rod/field_models.h analytic/sources/push_forward.h compare/input compare/models ciliaval_version.h
+compare/results: problem compare/input compare/models
+compare/output: problem compare/results meshes analytic/rod/field_models.h analytic/sources/push_forward.h compare/input compare/models ciliaval_version.h
 compare/regression: $shared
 compare/convergence: $shared compare/regression
 compare/budget: $shared analytic/elastica/elastica.h analytic/rod/field_models.h analytic/body/mesh_field.h fem/beam/beam.h fem/potential/potential.h

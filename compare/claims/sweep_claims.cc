@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -54,7 +55,7 @@ models::CaseResult run(const input::Case& problem, const Progress& progress) {
 }
 
 Series series_of(const models::CaseResult& result) {
-  const surroundings::Surface& surface = *result.problem.surface.surface;
+  const surroundings::Surface& surface = *result.problem.load_path.front().surface();
   const double plateau = std::get<surroundings::TrapezoidProfile>(surface.profile).height;
   surroundings::Surface level = surface;
   level.tilt = 0;
@@ -108,26 +109,28 @@ std::vector<Passage> passages(const Series& series) {
 /// The shipped surface with other numbers.
 struct Variation {
   std::string_view name;
-  std::vector<std::pair<std::string_view, double>> values;
+  std::function<void(surroundings::StatedSurface&)> change;
 };
 
 input::Case varied(input::Case problem, const Variation& variation) {
-  for (const auto& [key, value] : variation.values)
-    problem.surface.surface = input::sweep::with_value(*problem.surface.surface, key, value);
-  for (Load& load : problem.load_path)
-    load = Load(load.type(), load.values(), problem.surface.surface);
+  surroundings::StatedSurface surface = problem.surface.value();
+  variation.change(surface);
+  input::set_surface(problem, surface);
   return problem;
 }
 
 /// Rise and drop, jump and spike, on the shipped surface and on others.
 void add_steps(const input::Case& surface, const std::vector<ModelPair>& pairs,
                const Progress& progress, std::vector<Claim>& claims) {
+  using Surface = surroundings::StatedSurface;
   const std::array<Variation, 5> variations{
-      {{"as shipped", {}},
-       {"no friction", {{"friction", 0}}},
-       {"friction 0.6", {{"friction", 0.6}}},
-       {"flanks of 79 deg", {{"flank", 0.2e-3}, {"radius", 0.2e-3}}},
-       {"plateaus of 3 mm", {{"height", 3e-3}, {"flank", 3e-3}}}}};
+      {{"as shipped", [](Surface&) {}},
+       {"no friction", [](Surface& other) { other.friction = 0; }},
+       {"friction 0.6", [](Surface& other) { other.friction = 0.6; }},
+       {"flanks of 79 deg",
+        [](Surface& other) { other.trapezoid.flank = other.trapezoid.radius = 0.2e-3; }},
+       {"plateaus of 3 mm",
+        [](Surface& other) { other.trapezoid.height = other.trapezoid.flank = 3e-3; }}}};
   constexpr std::string_view assumed =
       "The surface's dimensions, friction and interference are not in the paper: those of "
       "cases/paper/fig6-surface.toml, varied.";
@@ -186,13 +189,14 @@ Claim drifts(const input::Case& surface, const std::vector<ModelPair>& pairs,
               "tilt there is none; the paper's other cause, inelastic deformation, is not "
               "modelled. 1 deg is assumed.",
               {}};
+  using Surface = surroundings::StatedSurface;
   for (const ModelPair& pair : pairs)
     for (const double degrees : {0.0, 1.0}) {
       const double found =
-          100 *
-          std::abs(drift(series_of(run(varied(with_models(surface, pair),
-                                              {"", {{"tilt", degrees * std::numbers::pi / 180}}}),
-                                       progress))));
+          100 * std::abs(drift(series_of(run(
+                    varied(with_models(surface, pair),
+                           {"", [=](Surface& s) { s.tilt = degrees * std::numbers::pi / 180; }}),
+                    progress))));
       const std::string name = fmt::format("{}, tilt {:g} deg", pair.name(), degrees);
       claim.evidence.push_back(degrees == 0 ? in_range(name, {found, found}, "%", 0, 0.1)
                                             : in_range(name, {found, found}, "%", 1, infinite));
@@ -214,8 +218,7 @@ Claim heights(const input::Case& surface, const std::vector<ModelPair>& pairs,
                           truth.name()),
               {}};
   const models::CaseResult result = run(with_models(surface, truth), progress);
-  const double height =
-      std::get<surroundings::TrapezoidProfile>(surface.surface.surface->profile).height;
+  const double height = surface.surface.value().trapezoid.height;
   sensing::SensorReadings readings;
   readings.measured_offset = true;
   for (const auto& step : result.fields.front().steps)
@@ -267,10 +270,10 @@ input::Case piece(input::Case problem, std::uint32_t seed) {
     return 1 + part * (2 * (static_cast<double>(generator()) + 0.5) / 4294967296.0 - 1);
   };
   problem.signal.value().seed = seed;
-  const surroundings::Surface& shipped = *problem.surface.surface;
-  problem = varied(problem, {"", {{"friction", off(0.2) * shipped.friction}}});
-  if (std::holds_alternative<surroundings::RandomProfile>(shipped.profile))
-    problem = varied(problem, {"", {{"seed", seed}}});
+  surroundings::StatedSurface surface = problem.surface.value();
+  surface.friction *= off(0.2);
+  surface.random.seed = seed;
+  input::set_surface(problem, surface);
   const double interference = off(0.1) * magnitude(problem.load_path.front());
   for (Load& load : problem.load_path) load = with_magnitude(load, interference);
   return problem;

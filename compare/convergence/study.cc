@@ -18,7 +18,7 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
-#include "compare/regression/quantities.h"
+#include "compare/results/observation.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::convergence {
@@ -27,25 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// What one level gave, by id.
-using Quantities = std::map<std::string, regression::Measurement>;
-
-/// Adds the lengths of the vectors that people look at first.
-void add_lengths(Quantities& quantities) {
-  Quantities lengths;
-  for (const auto& [id, x] : quantities) {
-    if (!id.ends_with("/x")) continue;
-    const std::string vector = id.substr(0, id.size() - 2);
-    const bool is_tip = vector.ends_with("/tip");
-    if (!is_tip && vector.find("/dB/") == std::string::npos) continue;
-    const double y = quantities.at(vector + "/y").value;
-    regression::Measurement length = x;
-    length.id = vector + (is_tip ? "/deflection" : "/norm");
-    length.value = is_tip ? std::hypot(x.value, y)
-                          : std::hypot(x.value, y, quantities.at(vector + "/z").value);
-    lengths.emplace(length.id, std::move(length));
-  }
-  quantities.merge(lengths);
-}
+using Quantities = std::map<std::string, results::Observation>;
 
 /// The first of the case's mechanics models, the cheapest first, that gives the field model what it
 /// needs.
@@ -132,30 +114,27 @@ std::vector<models::CaseResult> run_levels(input::Case problem, const ModelRefin
 
 Quantities quantities_of(const models::CaseResult& result, const ModelRefinement& refinement) {
   Quantities quantities;
-  for (regression::Measurement& quantity : regression::measurements(result).quantities)
-    if (!quantity.id.ends_with("/tip_uncertainty") &&
-        (!refinement.is_field || quantity.id.find("/mechanics/") == std::string::npos))
-      quantities.emplace(quantity.id, std::move(quantity));
-  add_lengths(quantities);
+  for (results::Observation& row : results::observations(result))
+    if (row.is_converged && !row.is_estimate && (!refinement.is_field || !row.field.empty()))
+      quantities.emplace(row.id(), std::move(row));
   return quantities;
 }
 
 Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
-                               const regression::Measurement& finest,
+                               const results::Observation& finest,
                                const ModelRefinement& refinement) {
   if (refinement.sequence.law == input::Refinement::Law::power)
     return extrapolate(levels, refinement.sequence.formal_order,
                        refinement.rounding * finest.scale);
-  // ΔB is the difference of two fields, each within the tolerance.
-  const double parts = finest.id.find("/dB/") == std::string::npos ? 1 : 2;
-  return kept_tolerances(levels, parts * finest.scale);
+  // A change is the difference of two fields, each within the tolerance.
+  return kept_tolerances(levels, (finest.is_change ? 2 : 1) * finest.scale);
 }
 
 /// The quantities that every level has.
 void extrapolate_all(const std::vector<Quantities>& levels, const ModelRefinement& refinement,
                      RefinementStudy& study) {
   for (const auto& [id, finest] : levels.front()) {
-    ConvergedQuantity quantity{id, finest.unit, finest.size(), {}, {}};
+    ConvergedQuantity quantity{id, finest.unit, finest.size(), finest.is_looked_at, {}, {}};
     for (std::size_t i = 0; i < levels.size() && levels[i].contains(id); ++i)
       quantity.levels.push_back(
           {refinement.sequence.size(study.settings[i]), levels[i].at(id).value});
@@ -165,12 +144,6 @@ void extrapolate_all(const std::vector<Quantities>& levels, const ModelRefinemen
       quantity.extrapolation.reason = "not every level has it";
     study.quantities.push_back(std::move(quantity));
   }
-}
-
-/// Whether the table shows it: what people look at.
-bool is_shown(const std::string& id) {
-  return id.find("/tip/") != std::string::npos || id.ends_with("/tip_angle") ||
-         id.find("slip_off") != std::string::npos || id.find("/dB/") != std::string::npos;
 }
 
 /// The numbers of an extrapolation; a limit that is not conclusive is none.
@@ -252,7 +225,7 @@ std::string verdict(const Judgement& all) {
 std::string quantity_table(const RefinementStudy& study) {
   output::TextRows rows{{"quantity", "finest", "order", "extrapolated", "+-", "unit"}};
   for (const ConvergedQuantity& quantity : study.quantities) {
-    if (!is_shown(quantity.id)) continue;
+    if (!quantity.is_looked_at) continue;
     const Extrapolation& e = quantity.extrapolation;
     if (e.conclusive) {
       rows.push_back({quantity.id, output::number_cell(quantity.levels.front().value, 1, "{:.9g}"),

@@ -26,13 +26,14 @@ struct ModelRefinement {
 /// Those of the models that the case asks for, with the method that it asks for.
 std::vector<ModelRefinement> refinements(const input::Case& problem);
 
-/// One quantity of a case on all levels, finest first: those of compare/regression/quantities.h,
+/// One quantity of a case on all levels, finest first: those of compare/results/quantity.h,
 /// and made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and
 /// `…/dB/SENSOR/norm`, |ΔB|.
 struct ConvergedQuantity {
   std::string id;
   std::string unit;
-  double scale = 0;  ///< regression::Measurement::size(): the largest deflection, |ΔB|, …
+  double scale = 0;  ///< results::Observation::size(): the largest deflection, |ΔB|, …
+  bool is_looked_at = false;
   std::vector<RefinementLevel> levels;
   Extrapolation extrapolation;
 };

@@ -27,10 +27,11 @@ struct Case {
   std::string title;  ///< for people
   Cilium cilium;
   LoadPath load_path;
-  /// Values along the path of each parameter of the load type's LoadStatement (a flow's velocity,
-  /// density and drag coefficient), if the file states the magnitude by them; otherwise empty.
-  std::vector<std::vector<double>> stated_by;
-  sweep::Statement surface;                              ///< of a sweep; each of its loads has it
+  /// Of each step the values of the load type's LoadStatement (a flow's velocity, density and drag
+  /// coefficient), if the file states the magnitude by them; otherwise empty.
+  std::vector<LoadStatement::Values> stated_by;
+  /// Of a sweep; each of its loads has what is made of it.
+  std::optional<surroundings::StatedSurface> surface;
   std::optional<compare::signal::SignalOptions> signal;  ///< what a logger makes of a sweep
   std::vector<Vector3> sensors;                          ///< m
   std::vector<std::string>
@@ -59,10 +60,13 @@ std::vector<std::string> sensor_names(const Case& c);
 
 /// The values along the path of a parameter of Case::stated_by, such as "velocity"; empty if the
 /// file does not state it.
-std::span<const double> stated_values(const Case& c, std::string_view parameter);
+std::vector<double> stated_values(const Case& c, std::string_view parameter);
 
 /// Computes the magnitudes of the loads from Case::stated_by, if there is any.
 void set_stated_magnitudes(Case& c);
+
+/// Gives the loads of a sweep another surface. Throws InputError as surface_of().
+void set_surface(Case& c, const surroundings::StatedSurface& stated);
 
 /// The case as TOML with every value it used, defaults included, in SI units: read_case() of it
 /// gives the same case.

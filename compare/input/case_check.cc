@@ -106,17 +106,16 @@ void check_environment(const Case& c, const Report& report) {
 /// The places of a profile in a file that the tip needs at least: from over the base at the start
 /// to over the base at the end, if it hangs straight.
 void check_profile(const Case& c, const Report& report) {
-  if (!c.surface.surface) return;
-  const auto* profile = std::get_if<surroundings::SampledProfile>(&c.surface.surface->profile);
-  if (profile == nullptr) return;
+  if (!c.surface || !c.surface->sampled) return;
+  const surroundings::SampledProfile& profile = *c.surface->sampled;
   double travel = 0;
   for (const Load& load : c.load_path)
     travel = std::max(travel, load.as<SweepLoad>().value().travel);
-  if (travel > -profile->first() || profile->last() < 0)
+  if (travel > -profile.first() || profile.last() < 0)
     report("surface.path",
            fmt::format("the profile goes from x = {:g} m to {:g} m, but the sweep from 0 m to {:g} "
                        "m; a bent cilium touches it up to its own length before",
-                       -profile->last(), -profile->first(), travel));
+                       -profile.last(), -profile.first(), travel));
 }
 
 /// A record is of a sweep, whose surface moves from sample to sample.

@@ -5,6 +5,40 @@
 #include <algorithm>
 
 #include "compare/input/case_sections.h"
+#include "compare/input/described.h"
+
+namespace ciliaval::description {
+
+template <>
+const Fields<compare::input::external::ExternalModel>&
+fields<compare::input::external::ExternalModel>() {
+  using Model = compare::input::external::ExternalModel;
+  static const Fields<Model> all = [] {
+    Field<Model> background =
+        optional(file(&Model::background_file, "background", Key::File::data,
+                      "CSV file with the ambient field at each azimuth, to be taken off the "
+                      "readings."),
+                 "none");
+    background.condition = [](const Model& model) { return !model.readings_file.empty(); };
+    background.goes_with = "'readings'";
+    const auto uncertainty = [](auto member, std::string_view name, const Quantity& quantity,
+                                std::string_view doc) {
+      return field(member, name, quantity, {0, 100, false, unit_slip}, doc);
+    };
+    return Fields<Model>{
+        optional(file(&Model::readings_file, "readings", Key::File::data,
+                      "CSV file with the readings of every load step and sensor."),
+                 "none"),
+        background,
+        uncertainty(&Model::tip_uncertainty, "tip_uncertainty", quantity::length,
+                    "Uncertainty of the tip's position in each centreline."),
+        uncertainty(&Model::field_uncertainty, "field_uncertainty", quantity::flux_density,
+                    "Uncertainty of each component of each reading.")};
+  }();
+  return all;
+}
+
+}  // namespace ciliaval::description
 
 namespace ciliaval::compare::input {
 namespace {
@@ -62,17 +96,11 @@ external::ExternalModel read_model(Section& table, const Models& known,
     read_name(*node, known, others, model, faults);
   if (const toml::node* node = table.find("centrelines"))
     model.centreline_files = read_file_names(*node, "centrelines", faults);
-  for (const auto& [key, file] :
-       {std::pair{"readings", &external::ExternalModel::readings_file},
-        std::pair{"background", &external::ExternalModel::background_file}})
-    if (const toml::node* node = table.find(key))
-      model.*file = read_file_name(*node, key, faults).value_or("");
-  model.tip_uncertainty = table.value(key::tip_uncertainty);
-  model.field_uncertainty = table.value(key::field_uncertainty);
-  if (table.find("centrelines") == nullptr && table.find("readings") == nullptr)
+  const std::size_t before = faults.size();
+  read(table, description::fields<external::ExternalModel>(), model);
+  if (model.readings_file.empty() && table.find("centrelines") == nullptr &&
+      faults.size() == before)
     faults.add(table.where(), fmt::format("{} needs 'centrelines' or 'readings'", table.name()));
-  if (table.find("background") != nullptr && table.find("readings") == nullptr)
-    faults.add(place(*table.find("background")), "'background' goes with 'readings'");
   return model;
 }
 
@@ -100,7 +128,7 @@ void read_external(Section& models, const Models& known,
 void check_external(const Case& c, const Report& report) {
   for (std::size_t i = 0; i < c.external.size(); ++i) {
     const external::ExternalModel& model = c.external[i];
-    const std::string path = fmt::format("{}[{}].", key::external_table, i);
+    const std::string path = fmt::format("{}[{}].", external::table_name, i);
     if (!model.centreline_files.empty() && model.centreline_files.size() != c.load_path.size())
       report(path + "centrelines", fmt::format("there are {} files of centrelines and {} load "
                                                "steps: one file for each",

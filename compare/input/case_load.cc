@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,106 +12,49 @@
 #include <vector>
 
 #include "compare/input/case_sections.h"
+#include "compare/input/described.h"
 #include "compare/input/environment/environment.h"
+#include "problem/description/surface.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::input {
 namespace {
 
-constexpr std::size_t most_steps = 1000;  ///< each one writes files of every model, 1 MB and more
-
-/// One key's values along the load path: one value stands for every step.
-struct Values {
-  std::vector<double> value;
-  bool is_list = false;
-
-  double at(std::size_t step) const { return value[is_list ? step : 0]; }
-};
-
-/// Reads the keys of a load and watches that their lists have the same length.
-class PathReader {
- public:
-  explicit PathReader(Section& table) : table_(&table) {}
-
-  /// The values of a parameter; its fallback, if it has one, stands for a missing key.
-  Values read(const LoadParameter& parameter) {
-    const QuantityKey& k = parameter.key;
-    const toml::node* node = k.fallback.empty() ? table_->require(k.name) : table_->find(k.name);
-    if (node == nullptr) return k.fallback.empty() ? Values{} : Values{{parameter.fallback}};
-    Faults& faults = table_->faults();
-    Values values;
-    const auto read_one = [&](const toml::node& element) {
-      if (const auto value = read_value(element, k.name, k.quantity, k.range, faults))
-        values.value.push_back(*value);
-    };
-    const toml::array* list = node->as_array();
-    if (list == nullptr) {
-      read_one(*node);
-      return values;
-    }
-    values.is_list = true;
-    if (list->empty() || list->size() > most_steps) {
-      faults.add(place(*node), fmt::format("'{}' lists {} values: a load path has 1 to {} steps",
-                                           k.name, list->size(), most_steps));
-      return values;
-    }
-    if (!listed_.empty() && list->size() != steps_)
-      faults.add(place(*node),
-                 fmt::format("'{}' lists {} values, but '{}' lists {}: all lists of a "
-                             "load path have the same length",
-                             k.name, list->size(), listed_, steps_));
-    listed_ = k.name;
-    steps_ = list->size();
-    for (const toml::node& element : *list) read_one(element);
-    return values;
-  }
-  std::size_t steps() const { return steps_; }
-  std::string_view listed() const { return listed_; }
-
- private:
-  Section* table_;
-  std::size_t steps_ = 1;
-  std::string_view listed_;  ///< the key whose list set steps_
+/// What a table [load] states.
+struct StatedLoad {
+  std::vector<Load> path;
+  std::vector<LoadStatement::Values> stated_by;  ///< of each step, if the magnitude is stated so
+  std::optional<SweepWay> way;                   ///< of a sweep whose places no list tells
 };
 
 /// Reads how a sweep goes its way; none if lists say it.
-std::optional<SweepWay> read_way(Section& table, const PathReader& reader) {
+std::optional<SweepWay> read_way(Section& table, const PathLength& length) {
   SweepWay way;
-  unsigned int samples = 101;
-  table.read(key::samples.name, key::samples.range, samples);
-  way.samples = samples;
-  if (const toml::node* node = table.find(key::sweep_return)) {
-    if (const auto* flag = node->as_boolean())
-      way.there_and_back = flag->get();
-    else
-      table.faults().add(place(*node), fmt::format("'{}' must be true or false, found {}",
-                                                   key::sweep_return, describe(*node)));
-  }
-  if (reader.listed().empty()) return way;
-  for (const std::string_view name : {key::samples.name, key::sweep_return})
-    if (const toml::node* node = table.find(name))
+  const auto& fields = description::fields<SweepWay>();
+  read(table, fields, way);
+  if (length.listed.empty()) return way;
+  for (const auto& field : fields)
+    if (const toml::node* node = table.find(field.name))
       table.faults().add(place(*node), fmt::format("'{}' contradicts the list '{}', which tells "
                                                    "each place of the sweep: leave it out",
-                                                   name, reader.listed()));
+                                                   field.name, length.listed));
   return std::nullopt;
 }
 
 /// Reads the table of a load whose type is missing or unknown: which keys it should have cannot be
 /// told, but those that some type has must be right by themselves.
-void read_any_type(Section& table) {
-  PathReader reader(table);
+void read_any_type(Section& table, PathLength& length) {
   std::set<std::string_view> names;  // types share keys
-  const auto read = [&](LoadParameter parameter) {
-    if (!names.insert(parameter.key.name).second) return;
-    parameter.key.fallback = "none";  // no key is missing from a type that is not known
-    reader.read(parameter);
+  const auto read_one = [&](const description::Key& key) {
+    const toml::node* node = names.insert(key.name).second ? table.find(key.name) : nullptr;
+    if (node != nullptr) read_values(*node, key, length, table.faults());
   };
   for (const LoadType* type : load_types()) {
-    std::for_each(type->parameters.begin(), type->parameters.end(), read);
+    for (const LoadParameter& parameter : type->parameters) read_one(parameter);
     if (type->statement)
-      std::for_each(type->statement->parameters.begin(), type->statement->parameters.end(), read);
+      for (const auto& parameter : type->statement->parameters) read_one(parameter);
   }
-  read_way(table, reader);
+  read_way(table, length);
   table.finish();
 }
 
@@ -119,8 +62,8 @@ void read_any_type(Section& table) {
 bool is_stated_by_others(Section& table, const LoadType& type) {
   if (!type.statement) return false;
   Faults& faults = table.faults();
-  const std::string_view direct_key = type.parameters.front().key.name;
-  const std::string_view other_key = type.statement->parameters.front().key.name;
+  const std::string_view direct_key = type.parameters.front().name;
+  const std::string_view other_key = type.statement->parameters.front().name;
   const toml::node* direct = table.find(direct_key);
   const toml::node* other = table.find(other_key);
   if (direct == nullptr && other == nullptr)
@@ -130,101 +73,108 @@ bool is_stated_by_others(Section& table, const LoadType& type) {
   if (other != nullptr)
     faults.add(place(*other),
                fmt::format("'{}' contradicts '{}': give one of them", other_key, direct_key));
-  for (const LoadParameter& parameter : type.statement->parameters)
-    if (const toml::node* node = table.find(parameter.key.name);
-        node != nullptr && other == nullptr)
+  for (const auto& parameter : type.statement->parameters)
+    if (const toml::node* node = table.find(parameter.name); node != nullptr && other == nullptr)
       faults.add(place(*node), fmt::format("'{}' goes with '{}'; '{}' says the force already",
-                                           parameter.key.name, other_key, direct_key));
+                                           parameter.name, other_key, direct_key));
   return other != nullptr;
 }
 
-/// From travel 0 to that of the load.
-LoadPath along(SweepWay way, Load load) {
-  way.travel = load.as<SweepLoad>().value().travel;
-  load.set_value(1, 0);
-  return sweep_path(load, way);
-}
-
 /// Reads [surface], which a sweep needs and no other load has.
-void read_surface(Section& root, const std::filesystem::path& folder,
-                  const std::optional<std::string>& type, Case& c) {
+std::shared_ptr<const surroundings::Surface> read_surface(Section& root,
+                                                          const std::filesystem::path& folder,
+                                                          const std::optional<std::string>& type,
+                                                          Case& c) {
   constexpr std::string_view name = "surface";
   if (type == SweepLoad::type().name) {
     Section table = require_section(root, name);
-    if (table.exists()) c.surface = sweep::read_surface(table, folder);
-  } else if (root.table()->contains(name)) {
-    const toml::node* node = root.find(name);
-    if (type)
-      root.faults().add(place(*node), fmt::format("[surface] goes with the load type '{}', not "
-                                                  "'{}'",
-                                                  SweepLoad::type().name, *type));
+    if (!table.exists()) return nullptr;
+    auto [stated, made] = sweep::read_surface(table, folder);
+    if (made) c.surface = std::move(stated);
+    return made;
   }
+  if (root.table()->contains(name) && type)
+    root.faults().add(place(*root.find(name)),
+                      fmt::format("[surface] goes with the load type '{}', not '{}'",
+                                  SweepLoad::type().name, *type));
+  return nullptr;
 }
 
-/// Reads the keys of a type; the steps are made once all keys are right.
-std::function<void(Case&)> read_steps(Section& table, const LoadType& type, PathReader& reader) {
+/// Reads the keys of a type.
+StatedLoad read_type(Section& table, const LoadType& type, PathLength& length) {
   // Only if it is there: find() would make it a valid key in the messages about others.
   if (type.result && table.table()->contains(type.result->first))
     table.faults().add(place(*table.find(type.result->first)), std::string(type.result->second));
-  const bool stated = is_stated_by_others(table, type);
-  std::vector<Values> values;
-  std::vector<Values> statement;
-  for (const LoadParameter& parameter : type.parameters)
-    values.push_back(stated && values.empty() ? Values{{0.0}} : reader.read(parameter));
-  if (type.statement)
-    for (const LoadParameter& parameter : type.statement->parameters)
-      statement.push_back(reader.read(parameter));
-  const std::optional<SweepWay> way =
-      &type == &SweepLoad::type() ? read_way(table, reader) : std::nullopt;
-  Faults& faults = table.faults();
-  const toml::node* first =
-      stated ? table.find(type.statement->parameters.front().key.name) : nullptr;
-  return [=, &type, &reader, &faults](Case& c) {
-    for (std::size_t i = 0; i < reader.steps(); ++i) {
-      std::vector<double> of_step;
-      of_step.reserve(values.size());
-      for (const Values& v : values) of_step.push_back(v.at(i));
-      c.load_path.emplace_back(type, of_step, c.surface.surface);
-    }
-    if (way) c.load_path = along(*way, c.load_path.front());
-    if (!stated) return;
-    for (const Values& v : statement) {
-      c.stated_by.emplace_back();
-      for (std::size_t i = 0; i < c.load_path.size(); ++i) c.stated_by.back().push_back(v.at(i));
-    }
-    try {
-      set_stated_magnitudes(c);
-    } catch (const InputError& fault) {  // what such a cilium does not take
-      faults.add(place(*first), fault.what());
-    }
+  const bool by_others = is_stated_by_others(table, type);
+  StatedLoad load{{Load(type)}, {}, {}};
+  read(table, type.keys(!by_others), load.path, length);
+  if (by_others) {
+    load.stated_by.emplace_back();
+    for (const auto& parameter : type.statement->parameters)
+      load.stated_by.front().push_back(std::get<double>(parameter.initial));
+    read(table, type.statement->parameters, load.stated_by, length);
+  } else if (type.statement) {
+    for (const auto& parameter : type.statement->parameters)
+      if (const toml::node* node = table.find(parameter.name))
+        read_values(*node, parameter, length, table.faults());
+  }
+  if (&type == &SweepLoad::type()) load.way = read_way(table, length);
+  return load;
+}
+
+/// The path of the case, from right keys.
+void set_path(StatedLoad load, const std::shared_ptr<const surroundings::Surface>& surface,
+              Case& c) {
+  c.load_path = std::move(load.path);
+  c.stated_by = std::move(load.stated_by);
+  const auto all_steps = [&c](std::size_t count) {
+    c.load_path.resize(count, c.load_path.front());
+    if (!c.stated_by.empty()) c.stated_by.resize(count, c.stated_by.front());
   };
+  all_steps(std::max(c.load_path.size(), c.stated_by.size()));
+  for (Load& step : c.load_path) step.set_surface(surface);
+  if (load.way) {
+    load.way->travel = c.load_path.front().as<SweepLoad>().value().travel;
+    c.load_path = sweep_path(with_travel(c.load_path.front(), 0), *load.way);
+    all_steps(c.load_path.size());
+  }
+  set_stated_magnitudes(c);
 }
 
 }  // namespace
 
-std::span<const double> stated_values(const Case& c, std::string_view parameter) {
-  if (c.stated_by.empty()) return {};
-  const std::vector<LoadParameter>& parameters = c.load_path.front().type().statement->parameters;
-  for (std::size_t p = 0; p < parameters.size(); ++p)
-    if (parameters[p].key.name == parameter) return c.stated_by[p];
-  return {};
+std::vector<double> stated_values(const Case& c, std::string_view parameter) {
+  std::vector<double> values;
+  if (c.stated_by.empty()) return values;
+  const auto& parameters = c.load_path.front().type().statement->parameters;
+  const auto found =
+      std::ranges::find(parameters, parameter, &description::Field<LoadStatement::Values>::name);
+  for (const LoadStatement::Values& step : c.stated_by)
+    if (found != parameters.end()) values.push_back(found->number(step));
+  return values;
 }
 
 void set_stated_magnitudes(Case& c) {
-  if (c.stated_by.empty()) return;
-  for (std::size_t i = 0; i < c.load_path.size(); ++i) {
-    std::vector<double> values;
-    for (const std::vector<double>& along_path : c.stated_by) values.push_back(along_path[i]);
+  for (std::size_t i = 0; i < c.stated_by.size(); ++i) {
     Load& load = c.load_path[i];
-    load = with_magnitude(load, load.type().statement->magnitude(values, c.cilium));
+    load = with_magnitude(load, load.type().statement->magnitude(c.stated_by[i], c.cilium));
   }
+}
+
+void set_surface(Case& c, const surroundings::StatedSurface& stated) {
+  const auto made = surface_of(stated);
+  c.surface = stated;
+  for (Load& load : c.load_path) load.set_surface(made);
 }
 
 void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   Faults& faults = root.faults();
   const std::size_t before = faults.size();
   const bool is_alone = root.find("load") == nullptr;
-  const std::vector<surroundings::Environment> around = environment::read_environment(root);
+  PathLength length;
+  PathLength length_around;
+  const std::vector<surroundings::Environment> around =
+      environment::read_environment(root, length_around);
   const bool has_environment = root.table()->contains(environment::table_name);
   root.find("surface");
   if (is_alone && has_environment) {
@@ -238,36 +188,30 @@ void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   std::vector<std::string_view> names;
   for (const LoadType* known : load_types()) names.push_back(known->name);
   if (node != nullptr) type = read_choice(*node, "type", names, faults);
-  read_surface(root, folder, type, c);
-  if (!type) return read_any_type(table);
+  const auto surface = read_surface(root, folder, type, c);
+  if (!type) return read_any_type(table, length);
   Section typed(table.table(), fmt::format("[load] of type '{}'", *type), "load", table.where(),
                 faults);
   typed.find("type");
-  PathReader reader(typed);
-  const std::function<void(Case&)> make_steps = read_steps(typed, *find_load_type(*type), reader);
+  StatedLoad load = read_type(typed, *find_load_type(*type), length);
   typed.finish();
   if (*type == EnvironmentLoad::type().name && !has_environment)
     faults.add(place(*node), fmt::format("the load type '{}' needs the table [{}]", *type,
                                          environment::table_name));
   if (faults.size() != before) return;
-  make_steps(c);
-  if (environment::put_into(around, c.load_path)) {
-    for (std::vector<double>& stated : c.stated_by)
-      stated.resize(c.load_path.size(), stated.front());
-  } else {
-    const toml::node* field = root.table()->at_path("environment.uniform_field").node();
-    const auto list = field == nullptr ? nullptr : field->as_array();
-    if (list != nullptr && list->size() == around.size() && list->front().is_array())
-      faults.add(place(*field),
-                 fmt::format("'uniform_field' lists {} fields, but the load has {} steps: list one "
-                             "field, or one for each step",
-                             around.size(), c.load_path.size()));
-    else
-      faults.add(place(*root.table()->at_path("environment.magnet").node()),
-                 fmt::format("a magnet's 'position' lists {} points, but the load has {} steps: "
-                             "list one point, or one for each step",
-                             around.size(), c.load_path.size()));
+  try {
+    set_path(std::move(load), surface, c);
+  } catch (const InputError& fault) {  // what such a cilium does not take
+    const auto& first = find_load_type(*type)->statement.value().parameters.front();
+    faults.add(place(*typed.find(first.name)), fault.what());
+    return;
   }
+  if (!environment::put_into(around, c.load_path))
+    faults.add(length_around.where,
+               fmt::format("'{}' lists {} values, but the load has {} steps: list one, or one for "
+                           "each step",
+                           length_around.listed, around.size(), c.load_path.size()));
+  if (!c.stated_by.empty()) c.stated_by.resize(c.load_path.size(), c.stated_by.front());
 }
 
 void snap_to_interfaces(const Cilium& cilium, LoadPath& path) {

@@ -108,7 +108,7 @@ void read_named_sensors(Section& root, Case& c) {
     }
     std::optional<Vector3> point;
     if (const toml::node* node = table.require("position"))
-      point = read_point(*node, key::position, faults);
+      point = read_point(*node, sensor_position(), faults);
     c.sensor_names.push_back(std::move(name));
     c.sensors.push_back(point.value_or(Vector3::Zero()));
   });
@@ -147,12 +147,20 @@ std::optional<Vector3> read_point(const toml::node& node, const description::Key
   return right ? std::optional<Vector3>(point) : std::nullopt;
 }
 
-std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults) {
-  description::Key key;
-  key.name = k.name;
-  key.quantity = k.quantity;
-  key.range = k.range;
-  return read_point(node, key, faults);
+const description::Key& sensor_position() {
+  static const description::Key key = [] {
+    description::Key position;
+    position.name = "position";
+    position.quantity = quantity::length;
+    position.range = {-1000, 1000, false, "a sensor farther away is taken for a slip in the unit"};
+    position.doc =
+        "The point `[x, y, z]` where the field is computed, or a list of points; required if "
+        "`fields` are asked for.";
+    position.initial = Vector3(Vector3::Zero());
+    position.fallback = "none";
+    return position;
+  }();
+  return key;
 }
 
 std::optional<std::string> read_line(const toml::node& node, std::string_view name,
@@ -221,9 +229,9 @@ void read_sensor(Section& root, Case& c) {
     } else if (std::any_of(list->begin(), list->end(),
                            [](const toml::node& n) { return n.is_array(); })) {
       for (const toml::node& element : *list) {
-        if (const auto p = read_point(element, key::position, faults)) c.sensors.push_back(*p);
+        if (const auto p = read_point(element, sensor_position(), faults)) c.sensors.push_back(*p);
       }
-    } else if (const std::optional<Vector3> p = read_point(*list, key::position, faults)) {
+    } else if (const std::optional<Vector3> p = read_point(*list, sensor_position(), faults)) {
       c.sensors.push_back(*p);
     }
   }

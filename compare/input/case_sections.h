@@ -13,36 +13,8 @@
 
 namespace ciliaval::compare::input {
 
-namespace key {
-inline constexpr QuantityKey samples{
-    "load",
-    "samples",
-    quantity::number,
-    {2, 10000, false, "each is a step, of which every model writes files"},
-    "101",
-    "`sweep`: places of equal distance along the travel, both ends included."};
-inline constexpr std::string_view sweep_return = "return";
-/// Each coordinate of a sensor point.
-inline constexpr QuantityKey position{
-    "sensor",
-    "position",
-    quantity::length,
-    {-1000, 1000, false, "a sensor farther away is taken for a slip in the unit"},
-    "none",
-    "The point `[x, y, z]` where the field is computed, or a list of points; required if `fields` "
-    "are asked for."};
-inline constexpr std::string_view external_table = "models.external";
-inline constexpr QuantityKey tip_uncertainty{
-    external_table,   "tip_uncertainty",
-    quantity::length, {0, 100, false, unit_slip},
-    "not known",      "Uncertainty of the tip's position in each centreline."};
-inline constexpr QuantityKey field_uncertainty{external_table,
-                                               "field_uncertainty",
-                                               quantity::flux_density,
-                                               {0, 100, false, unit_slip},
-                                               "not known",
-                                               "Uncertainty of each component of each reading."};
-}  // namespace key
+/// A sensor's place.
+const description::Key& sensor_position();
 
 /// Each function reads one table of a case file into the case and adds a fault for everything in it
 /// that is wrong by itself; what contradicts another table is check_together()'s.
@@ -84,7 +56,6 @@ void snap_to_interfaces(const Cilium& cilium, LoadPath& path);
 /// A point or vector of three components, each as the key says, or a fault.
 std::optional<Vector3> read_point(const toml::node& node, const description::Key& k,
                                   Faults& faults);
-std::optional<Vector3> read_point(const toml::node& node, const QuantityKey& k, Faults& faults);
 
 /// A text for people: a line, not empty, of at most `longest` bytes. Adds a fault otherwise.
 std::optional<std::string> read_line(const toml::node& node, std::string_view name,

@@ -114,9 +114,11 @@ const toml::node* Section::find(std::string_view key) {
   return table_ == nullptr ? nullptr : table_->get(key);
 }
 
-const toml::node* Section::require(std::string_view key) {
+const toml::node* Section::require(std::string_view key, std::string_view needed) {
   const toml::node* node = find(key);
-  if (node == nullptr && exists()) missing_.emplace_back(key);
+  if (node == nullptr && exists())
+    missing_.push_back(
+        {std::string(key), needed.empty() ? fmt::format("'{}'", key) : std::string(needed)});
   return node;
 }
 
@@ -129,12 +131,6 @@ Section Section::section(std::string_view key) {
     faults_->add(place(*node),
                  fmt::format("expected the table {}, found {}", name, describe(*node)));
   return {node->as_table(), name, path, place(*node), *faults_};
-}
-
-std::optional<double> Section::value(const QuantityKey& key) {
-  const toml::node* node = key.fallback.empty() ? require(key.name) : find(key.name);
-  if (node == nullptr) return std::nullopt;
-  return read_value(*node, key.name, key.quantity, key.range, *faults_);
 }
 
 void Section::read(std::string_view key, const Quantity& quantity, const Range& range,
@@ -174,16 +170,18 @@ void Section::tables(std::string_view key, std::size_t fewest, std::size_t most,
 void Section::finish() const {
   if (table_ == nullptr) return;
   const std::vector<std::string_view> candidates(valid_.begin(), valid_.end());
-  std::vector<std::string> missing = missing_;
+  std::vector<Missing> missing = missing_;
   for (const auto& [key, node] : *table_) {
     if (std::find(valid_.begin(), valid_.end(), key.str()) != valid_.end()) continue;
-    std::erase(missing, support::nearest(key.str(), candidates));
+    std::erase_if(missing, [near = support::nearest(key.str(), candidates)](const Missing& m) {
+      return m.key == near;
+    });
     faults_->add(place(key),
                  fmt::format("unknown key {} in {}{}{}", in_quotes(key.str()), name_, valid(valid_),
                              support::did_you_mean(key.str(), candidates)));
   }
-  for (const std::string& key : missing)
-    faults_->add(where_, fmt::format("{} needs '{}'", name_, key));
+  for (const auto& [key, needed] : missing)
+    faults_->add(where_, fmt::format("{} needs {}", name_, needed));
 }
 
 bool has_control_character(std::string_view text) {

@@ -62,12 +62,11 @@ class Section {
 
   /// The key's value, or null. The key is a valid one from now on.
   const toml::node* find(std::string_view key);
-  /// The same; a missing key is a fault at the table's place, which finish() adds.
-  const toml::node* require(std::string_view key);
+  /// The same; a missing key is a fault at the table's place, which finish() adds; `needed` says
+  /// what there should be, if not the key alone: "'magnetization' or 'remanence'".
+  const toml::node* require(std::string_view key, std::string_view needed = {});
   /// The sub-table of this name; a value that is no table is a fault.
   Section section(std::string_view key);
-  /// The value of a key, which is required if it has no fallback; none if it is missing or a fault.
-  std::optional<double> value(const QuantityKey& key);
   /// Reads the value of a key, if it is there and no fault.
   void read(std::string_view key, const Quantity& quantity, const Range& range, double& value);
   void read(std::string_view key, const Range& range, unsigned int& value);
@@ -86,7 +85,11 @@ class Section {
   Place where_;
   Faults* faults_;
   std::vector<std::string> valid_;
-  std::vector<std::string> missing_;
+  struct Missing {
+    std::string key;
+    std::string needed;
+  };
+  std::vector<Missing> missing_;
 };
 
 /// The text of a node, or a fault.

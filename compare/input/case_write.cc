@@ -12,37 +12,13 @@
 #include "compare/input/environment/environment.h"
 #include "problem/cilium.h"
 #include "problem/description/cilium.h"
+#include "problem/description/surface.h"
 
 namespace ciliaval::compare::input {
 namespace {
 
 std::string list(const std::vector<std::string>& texts) {
   return fmt::format("[{}]", fmt::join(texts, ", "));
-}
-
-std::string value(const QuantityKey& k, double v) {
-  const std::string text = format_quantity(v, k.quantity);
-  return k.quantity.unit.empty() ? text : fmt::format("\"{}\"", text);
-}
-
-std::string line(const QuantityKey& k, double v) {
-  return fmt::format("{} = {}\n", k.name, value(k, v));
-}
-
-/// The values of a key along a load path: one value, if all are the same and another key's list
-/// tells the number of steps.
-enum class Listed { if_they_differ, always };
-std::string line(const QuantityKey& k, const std::vector<double>& values,
-                 Listed listed = Listed::if_they_differ) {
-  const bool same = std::all_of(values.begin(), values.end(), [&](double v) {
-    return v == values.front() && std::signbit(v) == std::signbit(values.front());
-  });
-  if (values.size() == 1 || (same && listed == Listed::if_they_differ))
-    return line(k, values.front());
-  std::vector<std::string> texts;
-  texts.reserve(values.size());
-  for (const double v : values) texts.push_back(value(k, v));
-  return fmt::format("{} = {}\n", k.name, list(texts));
 }
 
 /// Of a sweep whose path sweep_path() makes: the way, in place of lists.
@@ -58,23 +34,19 @@ std::optional<SweepWay> regular_way(const LoadPath& path) {
 std::string parameters(const Case& c) {
   const LoadType& type = c.load_path.front().type();
   const std::optional<SweepWay> way = regular_way(c.load_path);
-  std::string text;
-  const auto add = [&](const QuantityKey& k, const std::vector<double>& values, bool is_first) {
-    const bool is_travel = k.name == SweepLoad::travel_key;
-    if (way) return text += line(k, is_travel ? way->travel : values.front()), void();
-    text += line(k, values, is_first ? Listed::always : Listed::if_they_differ);
-  };
-  for (std::size_t p = 0; p < c.stated_by.size(); ++p)
-    add(type.statement->parameters[p].key, c.stated_by[p], p == 0);
-  for (std::size_t p = c.stated_by.empty() ? 0 : 1; p < type.parameters.size(); ++p) {
-    std::vector<double> values;
-    for (const Load& load : c.load_path) values.push_back(load.values()[p]);
-    add(type.parameters[p].key, values, p == 0);
+  LoadPath path = c.load_path;
+  std::vector<LoadStatement::Values> stated = c.stated_by;
+  if (way) {
+    path = {with_travel(path.front(), way->travel)};
+    stated.resize(std::min<std::size_t>(stated.size(), 1));
   }
-  if (way)
-    text += fmt::format("{} = {}\n{} = {}\n", key::samples.name, way->samples, key::sweep_return,
-                        way->there_and_back);
-  return text;
+  std::string text;
+  if (!stated.empty())
+    text += lines(type.statement->parameters, std::span<const LoadStatement::Values>(stated),
+                  Listed::first_key);
+  text += lines(type.keys(stated.empty()), std::span<const Load>(path),
+                stated.empty() ? Listed::first_key : Listed::if_they_differ);
+  return way ? text + lines(description::fields<SweepWay>(), *way) : text;
 }
 
 std::string cilium(const Case& c) {
@@ -91,9 +63,7 @@ std::string sensor(const Case& c) {
   std::vector<std::string> points;
   const bool named = !c.sensor_names.empty();
   for (const Vector3& p : c.sensors) {
-    std::vector<std::string> coordinates;
-    for (const double x : p) coordinates.push_back(value(key::position, x));
-    points.push_back(list(coordinates));
+    points.push_back(to_toml(sensor_position(), p));
   }
   if (named) {
     std::string text;
@@ -116,17 +86,12 @@ std::string readings(const external::ReadingOptions& options) {
 
 std::string external(const external::ExternalModel& model) {
   std::string text =
-      fmt::format("\n[[{}]]\nname = {}\n", key::external_table, toml_text(model.name));
+      fmt::format("\n[[{}]]\nname = {}\n", external::table_name, toml_text(model.name));
   std::vector<std::string> files;
   for (const std::filesystem::path& file : model.centreline_files)
     files.push_back(toml_text(file.string()));
   if (!files.empty()) text += fmt::format("centrelines = {}\n", list(files));
-  if (!model.readings_file.empty())
-    text += fmt::format("readings = {}\n", toml_text(model.readings_file.string()));
-  if (!model.background_file.empty())
-    text += fmt::format("background = {}\n", toml_text(model.background_file.string()));
-  if (model.tip_uncertainty) text += line(key::tip_uncertainty, *model.tip_uncertainty);
-  if (model.field_uncertainty) text += line(key::field_uncertainty, *model.field_uncertainty);
+  text += lines(description::fields<external::ExternalModel>(), model);
   return text;
 }
 
@@ -155,7 +120,8 @@ std::string to_toml(const Case& c, const Models& known) {
     text += fmt::format("\n[load]\ntype = \"{}\"\n", type(c.load_path.front()));
     text += parameters(c) + environment::to_toml(c.load_path);
   }
-  if (c.surface.surface) text += sweep::to_toml(c.surface);
+  if (c.surface)
+    text += "\n[surface]\n" + lines(description::fields<surroundings::StatedSurface>(), *c.surface);
   if (c.signal) text += sweep::to_toml(*c.signal);
   return text + sensor(c) + readings(c.readings) + models(c, known) +
          measurement::to_toml(c.measured);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -33,20 +34,27 @@ std::optional<Value> read_as_text(const toml::node& node, const Key& key, Faults
   return std::nullopt;
 }
 
-std::optional<Value> read_as_pair(const toml::node& node, const Key& key, Faults& faults) {
+/// A fixed number of plain numbers or quantities.
+template <std::size_t count>
+std::optional<Value> read_as_list(const toml::node& node, const Key& key, Faults& faults) {
+  constexpr std::array words{"", "", "two", "three", "four"};
   const toml::array* list = node.as_array();
-  if (list == nullptr || list->size() != 2) {
+  if (list == nullptr || list->size() != count) {
     faults.add(
         place(node),
-        fmt::format("'{}' must be a list of two numbers, such as {}, found {}", key.name,
-                    to_toml(key, key.initial),
+        fmt::format("'{}' must be a list of {} numbers, such as {}, found {}", key.name,
+                    words.at(count), to_toml(key, key.initial),
                     list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
     return std::nullopt;
   }
-  const auto first = read_value((*list)[0], key.name, key.quantity, key.range, faults);
-  const auto second = read_value((*list)[1], key.name, key.quantity, key.range, faults);
-  if (!first || !second) return std::nullopt;
-  return std::array{*first, *second};
+  std::array<double, count> values{};
+  bool is_right = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto value = read_value((*list)[i], key.name, key.quantity, key.range, faults);
+    values.at(i) = value.value_or(0);
+    is_right = is_right && value;
+  }
+  return is_right ? std::optional<Value>(values) : std::nullopt;
 }
 
 /// A number, quoted if it has a unit.
@@ -98,7 +106,7 @@ std::optional<Value> read_value(const toml::node& node, const Key& key, Faults& 
           const auto axial = read_value(node, key.name, key.quantity, key.range, faults);
           return axial ? std::optional<Value>(Vector3(0, 0, *axial)) : std::nullopt;
         } else {
-          return read_as_pair(node, key, faults);
+          return read_as_list<std::tuple_size_v<T>>(node, key, faults);
         }
       },
       key.initial);
@@ -113,7 +121,9 @@ std::string to_toml(const Key& key, const Value& value) {
         if constexpr (std::is_same_v<T, bool>) return v ? "true" : "false";
         if constexpr (std::is_same_v<T, unsigned int>) return fmt::format("{}", v);
         if constexpr (std::is_same_v<T, double>) return number_text(key, v);
-        if constexpr (std::is_same_v<T, std::array<double, 2>>) return list_text(key, v);
+        if constexpr (std::is_same_v<T, std::array<double, 2>> ||
+                      std::is_same_v<T, std::array<double, 4>>)
+          return list_text(key, v);
         if constexpr (std::is_same_v<T, Vector3>)
           return key.may_be_axial && v.template head<2>().isZero(0)
                      ? number_text(key, v.z())
@@ -124,6 +134,61 @@ std::string to_toml(const Key& key, const Value& value) {
 
 bool is_written(const Key& key, const Value& value) {
   return key.absence != Key::Absence::nothing || value != key.initial;
+}
+
+std::string line_of(const Key& key, const std::vector<std::string>& values, bool is_list) {
+  const bool is_one = std::ranges::all_of(
+      values, [&](const std::string& value) { return value == values.front(); });
+  if (values.size() == 1 || (is_one && !is_list))
+    return fmt::format("{} = {}\n", key.name, values.front());
+  return fmt::format("{} = [{}]\n", key.name, fmt::join(values, ", "));
+}
+
+std::vector<Value> read_values(const toml::node& node, const Key& key, PathLength& length,
+                               Faults& faults) {
+  const bool is_vector = std::holds_alternative<Vector3>(key.initial);
+  const toml::array* list = key.is_along_path ? node.as_array() : nullptr;
+  if (list != nullptr && is_vector && !list->empty() && !list->front().is_array()) list = nullptr;
+  std::vector<Value> values;
+  const auto read_one = [&](const toml::node& element) {
+    if (const auto value = read_value(element, key, faults)) values.push_back(*value);
+  };
+  if (list == nullptr) {
+    read_one(node);
+    return values;
+  }
+  const std::size_t count = list->size();
+  const std::size_t before = faults.size();
+  if (count == 0 || count > PathLength::most) {
+    faults.add(place(node), fmt::format("'{}' lists {} values: a load path has 1 to {} steps",
+                                        key.name, count, PathLength::most));
+    return {};
+  }
+  if (!length.listed.empty() && count != length.steps)
+    faults.add(place(node), fmt::format("'{}' lists {} values, but '{}' lists {}: all lists of a "
+                                        "load path have the same length",
+                                        key.name, count, length.listed, length.steps));
+  if (faults.size() == before) length = {count, key.name, place(node)};
+  for (const toml::node& element : *list) read_one(element);
+  return faults.size() == before ? values : std::vector<Value>{};
+}
+
+const toml::node* find_stated(Section& table, const Key& key, std::span<const Key* const> all,
+                              bool is_required) {
+  if (!key.in_place_of.empty()) {
+    const toml::node* node = table.find(key.name);
+    if (node == nullptr || table.find(key.in_place_of) == nullptr) return node;
+    table.faults().add(place(*node), fmt::format("'{}' contradicts '{}': give one of them",
+                                                 key.name, key.in_place_of));
+    return nullptr;
+  }
+  std::string needed = fmt::format("'{}'", key.name);
+  for (const Key* other : all) {
+    if (other->in_place_of != key.name) continue;
+    if (table.find(other->name) != nullptr) is_required = false;
+    needed += fmt::format(" or '{}'", other->name);
+  }
+  return is_required ? table.require(key.name, needed) : table.find(key.name);
 }
 
 }  // namespace ciliaval::compare::input

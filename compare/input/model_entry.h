@@ -61,10 +61,10 @@ struct CaseCheck {
 
 /// Sub-tables of a model, [[models.<model>.<name>]].
 struct SubTables {
-  std::vector<const QuantityKey*> keys;
-  std::function<void(Section& model, ModelOptions&)> read;
-  std::function<std::string(const ModelOptions&)> write;
-  std::vector<std::string_view> points{};  ///< the keys that are points, of three coordinates
+  std::string name{};  ///< "models.<model>.<name>"
+  std::vector<description::Key> keys{};
+  std::function<void(Section& model, ModelOptions&)> read{};
+  std::function<std::string(const ModelOptions&)> write{};
 };
 
 /// A model as all others know it. A part that is left out has the simplest meaning: no options, not

@@ -42,7 +42,8 @@ input::Case with_contents(input::Case c) {
                         if (kind == input::Option::File::mesh)
                           file = support::describe_content(file);
                       });
-  if (!c.surface.file.empty()) c.surface.file = support::describe_content(c.surface.file);
+  if (c.surface && !c.surface->file.empty())
+    c.surface->file = support::describe_content(c.surface->file);
   return c;
 }
 

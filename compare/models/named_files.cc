@@ -13,7 +13,7 @@ std::vector<std::filesystem::path> named_files(const input::Case& problem) {
     files.insert(files.end(), model.centreline_files.begin(), model.centreline_files.end());
     files.insert(files.end(), {model.readings_file, model.background_file});
   }
-  files.push_back(problem.surface.file);
+  if (problem.surface) files.push_back(problem.surface->file);
   files.insert(files.end(), problem.measured.files.begin(), problem.measured.files.end());
   std::erase_if(files, [](const std::filesystem::path& name) { return name.empty(); });
   return files;

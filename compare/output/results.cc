@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "compare/input/environment/environment.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
 #include "compare/output/sweep.h"
+#include "compare/results/quantity.h"
 
 namespace ciliaval::compare::output {
 namespace {
@@ -46,7 +46,7 @@ Json rows(const models::AtSensors& vectors) {
 Json load_json(const Load& load) {
   Json json{{"type", type(load)}};
   for (std::size_t i = 0; i < load.values().size(); ++i)
-    json[std::string(load.type().parameters[i].key.name)] = load.values()[i];
+    json[std::string(load.type().parameters[i].name)] = load.values()[i];
   return json;
 }
 
@@ -68,7 +68,7 @@ Json environment_json(const surroundings::Environment& environment) {
   Json json{{"gravity", vector(environment.gravity)},
             {"fluid_density", environment.fluid_density},
             {"uniform_field", vector(environment.uniform_field)},
-            {"magnetic_energy", input::environment::name(environment.magnetic_energy)}};
+            {"magnetic_energy", surroundings::name(environment.magnetic_energy)}};
   for (const surroundings::magnets::Magnet& magnet : environment.magnets)
     json["magnets"].push_back(magnet_json(magnet));
   return json;
@@ -108,29 +108,21 @@ Json pull_in_json(const continuation::PullIn& pull_in) {
 Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   const MechanicsStep& step = run.result.steps[index];
   Json json{{"status", to_string(step.status)}, {"message", step.message}};
-  for (const char* name : {"tip", "tip_angle", "tip_uncertainty", "tip_angle_uncertainty",
-                           "applied_force", "applied_force_uncertainty"})
-    json[name] = nullptr;
-  if (step.deformation) {
-    const Centreline& centreline = step.deformation->centreline;
-    const CentrelinePoint tip = centreline.at(centreline.length());
-    json["tip"] = vector(tip.position);
-    json["tip_angle"] = tip.theta();
-    json["tip_uncertainty"] = or_null(step.tip_uncertainty);
-    json["tip_angle_uncertainty"] = or_null(step.tip_angle_uncertainty);
-    json["applied_force"] = step.applied_force;
-    json["applied_force_uncertainty"] = or_null(step.applied_force_uncertainty);
+  for (const results::Quantity& quantity : results::quantities()) {
+    if (!quantity.is_in_summary || (quantity.belongs && !quantity.belongs(step))) continue;
+    const std::vector<double> values = quantity.values(step);
+    Json& number = json[std::string(quantity.name)];
+    if (values.empty())
+      number = nullptr;
+    else if (quantity.components.empty())
+      number = or_null(values.front());
+    else
+      number = values;
   }
-  json["slip_off_force"] = or_null(step.slip_off_force);
-  if (step.load.is<ProbeLoad>())
-    json["slip_off_displacement"] = or_null(step.slip_off_displacement);
-  json["slip_off_uncertainty"] = or_null(step.slip_off_uncertainty);
-  json["contact_arclength"] = or_null(step.contact_arclength);
   if (step.contact) json["contact"] = contact_json(*step.contact);
   if (step.contact && step.contact->energy_lost)
     json["jump"] = {{"energy_lost", *step.contact->energy_lost}};
   if (step.unstable_modes) json["unstable_modes"] = *step.unstable_modes;
-  if (step.smallest_eigenvalue) json["smallest_eigenvalue"] = *step.smallest_eigenvalue;
   if (step.pull_in) json["pull_in"] = pull_in_json(*step.pull_in);
   json["unknowns"] = step.unknowns;
   json["iterations"] = step.iterations;
@@ -301,7 +293,7 @@ std::string fields_csv(const models::CaseResult& result) {
   };
   column("step", "");
   for (const LoadParameter& parameter : problem.load_path.front().type().parameters)
-    column(parameter.key.name, parameter.key.quantity.unit);
+    column(parameter.name, parameter.quantity.unit);
   column("sensor", "");
   column("pair", "");
   for (const char* quantity : {"B", "dB", "uncertainty"})

@@ -12,6 +12,8 @@
 
 #include "problem/support/words.h"
 
+#include "problem/support/evenly.h"
+
 namespace ciliaval::compare::output {
 namespace {
 
@@ -91,13 +93,6 @@ ShownUnit shown_unit(std::string_view si) {
   return {std::string(si), 1};
 }
 
-std::vector<std::size_t> evenly(std::size_t count, std::size_t shown) {
-  std::vector<std::size_t> chosen;
-  const std::size_t n = std::min(count, shown);
-  for (std::size_t i = 0; i < n; ++i) chosen.push_back(n < 2 ? 0 : i * (count - 1) / (n - 1));
-  return chosen;
-}
-
 std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, std::size_t most) {
   std::vector<std::size_t> shown = counts;
   const auto size = [&] {
@@ -108,7 +103,7 @@ std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, st
   for (std::size_t d = 0; d < counts.size(); ++d) {
     std::vector<std::size_t> finer;
     for (const std::size_t point : points)
-      for (const std::size_t i : evenly(counts[d], shown[d]))
+      for (const std::size_t i : support::evenly(counts[d], shown[d]))
         finer.push_back(point * counts[d] + i);
     points = std::move(finer);
   }

@@ -31,9 +31,6 @@ struct ShownUnit {
 /// "mm" for "m"; a unit without a handier one is itself.
 ShownUnit shown_unit(std::string_view si);
 
-/// The indices of `shown` of `count` things, evenly chosen, the first and the last among them.
-std::vector<std::size_t> evenly(std::size_t count, std::size_t shown);
-
 /// At most so many points of a grid with `counts` values along its directions, of which the last
 /// runs fastest. Whole values are left out, evenly, most of the longest direction.
 std::vector<std::size_t> thinned_grid(const std::vector<std::size_t>& counts, std::size_t most);

@@ -190,7 +190,7 @@ std::vector<std::string> case_text(const input::Case& problem) {
                       [](input::Option::File kind, std::filesystem::path& file) {
                         file = kind == input::Option::File::folder ? "" : file.filename();
                       });
-  portable.surface.file = portable.surface.file.filename();
+  if (portable.surface) portable.surface->file = portable.surface->file.filename();
   for (input::external::ExternalModel& model : portable.external) {
     for (std::filesystem::path& file : model.centreline_files) file = file.filename();
     model.readings_file = model.readings_file.filename();
@@ -248,13 +248,13 @@ std::string to_json(const Baseline& baseline) {
       lines(changed), lines(outcomes), lines(quantities));
 }
 
-AllowedDeviation allowed_deviation(const Measurement& quantity) {
-  const bool estimate = quantity.id.ends_with("/tip_uncertainty");
-  const double part =
-      estimate ? 1e-10
-               : std::max(accuracy_class(quantity.mechanics), accuracy_class(quantity.field));
+AllowedDeviation allowed_deviation(const results::Observation& quantity) {
+  const double part = quantity.is_estimate ? 1e-10
+                                           : std::max(accuracy_class(quantity.mechanics),
+                                                      accuracy_class(quantity.field));
   // Two digits, so that rounding of the group does not show in the file.
-  return {estimate ? 1e-3 : part, std::stod(fmt::format("{:.1e}", part * quantity.size()))};
+  return {quantity.is_estimate ? 1e-3 : part,
+          std::stod(fmt::format("{:.1e}", part * quantity.size()))};
 }
 
 Baseline make_baseline(const input::Case& problem, const Measurements& measured,
@@ -267,13 +267,14 @@ Baseline make_baseline(const input::Case& problem, const Measurements& measured,
   std::map<std::string, Expected> before;
   if (old != nullptr)
     for (const Expected& expected : old->quantities) before[expected.id] = expected;
-  for (const Measurement& q : measured.quantities) {
+  for (const results::Observation& q : measured.quantities) {
+    const std::string id = q.id();
     if (!std::isfinite(q.value))
       throw SolverError(
-          fmt::format("case \"{}\": `{}` is not finite: that is no baseline", problem.name, q.id));
-    Expected expected{q.id, q.unit, q.value, allowed_deviation(q), {}};
+          fmt::format("case \"{}\": `{}` is not finite: that is no baseline", problem.name, id));
+    Expected expected{id, q.unit, q.value, allowed_deviation(q), {}};
     std::optional<double> old_value;
-    if (const auto then = before.extract(q.id)) {
+    if (const auto then = before.extract(id)) {
       old_value = then.mapped().value;
       expected.reference = then.mapped().reference;
       // Rounding is no change, and does not add up from baseline to baseline.
@@ -281,7 +282,7 @@ Baseline make_baseline(const input::Case& problem, const Measurements& measured,
         expected.value = *old_value;
     }
     if (old != nullptr && old_value != expected.value)
-      baseline.changes.push_back({q.id, old_value, expected.value});
+      baseline.changes.push_back({id, old_value, expected.value});
     baseline.quantities.push_back(std::move(expected));
   }
   for (const auto& [id, expected] : before)

@@ -72,7 +72,7 @@ std::string to_json(const Baseline& baseline);
 /// The tolerance of a quantity in a new baseline, and the widest one that `check` accepts: the
 /// accuracy class of its models, as a part of the quantity's group. It is above
 /// the spread between machines, kernels and ranks (docs/evidence/regression.md).
-AllowedDeviation allowed_deviation(const Measurement& quantity);
+AllowedDeviation allowed_deviation(const results::Observation& quantity);
 
 /// A baseline of measurements. It keeps the references of `old`, and its values where they differ
 /// by less than their tolerance; `changes` lists the others. Throws SolverError if something failed

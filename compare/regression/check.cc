@@ -27,10 +27,11 @@ bool belongs_to(const std::string& id, const std::vector<std::string>& models) {
 }
 
 /// Holds one number against another. No part of the tolerance may be wider than `widest`.
-Finding compare(const Measurement& measured, double expected, const AllowedDeviation& tolerance,
-                const AllowedDeviation& widest, std::string against) {
+Finding compare(const results::Observation& measured, double expected,
+                const AllowedDeviation& tolerance, const AllowedDeviation& widest,
+                std::string against) {
   Finding finding{false,
-                  measured.id,
+                  measured.id(),
                   std::move(against),
                   {},
                   measured.unit,
@@ -96,10 +97,10 @@ void check_outcomes(const std::vector<Outcome>& measured, const Baseline& baseli
          fmt::format("is \"{}\", and the baseline does not have it; --accept adds it", value));
 }
 
-void check_quantities(const std::vector<Measurement>& measured, const Baseline& baseline,
+void check_quantities(const std::vector<results::Observation>& measured, const Baseline& baseline,
                       const std::vector<std::string>& left_out, CheckReport& report) {
-  std::map<std::string, const Measurement*> now;
-  for (const Measurement& quantity : measured) now[quantity.id] = &quantity;
+  std::map<std::string, const results::Observation*> now;
+  for (const results::Observation& quantity : measured) now[quantity.id()] = &quantity;
   std::set<std::string> accepted;
   for (const Expected& expected : baseline.quantities) accepted.insert(expected.id);
   for (const Expected& expected : baseline.quantities) {
@@ -113,7 +114,7 @@ void check_quantities(const std::vector<Measurement>& measured, const Baseline& 
            "is in the baseline but was not computed: nothing reads its tolerance");
       continue;
     }
-    const Measurement& quantity = *found->second;
+    const results::Observation& quantity = *found->second;
     if (quantity.unit != expected.unit) {
       fail(report, expected.id,
            fmt::format("is in {}, the baseline is in {}", quantity.unit, expected.unit));
@@ -128,11 +129,11 @@ void check_quantities(const std::vector<Measurement>& measured, const Baseline& 
           compare(quantity, reference->value, reference->allowed,
                   {widest_of_reference, widest_of_reference * quantity.size()}, reference->label));
   }
-  for (const Measurement& quantity : measured)
-    if (!accepted.contains(quantity.id))
-      fail(report, quantity.id,
+  for (const auto& [id, quantity] : now)
+    if (!accepted.contains(id))
+      fail(report, id,
            fmt::format("is {} {}, and the baseline does not have it; --accept adds it",
-                       quantity.value, quantity.unit));
+                       quantity->value, quantity->unit));
 }
 
 }  // namespace

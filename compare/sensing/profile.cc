@@ -29,9 +29,7 @@ constexpr std::size_t fewest_of_a_level = 5;
 
 /// The case's cilium under a flat surface that is pressed on while it slides.
 input::Case level_case(input::Case problem, const models::ModelPair& pair, double largest) {
-  surroundings::Surface surface;
-  surface.friction = problem.surface.surface->friction;
-  problem.surface = {std::make_shared<const surroundings::Surface>(surface), {}};
+  const surroundings::StatedSurface flat{.friction = problem.surface.value().friction};
   const SweepLoad first = problem.load_path.front().as<SweepLoad>().value();
   problem.mechanics = {pair.mechanics};
   problem.fields = {pair.field};
@@ -43,9 +41,9 @@ input::Case level_case(input::Case problem, const models::ModelPair& pair, doubl
     problem.load_path.emplace_back(
         SweepLoad{largest * std::max(part * part, 1e-4),
                   static_cast<double>(i) * travel_of_a_step * problem.cilium.length(), first.speed,
-                  first.azimuth},
-        problem.surface.surface);
+                  first.azimuth});
   }
+  input::set_surface(problem, flat);
   return problem;
 }
 

@@ -1,28 +1,22 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "compare/input/case.h"
+#include "problem/description/field.h"
 
 namespace ciliaval::compare::study {
 
 /// A number of a case that a study can set: one that the case file states, or one made of several
 /// of them.
-struct CaseNumber {
-  std::string path;   ///< dotted, as in the case file: "cilium.segment.base.young_modulus"
-  Quantity quantity;  ///< what it is
-  Range range;        ///< what it may be, SI units
-  std::string doc;    ///< one sentence
-  bool is_whole = false;
+struct CaseNumber : description::Field<input::Case> {
+  std::string path;  ///< dotted, as in the case file: "cilium.segment.base.young_modulus"
   /// When it is set: plain numbers first, then those that rescale what these have set.
   enum class Order { plain, total_length, proportion, aspect_ratio };
   Order order = Order::plain;
   std::string sets;  ///< two numbers that set the same contradict each other
-  std::function<double(const input::Case&)> get;
-  std::function<void(input::Case&, double)> set;
 };
 
 /// The numbers of this case: those of its cilium and segments, of its load (set at all its steps),

@@ -97,7 +97,7 @@ std::string_view title(Output output) {
 }
 
 Quantity quantity_of(Output output, const Load& load) {
-  const Quantity& magnitude = load.type().parameters.front().key.quantity;
+  const Quantity& magnitude = load.type().parameters.front().quantity;
   if (output == Output::range || output == Output::resolution) return magnitude;
   if (output != Output::sensitivity) return quantity::flux_density;
   if (magnitude.unit == "N") return {"a", "flux density per force", "T/N", "50 uT/mN"};

@@ -52,7 +52,7 @@ std::vector<Extent> domain_of(const input::Case& c) {
   const double length = c.cilium.length();
   const Load& first = c.load_path.front();
   const BendingPlane plane = bending_plane(c);
-  const auto& key = first.type().parameters.front().key;
+  const auto& key = first.type().parameters.front();
   if (!first.is<EnvironmentLoad>()) {
     const auto loads = along_path([](const Load& load) { return magnitude(load); });
     add("load", fmt::format("{}, {}", type(first), key.name), std::string(magnitude_unit(first)),

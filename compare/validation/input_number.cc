@@ -26,7 +26,7 @@ void for_each_step(const input::Case& c, const F& f) {
   one.external.clear();
   for (std::size_t step = 0; step < c.load_path.size(); ++step) {
     one.load_path = {c.load_path[step]};
-    for (std::size_t p = 0; p < c.stated_by.size(); ++p) one.stated_by[p] = {c.stated_by[p][step]};
+    if (!c.stated_by.empty()) one.stated_by = {c.stated_by[step]};
     f(one, step);
   }
 }
@@ -52,10 +52,10 @@ std::vector<CaseNumber> numbers_of(const input::Case& c) {
 
 /// The number's values that are shifted: one, or that of each step.
 std::vector<double> values_of(const input::Case& c, const Input& input) {
-  if (!input.at_each_step) return {input.number.get(c)};
+  if (!input.at_each_step) return {input.number.number(c)};
   std::vector<double> values;
   for_each_step(
-      c, [&](const input::Case& one, std::size_t) { values.push_back(input.number.get(one)); });
+      c, [&](const input::Case& one, std::size_t) { values.push_back(input.number.number(one)); });
   return values;
 }
 
@@ -166,8 +166,8 @@ input::Case shifted(const input::Case& c, const Input& input, double deviations)
   input::Case result = c;
   result.external.clear();
   const auto shift = [&](input::Case& x) {
-    const double value = input.number.get(x);
-    input.number.set(x, value + deviations * deviation(input, value));
+    const double value = input.number.number(x);
+    input.number.set_number(x, value + deviations * deviation(input, value));
     input::set_stated_magnitudes(x);
   };
   if (!input.at_each_step) {
@@ -188,8 +188,7 @@ input::Case shifted(const input::Case& c, const Input& input, double deviations)
   for_each_step(c, [&](input::Case& one, std::size_t step) {
     shift(one);
     result.load_path[step] = one.load_path.front();
-    for (std::size_t p = 0; p < one.stated_by.size(); ++p)
-      result.stated_by[p][step] = one.stated_by[p].front();
+    if (!one.stated_by.empty()) result.stated_by[step] = one.stated_by.front();
   });
   return result;
 }

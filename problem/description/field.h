@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -23,7 +24,8 @@
 namespace ciliaval::description {
 
 /// The value of a key, whatever the member's type is.
-using Value = std::variant<bool, unsigned int, double, std::string, std::array<double, 2>, Vector3>;
+using Value = std::variant<bool, unsigned int, double, std::string, std::array<double, 2>, Vector3,
+                           std::array<double, 4>>;
 
 /// A key of a table of a case file.
 struct Key {
@@ -31,7 +33,8 @@ struct Key {
     none,
     mesh,     ///< read in place of the model's own mesh, beside the case file
     program,  ///< with a slash beside the case file, else in PATH
-    folder    ///< written to, beside the case file; empty: nothing is kept
+    folder,   ///< written to, beside the case file; empty: nothing is kept
+    data      ///< read, beside the case file
   };
   /// A file that leaves the key out means this.
   enum class Absence {
@@ -46,9 +49,12 @@ struct Key {
   std::string_view doc;                     ///< one sentence
   Value initial;                            ///< the member's, which says what kind of value it is
   Absence absence = Absence::its_initial_value;
-  std::string fallback{};     ///< the initial value as a person would state it; empty: its TOML
-  std::size_t longest = 0;    ///< bytes of a text for people, of one line and not empty; 0: any
-  bool may_be_axial = false;  ///< of a vector: one number is its third component
+  std::string fallback{};      ///< the initial value as a person would state it; empty: its TOML
+  std::size_t longest = 0;     ///< bytes of a text for people, of one line and not empty; 0: any
+  bool may_be_axial = false;   ///< of a vector: one number is its third component
+  bool is_along_path = false;  ///< one value, or a list of them, one for each load step
+  /// The key that this one takes the place of, if a file states it; it is not written back.
+  std::string_view in_place_of{};
   File file = File::none;
   std::string goes_with{};  ///< what makes it belong, as a file would state it
 
@@ -97,6 +103,23 @@ Field<Owner> field(T Owner::*member, std::string_view name, const Quantity& quan
   result.initial = Owner{}.*member;
   result.get = [=](const Owner& owner) { return Value(owner.*member); };
   result.set = [=](Owner& owner, const Value& value) { owner.*member = std::get<T>(value); };
+  return result;
+}
+
+/// A key whose number need not be known: -1, beyond its range, stands for none.
+template <class Owner>
+Field<Owner> field(std::optional<double> Owner::*member, std::string_view name,
+                   const Quantity& quantity, const Range& range, std::string_view doc) {
+  Field<Owner> result;
+  result.name = name;
+  result.quantity = quantity;
+  result.range = range;
+  result.doc = doc;
+  result.initial = -1.0;
+  result.absence = Key::Absence::nothing;
+  result.fallback = "not known";
+  result.get = [=](const Owner& owner) { return Value((owner.*member).value_or(-1)); };
+  result.set = [=](Owner& owner, const Value& value) { owner.*member = std::get<double>(value); };
   return result;
 }
 
@@ -164,6 +187,21 @@ template <class Owner>
 Field<Owner> optional(Field<Owner> field, std::string_view words) {
   field.absence = Key::Absence::nothing;
   field.fallback = words;
+  return field;
+}
+
+/// The key, of which a file may list a value for each load step.
+template <class Owner>
+Field<Owner> along_path(Field<Owner> field) {
+  field.is_along_path = true;
+  return field;
+}
+
+/// Another way to state what the key of this name says.
+template <class Owner>
+Field<Owner> in_place_of(std::string_view name, Field<Owner> field) {
+  field.in_place_of = name;
+  field.absence = Key::Absence::nothing;
   return field;
 }
 

@@ -50,7 +50,7 @@ void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/)
   std::string type(load.type().name);
   archive& type;
   if (const ciliaval::LoadType* saved = ciliaval::find_load_type(type); saved != &load.type())
-    load = ciliaval::Load(*saved, std::vector<double>(saved->parameters.size()));
+    load = ciliaval::Load(*saved);
   for (std::size_t i = 0; i < load.values().size(); ++i) {
     double value = load.values()[i];
     archive& value;

@@ -8,6 +8,10 @@
 
 namespace ciliaval::surroundings {
 
+std::string_view name(MagneticEnergy energy) {
+  return energy == MagneticEnergy::F ? "F" : "R";
+}
+
 bool is_empty(const Environment& environment) {
   return environment.gravity.isZero(0) && environment.uniform_field.isZero(0) &&
          std::ranges::all_of(environment.magnets,

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "problem/centreline.h"
@@ -19,6 +20,9 @@ enum class MagneticEnergy {
   F,  ///< −(F·M)·B₀, M carried along by the deformation (Zhao et al., JMPS 124, 2019)
   R   ///< −(R·M)·B₀, M turned by the polar rotation (Danas & Reis, JMPS 191, 2024)
 };
+
+/// "F" or "R".
+std::string_view name(MagneticEnergy energy);
 
 /// What surrounds the cilium, besides what its load says: weight and buoyancy, a magnetic field,
 /// and magnets at rest beside it. By default there is nothing.

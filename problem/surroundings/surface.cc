@@ -253,4 +253,15 @@ void require_valid(const Surface& surface) {
   std::visit([](const auto& kind) { check(kind); }, surface.profile);
 }
 
+std::shared_ptr<const Surface> surface_of(const StatedSurface& stated) {
+  using Kind = StatedSurface::Kind;
+  Surface surface{FlatProfile{}, stated.friction, stated.tilt};
+  if (stated.kind == Kind::sine) surface.profile = stated.sine;
+  if (stated.kind == Kind::trapezoid) surface.profile = stated.trapezoid;
+  if (stated.kind == Kind::random) surface.profile = RandomProfile(stated.random);
+  if (stated.kind == Kind::file) surface.profile = stated.sampled.value();
+  require_valid(surface);
+  return std::make_shared<const Surface>(std::move(surface));
+}
+
 }  // namespace ciliaval::surroundings

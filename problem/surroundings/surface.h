@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -72,7 +74,7 @@ class RandomProfile {
     double hurst = 0;     ///< H, 0 to 1
     double longest = 0;   ///< λ_longest, m
     double shortest = 0;  ///< λ_shortest, m
-    std::uint32_t seed = 0;
+    std::uint32_t seed = 1;
   };
   /// Throws InputError as require_valid(Surface).
   explicit RandomProfile(const Parameters& parameters);
@@ -112,5 +114,20 @@ struct Surface {
 /// Throws InputError if a parameter is not finite or out of its range, or if the edges of a
 /// trapezoid have no room.
 void require_valid(const Surface& surface);
+
+/// The numbers of a surface as a person states them; those of its kind count.
+struct StatedSurface {
+  enum class Kind { flat, sine, trapezoid, random, file };
+  Kind kind = Kind::flat;
+  SineProfile sine{};
+  TrapezoidProfile trapezoid{};
+  RandomProfile::Parameters random{};
+  std::filesystem::path file{};             ///< of a profile that is one
+  std::optional<SampledProfile> sampled{};  ///< what is in it
+  double friction = 0;                      ///< Coulomb's μ
+  double tilt = 0;                          ///< rad
+};
+/// Throws InputError as require_valid().
+std::shared_ptr<const Surface> surface_of(const StatedSurface& stated);
 
 }  // namespace ciliaval::surroundings

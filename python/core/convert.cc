@@ -187,10 +187,6 @@ double number(py::handle value, std::string_view name, const Quantity& quantity)
                                kinds, shown(value)));
 }
 
-double number(py::handle value, const QuantityKey& key) {
-  return number(value, key.name, key.quantity);
-}
-
 std::string text(py::handle value, std::string_view name) {
   if (!PyUnicode_Check(value.ptr()))
     throw InputError(fmt::format("`{}` is a text, not {}", name, shown(value)));
@@ -275,15 +271,6 @@ Vector3 vector(const py::object& value, std::string_view name, const Quantity& q
   return {all.values[0], all.values[1], all.values[2]};
 }
 
-Vector3 vector(const py::object& value, const QuantityKey& key) {
-  return vector(value, key.name, key.quantity);
-}
-
-Vector3 magnetization(const py::object& value, const QuantityKey& key) {
-  const bool is_axial = PyUnicode_Check(value.ptr()) || as_number(value);
-  return is_axial ? Vector3(number(value, key) * Vector3::UnitZ()) : vector(value, key);
-}
-
 description::Value value_of(py::handle value, const Key& key) {
   const description::Value found = std::visit(
       [&](const auto& kind) -> description::Value {
@@ -312,7 +299,8 @@ py::object to_python(const Key& key, const description::Value& value) {
   return std::visit(
       [&](const auto& v) -> py::object {
         if constexpr (std::is_same_v<std::decay_t<decltype(v)>, Vector3>) {
-          if (key.may_be_axial && v.template head<2>().isZero(0)) return py::float_(v.z());
+          if (!key.may_be_axial) return array(v);
+          if (v.template head<2>().isZero(0)) return py::float_(v.z());
           return py::make_tuple(v.x(), v.y(), v.z());
         } else {
           return py::cast(v);

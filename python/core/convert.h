@@ -57,7 +57,6 @@ std::optional<double> as_number(pybind11::handle value);
 /// A number in SI units, or a text with a unit as case files have it ("1 mN"). Throws InputError
 /// that names the argument.
 double number(pybind11::handle value, std::string_view name, const Quantity& quantity);
-double number(pybind11::handle value, const QuantityKey& key);
 
 /// A text. Throws InputError that names the argument.
 std::string text(pybind11::handle value, std::string_view name);
@@ -72,9 +71,6 @@ std::vector<Vector3> points(const pybind11::object& values);
 /// A vector from anything that numpy.asarray takes; its components are numbers as above. Throws
 /// InputError that names the argument.
 Vector3 vector(const pybind11::object& value, std::string_view name, const Quantity& quantity);
-Vector3 vector(const pybind11::object& value, const QuantityKey& key);
-/// M along z, or its three components. Throws as above.
-Vector3 magnetization(const pybind11::object& value, const QuantityKey& key);
 /// The value of a key in its range, which the argument has its name of; of a vector that may be
 /// axial, a number is its third component. Throws as above.
 description::Value value_of(pybind11::handle value, const description::Key& key);
@@ -99,6 +95,15 @@ void define_attributes(pybind11::class_<T>& of) {
         [&field](T& owner, const pybind11::object& value) {
           field.set(owner, value_of(value, field));
         },
+        std::string(field.doc).c_str());
+}
+/// The same that cannot be set: what the keys say together has been checked.
+template <class T>
+void define_constants(pybind11::class_<T>& of) {
+  for (const description::Field<T>& field : description::fields<T>())
+    of.def_property_readonly(
+        std::string(field.name).c_str(),
+        [&field](const T& owner) { return to_python(field, field.get(owner)); },
         std::string(field.doc).c_str());
 }
 

@@ -3,9 +3,8 @@
 
 #include <string>
 
-#include "compare/input/environment/magnet.h"
+#include "problem/description/environment.h"
 #include "problem/error.h"
-#include "problem/support/rotation.h"
 #include "problem/surroundings/magnets/field.h"
 #include "problem/surroundings/magnets/magnet.h"
 #include "python/core/calls.h"
@@ -16,7 +15,6 @@ namespace ciliaval::python::core {
 namespace {
 
 namespace py = pybind11;
-namespace keys = compare::input::environment;
 using surroundings::magnets::Magnet;
 using surroundings::magnets::Shape;
 
@@ -24,13 +22,12 @@ using surroundings::magnets::Shape;
 Magnet magnet(Shape shape, const Text& name, const Array& position, const Array& M,
               const Array& axis) {
   Magnet result;
-  result.name = text(name, "name");
   result.shape = shape;
-  result.position = vector(position, keys::magnet_position);
-  result.magnetization = magnetization(M, keys::magnet_magnetization);
-  const Vector3 direction = vector(axis, keys::magnet_axis);
-  if (direction.isZero(0)) throw InputError("the `axis` of a magnet must point somewhere");
-  result.rotation = support::turn_to(direction);
+  set_field(result, "name", name);
+  set_field(result, "position", position);
+  set_field(result, "magnetization", M);
+  set_field(result, "axis", axis);
+  if (result.rotation.norm() == 0) throw InputError("the `axis` of a magnet must point somewhere");
   return result;
 }
 
@@ -67,7 +64,7 @@ void bind_magnets(py::module_& module) {
           [](const Array& position, const Number& diameter, const Array& M, const Array& axis,
              const Text& name) {
             Magnet result = magnet(Shape::ball, name, position, M, axis);
-            result.diameter = number(diameter, keys::magnet_diameter);
+            set_field(result, "diameter", diameter);
             return valid(result);
           },
           py::arg("position"), py::arg("diameter"), py::arg("magnetization"), py::arg("axis") = up,
@@ -77,8 +74,8 @@ void bind_magnets(py::module_& module) {
           [](const Array& position, const Number& diameter, const Number& length, const Array& M,
              const Array& axis, const Text& name) {
             Magnet result = magnet(Shape::cylinder, name, position, M, axis);
-            result.diameter = number(diameter, keys::magnet_diameter);
-            result.length = number(length, keys::magnet_length);
+            set_field(result, "diameter", diameter);
+            set_field(result, "length", length);
             return valid(result);
           },
           "Magnetised along its axis.", py::arg("position"), py::arg("diameter"), py::arg("length"),
@@ -88,7 +85,7 @@ void bind_magnets(py::module_& module) {
           [](const Array& position, const Array& edges, const Array& M, const Array& axis,
              const Text& name) {
             Magnet result = magnet(Shape::cuboid, name, position, M, axis);
-            result.edges = vector(edges, keys::magnet_edges);
+            set_field(result, "edges", edges);
             return valid(result);
           },
           "edges: its three lengths, m, the third along its axis.", py::arg("position"),

@@ -13,6 +13,7 @@
 
 #include "compare/input/environment/environment.h"
 #include "problem/cilium.h"
+#include "problem/description/environment.h"
 #include "problem/error.h"
 #include "problem/load.h"
 #include "python/core/convert.h"
@@ -26,15 +27,15 @@ namespace {
 using surroundings::Environment;
 
 /// A parameter of a load, of which some might give a list.
-double parameter_value(py::handle value, const QuantityKey& key) {
+description::Value parameter_value(py::handle value, const LoadParameter& parameter) {
   const bool is_list =
       !PyUnicode_Check(value.ptr()) && !as_number(value) && py::isinstance<py::sequence>(value);
   if (is_list)
     throw InputError(
         fmt::format("`{}` of a load is one {}, not {}: make a Load of each; bend() takes a list of "
                     "loads",
-                    key.name, key.quantity.name, shown(value)));
-  return number(value, key);
+                    parameter.name, parameter.quantity.name, shown(value)));
+  return number(value, parameter.name, parameter.quantity);
 }
 
 Load load(const Text& type_name, const py::kwargs& parameters) {
@@ -45,44 +46,36 @@ Load load(const Text& type_name, const py::kwargs& parameters) {
     for (const LoadType* other : load_types()) known += fmt::format(" {}", other->name);
     throw InputError(fmt::format("there is no load type `{}`; there are:{}", type, known));
   }
-  Load result(*found, std::vector<double>(found->parameters.size()));
+  Load result(*found);
   std::string expected;
-  for (const auto& parameter : found->parameters)
-    expected += fmt::format("{}{} [{}]", expected.empty() ? "" : ", ", parameter.key.name,
-                            parameter.key.quantity.unit);
+  for (const LoadParameter& parameter : found->parameters)
+    expected += fmt::format("{}{} [{}]", expected.empty() ? "" : ", ", parameter.name,
+                            parameter.quantity.unit);
   for (const auto& [key, value] : parameters) {
     const auto name = key.cast<std::string>();
-    const auto at = std::ranges::find_if(
-        found->parameters, [&](const auto& parameter) { return parameter.key.name == name; });
+    const auto at = std::ranges::find(found->parameters, name, &LoadParameter::name);
     if (at == found->parameters.end())
       throw InputError(
           fmt::format("a load of type `{}` has no `{}`; it has: {}", type, name, expected));
-    result.set_value(static_cast<std::size_t>(at - found->parameters.begin()),
-                     parameter_value(value, at->key));
+    at->set(result, parameter_value(value, *at));
   }
-  for (const auto& parameter : found->parameters)
-    if (parameter.key.fallback.empty() &&
-        !parameters.contains(py::str(std::string(parameter.key.name))))
+  for (const LoadParameter& parameter : found->parameters)
+    if (parameter.fallback.empty() && !parameters.contains(py::str(std::string(parameter.name))))
       throw InputError(fmt::format("a load of type `{}` needs `{}`; it has: {}", type,
-                                   parameter.key.name, expected));
+                                   parameter.name, expected));
   return result;
 }
 
 Environment environment(const Array& gravity, const Number& fluid_density,
-                        const Array& uniform_field, const Text& energy_name,
+                        const Array& uniform_field, const Text& magnetic_energy,
                         const py::object& magnets) {
-  const std::string magnetic_energy = text(energy_name, names::magnetic_energy);
-  const auto energy = std::ranges::find(names::energy_names, magnetic_energy);
-  if (energy == names::energy_names.end())
-    throw InputError(fmt::format("`{}` is {}, not `{}`", names::magnetic_energy,
-                                 fmt::join(names::energy_names, " or "), magnetic_energy));
-  return {.gravity = vector(gravity, names::gravity),
-          .fluid_density = number(fluid_density, names::fluid_density),
-          .uniform_field = vector(uniform_field, names::uniform_field),
-          .magnetic_energy = energy == names::energy_names.begin()
-                                 ? surroundings::MagneticEnergy::F
-                                 : surroundings::MagneticEnergy::R,
-          .magnets = list_of<surroundings::magnets::Magnet>(magnets, "magnets")};
+  Environment result;
+  set_field(result, "gravity", gravity);
+  set_field(result, "fluid_density", fluid_density);
+  set_field(result, "uniform_field", uniform_field);
+  set_field(result, "magnetic_energy", magnetic_energy);
+  result.magnets = list_of<surroundings::magnets::Magnet>(magnets, "magnets");
+  return result;
 }
 
 /// The loads in their environments, one for all or one for each; without loads those of nothing
@@ -109,13 +102,13 @@ std::string representation(const Environment& around) {
   return fmt::format(
       "Environment(gravity={}, fluid_density={:.6g}, uniform_field={}, magnetic_energy='{}')",
       representation(around.gravity), around.fluid_density, representation(around.uniform_field),
-      names::name(around.magnetic_energy));
+      name(around.magnetic_energy));
 }
 
 std::string representation(const Load& load) {
   std::string parameters;
   for (std::size_t i = 0; i < load.values().size(); ++i)
-    parameters += fmt::format(", {}={:.6g}", load.type().parameters[i].key.name, load.values()[i]);
+    parameters += fmt::format(", {}={:.6g}", load.type().parameters[i].name, load.values()[i]);
   const std::string around = surroundings::is_empty(load.environment())
                                  ? ""
                                  : fmt::format(" in {}", representation(load.environment()));
@@ -243,27 +236,23 @@ void bind_problem(py::module_& module) {
       .def(pickled<Cilium>())
       .def("__repr__", [](const Cilium& cilium) { return representation(cilium); });
 
-  py::class_<Environment>(
+  py::class_<Environment> environment_class(
       module, "Environment",
       "What surrounds a cilium: gravity g [x, y, z] in m/s^2 (each segment needs a density),\n"
       "fluid_density in kg/m^3 for buoyancy, uniform_field B_0 [x, y, z] in T, by which\n"
-      "magnetic_energy the field acts: 'F', -(F M).B_0, or 'R', -(R M).B_0, and magnets beside it.")
+      "magnetic_energy the field acts: 'F', -(F M).B_0, or 'R', -(R M).B_0, and magnets beside "
+      "it.");
+  environment_class
       .def(py::init(&environment), py::arg("gravity") = py::make_tuple(0.0, 0.0, 0.0),
            py::arg("fluid_density") = 0.0, py::arg("uniform_field") = py::make_tuple(0.0, 0.0, 0.0),
            py::arg("magnetic_energy") = "F", py::arg("magnets") = py::tuple())
       .def_readonly("magnets", &Environment::magnets)
-      .def_property_readonly("gravity", [](const Environment& of) { return array(of.gravity); })
-      .def_readonly("fluid_density", &Environment::fluid_density)
-      .def_property_readonly("uniform_field",
-                             [](const Environment& of) { return array(of.uniform_field); })
-      .def_property_readonly(
-          "magnetic_energy",
-          [](const Environment& of) { return std::string(names::name(of.magnetic_energy)); })
       .def(
           "__eq__", [](const Environment& a, const Environment& b) { return a == b; },
           py::is_operator())
       .def(pickled<Environment>())
       .def("__repr__", [](const Environment& of) { return representation(of); });
+  define_constants(environment_class);
 
   py::class_<Load>(module, "Load",
                    "A load by its type and parameters, in SI units:\n"
@@ -274,7 +263,7 @@ void bind_problem(py::module_& module) {
                              [](const Load& of) {
                                py::dict result;
                                for (std::size_t i = 0; i < of.values().size(); ++i)
-                                 result[py::str(std::string(of.type().parameters[i].key.name))] =
+                                 result[py::str(std::string(of.type().parameters[i].name))] =
                                      of.values()[i];
                                return result;
                              })
@@ -292,9 +281,9 @@ void bind_problem(py::module_& module) {
         for (const LoadType* type : load_types()) {
           py::dict parameters;
           for (const auto& parameter : type->parameters)
-            parameters[py::str(std::string(parameter.key.name))] = fmt::format(
-                "{}{}{}", parameter.key.doc, parameter.key.quantity.unit.empty() ? "" : ", ",
-                parameter.key.quantity.unit);
+            parameters[py::str(std::string(parameter.name))] =
+                fmt::format("{}{}{}", parameter.doc, parameter.quantity.unit.empty() ? "" : ", ",
+                            parameter.quantity.unit);
           result[py::str(std::string(type->name))] = parameters;
         }
         return result;

@@ -79,7 +79,7 @@ class Bend(unittest.TestCase):
         field = cv.Environment(uniform_field=[1e-3, 0, 0])
         with self.assertRaisesRegex(cv.InputError, "3 environments and 2 loads"):
             cv.bend(rod, 2 * [cv.Load("dead", force_per_length=1e-3)], environment=3 * [field])
-        with self.assertRaisesRegex(cv.InputError, "F or R, not `G`"):
+        with self.assertRaisesRegex(cv.InputError, "`magnetic_energy`: \"G\" is none of F, R"):
             cv.Environment(magnetic_energy="G")
         with self.assertRaisesRegex(cv.InputError, "calculix takes no environment"):
             cv.bend(rod, environment=field, model="calculix")

@@ -2,85 +2,111 @@
 #include "compare/input/environment/environment.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <span>
+#include <tuple>
 
 #include "compare/input/case_sections.h"
-#include "compare/input/environment/magnet.h"
+#include "problem/description/environment.h"
 
 namespace ciliaval::compare::input::environment {
 namespace {
 
+using description::Fields;
 using surroundings::Environment;
+using surroundings::magnets::Magnet;
+using surroundings::magnets::Shape;
 
-constexpr std::size_t most_fields = 1000;
+constexpr std::size_t most_magnets = 100;
 
-/// The field, or the fields of a list.
-std::vector<Vector3> read_fields(const toml::node& node, Faults& faults) {
-  const toml::array* list = node.as_array();
-  if (list != nullptr && (list->empty() || list->size() > most_fields)) {
-    faults.add(place(node), fmt::format("'{}' lists {} fields: a path has 1 to {} of [x, y, z]",
-                                        uniform_field.name, list->size(), most_fields));
-    return {};
-  }
-  if (list == nullptr || !list->front().is_array()) {
-    const auto field = read_point(node, uniform_field, faults);
-    return field ? std::vector{*field} : std::vector<Vector3>{};
-  }
-  std::vector<Vector3> fields;
-  for (const toml::node& element : *list)
-    if (const auto field = read_point(element, uniform_field, faults)) fields.push_back(*field);
-  return fields;
+/// Weight and fluid, or field and energy: what is written if one of the two is stated.
+Fields<Environment> pair_of(std::size_t first) {
+  const auto& all = description::fields<Environment>();
+  Fields<Environment> pair{all.at(first), all.at(first + 1)};
+  for (auto& field : pair) field.absence = description::Key::Absence::its_initial_value;
+  return pair;
+}
+
+bool is_stated(const Fields<Environment>& pair, std::span<const Environment> path) {
+  return std::ranges::any_of(path, [&](const Environment& environment) {
+    return std::ranges::any_of(
+        pair, [&](const auto& field) { return field.get(environment) != field.initial; });
+  });
 }
 
 /// What is there without what it goes with.
-void check_companions(Section& table, const toml::node* pull, const toml::node* field,
-                      const toml::node* magnets) {
-  const auto needs = [&](std::string_view key, const toml::node* companion,
-                         std::string_view companion_key) {
-    const toml::node* node = table.find(key);
-    if (node != nullptr && companion == nullptr)
-      table.faults().add(place(*node),
-                         fmt::format("'{}' goes with '{}', which is missing", key, companion_key));
+void check_companions(Section& table, bool has_magnets) {
+  const auto& fields = description::fields<Environment>();
+  const auto& [gravity, fluid, field, energy] =
+      std::tie(fields.at(0), fields.at(1), fields.at(2), fields.at(3));
+  const bool has_gravity = table.find(gravity.name) != nullptr;
+  const bool has_field = table.find(field.name) != nullptr;
+  const auto needs = [&](const description::Key& key, bool has_other,
+                         const description::Key& other) {
+    if (const toml::node* node = table.find(key.name); node != nullptr && !has_other)
+      table.faults().add(
+          place(*node), fmt::format("'{}' goes with '{}', which is missing", key.name, other.name));
   };
-  needs(fluid_density.name, pull, gravity.name);
-  needs(magnetic_energy, field != nullptr ? field : magnets, uniform_field.name);
-  if (pull == nullptr && field == nullptr && magnets == nullptr)
+  needs(fluid, has_gravity, gravity);
+  needs(energy, has_field || has_magnets, field);
+  if (!has_gravity && !has_field && !has_magnets)
     table.faults().add(table.where(), fmt::format("[{}] needs '{}', '{}' or [[{}]]", table_name,
-                                                  gravity.name, uniform_field.name, magnet_table));
+                                                  gravity.name, field.name, magnet_table));
+}
+
+/// What is wrong with a magnet of which each key is right.
+void check_magnet(Section& table, const Magnet& magnet, const std::vector<Magnet>& others) {
+  const auto refuse = [&](std::initializer_list<std::string_view> keys, std::string_view fault) {
+    for (const std::string_view key : keys)
+      if (const toml::node* node = table.find(key))
+        table.faults().add(place(*node), std::string(fault));
+  };
+  if (std::ranges::find(others, magnet.name, &Magnet::name) != others.end())
+    refuse({"name"}, fmt::format("the magnet name {} is already taken", in_quotes(magnet.name)));
+  if (std::abs(magnet.rotation.norm() - 1) > 1e-9) {
+    refuse({"axis"}, "'axis' must point somewhere: it is zero");
+    refuse({"rotation"},
+           "'rotation' must be a unit quaternion [w, x, y, z], such as [0.8, 0, 0.6, 0]");
+  }
+  if (magnet.magnetization.isZero(0))
+    refuse({"magnetization", "remanence"}, "a magnet's magnetisation is zero");
+  if (magnet.shape == Shape::cylinder && !magnet.magnetization.head<2>().isZero(0))
+    refuse({"magnetization"},
+           "a cylinder is magnetised along its axis only: across it the field has no closed form "
+           "here; take a cuboid or a ball");
+}
+
+/// The magnets of each step; one set where no position is listed.
+std::vector<std::vector<Magnet>> read_magnets(Section& environment, PathLength& length) {
+  std::vector<std::vector<Magnet>> steps(1);
+  environment.tables("magnet", 1, most_magnets, [&](Section& table) {
+    const std::size_t before = table.faults().size();
+    std::vector<Magnet> path(1);
+    read(table, description::fields<Magnet>(), path, length);
+    if (table.faults().size() == before) check_magnet(table, path.front(), steps.front());
+    const std::size_t count = std::max(steps.size(), path.size());
+    path.resize(count, path.front());
+    steps.resize(count, steps.front());
+    for (std::size_t i = 0; i < count; ++i) steps[i].push_back(path[i]);
+  });
+  return steps;
 }
 
 }  // namespace
 
-std::vector<Environment> read_environment(Section& root) {
+std::vector<Environment> read_environment(Section& root, PathLength& length) {
   Section table = root.section(table_name);
   if (!table.exists()) return {};
-  Faults& faults = table.faults();
-  const toml::node* pull = table.find(gravity.name);
-  const toml::node* field = table.find(uniform_field.name);
-  check_companions(table, pull, field, table.find("magnet"));
-  Environment all;
-  if (pull != nullptr) all.gravity = read_point(*pull, gravity, faults).value_or(Vector3::Zero());
-  all.fluid_density = table.value(fluid_density).value_or(0);
-  if (const toml::node* node = table.find(magnetic_energy))
-    if (const auto name = read_choice(*node, magnetic_energy, energy_names, faults))
-      all.magnetic_energy = *name == energy_names[0] ? surroundings::MagneticEnergy::F
-                                                     : surroundings::MagneticEnergy::R;
-  const auto magnets = read_magnets(table);
+  std::vector<Environment> result(1);
+  read(table, description::fields<Environment>(), result, length);
+  check_companions(table, table.find("magnet") != nullptr);
+  const auto magnets = read_magnets(table, length);
   table.finish();
-  std::vector<Vector3> fields(1, Vector3::Zero());
-  if (field != nullptr) fields = read_fields(*field, faults);
-  if (fields.size() > 1 && magnets.size() > 1 && fields.size() != magnets.size())
-    faults.add(place(*field), fmt::format("'{}' lists {} fields, but a magnet's position {} points",
-                                          uniform_field.name, fields.size(), magnets.size()));
-  std::vector<Environment> result(std::max(fields.size(), magnets.size()), all);
-  for (std::size_t i = 0; i < result.size() && !fields.empty(); ++i) {
-    result[i].uniform_field = fields[std::min(i, fields.size() - 1)];
-    if (!magnets.empty()) result[i].magnets = magnets[std::min(i, magnets.size() - 1)];
-  }
+  result.resize(std::max(result.size(), magnets.size()), result.front());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i].magnets = magnets[magnets.size() == 1 ? 0 : std::min(i, magnets.size() - 1)];
   return result;
 }
 
@@ -112,31 +138,26 @@ LoadPath path_of(const std::vector<Environment>& environments) {
 }
 
 std::string to_toml(const LoadPath& path) {
-  const auto& first = path.front().environment();
-  const bool is_left_out = std::ranges::all_of(path, [](const Load& load) {
-    return !load.is<EnvironmentLoad>() && load.environment() == Environment{};
-  });
+  std::vector<Environment> steps;
+  bool is_left_out = true;
+  for (const Load& load : path) {
+    steps.push_back(load.environment());
+    is_left_out = is_left_out && !load.is<EnvironmentLoad>() && steps.back() == Environment{};
+  }
   if (is_left_out) return {};
   std::string text = fmt::format("\n[{}]\n", table_name);
-  const bool has_gravity = !first.gravity.isZero(0) || first.fluid_density != 0;
-  if (has_gravity)
-    text += fmt::format("{} = {}\n{} = \"{}\"\n", gravity.name,
-                        format_vector(first.gravity, gravity.quantity), fluid_density.name,
-                        format_quantity(first.fluid_density, fluid_density.quantity));
-  const bool varies = std::ranges::any_of(path, [&](const Load& load) {
-    return load.environment().uniform_field != first.uniform_field;
-  });
-  const std::string magnets = magnets_to_toml(path);
-  const bool has_field = varies || !first.uniform_field.isZero(0) ||
-                         first.magnetic_energy != surroundings::MagneticEnergy::F;
-  if ((has_gravity || !magnets.empty()) && !has_field) return text + magnets;
-  std::vector<std::string> fields;
-  for (const Load& load : path)
-    fields.push_back(format_vector(load.environment().uniform_field, uniform_field.quantity));
-  text += varies ? fmt::format("{} = [{}]\n", uniform_field.name, fmt::join(fields, ", "))
-                 : fmt::format("{} = {}\n", uniform_field.name, fields.front());
-  return text + fmt::format("{} = \"{}\"\n", magnetic_energy, name(first.magnetic_energy)) +
-         magnets;
+  const std::span<const Environment> all(steps);
+  const bool has_weight = is_stated(pair_of(0), all);
+  const std::size_t magnets = steps.front().magnets.size();
+  if (has_weight) text += lines(pair_of(0), all);
+  if (is_stated(pair_of(2), all) || (!has_weight && magnets == 0)) text += lines(pair_of(2), all);
+  for (std::size_t i = 0; i < magnets; ++i) {
+    std::vector<Magnet> along;
+    for (const Environment& step : steps) along.push_back(step.magnets.at(i));
+    text += fmt::format("\n[[{}]]\n", magnet_table) +
+            lines(description::fields<Magnet>(), std::span<const Magnet>(along));
+  }
+  return text;
 }
 
 }  // namespace ciliaval::compare::input::environment

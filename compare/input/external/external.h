@@ -6,14 +6,18 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "problem/centreline.h"
 #include "problem/cilium.h"
+#include "problem/description/field.h"
 #include "problem/load.h"
 #include "problem/types.h"
 
 namespace ciliaval::compare::input::external {
+
+inline constexpr std::string_view table_name = "models.external";
 
 /// Readings at one time: a vector for each sensor, T; none where it is not known.
 struct ExternalReading {
@@ -51,3 +55,12 @@ void read_external_files(std::vector<ExternalModel>& models, const Cilium& ciliu
                          const LoadPath& path, std::span<const std::string> sensors);
 
 }  // namespace ciliaval::compare::input::external
+
+namespace ciliaval::description {
+
+/// Those of [[models.external]] but for the name and the list of centrelines.
+template <>
+const Fields<compare::input::external::ExternalModel>&
+fields<compare::input::external::ExternalModel>();
+
+}  // namespace ciliaval::description

@@ -49,15 +49,11 @@ std::vector<LoadNumber> all_numbers(const Case& c) {
   std::vector<LoadNumber> numbers;
   const LoadType& type = c.load_path.front().type();
   if (!c.stated_by.empty())
-    for (std::size_t p = 0; p < c.stated_by.size(); ++p) {
-      const QuantityKey& key = type.statement->parameters[p].key;
-      numbers.push_back({std::string(key.name), key.quantity, c.stated_by[p]});
-    }
-  for (std::size_t p = 0; p < type.parameters.size(); ++p) {
-    const QuantityKey& key = type.parameters[p].key;
+    for (const auto& key : type.statement->parameters)
+      numbers.push_back({std::string(key.name), key.quantity, stated_values(c, key.name)});
+  for (const LoadParameter& key : type.parameters)
     numbers.push_back(number_of(c, std::string(key.name), key.quantity,
-                                [&](const Load& load) { return load.values()[p]; }));
-  }
+                                [&](const Load& load) { return key.number(load); }));
   const auto field = [](const Load& load) { return acting_environment(load).uniform_field; };
   add_vector(c, "uniform_field", quantity::flux_density, field, numbers);
   numbers.push_back(number_of(c, "|uniform_field|", quantity::flux_density,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compare/input/case_sections.h"
+#include "compare/input/described.h"
 #include "problem/support/words.h"
 
 namespace ciliaval::compare::input::measurement {
@@ -23,10 +24,6 @@ Range range_of(const Measurand& measurand) {
   if (measurand.quantity().unit == quantity::angle.unit)
     return {-2 * std::numbers::pi, 2 * std::numbers::pi, false, "an angle is from +z"};
   return {-100, 100, false, unit_slip};
-}
-
-QuantityKey point_key() {
-  return {measurement_table, "point", quantity::length, {-100, 100, false, unit_slip}, "", ""};
 }
 
 /// "B.left.x" taken apart: what, which sensor, which component; empty parts where there is none.
@@ -123,19 +120,9 @@ void read_point_of_end(const toml::node& node, const Case& c, bool case_is_right
   using Kind = Measurand::Kind;
   if (measurand.kind != Kind::position && measurand.kind != Kind::deflection)
     return faults.add(place(node), "'point' goes with tip.x, tip.y, tip.z and tip.deflection");
-  const toml::array* list = node.as_array();
-  if (list == nullptr || list->size() != 2)
-    return faults.add(
-        place(node),
-        fmt::format("'point' must be the place [X, Y] in the end section, such as "
-                    "[\"0.4 mm\", \"0 mm\"]; found {}",
-                    list == nullptr ? describe(node) : fmt::format("a list of {}", list->size())));
-  const QuantityKey key = point_key();
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto value = read_value((*list)[i], key.name, key.quantity, key.range, faults);
-    if (!value) return;
-    measurand.point.at(i) = *value;
-  }
+  const auto value = read_value(node, point_key(), faults);
+  if (!value) return;
+  point_key().set(measurand, *value);
   if (case_is_right && !is_in_section(measurand.point, c.cilium))
     faults.add(place(node), "'point' lies outside the end section");
 }
@@ -280,8 +267,7 @@ std::string to_toml(const Measurement& m) {
   std::string text =
       fmt::format("\n[[{}]]\nquantity = {}\n", measurement_table, toml_text(what.name));
   if (what.point != std::array<double, 2>{})
-    text += fmt::format("point = [{}, {}]\n", quantity_text(what.point[0], quantity),
-                        quantity_text(what.point[1], quantity));
+    text += fmt::format("point = {}\n", input::to_toml(point_key(), point_key().get(what)));
   return text + fmt::format("step = {}\nvalue = {}\nuncertainty = {}\nsource = {}\nfitted = {}\n",
                             m.step, quantity_text(m.value, quantity),
                             quantity_text(m.uncertainty, quantity), toml_text(m.source), m.fitted);
@@ -296,6 +282,16 @@ std::string to_toml(const InputUncertainty& input) {
 }
 
 }  // namespace
+
+const description::Field<Measurand>& point_key() {
+  static const auto key = description::optional(
+      description::field(&Measurand::point, "point", quantity::length,
+                         {-100, 100, false, unit_slip},
+                         "`tip.…`: the point `[X, Y]` of the end section that was measured, from "
+                         "its centre."),
+      "the centre");
+  return key;
+}
 
 const Quantity& Measurand::quantity() const {
   if (kind == Kind::angle) return ciliaval::quantity::angle;

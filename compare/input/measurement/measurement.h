@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "problem/description/field.h"
 #include "problem/parameter.h"
 
 namespace ciliaval::compare::input {
@@ -40,6 +41,9 @@ struct Measurand {
   const Quantity& quantity() const;
   bool is_field() const { return kind == Kind::B || kind == Kind::dB; }
 };
+
+/// The key `point`: a place in the end section.
+const description::Field<Measurand>& point_key();
 
 /// A measured value. SI units.
 struct Measurement {

@@ -10,7 +10,6 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/environment/environment.h"
-#include "compare/input/environment/magnet.h"
 #include "compare/input/measurement/measurement.h"
 #include "compare/input/schema/keys.h"
 
@@ -157,12 +156,12 @@ std::string json_schema(const Models& models) {
     if (std::ranges::find(tables, name, [](const auto& t) { return t.first; }) == tables.end())
       tables.push_back({name, {}});
   });
-  std::set<std::string> repeated{"cilium.segment", std::string(key::external_table),
+  std::set<std::string> repeated{"cilium.segment", std::string(external::table_name),
                                  std::string(measurement::measurement_table),
                                  std::string(measurement::input_table),
                                  std::string(environment::magnet_table)};
   models.for_each([&](const auto& entry) {
-    for (const QuantityKey* k : entry.tables.keys) repeated.emplace(k->table);
+    if (!entry.tables.keys.empty()) repeated.insert(entry.tables.name);
   });
   Json root{{"$schema", "http://json-schema.org/draft-07/schema#"},
             {"title", "A case of CiliaVal"},

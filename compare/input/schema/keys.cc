@@ -5,16 +5,17 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
 #include "compare/input/case_sections.h"
 #include "compare/input/described.h"
 #include "compare/input/environment/environment.h"
-#include "compare/input/environment/magnet.h"
 #include "compare/input/measurement/measurement.h"
 #include "compare/input/sweep/signal.h"
-#include "compare/input/sweep/surface.h"
 #include "problem/description/cilium.h"
+#include "problem/description/environment.h"
+#include "problem/description/surface.h"
 #include "problem/load.h"
 
 namespace ciliaval::compare::input::schema {
@@ -47,13 +48,6 @@ Key only_with(std::vector<std::string_view> values, Key key) {
   return key;
 }
 
-Key number(const QuantityKey& k, Kind kind = Kind::quantity) {
-  Key key = of_kind(kind, text(k.table, k.name, k.fallback, std::string(k.doc)));
-  key.quantity = k.quantity;
-  key.range = k.range;
-  return key;
-}
-
 Key of_key(std::string_view table, const description::Key& k) {
   const std::string initial = fmt::format("`{}`", to_toml(k, k.initial));
   const bool is_required = k.absence == description::Key::Absence::fault;
@@ -65,12 +59,13 @@ Key of_key(std::string_view table, const description::Key& k) {
   key.quantity = k.quantity;
   key.range = k.range;
   key.choices = k.choices;
-  const std::array kinds{Kind::flag, Kind::whole_number, Kind::quantity,
-                         Kind::text, Kind::pair,         Kind::point};  // as Value has them
+  const std::array kinds{Kind::flag, Kind::whole_number, Kind::quantity,  Kind::text,
+                         Kind::pair, Kind::point,        Kind::quantities};  // as Value has them
   key.kind = kinds.at(k.initial.index());
   if (key.kind == Kind::text && k.longest == 0) key.kind = Kind::file;
   if (!k.choices.empty()) key.kind = Kind::choice;
   if (k.may_be_axial) key.kind = Kind::quantities;
+  if (k.is_along_path) key.kind = key.kind == Kind::point ? Kind::points : Kind::quantities;
   return key;
 }
 
@@ -114,21 +109,20 @@ void add_load(std::vector<Key>& keys) {
   for (const LoadType* type : load_types()) types.push_back(type->name);
   keys.push_back(
       choice(types, text("load", "type", "", "What the load is and does as the cilium bends.")));
-  keys.push_back(only_with(
-      {SweepLoad::type().name},
-      of_kind(Kind::flag, text("load", key::sweep_return, "`false`",
-                               "`sweep`: whether the surface goes back again over the same "
-                               "places."))));
-  const auto add = [&](const std::vector<LoadParameter>& parameters, std::string_view type,
-                       bool last) {
-    for (const LoadParameter& parameter : parameters) {
-      if ((parameter.key.name == "azimuth") != last) continue;
+  const auto& [samples, there_and_back] =
+      std::tie(description::fields<SweepWay>().at(0), description::fields<SweepWay>().at(1));
+  keys.push_back(only_with({SweepLoad::type().name}, of_key("load", there_and_back)));
+  const auto add = [&](const auto& parameters, std::string_view type, bool last) {
+    for (const description::Key& parameter : parameters) {
+      if ((&parameter == &parameters.back() && parameter.quantity.unit == quantity::angle.unit) !=
+          last)
+        continue;
       const auto known = std::ranges::find_if(
-          keys, [&](const Key& k) { return k.table == "load" && k.name == parameter.key.name; });
+          keys, [&](const Key& k) { return k.table == "load" && k.name == parameter.name; });
       if (known != keys.end())
         known->with.push_back(type);
       else
-        keys.push_back(only_with({type}, number(parameter.key, Kind::quantities)));
+        keys.push_back(only_with({type}, of_key("load", parameter)));
     }
   };
   for (const bool last : {false, true})
@@ -136,46 +130,7 @@ void add_load(std::vector<Key>& keys) {
       add(type->parameters, type->name, last);
       if (type->statement) add(type->statement->parameters, type->name, last);
     }
-  keys.push_back(only_with({SweepLoad::type().name}, number(key::samples)));
-}
-
-void add_environment(std::vector<Key>& keys) {
-  keys.push_back(number(environment::gravity, Kind::point));
-  keys.push_back(number(environment::fluid_density));
-  keys.push_back(number(environment::uniform_field, Kind::points));
-  keys.push_back(choice({environment::energy_names.begin(), environment::energy_names.end()},
-                        text(environment::table_name, environment::magnetic_energy, "`\"F\"`",
-                             std::string(environment::magnetic_energy_doc))));
-  using namespace environment;
-  keys.push_back(text(magnet_table, "name", "", "Name of the magnet, different from the others'."));
-  keys.push_back(choice({"ball", "cylinder", "cuboid"},
-                        text(magnet_table, "shape", "",
-                             "Shape of a magnet at rest beside the cilium, which it pulls and "
-                             "turns. Sensors read the cilium's field without it.")));
-  keys.push_back(number(magnet_position, Kind::points));
-  keys.push_back(number(magnet_axis, Kind::point));
-  keys.push_back(number(magnet_rotation, Kind::quantities));
-  keys.push_back(only_with({"ball", "cylinder"}, number(magnet_diameter)));
-  keys.push_back(only_with({"cylinder"}, number(magnet_length)));
-  keys.push_back(only_with({"cuboid"}, number(magnet_edges, Kind::point)));
-  keys.push_back(number(magnet_magnetization, Kind::quantities));
-  keys.push_back(number(magnet_remanence));
-}
-
-void add_surface(std::vector<Key>& keys) {
-  keys.push_back(choice(sweep::profile_names(),
-                        text("surface", "profile", "",
-                             "The surface of a `sweep`: z = L - interference - p(x - travel), x "
-                             "along the azimuth; p counts towards the cilium.")));
-  keys.push_back(only_with(
-      {"file"},
-      of_kind(Kind::file, text("surface", "path", "",
-                               "`file`: CSV with `x` and `height`, at least four rows; x counts "
-                               "along the way that the tip goes over the surface, from the place "
-                               "over the base at the start."))));
-  for (const sweep::ProfileKind& kind : sweep::profile_kinds())
-    for (const QuantityKey& k : kind.keys) keys.push_back(only_with({kind.name}, number(k)));
-  for (const QuantityKey& k : {sweep::friction, sweep::tilt}) keys.push_back(number(k));
+  keys.push_back(only_with({SweepLoad::type().name}, of_key("load", samples)));
 }
 
 void add_sensor_and_readings(std::vector<Key>& keys) {
@@ -183,7 +138,7 @@ void add_sensor_and_readings(std::vector<Key>& keys) {
                       "`[[sensor]]`, a table for each sensor with its `position`: the name in "
                       "tables, files and headers of readings; letters, digits, `.`, `_`, `-`, not "
                       "digits alone."));
-  keys.push_back(number(key::position, Kind::point));
+  keys.push_back(of_key("sensor", sensor_position()));
   keys.push_back(text("readings", "map", "none",
                       "Of `ciliaval sense`, as its option `--map`: the columns of a file of "
                       "readings (docs/guide/sensing.md).",
@@ -214,30 +169,20 @@ void add_models(const Models& models, std::vector<Key>& keys) {
                         Kind::choices));
   models.for_each([&](const auto& entry) {
     for (const Option& option : entry.options) keys.push_back(of_key("models." + entry.id, option));
-    for (const QuantityKey* k : entry.tables.keys) {
-      const std::vector<std::string_view>& points = entry.tables.points;
-      const bool is_point = std::ranges::find(points, k->name) != points.end();
-      keys.push_back(number(*k, is_point ? Kind::point : Kind::quantity));
-    }
+    for (const description::Key& key : entry.tables.keys)
+      keys.push_back(of_key(entry.tables.name, key));
   });
-  const auto external = [](std::string_view name, std::string_view fallback, std::string doc) {
-    return text(key::external_table, name, fallback, std::move(doc));
+  const auto of_external = [](std::string_view name, std::string_view fallback, std::string doc) {
+    return text(external::table_name, name, fallback, std::move(doc));
   };
-  keys.push_back(external("name", "",
-                          "Name of an external model (docs/guide/referees.md), not that of a "
-                          "model; a plain file name."));
-  keys.push_back(
-      of_kind(Kind::files, external("centrelines", "none",
-                                    "CSV files with a centreline each, one for each load step, "
-                                    "beside the case file unless absolute; these or `readings`.")));
+  keys.push_back(of_external("name", "",
+                             "Name of an external model (docs/guide/referees.md), not that of a "
+                             "model; a plain file name."));
   keys.push_back(of_kind(
-      Kind::file,
-      external("readings", "none", "CSV file with the readings of every load step and sensor.")));
-  keys.push_back(of_kind(Kind::file, external("background", "none",
-                                              "CSV file with the ambient field at each azimuth, "
-                                              "to be taken off the readings.")));
-  for (const QuantityKey& k : {key::tip_uncertainty, key::field_uncertainty})
-    keys.push_back(number(k));
+      Kind::files, of_external("centrelines", "none",
+                               "CSV files with a centreline each, one for each load step, "
+                               "beside the case file unless absolute; these or `readings`.")));
+  add_table(keys, external::table_name, description::fields<external::ExternalModel>());
 }
 
 void add_measurements(std::vector<Key>& keys) {
@@ -251,10 +196,7 @@ void add_measurements(std::vector<Key>& keys) {
            "What was measured (docs/guide/validation.md): `tip.x`, `tip.y`, `tip.z`, "
            "`tip.deflection`, `tip.theta`, or at a sensor `B.NAME.x`, `dB.NAME.x` …",
            R"("tip.deflection")");
-  Key& point = measured(Kind::pair, "point", "the centre",
-                        "`tip.…`: the point `[X, Y]` of the end section that was measured, from "
-                        "its centre.");
-  point.quantity = quantity::length;
+  keys.push_back(of_key(measurement::measurement_table, measurement::point_key()));
   measured(Kind::whole_number, "step", "that of the only step",
            "Load step of `value`, counted from 0.");
   measured(Kind::any, "value", "`file`", "The measured value.", "3.2 mm");
@@ -302,8 +244,9 @@ std::vector<Key> all_keys(const Models& models) {
   add_table(keys, "cilium.section", description::fields<CrossSection>());
   add_table(keys, "cilium.segment", description::fields<Segment>());
   add_load(keys);
-  add_environment(keys);
-  add_surface(keys);
+  add_table(keys, environment::table_name, description::fields<surroundings::Environment>());
+  add_table(keys, environment::magnet_table, description::fields<surroundings::magnets::Magnet>());
+  add_table(keys, "surface", description::fields<surroundings::StatedSurface>());
   add_table(keys, "signal", description::fields<signal::SignalOptions>());
   add_sensor_and_readings(keys);
   add_models(models, keys);

@@ -61,29 +61,24 @@ std::string quoted(const Quantity& quantity, std::string_view value) {
 }
 
 /// A value that suits the cilium of this file.
+std::string value_of(const description::Key& key) {
+  return quoted(key.quantity, key.quantity.example);
+}
 std::string value_of(const LoadParameter& parameter) {
-  switch (parameter.site) {
-    case LoadParameter::Site::height:
-      return "\"16 mm\"";
-    case LoadParameter::Site::arclength:
-      return "\"20 mm\"";
-    case LoadParameter::Site::none:
-      break;
-  }
-  return quoted(parameter.key.quantity, parameter.key.quantity.example);
+  if (parameter.site == LoadParameter::Site::height) return "\"16 mm\"";
+  if (parameter.site == LoadParameter::Site::arclength) return "\"20 mm\"";
+  return value_of(static_cast<const description::Key&>(parameter));
 }
 
 /// The default where it is a value; else an example.
-std::string default_of(const LoadParameter& parameter) {
-  const std::string_view fallback = parameter.key.fallback;
+template <class Parameter>
+std::string line(const Parameter& parameter, bool is_comment) {
+  const std::string_view fallback = parameter.fallback;
   const bool is_value = !fallback.empty() && fallback.front() >= '0' && fallback.front() <= '9';
-  return is_value ? quoted(parameter.key.quantity, fallback) : value_of(parameter);
-}
-
-std::string line(const LoadParameter& parameter, bool is_comment) {
   const std::string statement =
-      fmt::format("{}{} = {}", is_comment ? "# " : "", parameter.key.name, default_of(parameter));
-  return fmt::format("{:<32} # {}\n", statement, parameter.key.doc);
+      fmt::format("{}{} = {}", is_comment ? "# " : "", parameter.name,
+                  is_value ? quoted(parameter.quantity, fallback) : value_of(parameter));
+  return fmt::format("{:<32} # {}\n", statement, parameter.doc);
 }
 
 std::string load_table(const LoadType& load) {
@@ -95,10 +90,9 @@ std::string load_table(const LoadType& load) {
       "{:<32} # {}\n# other types: {}\n",
       fmt::format("type = \"{}\"", load.name), load.description, fmt::join(others, ", "));
   for (const LoadParameter& parameter : load.parameters)
-    text +=
-        line(parameter, &parameter != &load.parameters.front() && !parameter.key.fallback.empty());
+    text += line(parameter, &parameter != &load.parameters.front() && !parameter.fallback.empty());
   if (load.statement)
-    for (const LoadParameter& parameter : load.statement->parameters) text += line(parameter, true);
+    for (const auto& parameter : load.statement->parameters) text += line(parameter, true);
   return text;
 }
 

@@ -7,9 +7,7 @@
 
 #include "analytic/body/mesh_field.h"
 #include "analytic/rod/field_models.h"
-#include "compare/input/case_sections.h"
-#include "compare/input/case_toml.h"
-#include "compare/input/units.h"
+#include "compare/input/described.h"
 #include "compare/models/entries/values.h"
 #include "problem/error.h"
 
@@ -24,25 +22,39 @@ constexpr std::string_view plate_table = "models.potential.plate";
 constexpr std::size_t most_plates = 100;
 constexpr Range permeability_range{
     0, 1e6, true, "a permeability is positive, that of vacuum is 1 and iron has some thousands"};
-/// Each coordinate of a plate's corner.
-constexpr QuantityKey plate_lower{
-    plate_table,
-    "lower",
-    quantity::length,
-    {-1000, 1000, false, "a plate farther away is taken for a slip in the unit"},
-    "",
-    "The corner `[x, y, z]` of a permeable box with the lowest coordinates; one "
-    "`[[models.potential.plate]]` for each box."};
-constexpr QuantityKey plate_upper{plate_table,
-                                  "upper",
-                                  quantity::length,
-                                  plate_lower.range,
-                                  "",
-                                  "The corner with the highest "
-                                  "coordinates."};
-constexpr QuantityKey plate_permeability{
-    plate_table, "relative_permeability", quantity::number, permeability_range,
-    "",          "The plate's μ_r."};
+
+/// A corner of a plate's box.
+template <class Corner>
+description::Field<PermeableBox> corner_field(std::string_view name, std::string_view doc,
+                                              const Corner& corner) {
+  using description::Value;
+  description::Field<PermeableBox> field;
+  field.name = name;
+  field.quantity = quantity::length;
+  field.range = {-1000, 1000, false, "a plate farther away is taken for a slip in the unit"};
+  field.doc = doc;
+  field.initial = Vector3(Vector3::Zero());
+  field.get = [=](const PermeableBox& plate) { return Value(Vector3(corner(plate.box))); };
+  field.set = [=](PermeableBox& plate, const Value& v) {
+    corner(plate.box) = std::get<Vector3>(v);
+  };
+  return required(field);
+}
+
+const description::Fields<PermeableBox>& plate_fields() {
+  static const description::Fields<PermeableBox> all{
+      corner_field(
+          "lower",
+          "The corner `[x, y, z]` of a permeable box with the lowest coordinates; one "
+          "`[[models.potential.plate]]` for each box.",
+          [](auto& box) -> auto& { return (box.min)(); }),
+      corner_field(
+          "upper", "The corner with the highest coordinates.",
+          [](auto& box) -> auto& { return (box.max)(); }),
+      required(description::field(&PermeableBox::relative_permeability, "relative_permeability",
+                                  permeability_range, "The plate's μ_r."))};
+  return all;
+}
 
 /// [[models.potential.plate]]: the boxes that are right by themselves and beside each other.
 void read_plates(input::Section& potential, input::ModelOptions& options) {
@@ -51,16 +63,12 @@ void read_plates(input::Section& potential, input::ModelOptions& options) {
     input::Faults& faults = table.faults();
     const std::size_t before = faults.size();
     PermeableBox plate;
-    const auto corner = [&](const QuantityKey& k) -> Vector3 {
-      const toml::node* value = table.require(k.name);
-      return value == nullptr ? Vector3::Zero()
-                              : input::read_point(*value, k, faults).value_or(Vector3::Zero());
-    };
-    plate.box = {corner(plate_lower), corner(plate_upper)};
-    plate.relative_permeability = table.value(plate_permeability).value_or(1);
+    input::read(table, plate_fields(), plate);
     const auto report = [&](const char* fault) {
       if (faults.size() == before) faults.add(table.where(), fault);
     };
+    for (const auto& field : plate_fields())
+      if (table.find(field.name) == nullptr) return;
     if (!(plate.box.sizes().minCoeff() > 0))
       report("a plate's 'upper' corner must lie above its 'lower' one in x, y and z");
     for (const PermeableBox& other : plates)
@@ -72,17 +80,8 @@ void read_plates(input::Section& potential, input::ModelOptions& options) {
 
 std::string write_plates(const input::ModelOptions& options) {
   std::string text;
-  const auto corner = [](const QuantityKey& k, const Vector3& x) {
-    std::string coordinates;
-    for (const double value : x)
-      coordinates += fmt::format("{}\"{}\"", coordinates.empty() ? "" : ", ",
-                                 input::format_quantity(value, k.quantity));
-    return fmt::format("{} = [{}]\n", k.name, coordinates);
-  };
   for (const PermeableBox& plate : options.of<PotentialOptions>().plates)
-    text += fmt::format("\n[[{}]]\n{}{}{} = {}\n", plate_table,
-                        corner(plate_lower, plate.box.min()), corner(plate_upper, plate.box.max()),
-                        plate_permeability.name, input::format_number(plate.relative_permeability));
+    text += fmt::format("\n[[{}]]\n{}", plate_table, input::lines(plate_fields(), plate));
   return text;
 }
 
@@ -170,10 +169,10 @@ input::FieldEntry potential() {
       .is_collective = true,
       .is_slow = true,
       .accuracy = 1e-6,
-      .tables = {{&plate_lower, &plate_upper, &plate_permeability},
+      .tables = {std::string(plate_table),
+                 {plate_fields().begin(), plate_fields().end()},
                  read_plates,
-                 write_plates,
-                 {plate_lower.name, plate_upper.name}},
+                 write_plates},
   };
 }
 

@@ -75,8 +75,7 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& 
   density->SetName("fluid_density");
   density->InsertNextValue(around.fluid_density);
   data.GetFieldData()->AddArray(density);
-  add_strings(data, "magnetic_energy",
-              {std::string(input::environment::name(around.magnetic_energy))});
+  add_strings(data, "magnetic_energy", {std::string(name(around.magnetic_energy))});
 }
 
 void write(vtkDataSet& data, const std::filesystem::path& file) {

@@ -25,6 +25,7 @@
 #include "compare/output/vtk/datasets.h"
 #include "compare/output/vtk/files.h"
 #include "problem/error.h"
+#include "problem/support/evenly.h"
 
 namespace ciliaval::compare::output::vtk {
 namespace {
@@ -74,7 +75,7 @@ bool any_field(const models::CaseResult& result, std::size_t step) {
 std::vector<std::size_t> steps_of_large_files(const input::Case& problem) {
   constexpr std::size_t most = 21;
   const std::size_t steps = problem.load_path.size();
-  return evenly(steps, is_sweep(problem) ? std::min(steps, most) : steps);
+  return support::evenly(steps, is_sweep(problem) ? std::min(steps, most) : steps);
 }
 
 /// The first files first, which are the largest: the threads then end at about the same time.

@@ -112,7 +112,7 @@ void read_range(input::Section& table, Parameter& parameter) {
   if (!ends || !count) return;
   parameter.values = spaced(ends->from, ends->to, *count, parameter.is_logarithmic);
   for (const double v : parameter.values)
-    if (parameter.number.is_whole && v != std::floor(v)) {
+    if (parameter.number.is_whole_number() && v != std::floor(v)) {
       faults.add(input::place(*node),
                  fmt::format("'{}' is a whole number, but the range has {:g}: list its 'values'",
                              parameter.number.path, v));
@@ -150,7 +150,7 @@ void read_bounds(input::Section& table, Parameter& parameter, Reading& reading) 
                  fmt::format("with [optimise] a parameter has its bounds, 'from' and 'to', and no "
                              "'{}'",
                              key));
-  if (parameter.number.is_whole)
+  if (parameter.number.is_whole_number())
     faults.add(table.where(), fmt::format("'{}' is a whole number: list its values in a study of "
                                           "its own",
                                           parameter.number.path));
@@ -160,7 +160,7 @@ void read_bounds(input::Section& table, Parameter& parameter, Reading& reading) 
     return faults.add(input::place(*table.find("from")), "the bound 'from' must be below 'to'");
   parameter.values = {ends->from, ends->to};
   const input::Case nominal = with_settings(reading.base, reading.study.fixed);
-  double start = std::clamp(parameter.number.get(nominal), ends->from, ends->to);
+  double start = std::clamp(parameter.number.number(nominal), ends->from, ends->to);
   if (const toml::node* node = table.find("start")) {
     start = read_number(*node, "start", parameter.number, faults).value_or(start);
     if (start < ends->from || start > ends->to)
@@ -222,7 +222,8 @@ const CaseNumber* find_number(const Reading& reading, const std::string& path, i
 
 std::optional<double> read_number(const toml::node& node, std::string_view name,
                                   const CaseNumber& number, input::Faults& faults) {
-  if (!number.is_whole) return input::read_value(node, name, number.quantity, number.range, faults);
+  if (!number.is_whole_number())
+    return input::read_value(node, name, number.quantity, number.range, faults);
   const auto whole = input::read_whole_number(node, name, number.range, faults);
   return whole ? std::optional<double>(*whole) : std::nullopt;
 }

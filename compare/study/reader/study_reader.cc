@@ -103,10 +103,10 @@ void read_deviation(const toml::node& node, Tolerance& tolerance, input::Faults&
 void read_tolerances(const toml::table& table, Reading& reading, input::Faults& faults) {
   const input::Case nominal = with_settings(reading.base, reading.study.fixed);
   const auto read = [&](const CaseNumber& number, input::Place where, const toml::node& node) {
-    if (number.is_whole)
+    if (number.is_whole_number())
       return faults.add(where,
                         fmt::format("'{}' is a whole number: it has no tolerance", number.path));
-    Tolerance tolerance{number, number.get(nominal), 0, {}, 1};
+    Tolerance tolerance{number, number.number(nominal), 0, {}, 1};
     const std::size_t before = faults.size();
     read_deviation(node, tolerance, faults);
     if (faults.size() != before) return;
@@ -297,7 +297,7 @@ void reduce_to_one_step(Study& study, input::Place where, input::Faults& faults)
     return;
   }
   if (std::any_of(set.load_path.begin(), set.load_path.end(), differs)) {
-    const QuantityKey& magnitude_key = base.load_path.front().type().parameters.front().key;
+    const LoadParameter& magnitude_key = base.load_path.front().type().parameters.front();
     faults.add(where, fmt::format("the case has {} load steps, a study's points one: say which "
                                   "load under [fixed], such as load.{} = \"{}\"",
                                   base.load_path.size(), magnitude_key.name,
@@ -305,7 +305,7 @@ void reduce_to_one_step(Study& study, input::Place where, input::Faults& faults)
     return;
   }
   base.load_path.resize(1);
-  for (std::vector<double>& values : base.stated_by) values.resize(1);
+  if (!base.stated_by.empty()) base.stated_by.resize(1);
 }
 
 /// Checks each point as a case file would be; the first that cannot be is a fault.

@@ -10,6 +10,7 @@
 #include "compare/output/csv_writer.h"
 #include "compare/output/results.h"
 #include "compare/output/text_table.h"
+#include "problem/support/evenly.h"
 
 namespace ciliaval::compare::study::summary {
 namespace {
@@ -20,7 +21,7 @@ constexpr std::size_t most_rows = 25;
 
 /// As many points as fit a screen.
 std::vector<std::size_t> shown_points(const Study& study) {
-  if (study.is_zipped) return output::evenly(study.point_count(), most_rows);
+  if (study.is_zipped) return support::evenly(study.point_count(), most_rows);
   std::vector<std::size_t> counts;
   for (const Parameter& p : study.parameters) counts.push_back(p.values.size());
   return output::thinned_grid(counts, most_rows);

@@ -10,8 +10,11 @@
 #include <string>
 
 #include "compare/input/case_syntax.h"
+#include "compare/input/external/external.h"
 #include "compare/input/sweep/signal.h"
 #include "problem/description/cilium.h"
+#include "problem/description/environment.h"
+#include "problem/description/surface.h"
 #include "tests/support/case_texts.h"
 
 namespace ciliaval::compare {
@@ -46,6 +49,11 @@ Value random_value(const Key& key) {
       return "n\"a'm\\e " + std::to_string(toy_random());
     case 4:
       return std::array{number_in(key.range), number_in(key.range)};
+    case 6: {
+      std::array<double, 4> values{};
+      for (double& value : values) value = number_in(key.range);
+      return values;
+    }
     default:
       if (key.may_be_axial && pick(2) == 0) return Vector3(0, 0, number_in(key.range));
       return Vector3(number_in(key.range), number_in(key.range), number_in(key.range));
@@ -60,16 +68,16 @@ std::optional<Value> text_read(const Key& key, const std::string& text, input::F
 
 /// Returns the number of the keys.
 template <class Owner>
-int check_fields(const description::Fields<Owner>& fields) {
+int check_fields(const description::Fields<Owner>& fields, const Owner& initial = {}) {
   for (const description::Field<Owner>& field : fields) {
     SCOPED_TRACE(field.name);
-    EXPECT_EQ(field.get(Owner{}), field.initial);
+    EXPECT_EQ(field.get(initial), field.initial);
     EXPECT_FALSE(field.doc.empty());
     for (int i = 0; i < 20; ++i) {
       const Value value = random_value(field);
-      Owner owner{};
+      Owner owner = initial;
       field.set(owner, value);
-      EXPECT_TRUE(field.get(owner) == value);
+      EXPECT_TRUE(field.get(owner) == value || !field.in_place_of.empty());
       input::Faults faults;
       const std::string text = input::to_toml(field, value);
       const auto read = text_read(field, text, faults);
@@ -91,9 +99,22 @@ TEST(DescribedKey, IsReadAsItIsWritten) {
   int count = check_fields(description::fields<Segment>()) +
               check_fields(description::fields<CrossSection>()) +
               check_fields(description::fields<Cilium>()) +
-              check_fields(description::fields<signal::SignalOptions>());
+              check_fields(description::fields<signal::SignalOptions>()) +
+              check_fields(description::fields<surroundings::Environment>()) +
+              check_fields(description::fields<surroundings::magnets::Magnet>()) +
+              check_fields(description::fields<surroundings::StatedSurface>()) +
+              check_fields(description::fields<SweepWay>()) +
+              check_fields(description::fields<input::external::ExternalModel>());
+  for (const LoadType* type : load_types()) {
+    count += check_fields(type->keys(), Load(*type));
+    if (!type->statement) continue;
+    LoadStatement::Values values;
+    for (const auto& parameter : type->statement->parameters)
+      values.push_back(std::get<double>(parameter.initial));
+    count += check_fields(type->statement->parameters, values);
+  }
   models::known().for_each([&](const auto& entry) { count += check_fields(entry.options); });
-  EXPECT_GT(count, 50);
+  EXPECT_GT(count, 100);
 }
 
 /// A struct of the test's own, in one file: three keys, of which one goes with another's value.

@@ -98,8 +98,8 @@ TEST(MagnetCase, AListOfPositionsIsAPath) {
       replaced(replaced(beside, one_place, two_places), "[models]",
                "[load]\ntype = \"section\"\nforce = [\"1 mN\", \"2 mN\", \"3 mN\"]\narclength = "
                "\"20 mm\"\n[models]");
-  EXPECT_THAT(faults_of(with_load), StartsWith("bad.toml:11:1: a magnet's 'position' lists 2 "
-                                               "points, but the load has 3 steps"));
+  EXPECT_THAT(faults_of(with_load), StartsWith("bad.toml:14:12: 'position' lists 2 values, "
+                                               "but the load has 3 steps"));
 }
 
 TEST(MagnetCase, IsWrittenBack) {
@@ -164,9 +164,9 @@ const PlantedFault bad_magnets[]{
     {"NoPosition", "position = [\"0 mm\", \"20 mm\", \"5 mm\"]\n", "", "11:1",
      "[[environment.magnet]] needs 'position'"},
     {"NoMagnetization", "magnetization = \"500 kA/m\"\n", "", "11:1",
-     "a magnet needs 'magnetization' or 'remanence'"},
+     "[[environment.magnet]] needs 'magnetization' or 'remanence'"},
     {"Both", "remanence = \"1.2 T\"", "remanence = \"1.2 T\"\nmagnetization = \"1 MA/m\"", "24:13",
-     "'magnetization' or 'remanence', not both"},
+     "'remanence' contradicts 'magnetization': give one of them"},
     {"Nothing", "500 kA/m", "0 kA/m", "16:17", "magnetisation is zero"},
     {"FieldForMagnetization", "500 kA/m", "1 T", "16:17", "magnetization M = B_r/mu_0"},
     {"AcrossTheAxis", "remanence = \"1.2 T\"", "magnetization = [\"1 MA/m\", \"0 A/m\", \"0 A/m\"]",
@@ -176,11 +176,11 @@ const PlantedFault bad_magnets[]{
     {"SameName", "name = \"disc\"", "name = \"ball\"", "18:8",
      "the magnet name 'ball' is already taken"},
     {"ZeroAxis", "[0, 2, 0]", "[0, 0, 0]", "21:8", "'axis' must point somewhere"},
-    {"AxisAndRotation", "axis = [0, 2, 0]", "axis = [0, 2, 0]\nrotation = [1, 0, 0, 0]", "22:12",
-     "leave out one of the two"},
+    {"AxisAndRotation", "axis = [0, 2, 0]", "axis = [0, 2, 0]\nrotation = [1, 0, 0, 0]", "21:8",
+     "'axis' contradicts 'rotation': give one of them"},
     {"NoRotation", "[0.8, 0, 0.6, 0]", "[0.8, 0, 0.7, 0]", "29:12", "a unit quaternion"},
-    {"LengthOfABall", "diameter = \"6 mm\"", "diameter = \"6 mm\"\nlength = \"3 mm\"", "16:1",
-     "unknown key 'length'"},
+    {"LengthOfABall", "diameter = \"6 mm\"", "diameter = \"6 mm\"\nlength = \"3 mm\"", "16:10",
+     "'length' goes with a cylinder only"},
     {"NoMagnetOfItsOwn", "magnetization = \"75 kA/m\"\n", "", "10:1",
      "[[environment.magnet]] needs a magnet: no [[cilium.segment]] has a 'magnetization'"},
     {"Elastica", "[\"beam\"]", "[\"beam\", \"elastica\"]", "33:22",

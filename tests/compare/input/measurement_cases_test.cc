@@ -134,7 +134,7 @@ const PlantedFault bad_measurements[]{
     {"FittedIsNoFlag", "fitted = true", "fitted = \"yes\"", "43:10", "must be true or false"},
     {"PointOutside", "\"1 mm\"", "\"1.5 mm\"", "38:9", "outside the end section"},
     {"PointHasThree", "\"-0.5 mm\"]", "\"-0.5 mm\", \"0 mm\"]", "38:9",
-     "'point' must be the place [X, Y]"},
+     "'point' must be a list of two numbers"},
     {"PointWithoutUnit", "\"-0.5 mm\"]", "0]", "38:18", "has no unit"},
     {"NeitherValueNorFile", "step = 2\nvalue = \"3.5 mm\"\n", "", "36:1",
      "needs either 'value' or 'file'"},

@@ -247,13 +247,13 @@ TEST(Fingerprint, ChangesWithEveryKeyOfACaseFile) {
 TEST(Fingerprint, ChangesWithTheContentOfAFileAndNotWithItsPlace) {
   const test::TemporaryFolder folder;
   input::Case c = read(texts(folder).at(14));
-  ASSERT_FALSE(c.surface.file.empty());
+  ASSERT_FALSE(c.surface->file.empty());
   const auto before = models::fingerprint(c, solid_entry());
   ASSERT_TRUE(before);
-  const std::string content = test::read_text(c.surface.file);
-  c.surface.file = folder.write("moved.csv", content);
+  const std::string content = test::read_text(c.surface->file);
+  c.surface->file = folder.write("moved.csv", content);
   EXPECT_EQ(models::fingerprint(c, solid_entry()), before);
-  c.surface.file = folder.write("profile.csv", content + "0.1,0.0001\n");
+  c.surface->file = folder.write("profile.csv", content + "0.1,0.0001\n");
   EXPECT_NE(models::fingerprint(c, solid_entry()), before);
 }
 

@@ -34,25 +34,15 @@ struct CoupleLoad {
 };
 
 const LoadType& CoupleLoad::type() {
-  static const LoadType type = [] {
-    const LoadParameter azimuth = ContactLoad::type().parameters.back();
-    return LoadType{"couple",
-                    "a couple at a material section",
-                    {{{"load",
-                       "couple",
-                       {"a", "moment", "N m", "1 mN mm"},
-                       {0, 1e3, false, "a couple is not negative"},
-                       "",
-                       "`couple`: the moment."},
-                      ", couple {:g} mN mm",
-                      1e6},
-                     {{"load", "arclength", quantity::length, length_range, "", "`couple`: where."},
-                      " at arc length {:g} mm",
-                      1e3,
-                      0,
-                      LoadParameter::Site::arclength},
-                     azimuth}};
-  }();
+  static const LoadType type{
+      "couple",
+      "a couple at a material section",
+      {load_parameter("couple", {"a", "moment", "N m", "1 mN mm"},
+                      {0, 1e3, false, "a couple is not negative"}, "`couple`: the moment.",
+                      ", couple {:g} mN mm", 1e6),
+       load_parameter("arclength", quantity::length, length_range, "`couple`: where.",
+                      " at arc length {:g} mm", 1e3, LoadParameter::Site::arclength),
+       ContactLoad::type().parameters.back()}};
   return type;
 }
 

@@ -101,8 +101,11 @@ TEST(SweepResults, SummaryHasTheContactOfEachSample) {
     const auto point = contact["point"].get<std::vector<double>>();
     const double x = std::hypot(point[0], point[1]);
     EXPECT_NEAR(point[1] / x, 0.5, 1e-12);
-    const double p =
-        result().problem.surface.surface->at(x - step["load"]["travel"].get<double>()).height;
+    const double p = result()
+                         .problem.load_path.front()
+                         .surface()
+                         ->at(x - step["load"]["travel"].get<double>())
+                         .height;
     EXPECT_NEAR(point[2], 20e-3 - 1e-3 - p, 1e-11);
     if (model.contains("jump")) {
       ++jumps;
@@ -189,7 +192,7 @@ TEST(SweepResults, VtkHasTheSurfaceAndTheForceOfEachSample) {
 TEST(SweepResults, BaselineHasForcesOfSomeStepsAndTheNumberOfJumps) {
   const regression::Measurements measured = regression::measurements(result());
   const auto forces = std::ranges::count_if(measured.quantities, [](const auto& m) {
-    return m.id.ends_with("contact/normal_force") && m.value > 0;
+    return m.quantity == "contact/normal_force" && m.value > 0;
   });
   EXPECT_EQ(forces, 27);
   const auto jumps = std::ranges::find(measured.outcomes, "energy_balance/elastica/jumps",

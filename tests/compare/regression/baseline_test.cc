@@ -37,9 +37,28 @@ input::Case any_case() {
 
 regression::Measurements some() {
   regression::Measurements m;
-  m.quantities = {
-      {"steps/0/mechanics/elastica/tip/x", "elastica", "", "m", 1.0 / 3, 20e-3, 20e-3, {}},
-      {"steps/0/mechanics/elastica/tip_angle", "elastica", "", "rad", -0.0, 1, 1, {}}};
+  m.quantities = {{.step = 0,
+                   .mechanics = "elastica",
+                   .field = {},
+                   .sensor = {},
+                   .quantity = "tip",
+                   .component = "x",
+                   .unit = "m",
+                   .value = 1.0 / 3,
+                   .uncertainty = {},
+                   .scale = 20e-3,
+                   .group = 20e-3},
+                  {.step = 0,
+                   .mechanics = "elastica",
+                   .field = {},
+                   .sensor = {},
+                   .quantity = "tip_angle",
+                   .component = {},
+                   .unit = "rad",
+                   .value = -0.0,
+                   .uncertainty = {},
+                   .scale = 1,
+                   .group = 1}};
   m.outcomes = {{"steps/0/mechanics/elastica/status", "converged"}};
   return m;
 }
@@ -70,7 +89,7 @@ TEST(Baseline, ListsWhatChangedAndKeepsTheReferences) {
   const regression::Baseline old = some_baseline();
   regression::Measurements now = some();
   now.quantities[0].value = 0.25;
-  now.quantities[1].id = "steps/0/mechanics/elastica/applied_force";
+  now.quantities[1].quantity = "applied_force";
   const regression::Baseline candidate = regression::make_baseline(any_case(), now, origin, &old);
   ASSERT_EQ(candidate.changes.size(), 3u);
   EXPECT_EQ(candidate.changes[0].old_value, 1.0 / 3);
@@ -115,7 +134,13 @@ TEST(Baseline, RoundingIsNoChange) {
 // The less accurate model of a pair decides; a model's own estimate of its error does not.
 TEST(Baseline, AToleranceIsTheModelsAccuracyClassOfTheScale) {
   const auto tolerance = [](const char* mechanics, const char* field) {
-    return regression::allowed_deviation({"id", mechanics, field, "T", 1e-3, 5e-3, 2e-3, 1e-4});
+    results::Observation row;
+    row.mechanics = mechanics;
+    row.field = field;
+    row.value = 1e-3;
+    row.scale = 5e-3;
+    row.group = 2e-3;
+    return regression::allowed_deviation(row);
   };
   EXPECT_DOUBLE_EQ(tolerance("elastica", "line").absolute, 2e-13);
   EXPECT_DOUBLE_EQ(tolerance("solid", "line").absolute, 2e-11);

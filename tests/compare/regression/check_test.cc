@@ -327,10 +327,10 @@ TEST(Check, LeavesOutAllThatAModelOfASweepHasInTheBaseline) {
   Checked setup{read(replaced(text, "[\"elastica\"]", "[\"elastica\", \"beam\"]")), {}, {}};
   setup.result = models::run(setup.problem, models::mechanics_models(), models::field_models());
   const regression::Measurements all = regression::measurements(setup.result);
-  for (const regression::Measurement& quantity : all.quantities) {
+  for (const results::Observation& quantity : all.quantities) {
     std::vector<std::string> models{quantity.mechanics};
     if (!quantity.field.empty()) models.push_back(quantity.field);
-    EXPECT_EQ(regression::models_of(quantity.id), models) << quantity.id;
+    EXPECT_EQ(regression::models_of(quantity.id()), models) << quantity.id();
   }
   for (const regression::Outcome& outcome : all.outcomes)
     EXPECT_FALSE(regression::models_of(outcome.id).empty()) << outcome.id;

@@ -17,7 +17,7 @@ const Cilium paper{3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0
 const Cilium uniform{1e-3, {{"rod", 20e-3, 1e6, 0.3, 0}}};
 
 MechanicsResult swept(const Cilium& cilium, const Surface& surface, double interference,
-                      double from, double to, std::size_t samples, double azimuth = 0,
+                      double from, double to, unsigned int samples, double azimuth = 0,
                       bool back = false) {
   SolidOptions options;
   options.refinement = 0;

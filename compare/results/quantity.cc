@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/results/quantity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace ciliaval::compare::results {
+namespace {
+
+constexpr std::array<std::string_view, 4> places{"quarter", "middle", "three_quarters", "tip"};
+
+Vector3 position_at(const Centreline& centreline, std::size_t place) {
+  return centreline.at(centreline.length() * static_cast<double>(place + 1) / 4).position;
+}
+
+double tip_angle(const MechanicsStep& step) {
+  const Centreline& centreline = step.deformation->centreline;
+  return centreline.at(centreline.length()).theta();
+}
+
+std::vector<double> one_or_none(const std::optional<double>& value) {
+  return value ? std::vector{*value} : std::vector<double>{};
+}
+
+/// The number that a member of a step is.
+auto member(std::optional<double> MechanicsStep::*number) {
+  return [=](const MechanicsStep& step) { return one_or_none(step.*number); };
+}
+
+/// The same, of a deformed cilium only.
+auto of_deformation(std::optional<double> MechanicsStep::*number) {
+  return [=](const MechanicsStep& step) {
+    return step.deformation ? one_or_none(step.*number) : std::vector<double>{};
+  };
+}
+
+Quantity position(std::size_t place) {
+  const bool is_tip = places.at(place) == "tip";
+  return {.name = places.at(place),
+          .unit = "m",
+          .components = {"x", "y", "z"},
+          .values = [place](const MechanicsStep& step) -> std::vector<double> {
+            if (!step.deformation) return {};
+            const Vector3 x = position_at(step.deformation->centreline, place);
+            return {x.x(), x.y(), x.z()};
+          },
+          .uncertainty =
+              [is_tip](const MechanicsStep& step) {
+                return is_tip ? step.tip_uncertainty : std::nullopt;
+              },
+          .size =
+              [](const Extent& extent, std::size_t component) {
+                return Size{extent.length, component == 2 ? extent.length : extent.deflection};
+              },
+          .is_in_summary = is_tip,
+          .is_looked_at = is_tip};
+}
+
+/// The tip's horizontal distance from the axis.
+Quantity deflection() {
+  return {.name = "tip/deflection",
+          .unit = "m",
+          .values = [](const MechanicsStep& step) -> std::vector<double> {
+            if (!step.deformation) return {};
+            const Vector3 tip = position_at(step.deformation->centreline, places.size() - 1);
+            return {std::hypot(tip.x(), tip.y())};
+          },
+          .uncertainty = [](const MechanicsStep& step) { return step.tip_uncertainty; },
+          .size =
+              [](const Extent& extent, std::size_t) {
+                return Size{extent.length, extent.deflection};
+              },
+          .is_in_summary = false,
+          .is_accepted = false,
+          .is_looked_at = true};
+}
+
+Size length(const Extent& extent, std::size_t /*component*/) {
+  return {extent.length, extent.length};
+}
+Size angle(const Extent& extent, std::size_t /*component*/) {
+  return {1, extent.angle};
+}
+Size force(const Extent& extent, std::size_t /*component*/) {
+  return {extent.force, extent.force};
+}
+
+/// The error of another quantity, as far as it is a number of the step.
+Quantity estimate(std::string_view name, std::string_view unit,
+                  std::function<std::vector<double>(const MechanicsStep&)> values,
+                  std::function<Size(const Extent&, std::size_t)> size) {
+  return {.name = name,
+          .unit = unit,
+          .values = std::move(values),
+          .size = std::move(size),
+          .is_estimate = true,
+          .is_accepted = false,
+          .is_converged = false};
+}
+
+/// A force of a sweep's contact; summary.json has all of the contact as one table.
+Quantity contact_force(std::string_view name, double SurfaceContact::*force) {
+  return {.name = name,
+          .unit = "N",
+          .values =
+              [force](const MechanicsStep& step) {
+                return step.contact ? std::vector{step.contact.value().*force}
+                                    : std::vector<double>{};
+              },
+          .size =
+              [](const Extent& extent, std::size_t) {
+                return Size{extent.contact, extent.contact};
+              },
+          .is_in_summary = false};
+}
+
+std::vector<Quantity> own_quantities() {
+  std::vector<Quantity> all;
+  for (std::size_t place = 0; place < places.size(); ++place) all.push_back(position(place));
+  all.push_back(deflection());
+  all.push_back(
+      {.name = "tip_angle",
+       .unit = "rad",
+       .values =
+           [](const MechanicsStep& step) {
+             return step.deformation ? std::vector{tip_angle(step)} : std::vector<double>{};
+           },
+       .uncertainty = [](const MechanicsStep& step) { return step.tip_angle_uncertainty; },
+       .size = angle,
+       .is_looked_at = true});
+  all.push_back(
+      {.name = "applied_force",
+       .unit = "N",
+       .values =
+           [](const MechanicsStep& step) {
+             return step.deformation ? std::vector{step.applied_force} : std::vector<double>{};
+           },
+       .uncertainty = [](const MechanicsStep& step) { return step.applied_force_uncertainty; },
+       .size = force,
+       // Of an environment alone it is nothing but rounding.
+       .is_compared = [](const MechanicsStep& step) { return !step.load.is<EnvironmentLoad>(); }});
+  all.push_back({.name = "contact_arclength",
+                 .unit = "m",
+                 .values = of_deformation(&MechanicsStep::contact_arclength),
+                 .size = length});
+  Quantity tip =
+      estimate("tip_uncertainty", "m", of_deformation(&MechanicsStep::tip_uncertainty), length);
+  tip.is_accepted = true;
+  all.push_back(std::move(tip));
+  all.push_back(estimate("tip_angle_uncertainty", "rad",
+                         of_deformation(&MechanicsStep::tip_angle_uncertainty), angle));
+  all.push_back(estimate("applied_force_uncertainty", "N",
+                         of_deformation(&MechanicsStep::applied_force_uncertainty), force));
+  const auto slip_off = [](const MechanicsStep& step) { return step.slip_off_uncertainty; };
+  all.push_back({.name = "slip_off_force",
+                 .unit = "N",
+                 .values = member(&MechanicsStep::slip_off_force),
+                 .uncertainty = slip_off,
+                 .size = force,
+                 .is_looked_at = true});
+  all.push_back({.name = "slip_off_displacement",
+                 .unit = "m",
+                 .values = member(&MechanicsStep::slip_off_displacement),
+                 .uncertainty = slip_off,
+                 .belongs = [](const MechanicsStep& step) { return step.load.is<ProbeLoad>(); },
+                 .is_looked_at = true});
+  all.push_back(
+      estimate("slip_off_uncertainty", "", member(&MechanicsStep::slip_off_uncertainty), {}));
+  all.push_back(
+      {.name = "smallest_eigenvalue",
+       .unit = "",
+       .values = member(&MechanicsStep::smallest_eigenvalue),
+       .belongs = [](const MechanicsStep& step) { return step.smallest_eigenvalue.has_value(); },
+       .is_accepted = false,
+       .is_converged = false});
+  all.push_back({.name = "pull_in_fraction",
+                 .unit = "",
+                 .values =
+                     [](const MechanicsStep& step) {
+                       return step.pull_in ? std::vector{step.pull_in->fraction}
+                                           : std::vector<double>{};
+                     },
+                 .size =
+                     [](const Extent&, std::size_t) {
+                       return Size{1, 1};
+                     },
+                 .is_in_summary = false});
+  all.push_back(contact_force("contact/normal_force", &SurfaceContact::normal_force));
+  all.push_back(contact_force("contact/friction_force", &SurfaceContact::friction_force));
+  return all;
+}
+
+std::vector<Quantity>& all_quantities() {
+  static std::vector<Quantity> all = own_quantities();
+  return all;
+}
+
+}  // namespace
+
+void raise(double& largest, double value) {
+  if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
+}
+
+Extent::Extent(const models::MechanicsRun& run) {
+  for (const MechanicsStep& step : run.result.steps) {
+    raise(force, step.applied_force);
+    raise(force, step.slip_off_force.value_or(0));
+    if (step.contact) raise(contact, step.contact->normal_force);
+    if (!step.deformation) continue;
+    const Centreline& centreline = step.deformation->centreline;
+    length = centreline.length();
+    for (std::size_t place = 0; place < places.size(); ++place)
+      raise(deflection, position_at(centreline, place).head<2>().norm());
+    raise(angle, tip_angle(step));
+  }
+}
+
+const std::vector<Quantity>& quantities() {
+  return all_quantities();
+}
+
+void add_quantity(Quantity quantity) {
+  all_quantities().push_back(std::move(quantity));
+}
+
+}  // namespace ciliaval::compare::results
