@@ -36,12 +36,64 @@ Header header_of(const CsvCell& cell, const std::map<std::string, std::string>& 
   return {std::move(name), std::move(unit), cell.place};
 }
 
+bool is_row(const std::vector<CsvCell>& cells) {
+  return std::ranges::all_of(cells,
+                             [](const CsvCell& cell) { return csv_number(cell.text).has_value(); });
+}
+
+/// What separates the cells of a line: what stands in it outside of quotes.
+char separator_of(std::string_view line) {
+  for (const char separator : {';', '\t', ','})
+    if (csv_cells(line, 1, separator).size() > 1) return separator;
+  return csv_cells(line, 1, ' ').size() > 1 ? ' ' : ',';
+}
+
+/// The names of columns that blanks separate: two blanks or more, or single ones where a unit in
+/// brackets belongs to the name before it.
+std::vector<CsvCell> names_between_blanks(std::string_view line, std::size_t number,
+                                          std::size_t count) {
+  std::vector<CsvCell> wide;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line.substr(i, 2) != "  ") continue;
+    if (const auto text = support::trimmed(line.substr(begin, i - begin)); !text.empty())
+      wide.push_back({std::string(text), {number, begin + 1}});
+    begin = i;
+  }
+  if (wide.size() == count) return wide;
+  std::vector<CsvCell> names;
+  for (CsvCell& cell : csv_cells(line, number, ' '))
+    if (!names.empty() && (cell.text.starts_with('[') || cell.text.starts_with('(')))
+      names.back().text += ' ' + cell.text;
+    else
+      names.push_back(std::move(cell));
+  return names;
+}
+
+std::vector<CsvCell> names_of(std::string_view line, std::size_t number, char separator,
+                              std::size_t count) {
+  return separator == ' ' ? names_between_blanks(line, number, count)
+                          : csv_cells(line, number, separator);
+}
+
+/// COMSOL's "% Length unit: mm", as the unit of each coordinate.
+void add_length_unit(std::string_view comment, std::map<std::string, std::string>& units) {
+  constexpr std::string_view key = "Length unit";
+  const auto at = comment.find(key);
+  if (at == std::string_view::npos) return;
+  const auto unit = comment.find_first_not_of(" :,;\t\"", at + key.size());
+  if (unit == std::string_view::npos) return;
+  for (const char* name : {"x", "y", "z"})
+    units.emplace(name, support::trimmed(comment.substr(unit)));
+}
+
 class Reader {
  public:
   Reader(std::span<const CsvColumn> columns, std::span<const std::string_view> ignored,
-         Faults& faults)
+         CsvOthers others, Faults& faults)
       : columns_(columns),
         ignored_(ignored),
+        others_(others),
         faults_(faults),
         index_(columns.size()),
         factor_(columns.size(), 1) {
@@ -52,70 +104,67 @@ class Reader {
 
   CsvTable read(std::string_view text) {
     if (!take_byte_order_mark(text, faults_)) return table_;
-    std::map<std::string, std::string> units;
-    std::optional<std::pair<std::string_view, std::size_t>> header;  // the line and its number
-    bool is_header_read = false;
+    layout_ = csv_layout(text);
+    if (layout_.header.empty()) {
+      faults_.add({std::max<std::size_t>(layout_.rows_begin, 1), 1}, no_header(layout_));
+      return table_;
+    }
+    if (!read_header()) return table_;
     std::size_t number = 0;
-    const auto read_once = [&] {
-      return std::exchange(is_header_read, true) ||
-             read_header(header->first, header->second, units);
-    };
     while (!text.empty() && faults_.size() < most_csv_faults) {
       const std::string_view line = take_line(text);
       ++number;
       const auto first = line.find_first_not_of(" \t");
-      if (first == std::string_view::npos) continue;
-      if (line[first] == '#' || line[first] == '%') {
-        units.merge(csv_units(line));
-      } else if (!header) {
-        header = {line, number};  // its units may stand in the comments below it
-      } else if (!read_once()) {
-        return table_;
-      } else if (table_.rows.size() == most_csv_rows) {
+      if (first == std::string_view::npos || line[first] == '#' || line[first] == '%' ||
+          number <= layout_.header_line)
+        continue;
+      if (table_.rows.size() == most_csv_rows) {
         faults_.add({number, 1}, fmt::format("there are more than {} rows", most_csv_rows));
         return table_;
-      } else {
-        read_row(line, number);
       }
+      read_row(line, number);
     }
-    if (!header)
-      faults_.add({},
-                  "the file is empty: it needs a header line with the names and units of the "
-                  "columns");
-    else if (table_.rows.empty() && read_once())
+    if (table_.rows.empty() && faults_.empty())
       faults_.add({number, 1}, "there are no rows below the header");
     return table_;
   }
 
  private:
-  bool read_header(std::string_view line, std::size_t number,
-                   const std::map<std::string, std::string>& units) {
+  bool read_header() {
     const std::size_t before = faults_.size();
-    for (const char separator : {';', '\t'})
-      if (const auto at = line.find(separator); at != std::string_view::npos) {
-        faults_.add({number, at + 1},
-                    fmt::format("the columns are separated by {}: write commas between them, and "
-                                "points, not commas, in the numbers",
-                                separator == ';' ? "semicolons" : "tabs"));
-        return false;
-      }
-    const std::vector<CsvCell> cells = csv_cells(line, number);
-    width_ = cells.size();
+    const std::vector<CsvCell>& cells = layout_.header;
+    const std::size_t number = layout_.header_line;
+    width_ = cells.size() + (layout_.has_index ? 1 : 0);
     if (width_ > most_csv_cells) {
       faults_.add({number, 1}, fmt::format("there are more than {} columns", most_csv_cells));
       return false;
     }
-    for (std::size_t i = 0; i < cells.size(); ++i) take(header_of(cells[i], units), i);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (!cells[i].text.empty() || asks_for_nameless())
+        take(header_of(cells[i], layout_.units), i + (layout_.has_index ? 1 : 0));
     for (std::size_t c = 0; c < columns_.size(); ++c)
       if (columns_[c].required && !index_[c])
-        faults_.add({number, 1}, fmt::format("there is no column '{}'", columns_[c].name));
+        faults_.add(
+            {number, 1},
+            fmt::format("there is no column '{}'{}", columns_[c].name,
+                        table_.not_read.empty()
+                            ? ""
+                            : fmt::format("; there is '{}'", fmt::join(table_.not_read, "', '"))));
     return faults_.size() == before;
+  }
+
+  bool asks_for_nameless() const {
+    return std::ranges::find(columns_, "", &CsvColumn::name) != columns_.end();
   }
 
   void take(const Header& header, std::size_t index) {
     if (std::find(ignored_.begin(), ignored_.end(), header.name) != ignored_.end()) return;
     const auto found = std::find_if(columns_.begin(), columns_.end(),
                                     [&](const CsvColumn& c) { return c.name == header.name; });
+    if (found == columns_.end() && others_ == CsvOthers::not_read) {
+      table_.not_read.push_back(header.name);
+      return;
+    }
     if (found == columns_.end()) {
       std::vector<std::string_view> names;
       for (const CsvColumn& column : columns_) names.push_back(column.name);
@@ -153,7 +202,7 @@ class Reader {
   }
 
   void read_row(std::string_view line, std::size_t number) {
-    const std::vector<CsvCell> cells = csv_cells(line, number);
+    const std::vector<CsvCell> cells = csv_cells(line, number, layout_.separator);
     if (cells.size() != width_) {
       const Place where = cells[std::min(cells.size() - 1, width_)].place;
       faults_.add(where,
@@ -172,22 +221,21 @@ class Reader {
   }
 
   void add_number(std::size_t column, const CsvCell& cell) {
-    std::string_view text = cell.text;
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty())
+    const std::optional<double> value = csv_number(cell.text);
+    if (cell.text.empty())
       faults_.add(cell.place, fmt::format("the cell of '{}' is empty", columns_[column].name));
-    else if (error != std::errc() || end != text.data() + text.size())
+    else if (!value)
       faults_.add(cell.place, fmt::format("{} is not a number", in_quotes(cell.text)));
-    else if (!std::isfinite(value))
+    else if (!std::isfinite(*value))
       faults_.add(cell.place, fmt::format("{} is not a finite number", in_quotes(cell.text)));
-    table_.numbers[column].push_back(value * factor_[column]);
+    table_.numbers[column].push_back(value.value_or(0) * factor_[column]);
   }
 
   std::span<const CsvColumn> columns_;
   std::span<const std::string_view> ignored_;
+  CsvOthers others_;
   Faults& faults_;
+  CsvLayout layout_;
   CsvTable table_;
   std::size_t width_ = 0;
   std::vector<std::optional<std::size_t>> index_;  ///< of each column's cell in a row
@@ -196,22 +244,97 @@ class Reader {
 
 }  // namespace
 
+std::optional<double> csv_number(std::string text) {
+  if (text.starts_with('+')) text.erase(0, 1);
+  if (std::ranges::count(text, ',') == 1 && text.find('.') == std::string::npos)
+    std::ranges::replace(text, ',', '.');
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 std::vector<CsvCell> csv_cells(std::string_view line, std::size_t number, char separator) {
   std::vector<CsvCell> cells{{{}, {number, 1}}};
   bool quoted = false;
   for (std::size_t i = 0; i < line.size() && cells.size() <= most_csv_cells; ++i) {
+    const bool is_blank = line[i] == ' ' || line[i] == '\t';
     if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
       cells.back().text += line[i++];
     } else if (line[i] == '"') {
       quoted = !quoted;
-    } else if (line[i] == separator && !quoted) {
-      cells.push_back({{}, {number, i + 2}});
+    } else if (!quoted && (separator == ' ' ? is_blank : line[i] == separator)) {
+      if (separator != ' ' || !cells.back().text.empty())
+        cells.push_back({{}, {number, i + 2}});
+      else
+        cells.back().place.column = i + 2;
     } else {
       cells.back().text += line[i];
     }
   }
+  if (separator == ' ' && cells.size() > 1 && cells.back().text.empty()) cells.pop_back();
   for (CsvCell& cell : cells) cell.text = std::string(support::trimmed(cell.text));
   return cells;
+}
+
+std::string no_header(const CsvLayout& layout) {
+  if (layout.rows_begin == 0)
+    return "the file is empty: it needs a header line with the names and units of the columns";
+  return fmt::format(
+      "there is no header above the numbers {}: put a line with the names and units of the columns "
+      "first, such as \"B [mT],tip [mm]\"",
+      in_quotes(layout.first_row));
+}
+
+CsvLayout csv_layout(std::string_view text) {
+  CsvLayout layout;
+  std::vector<std::pair<std::string_view, std::size_t>> comments;
+  std::string_view header;  // the line above the first row that is no comment
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::string_view line = take_line(text);
+    const auto first = line.find_first_not_of(" \t");
+    if (first == std::string_view::npos) continue;
+    if (line[first] == '#' || line[first] == '%') {
+      layout.units.merge(csv_units(line));
+      add_length_unit(line, layout.units);
+      if (header.empty()) comments.emplace_back(line.substr(first + 1), number);
+      continue;
+    }
+    const char separator = separator_of(line);
+    if (header.empty() && !is_row(csv_cells(line, number, separator))) {
+      header = line;
+      layout.header_line = number;
+      continue;
+    }
+    layout.rows_begin = number;
+    layout.first_row = line;
+    layout.separator = separator;
+    break;
+  }
+  const std::vector<CsvCell> row = csv_cells(layout.first_row, layout.rows_begin, layout.separator);
+  if (!header.empty()) {
+    // Cells of text may hold what separates no others: the header's mark counts, if it has one.
+    const char own = separator_of(header);
+    if (layout.rows_begin == 0 || own != ' ') layout.separator = own == ' ' ? ',' : own;
+    layout.header = names_of(header, layout.header_line, layout.separator, row.size());
+  } else if (layout.rows_begin > 0) {
+    for (const auto& [comment, number] : comments) {
+      std::vector<CsvCell> names = names_of(comment, number, layout.separator, row.size());
+      const bool is_header =
+          names.size() == row.size() && std::ranges::none_of(names, [](const CsvCell& name) {
+            return name.text.empty() || csv_number(name.text);
+          });
+      if (is_header) {
+        layout.header = std::move(names);
+        layout.header_line = number;
+      }
+    }
+  }
+  // Between commas a cell too many is rather a decimal comma.
+  layout.has_index = layout.rows_begin > 0 && !layout.header.empty() && layout.separator != ',' &&
+                     row.size() == layout.header.size() + 1 && !row.back().text.empty() &&
+                     row.front().text.find_first_not_of("0123456789") == std::string::npos;
+  return layout;
 }
 
 std::pair<std::string, std::optional<std::string>> name_and_unit(std::string_view header) {
@@ -251,8 +374,8 @@ bool take_byte_order_mark(std::string_view& text, Faults& faults) {
 }
 
 CsvTable read_csv(std::string_view text, std::span<const CsvColumn> columns,
-                  std::span<const std::string_view> ignored, Faults& faults) {
-  return Reader(columns, ignored, faults).read(text);
+                  std::span<const std::string_view> ignored, Faults& faults, CsvOthers others) {
+  return Reader(columns, ignored, others, faults).read(text);
 }
 
 std::string read_csv_file(const std::filesystem::path& file) {

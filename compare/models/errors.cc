@@ -211,18 +211,10 @@ void compare_component(const FieldPath& model, const FieldPath& reference, std::
   out.push_back(std::move(base));
 }
 
-/// The run that the fields belong to, without a step if it is not there; readings belong to none.
-const MechanicsRun& mechanics_of(const FieldRun& run, const CaseResult& result) {
-  static const MechanicsRun none;
-  if (run.measured) return none;
-  const auto found = std::ranges::find(result.mechanics, run.mechanics, &MechanicsRun::model);
-  return found != result.mechanics.end() ? *found : none;
-}
-
-/// Of each component of ΔB.
-std::optional<Vector3> change_uncertainties(const MechanicsRun& mechanics, const FieldRun& run,
-                                            std::size_t step, std::size_t sensor) {
-  const auto value = field_value(run, mechanics, step, sensor, true);
+/// Of each component of B or ΔB.
+std::optional<Vector3> uncertainties(const MechanicsRun& mechanics, const FieldRun& run,
+                                     std::size_t step, std::size_t sensor, bool change) {
+  const auto value = field_value(run, mechanics, step, sensor, change);
   if (!value || !value->numerical || !value->from_mechanics) return std::nullopt;
   return *value->numerical + Vector3::Constant(*value->from_mechanics);
 }
@@ -274,6 +266,13 @@ std::optional<double> tip_angle_uncertainty(const MechanicsRun& run, std::size_t
   return shape ? angle_uncertainty(*shape) : std::nullopt;
 }
 
+const MechanicsRun& mechanics_of(const FieldRun& run, const CaseResult& result) {
+  static const MechanicsRun none;
+  if (run.measured) return none;
+  const auto found = std::ranges::find(result.mechanics, run.mechanics, &MechanicsRun::model);
+  return found != result.mechanics.end() ? *found : none;
+}
+
 std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& mechanics,
                                       std::size_t step, std::size_t sensor, bool change) {
   if (!run.steps[step]) return std::nullopt;
@@ -316,13 +315,13 @@ std::optional<double> change_uncertainty(const CaseResult& result, const FieldRu
 
 std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const FieldRun& run,
                                          std::size_t step, std::size_t sensor) {
-  const auto components = change_uncertainties(mechanics, run, step, sensor);
+  const auto components = uncertainties(mechanics, run, step, sensor, true);
   return components ? std::optional(components->maxCoeff()) : std::nullopt;
 }
 
-std::optional<Vector3> change_uncertainties(const CaseResult& result, const FieldRun& run,
-                                            std::size_t step, std::size_t sensor) {
-  return change_uncertainties(mechanics_of(run, result), run, step, sensor);
+std::optional<Vector3> uncertainties(const CaseResult& result, const FieldRun& run,
+                                     std::size_t step, std::size_t sensor, bool change) {
+  return uncertainties(mechanics_of(run, result), run, step, sensor, change);
 }
 
 std::vector<Comparison> compare_models(const CaseResult& result) {

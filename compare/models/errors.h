@@ -82,6 +82,8 @@ struct FieldValue {
                                          ///< |ΔB|·u/|tip displacement|
   double rounding;                       ///< what the deformation's rounding may make of it, T
 };
+/// The run that the fields belong to, without a step if it is not there; readings belong to none.
+const MechanicsRun& mechanics_of(const FieldRun& run, const CaseResult& result);
 /// B, or its change ΔB, of a pair of models at a step and sensor; empty if there is none.
 /// `mechanics` is the run that the fields belong to; of readings it is not used.
 std::optional<FieldValue> field_value(const FieldRun& run, const MechanicsRun& mechanics,
@@ -97,9 +99,10 @@ std::optional<double> change_uncertainty(const MechanicsRun& mechanics, const Fi
                                          std::size_t step, std::size_t sensor);
 std::optional<double> change_uncertainty(const CaseResult& result, const FieldRun& run,
                                          std::size_t step, std::size_t sensor);
-/// The same of each component.
-std::optional<Vector3> change_uncertainties(const CaseResult& result, const FieldRun& run,
-                                            std::size_t step, std::size_t sensor);
+/// The numerical uncertainty of each component of B or ΔB, T: the field model's own, and what the
+/// deformation's carries into it. Empty if a part is not known.
+std::optional<Vector3> uncertainties(const CaseResult& result, const FieldRun& run,
+                                     std::size_t step, std::size_t sensor, bool change);
 
 /// Every pair of mechanics models and every pair of field results, step by step and over the path.
 std::vector<Comparison> compare_models(const CaseResult& result);

@@ -131,6 +131,14 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   return json;
 }
 
+/// A number for each sensor, null where it is not known.
+Json numbers(const std::vector<std::optional<double>>& values) {
+  Json result = Json::array();
+  for (const std::optional<double>& value : values) result.push_back(or_null(value));
+  return result;
+}
+
+/// Of the straight cilium, whose shape has no error.
 Json field_json(const models::FieldStep& step) {
   return {{"status", step.failure.empty() ? "computed" : "failed"},
           {"message", step.failure.empty() ? step.remark : step.failure},
@@ -139,6 +147,28 @@ Json field_json(const models::FieldStep& step) {
           {"uncertainty", rows(step.uncertainty)},
           {"dB_uncertainty", rows(step.dB_uncertainty)},
           {"seconds", step.seconds}};
+}
+
+/// The uncertainties are the sums of the field model's own, and of what the shape's error carries
+/// into B and ΔB, in any direction.
+Json field_json(const models::CaseResult& result, const models::FieldRun& run, std::size_t index) {
+  const models::FieldStep& step = run.steps[index].value();
+  Json json = field_json(step);
+  for (const auto& [change, prefix] : {std::pair(false, ""), std::pair(true, "dB_")}) {
+    models::AtSensors sums;
+    std::vector<std::optional<double>> of_shape;
+    for (std::size_t s = 0; s < step.B.size(); ++s) {
+      sums.push_back(models::uncertainties(result, run, index, s, change));
+      const auto value =
+          models::field_value(run, models::mechanics_of(run, result), index, s, change);
+      of_shape.push_back(value ? value->from_mechanics : std::nullopt);
+    }
+    json[fmt::format("{}uncertainty", prefix)] = rows(sums);
+    json[fmt::format("{}uncertainty_of_field", prefix)] =
+        rows(change ? step.dB_uncertainty : step.uncertainty);
+    json[fmt::format("{}uncertainty_of_shape", prefix)] = numbers(of_shape);
+  }
+  return json;
 }
 
 Json step_json(const models::CaseResult& result, std::size_t index) {
@@ -158,7 +188,7 @@ Json step_json(const models::CaseResult& result, std::size_t index) {
   }
   json["fields"] = Json::object();
   for (const models::FieldRun& run : result.fields)
-    if (run.steps[index]) json["fields"][run.name()] = field_json(*run.steps[index]);
+    if (run.steps[index]) json["fields"][run.name()] = field_json(result, run, index);
   return json;
 }
 
@@ -313,7 +343,7 @@ std::string fields_csv(const models::CaseResult& result) {
         csv.add(run.name());
         add(field ? field->B[sensor] : std::nullopt);
         add(field ? field->dB[sensor] : std::nullopt);
-        add(models::change_uncertainties(result, run, step, sensor));
+        add(models::uncertainties(result, run, step, sensor, true));
         csv.end_row();
       }
   return csv.text();

@@ -37,10 +37,36 @@ constexpr double closeness = 1e-6;  ///< in lengths of the cilium: the same plac
 
 /// The points of a file.
 struct Points {
-  std::vector<double> S;      ///< m
-  std::vector<Vector3> r;     ///< m
-  std::vector<double> theta;  ///< rad; may be empty
+  std::vector<double> S;              ///< m
+  std::vector<Vector3> r;             ///< m
+  std::vector<double> theta;          ///< rad; may be empty
+  std::vector<std::size_t> breaks{};  ///< where the file has a point twice
 };
+
+/// The points of the rows. One that is there twice, one after the other, is a break: there the
+/// curvature may jump, as at an interface. Its second row is taken out of the table.
+void take_points(CsvTable& table, Points& points) {
+  std::vector<Place> rows;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const Vector3 r(table.numbers[1][i], table.numbers[2][i], table.numbers[3][i]);
+    const auto is_there_at = [&](std::size_t column, const std::vector<double>& of_points) {
+      return of_points.empty() || of_points.back() == table.numbers[column][i];
+    };
+    const std::size_t last = points.r.size() - 1;
+    const bool is_break = !points.r.empty() && last > 0 && i + 1 < table.rows.size() &&
+                          points.r.back() == r && is_there_at(0, points.S) &&
+                          (points.breaks.empty() || points.breaks.back() != last);
+    if (is_break) {
+      points.breaks.push_back(last);
+      continue;
+    }
+    points.r.push_back(r);
+    if (table.has(0)) points.S.push_back(table.numbers[0][i]);
+    if (table.has(4)) points.theta.push_back(table.numbers[4][i]);
+    rows.push_back(table.rows[i]);
+  }
+  table.rows = std::move(rows);
+}
 
 /// Sum of the chords up to each point.
 std::vector<double> chord_lengths(const std::vector<Vector3>& r) {
@@ -83,13 +109,15 @@ void check_points(const Points& points, const CsvTable& table, double L, Faults&
                                               chords.back(), L));
 }
 
-/// The indices of the points where the curvature may jump: the ends, and the points at interfaces
-/// and at a loaded section.
-std::vector<std::size_t> curvature_jumps(const std::vector<double>& S, const Cilium& cilium,
+/// The indices of the points where the curvature may jump: the ends, the breaks, and the points at
+/// interfaces and at a loaded section.
+std::vector<std::size_t> curvature_jumps(const Points& points, const Cilium& cilium,
                                          const Load& load) {
+  const std::vector<double>& S = points.S;
   std::vector<double> places = cilium.interfaces();
   if (const auto section = load.as<SectionLoad>()) places.push_back(section->arclength);
-  std::vector<std::size_t> result{0, S.size() - 1};
+  std::vector<std::size_t> result = points.breaks;
+  result.insert(result.end(), {0, S.size() - 1});
   for (const double place : places)
     for (std::size_t i = 0; i < S.size(); ++i)
       if (std::abs(S[i] - place) <= closeness * cilium.length()) result.push_back(i);
@@ -119,7 +147,7 @@ Vector3 bending_direction(const Points& points, double L, const Load& load) {
 
 /// Cubic interpolation, with the sections at the angle θ, or normal to the curve.
 Centreline interpolated(const Points& points, const Cilium& cilium, const Load& load) {
-  const std::vector<std::size_t> ends = piece_ends(curvature_jumps(points.S, cilium, load));
+  const std::vector<std::size_t> ends = piece_ends(curvature_jumps(points, cilium, load));
   const Vector3 e = bending_direction(points, cilium.length(), load);
   std::vector<Centreline::Piece> pieces;
   for (std::size_t p = 0; p + 1 < ends.size(); ++p) {
@@ -181,20 +209,23 @@ void read_centreline(std::string_view text, const Expected& c, const Load& load,
                                           {"z", Kind::quantity, quantity::length, true},
                                           {"theta", Kind::quantity, quantity::angle, false}}};
   constexpr std::array<std::string_view, 1> ignored{"kappa"};
-  const CsvTable table = read_csv(text, columns, ignored, faults);
+  CsvTable table = read_csv(text, columns, ignored, faults, CsvOthers::not_read);
   if (!faults.empty()) return;
   const double L = c.cilium.length();
-  Points points{table.numbers[0], {}, table.numbers[4]};
-  for (std::size_t i = 0; i < table.rows.size(); ++i)
-    points.r.emplace_back(table.numbers[1][i], table.numbers[2][i], table.numbers[3][i]);
+  Points points{{}, {}, {}, {}};
+  take_points(table, points);
   check_points(points, table, L, faults);
   if (!faults.empty()) return;
   std::string remark;
+  if (!table.not_read.empty())
+    remark = fmt::format("columns not read: {}; ", fmt::join(table.not_read, ", "));
   if (points.S.empty()) {
     points.S = chord_lengths(points.r);
     const double factor = L / points.S.back();
     for (double& S : points.S) S *= factor;
-    remark = fmt::format("S is the length along the points times {:.6f}", factor);
+    remark += fmt::format("S is the length along the points times {:.6f}", factor);
+  } else if (remark.ends_with("; ")) {
+    remark.resize(remark.size() - 2);
   }
   points.S.front() = 0;
   points.S.back() = L;

@@ -4,11 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "compare/input/case.h"
@@ -35,15 +33,6 @@ struct FileColumn {
   Place place;
 };
 
-/// Whether a cell is a number with a decimal point or comma.
-bool is_number(const CsvCell& cell) {
-  std::string text = cell.text;
-  std::ranges::replace(text, ',', '.');
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return !text.empty() && error == std::errc() && end == text.data() + text.size();
-}
-
 /// The unit behind a name, "field_mT", "B / mT": of a quantity that a case has; none if it is none.
 std::optional<std::string> unit_behind(std::string_view name) {
   const auto at = name.find_last_of(" _/,");
@@ -64,32 +53,18 @@ std::optional<std::string> unit_behind(std::string_view name) {
 /// The columns of the header, with their units. Numbers in its place are a fault.
 std::vector<FileColumn> file_columns(std::string_view text, Faults& faults) {
   std::vector<FileColumn> columns;
-  std::map<std::string, std::string> units;
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::string_view line = take_line(text);
-    const auto first = line.find_first_not_of(" \t");
-    if (first == std::string_view::npos) continue;
-    if (line[first] == '#' || line[first] == '%') {
-      units.merge(csv_units(line));
-      continue;
-    }
-    if (!columns.empty()) break;  // a row
-    const std::vector<CsvCell> cells = csv_cells(line, number);
-    if (std::ranges::all_of(cells, is_number)) {
-      faults.add({number, 1},
-                 fmt::format("there is no header above the numbers {}: put a line with the names "
-                             "and units of the columns first, such as \"B [mT],tip [mm]\", and "
-                             "write decimal points",
-                             in_quotes(line)));
-      return {};
-    }
-    for (const CsvCell& cell : cells) {
-      auto [name, unit] = name_and_unit(cell.text);
-      columns.push_back({cell.text, std::move(name), std::move(unit), cell.place});
-    }
+  const CsvLayout layout = csv_layout(text);
+  if (layout.header.empty()) {
+    faults.add({std::max<std::size_t>(layout.rows_begin, 1), 1}, no_header(layout));
+    return columns;
+  }
+  for (const CsvCell& cell : layout.header) {
+    auto [name, unit] = name_and_unit(cell.text);
+    columns.push_back({cell.text, std::move(name), std::move(unit), cell.place});
   }
   for (FileColumn& column : columns) {
-    if (const auto found = units.find(column.name); !column.unit && found != units.end())
+    if (const auto found = layout.units.find(column.name);
+        !column.unit && found != layout.units.end())
       column.unit = found->second;
     else if (!column.unit)
       column.unit = unit_behind(column.name);
@@ -131,6 +106,13 @@ std::string with_unit(std::string_view name, const std::vector<LoadNumber>& numb
   return std::string(name);
 }
 
+/// Whether the cells are 0, 1, 2, …: the rows' numbers, as pandas writes them.
+bool counts_rows(const std::vector<std::string>& cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] != std::to_string(i)) return false;
+  return true;
+}
+
 /// The steps in their order, one for each row. Where a column without a unit may hold the loads,
 /// that is a fault: it says which one unless the case does.
 Rows steps_in_order(const MeasuredFile& file, const std::vector<FileColumn>& others,
@@ -144,11 +126,10 @@ Rows steps_in_order(const MeasuredFile& file, const std::vector<FileColumn>& oth
                            rows, steps));
   for (std::size_t i = 0; i < others.size() && file.load != in_order; ++i) {
     const std::vector<std::string>& cells = table.words[own_columns + i];
-    if (others[i].unit || cells.empty() || !std::ranges::any_of(cells, [](const auto& cell) {
-          return is_number({cell, {}});
-        }))
-      continue;
     const bool is_named = !others[i].name.empty();
+    const bool has_numbers = std::ranges::any_of(
+        cells, [](const std::string& cell) { return csv_number(cell).has_value(); });
+    if (others[i].unit || !has_numbers || (!is_named && i == 0 && counts_rows(cells))) continue;
     const std::string header = with_unit(is_named ? others[i].name : "load", numbers);
     faults.add(others[i].place,
                fmt::format("the column {} has numbers without a unit, which may be the loads: name "

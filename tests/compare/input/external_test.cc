@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Centrelines and readings from CSV files: what is read, and what is said of files that are wrong.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -171,6 +173,63 @@ TEST_F(External, TakesMarksOfOtherProgramsInItsStride) {
               HasSubstr("a.csv:1:1: the column 'S' needs the unit"));
 }
 
+TEST_F(External, ReadsFilesAsOtherProgramsWriteThem) {
+  const std::vector<std::string> files{
+      // COMSOL: a table, a line plot, a text file.
+      "% Model,a.mph\n% Date,\"Nov 25 2026, 10:18\"\n% Nodes,4\n% Description,\"x, y\"\n"
+      "% X,Y,Z,x (mm),y (mm),z (mm)\n0,0,0,0,0,0\n0,0,3,0,0,3\n0,0,6,0,0,6\n0,0,10,0,0,10\n",
+      "% Nodes,4\n% Arc length (mm),x (mm),y (mm),z (mm)\n0,0,0,0\n3,0,0,3\n6,0,0,6\n10,0,0,10\n",
+      "% Model:              a.mph\n% Length unit:        mm\n"
+      "% x                       y                        z\n"
+      "0     0     0     \n0     0     3     \n0     0     6     \n0     0     10    \n",
+      "% Length unit,mm\n% x,y,z\n0,0,0\n0,0,3\n0,0,6\n0,0,10\n",
+      // A spreadsheet of a country with decimal commas.
+      "\xEF\xBB\xBFS [mm];x [mm];y [mm];z [mm]\r\n0,0;0,0;0,0;0,0\r\n3,0;0,0;0,0;3,0\r\n"
+      "6,0;0,0;0,0;6,0\r\n10,0;0,0;0,0;10,0\r\n",
+      "S [mm]\tx [mm]\ty [mm]\tz [mm]\n0\t0\t0\t0\n3\t0\t0\t3,0\n6\t0\t0\t6\n10\t0\t0\t10\n",
+      "x (mm) y (mm) z (mm)\n0 0 0\n0 0 3\n 0  0  6\n0 0 10\n",
+      // pandas and R: the number of each row comes first.
+      ",S [mm],x [mm],y [mm],z [mm]\n0,0,0,0,0\n1,3,0,0,3\n2,6,0,0,6\n3,10,0,0,10\n",
+      "\"x [mm]\" \"y [mm]\" \"z [mm]\"\n\"1\" 0 0 0\n\"2\" 0 0 3\n\"3\" 0 0 6\n\"4\" 0 0 10\n",
+      // A point of an interface, of both parts.
+      "x [mm],y [mm],z [mm]\n0,0,0\n0,0,3\n0,0,3\n0,0,6\n0,0,10\n"};
+  for (const std::string& text : files) {
+    SCOPED_TRACE(text);
+    ASSERT_EQ(centreline_faults(text), "no fault");
+    const Centreline centreline =
+        read("centrelines = [\"a.csv\", \"a.csv\"]\n").external[0].centrelines[0];
+    for (const double S : {0.0, 2e-3, 3e-3, 10e-3})
+      EXPECT_LT((centreline.at(S).position - Vector3(0, 0, S)).norm(), 1e-12) << S;
+  }
+  write("a.csv", files[1]);
+  EXPECT_THAT(read("centrelines = [\"a.csv\", \"a.csv\"]\n").external[0].remarks[0],
+              StartsWith("columns not read: Arc length; S is the length"));
+  // Between commas a cell too many is no number of a row.
+  EXPECT_THAT(centreline_faults("x [mm],y [mm],z [mm]\n0,0,0,0\n"),
+              HasSubstr("are there commas in the numbers?"));
+}
+
+// Upright for 4 mm, then an arc: a point that is there twice parts them, so that no polynomial runs
+// over both.
+TEST_F(External, APointThatIsThereTwiceIsABreak) {
+  const double R = 10e-3;
+  const auto deflection = [&](bool is_break) {
+    std::string csv = "x [m],y [m],z [m]\n0,0,0\n0,0,0.001\n0,0,0.002\n0,0,0.003\n0,0,0.004\n";
+    for (int i = is_break ? 0 : 1; i <= 6; ++i) {
+      const double a = 1e-3 * i / R;
+      csv += fmt::format("{},0,{}\n", R * (1 - std::cos(a)), 4e-3 + R * std::sin(a));
+    }
+    write("a.csv", csv);
+    const auto model = read("centrelines = [\"a.csv\", \"a.csv\"]\n").external[0];
+    double largest = 0;
+    for (const double S : {3.2e-3, 3.4e-3, 3.6e-3, 3.8e-3})
+      largest = std::max(largest, std::abs(model.centrelines[0].at(S).position.x()));
+    return largest;
+  };
+  EXPECT_LT(deflection(true), 1e-15);
+  EXPECT_GT(deflection(false), 1e-7);
+}
+
 // Oracle: a quarter of a circle. Without S it is the chords' length, scaled: exact for equal steps.
 TEST_F(External, TakesTheLengthAlongThePointsWhereThereIsNoS) {
   std::string csv = "x [m],y [m],z [m]\n";
@@ -205,13 +264,13 @@ TEST_F(External, SaysWhereACentrelineIsWrong) {
   EXPECT_EQ(centreline_faults("\xFF\xFEx"), "a.csv:1:1: the file is in UTF-16: save it as UTF-8");
   EXPECT_EQ(centreline_faults("S [mm],x [mm],y [mm],z [mm]\n"),
             "a.csv:1:1: there are no rows below the header");
-  EXPECT_EQ(centreline_faults("S [mm];x [mm];y [mm];z [mm]\n0;0;0;0,5\n"),
-            "a.csv:1:7: the columns are separated by semicolons: write commas between them, and "
-            "points, not commas, in the numbers");
-  EXPECT_THAT(centreline_faults("S [mm]\tx [mm]\n"), HasSubstr("are separated by tabs"));
-  EXPECT_EQ(fault(",z [mm]", ",w [mm]"),
-            "a.csv:1:1: there is no column 'z'\n"
-            "a.csv:1:22: unknown column 'w' (valid: S, x, y, z, theta)");
+  EXPECT_EQ(centreline_faults("0,0,0\n0,0,3\n"),
+            "a.csv:1:1: there is no header above the numbers '0,0,0': put a line with the names "
+            "and units of the columns first, such as \"B [mT],tip [mm]\"");
+  EXPECT_EQ(centreline_faults("% Model,a.mph\n% Nodes,4,1\n0,0,0\n"),
+            "a.csv:3:1: there is no header above the numbers '0,0,0': put a line with the names "
+            "and units of the columns first, such as \"B [mT],tip [mm]\"");
+  EXPECT_EQ(fault(",z [mm]", ",w [mm]"), "a.csv:1:1: there is no column 'z'; there is 'w'");
   EXPECT_EQ(fault(",z [mm]", ",x [mm]"),
             "a.csv:1:1: there is no column 'z'\n"
             "a.csv:1:22: there is a second column 'x'");
@@ -228,7 +287,9 @@ TEST_F(External, SaysWhereACentrelineIsWrong) {
   EXPECT_EQ(fault("3,0,0,3", "3,0,0"), "a.csv:3:5: the row has 3 cells and the header 4");
   EXPECT_EQ(fault("3,0,0,3", "3,0,0,3,1"),
             "a.csv:3:9: the row has 5 cells and the header 4: are there commas in the numbers?");
-  EXPECT_EQ(fault("6,0,0,6", "3,0,0,3"), "a.csv:4:1: the row has the same point as the one above");
+  EXPECT_EQ(fault("6,0,0,6", "4,0,0,3"), "a.csv:4:1: the row has the same point as the one above");
+  EXPECT_EQ(fault("6,0,0,6", "3,0,0,3\n3,0,0,3"),
+            "a.csv:5:1: the row has the same point as the one above");
   EXPECT_EQ(fault("6,0,0,6", "2,0,0,6"),
             "a.csv:4:1: S must increase from row to row: 0.002 m is not more than 0.003 m");
   EXPECT_EQ(fault("10,0,0,10", "9,0,0,10"),

@@ -255,7 +255,12 @@ TEST_F(MeasuredFiles, AreMatchedToTheStepsByTheirLoads) {
            {"\xEF\xBB\xBFvalue [mm],x [mN],note,height [mm]\n3,4,a,16\n1,1,b,16\n2,2,c,16\n", ""},
            {"value [mm],x\n3,4\n1,1\n2,2\n", "load = \"x [mN]\"\n"},
            {"value [mm],x [mN],y [mN]\n3,4,1\n1,1,4\n2,2,2\n", "load = \"x\"\n"},
-           {"value [mm],x [mN],y [mN]\n3,4,7\n1,1,8\n2,2,9\n", ""}}) {
+           {"value [mm],x [mN],y [mN]\n3,4,7\n1,1,8\n2,2,9\n", ""},
+           {"F [mN];value [mm]\r\n4,0;3,0\r\n1,0;1,0\r\n2;2\r\n", ""},
+           {"F [mN]\tvalue [mm]\n4\t3\n1\t1\n2\t2\n", ""},
+           {"F [mN],value [mm]\n4,\"3,0\"\n1,1\n2,\"2,0\"\n", ""},
+           {"% Nodes,3\n% F (mN),value (mm)\n4,3\n1,1\n2,2\n", ""},
+           {",F [mN],value [mm]\n0,4,3\n1,1,1\n2,2,2\n", ""}}) {
     const input::Case c = read(csv, with_uncertainty + more);
     ASSERT_EQ(c.measured.measurements.size(), 5U) << csv;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -297,8 +302,9 @@ TEST_F(MeasuredFiles, AreNotPairedByTheirOrderInSilence) {
               StartsWith("a.csv:1:1: there is no header above the numbers"));
   EXPECT_THAT(refused("1,0.01\n2,5.4\n4,9.6\n"),
               StartsWith("a.csv:1:1: there is no header above the numbers '1,0.01'"));
-  EXPECT_THAT(refused("x [mN],value [mm]\n4,\"9,6\"\n1,1\n2,2\n"),
-              StartsWith("a.csv:2:3: '9,6' is not a number"));
+  EXPECT_THAT(refused("x [mN],value [mm]\n4,9,6\n1,1\n2,2\n"),
+              StartsWith("a.csv:2:5: the row has 3 cells and the header 2: are there commas"));
+  EXPECT_EQ(faults(",value [mm]\n0,1\n1,2\n2,3\n"), "no fault");  // pandas counts rows so
   EXPECT_THAT(
       refused("x [mN],value [mm]\n4,1\n1,1\n2,2\n", "load = \"y\"\n"),
       StartsWith("a.csv:1:1: there is no column 'y', which 'load' names (others: 'x [mN]')"));
