@@ -155,7 +155,7 @@ std::vector<double> stated_values(const Case& c, std::string_view parameter) {
 }
 
 void set_stated_magnitudes(Case& c) {
-  for (std::size_t i = 0; i < c.stated_by.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(c.stated_by.size(), c.load_path.size()); ++i) {
     Load& load = c.load_path[i];
     load = with_magnitude(load, load.type().statement->magnitude(c.stated_by[i], c.cilium));
   }
@@ -172,7 +172,7 @@ void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   const std::size_t before = faults.size();
   const bool is_alone = root.find("load") == nullptr;
   PathLength length;
-  PathLength length_around;
+  PathLength length_around{.takes_one_for_all = true};
   const std::vector<surroundings::Environment> around =
       environment::read_environment(root, length_around);
   const bool has_environment = root.table()->contains(environment::table_name);

@@ -40,12 +40,15 @@ std::string parameters(const Case& c) {
     path = {with_travel(path.front(), way->travel)};
     stated.resize(std::min<std::size_t>(stated.size(), 1));
   }
+  // A sweep of one place is told by a list, too.
+  const bool is_listed = path.size() > 1 || (path.front().is<SweepLoad>() && !way);
+  const Listed first = is_listed ? Listed::first_key : Listed::if_they_differ;
   std::string text;
   if (!stated.empty())
-    text += lines(type.statement->parameters, std::span<const LoadStatement::Values>(stated),
-                  Listed::first_key);
+    text +=
+        lines(type.statement->parameters, std::span<const LoadStatement::Values>(stated), first);
   text += lines(type.keys(stated.empty()), std::span<const Load>(path),
-                stated.empty() ? Listed::first_key : Listed::if_they_differ);
+                stated.empty() ? first : Listed::if_they_differ);
   return way ? text + lines(description::fields<SweepWay>(), *way) : text;
 }
 

@@ -76,15 +76,15 @@ std::vector<CsvCell> names_of(std::string_view line, std::size_t number, char se
                           : csv_cells(line, number, separator);
 }
 
-/// COMSOL's "% Length unit: mm", as the unit of each coordinate.
-void add_length_unit(std::string_view comment, std::map<std::string, std::string>& units) {
+/// The unit of COMSOL's "% Length unit: mm"; empty if the comment is another one.
+std::string length_unit(std::string_view comment) {
   constexpr std::string_view key = "Length unit";
-  const auto at = comment.find(key);
-  if (at == std::string_view::npos) return;
-  const auto unit = comment.find_first_not_of(" :,;\t\"", at + key.size());
-  if (unit == std::string_view::npos) return;
-  for (const char* name : {"x", "y", "z"})
-    units.emplace(name, support::trimmed(comment.substr(unit)));
+  comment = support::trimmed(comment.substr(comment.find_first_not_of("%# \t")));
+  if (!comment.starts_with(key)) return {};
+  std::string unit(comment.substr(key.size()));
+  std::erase_if(unit,
+                [](char c) { return std::string_view(" :,;\t\"").find(c) != std::string::npos; });
+  return unit;
 }
 
 class Reader {
@@ -210,6 +210,13 @@ class Reader {
                               cells.size() > width_ ? ": are there commas in the numbers?" : ""));
       return;
     }
+    if (layout_.has_index) {
+      if (table_.rows.empty()) first_index_ = cells[0].text == "1" ? 1 : 0;
+      if (cells[0].text != std::to_string(first_index_ + table_.rows.size())) {
+        faults_.add(cells[0].place, "the rows have a cell more than the header has names");
+        return;
+      }
+    }
     table_.rows.push_back({number, 1});
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       if (!index_[c]) continue;
@@ -222,7 +229,15 @@ class Reader {
 
   void add_number(std::size_t column, const CsvCell& cell) {
     const std::optional<double> value = csv_number(cell.text);
-    if (cell.text.empty())
+    const bool has_comma = value && cell.text.find(',') != std::string::npos;
+    const bool has_point = value && cell.text.find('.') != std::string::npos;
+    commas_ = commas_ || has_comma;
+    points_ = points_ || has_point;
+    if ((has_comma || has_point) && commas_ && points_)
+      faults_.add(cell.place,
+                  "there are decimal points and decimal commas: write one of them, and nothing "
+                  "between thousands");
+    else if (cell.text.empty())
       faults_.add(cell.place, fmt::format("the cell of '{}' is empty", columns_[column].name));
     else if (!value)
       faults_.add(cell.place, fmt::format("{} is not a number", in_quotes(cell.text)));
@@ -238,6 +253,9 @@ class Reader {
   CsvLayout layout_;
   CsvTable table_;
   std::size_t width_ = 0;
+  std::size_t first_index_ = 0;
+  bool commas_ = false;  ///< in the numbers
+  bool points_ = false;
   std::vector<std::optional<std::size_t>> index_;  ///< of each column's cell in a row
   std::vector<double> factor_;                     ///< to SI units
 };
@@ -290,14 +308,18 @@ CsvLayout csv_layout(std::string_view text) {
   CsvLayout layout;
   std::vector<std::pair<std::string_view, std::size_t>> comments;
   std::string_view header;  // the line above the first row that is no comment
+  std::string unit_of_lengths;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view line = take_line(text);
     const auto first = line.find_first_not_of(" \t");
     if (first == std::string_view::npos) continue;
     if (line[first] == '#' || line[first] == '%') {
-      layout.units.merge(csv_units(line));
-      add_length_unit(line, layout.units);
-      if (header.empty()) comments.emplace_back(line.substr(first + 1), number);
+      const std::map<std::string, std::string> stated = csv_units(line);
+      const std::string of_lengths = length_unit(line);
+      layout.units.insert(stated.begin(), stated.end());
+      if (!of_lengths.empty()) unit_of_lengths = of_lengths;
+      if (header.empty() && stated.empty() && of_lengths.empty())
+        comments.emplace_back(line.substr(first + 1), number);
       continue;
     }
     const char separator = separator_of(line);
@@ -311,6 +333,8 @@ CsvLayout csv_layout(std::string_view text) {
     layout.separator = separator;
     break;
   }
+  for (const char* coordinate : {"x", "y", "z"})
+    if (!unit_of_lengths.empty()) layout.units.emplace(coordinate, unit_of_lengths);
   const std::vector<CsvCell> row = csv_cells(layout.first_row, layout.rows_begin, layout.separator);
   if (!header.empty()) {
     // Cells of text may hold what separates no others: the header's mark counts, if it has one.
@@ -333,7 +357,7 @@ CsvLayout csv_layout(std::string_view text) {
   // Between commas a cell too many is rather a decimal comma.
   layout.has_index = layout.rows_begin > 0 && !layout.header.empty() && layout.separator != ',' &&
                      row.size() == layout.header.size() + 1 && !row.back().text.empty() &&
-                     row.front().text.find_first_not_of("0123456789") == std::string::npos;
+                     (row.front().text == "0" || row.front().text == "1");
   return layout;
 }
 

@@ -29,6 +29,10 @@ std::optional<Value> read_as_text(const toml::node& node, const Key& key, Faults
   else
     text = read_text(node, key.name, faults);
   if (!text) return std::nullopt;
+  if (key.file == Key::File::data && text->empty()) {
+    faults.add(place(node), fmt::format("'{}' must name a file", key.name));
+    return std::nullopt;
+  }
   if (!has_control_character(*text)) return *text;
   faults.add(place(node), fmt::format("'{}' must not have control characters", key.name));
   return std::nullopt;
@@ -139,8 +143,7 @@ bool is_written(const Key& key, const Value& value) {
 std::string line_of(const Key& key, const std::vector<std::string>& values, bool is_list) {
   const bool is_one = std::ranges::all_of(
       values, [&](const std::string& value) { return value == values.front(); });
-  if (values.size() == 1 || (is_one && !is_list))
-    return fmt::format("{} = {}\n", key.name, values.front());
+  if (is_one && !is_list) return fmt::format("{} = {}\n", key.name, values.front());
   return fmt::format("{} = [{}]\n", key.name, fmt::join(values, ", "));
 }
 
@@ -159,6 +162,10 @@ std::vector<Value> read_values(const toml::node& node, const Key& key, PathLengt
   }
   const std::size_t count = list->size();
   const std::size_t before = faults.size();
+  if (count == 1 && length.takes_one_for_all) {
+    read_one(list->front());
+    return values;
+  }
   if (count == 0 || count > PathLength::most) {
     faults.add(place(node), fmt::format("'{}' lists {} values: a load path has 1 to {} steps",
                                         key.name, count, PathLength::most));
@@ -168,7 +175,7 @@ std::vector<Value> read_values(const toml::node& node, const Key& key, PathLengt
     faults.add(place(node), fmt::format("'{}' lists {} values, but '{}' lists {}: all lists of a "
                                         "load path have the same length",
                                         key.name, count, length.listed, length.steps));
-  if (faults.size() == before) length = {count, key.name, place(node)};
+  if (faults.size() == before) length = {length.takes_one_for_all, count, key.name, place(node)};
   for (const toml::node& element : *list) read_one(element);
   return faults.size() == before ? values : std::vector<Value>{};
 }

@@ -34,6 +34,7 @@ std::string line_of(const description::Key& key, const std::vector<std::string>&
 /// The number of steps of a load path, which any of its keys may tell by a list.
 struct PathLength {
   static constexpr std::size_t most = 1000;  ///< each writes files of every model, 1 MB and more
+  bool takes_one_for_all = false;            ///< a list of one value stands for every step
   std::size_t steps = 1;
   std::string_view listed{};  ///< the key whose list told it
   Place where{};              ///< its list

@@ -98,6 +98,7 @@ void add_fields(const models::FieldRun& run, const std::vector<std::size_t>& ste
       if (!is_change) continue;
       row.component = "norm";
       row.value = values[s]->norm();
+      if (row.uncertainty) row.uncertainty = uncertainties[s]->norm();
       row.is_accepted = false;
       out.push_back(std::move(row));
     }

@@ -154,17 +154,22 @@ std::vector<Quantity> own_quantities() {
                          of_deformation(&MechanicsStep::tip_angle_uncertainty), angle));
   all.push_back(estimate("applied_force_uncertainty", "N",
                          of_deformation(&MechanicsStep::applied_force_uncertainty), force));
-  const auto slip_off = [](const MechanicsStep& step) { return step.slip_off_uncertainty; };
+  // Of a probe it is that of the displacement.
+  const auto slip_off = [](bool of_probe) {
+    return [of_probe](const MechanicsStep& step) {
+      return step.load.is<ProbeLoad>() == of_probe ? step.slip_off_uncertainty : std::nullopt;
+    };
+  };
   all.push_back({.name = "slip_off_force",
                  .unit = "N",
                  .values = member(&MechanicsStep::slip_off_force),
-                 .uncertainty = slip_off,
+                 .uncertainty = slip_off(false),
                  .size = force,
                  .is_looked_at = true});
   all.push_back({.name = "slip_off_displacement",
                  .unit = "m",
                  .values = member(&MechanicsStep::slip_off_displacement),
-                 .uncertainty = slip_off,
+                 .uncertainty = slip_off(true),
                  .belongs = [](const MechanicsStep& step) { return step.load.is<ProbeLoad>(); },
                  .is_looked_at = true});
   all.push_back(

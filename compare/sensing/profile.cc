@@ -35,6 +35,7 @@ input::Case level_case(input::Case problem, const models::ModelPair& pair, doubl
   problem.fields = {pair.field};
   problem.external.clear();  // they are of the case's own path
   problem.load_path.clear();
+  problem.stated_by.clear();
   for (std::size_t i = 0; i < curve_points; ++i) {
     const double part = static_cast<double>(i) / (curve_points - 1);
     // Finer where the cilium is nearly straight: ΔB grows there with the root of the interference.

@@ -81,8 +81,10 @@ PairResult result_of(const Study& study, const MechanicsStep& step, const models
       {Output::resolution, slope && *slope != 0 && study.noise
                                ? std::optional(*study.noise / std::abs(*slope))
                                : std::nullopt}};
-  for (std::size_t i = 0; i < study.outputs.size(); ++i)
-    result.values[i] = known.at(study.outputs[i]);
+  for (std::size_t i = 0; i < study.outputs.size(); ++i) {
+    const auto found = known.find(study.outputs[i]);
+    result.values[i] = found != known.end() ? found->second : number(study.outputs[i], step);
+  }
   return result;
 }
 

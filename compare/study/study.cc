@@ -7,41 +7,80 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <deque>
+#include <mutex>
 #include <utility>
 
 #include "compare/input/units.h"
 #include "compare/models/fingerprint.h"
+#include "compare/results/quantity.h"
 
 namespace ciliaval::compare::study {
 namespace {
 
 struct Names {
-  Output output;
   std::string_view id;
   std::string_view symbol;
-  std::string_view title;
 };
-constexpr std::array<Names, 10> names{{
-    {Output::B_x, "B_x", "B_x", "B_x"},
-    {Output::B_y, "B_y", "B_y", "B_y"},
-    {Output::B_z, "B_z", "B_z", "B_z"},
-    {Output::dB_x, "dB_x", "dB_x", "ΔB_x"},
-    {Output::dB_y, "dB_y", "dB_y", "ΔB_y"},
-    {Output::dB_z, "dB_z", "dB_z", "ΔB_z"},
-    {Output::dB_norm, "dB_norm", "|dB|", "|ΔB|"},
-    {Output::sensitivity, "sensitivity", "d|dB|/dF", "sensitivity d|ΔB|/dF"},
-    {Output::range, "range", "range", "range: largest load"},
-    {Output::resolution, "resolution", "resolution", "resolution: smallest change of the load"},
+/// In the order of Output.
+constexpr std::array<Names, static_cast<std::size_t>(Output::first_number)> names{{
+    {"B_x", "B_x"},
+    {"B_y", "B_y"},
+    {"B_z", "B_z"},
+    {"dB_x", "dB_x"},
+    {"dB_y", "dB_y"},
+    {"dB_z", "dB_z"},
+    {"dB_norm", "|dB|"},
+    {"sensitivity", "d|dB|/dF"},
+    {"range", "range"},
+    {"resolution", "resolution"},
 }};
-constexpr auto outputs = [] {
-  std::array<Output, names.size()> all{};
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = names[i].output;
+
+/// A number of the mechanics model: a component of a quantity.
+struct Number {
+  std::size_t quantity;  ///< of results::quantities()
+  std::size_t component;
+  std::string id;       ///< "tip_x"
+  std::string title;    ///< "tip x"
+  std::string example;  ///< "1 m"
+};
+
+/// Those of all quantities. What was returned once stays where it is.
+const std::deque<Number>& numbers() {
+  static std::deque<Number> all;
+  static std::size_t known = 0;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const auto& quantities = results::quantities();
+  for (; known < quantities.size(); ++known) {
+    const results::Quantity& quantity = quantities[known];
+    if (!quantity.is_in_summary && !quantity.is_looked_at) continue;
+    for (std::size_t c = 0; c < std::max<std::size_t>(quantity.components.size(), 1); ++c) {
+      std::string id(quantity.name);
+      if (!quantity.components.empty()) id += fmt::format("_{}", quantity.components[c]);
+      std::ranges::replace(id, '/', '_');
+      std::string title = id;
+      std::ranges::replace(title, '_', ' ');
+      all.push_back(
+          {known, c, std::move(id), std::move(title), fmt::format("1 {}", quantity.unit)});
+    }
+  }
   return all;
-}();
-static_assert(std::ranges::is_sorted(outputs) && outputs.front() == Output{} &&
-              static_cast<std::size_t>(outputs.back()) + 1 == outputs.size());
-const Names& names_of(Output output) {
-  return names[static_cast<std::size_t>(output)];
+}
+
+bool is_number(Output output) {
+  return output >= Output::first_number;
+}
+
+const Number& number_of(Output output) {
+  return numbers().at(static_cast<std::size_t>(output) -
+                      static_cast<std::size_t>(Output::first_number));
+}
+
+Names names_of(Output output) {
+  if (!is_number(output)) return names.at(static_cast<std::size_t>(output));
+  const Number& number = number_of(output);
+  return {number.id, number.id};
 }
 
 /// Where the differences are taken, in steps.
@@ -83,20 +122,31 @@ input::Case with_values(const Study& study, const std::vector<Parameter>& parame
 
 }  // namespace
 
-std::span<const Output> all_outputs() {
-  return outputs;
+std::vector<Output> all_outputs() {
+  std::vector<Output> all(names.size() + numbers().size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Output>(i);
+  return all;
 }
+
+std::optional<double> number(Output output, const MechanicsStep& step) {
+  if (!is_number(output)) return std::nullopt;
+  const Number& number = number_of(output);
+  const std::vector<double> values = results::quantities().at(number.quantity).values(step);
+  return values.empty() ? std::nullopt : std::optional(values.at(number.component));
+}
+
 std::string_view id(Output output) {
   return names_of(output).id;
 }
 std::string_view symbol(Output output) {
   return names_of(output).symbol;
 }
-std::string_view title(Output output) {
-  return names_of(output).title;
-}
 
 Quantity quantity_of(Output output, const Load& load) {
+  if (is_number(output)) {
+    const Number& number = number_of(output);
+    return {"a", number.title, results::quantities().at(number.quantity).unit, number.example};
+  }
   const Quantity& magnitude = load.type().parameters.front().quantity;
   if (output == Output::range || output == Output::resolution) return magnitude;
   if (output != Output::sensitivity) return quantity::flux_density;

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,16 +26,17 @@ enum class Output {
   dB_norm,      ///< |ΔB|, T
   sensitivity,  ///< d|ΔB|/dF, F the load's magnitude: T/N, T m/N (force per length) or T/m (probe)
   range,        ///< the largest F: where the contact slips off, or the tip's rotation is `rotation`
-  resolution    ///< the change of F that the sensor's noise hides: noise / |sensitivity|
+  resolution,   ///< the change of F that the sensor's noise hides: noise / |sensitivity|
+  first_number  ///< from here on the mechanics model's own numbers (compare/results/quantity.h)
 };
-std::span<const Output> all_outputs();
+std::vector<Output> all_outputs();
+/// One of the mechanics model's own numbers at a step; none if the step does not have it.
+std::optional<double> number(Output output, const MechanicsStep& step);
 
 /// "dB_norm", as files say it.
 std::string_view id(Output output);
 /// "|dB|", as tables say it.
 std::string_view symbol(Output output);
-/// "|ΔB|", as the axis of a plot says it.
-std::string_view title(Output output);
 
 /// What an output is under this type of load, with its SI unit.
 Quantity quantity_of(Output output, const Load& load);

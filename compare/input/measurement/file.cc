@@ -58,6 +58,10 @@ std::vector<FileColumn> file_columns(std::string_view text, Faults& faults) {
     faults.add({std::max<std::size_t>(layout.rows_begin, 1), 1}, no_header(layout));
     return columns;
   }
+  if (layout.has_index) {  // which may be the loads
+    faults.add({layout.header_line, 1}, "the rows have a cell more than the header has names");
+    return columns;
+  }
   for (const CsvCell& cell : layout.header) {
     auto [name, unit] = name_and_unit(cell.text);
     columns.push_back({cell.text, std::move(name), std::move(unit), cell.place});

@@ -130,6 +130,17 @@ TEST(EnvironmentCase, GivesEachStepItsField) {
   EXPECT_EQ(single.stated_by.size(), 3U);
 }
 
+TEST(EnvironmentCase, AListOfOneFieldStandsForAllSteps) {
+  const std::string text =
+      replaced(weight_and_field, one_field, "[[\"0 mT\", \"10 mT\", \"1 mT\"]]");
+  const input::Case c =
+      read(loaded("type = \"section\"\nforce = [\"1 mN\", \"2 mN\"]\narclength = \"20 mm\"\n"
+                  "azimuth = \"90 deg\"",
+                  text));
+  ASSERT_EQ(c.load_path.size(), 2U);
+  EXPECT_EQ(c.load_path[1].environment().uniform_field.y(), 0.01);
+}
+
 TEST(EnvironmentCase, ScalesMakeAPath) {
   const input::Case c =
       read(loaded("type = \"environment\"\nscale = [0, 0.5, 1]\nazimuth = \"90 deg\""));

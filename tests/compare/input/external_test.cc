@@ -204,6 +204,19 @@ TEST_F(External, ReadsFilesAsOtherProgramsWriteThem) {
   write("a.csv", files[1]);
   EXPECT_THAT(read("centrelines = [\"a.csv\", \"a.csv\"]\n").external[0].remarks[0],
               StartsWith("columns not read: Arc length; S is the length"));
+  // One decimal mark in a file: "1,250" is no number of thousands in silence.
+  EXPECT_THAT(centreline_faults("x [mm];y [mm];z [mm]\n0;0;0\n0;0;3.0\n0;0;6,000\n0;0;10\n"),
+              StartsWith("a.csv:4:5: there are decimal points and decimal commas"));
+  // What comes before the first name is the number of the row, or nothing that is known.
+  EXPECT_THAT(centreline_faults("x [mm];y [mm];z [mm]\n0;0;0;0\n3;0;0;3\n"),
+              StartsWith("a.csv:3:1: the rows have a cell more than the header has names"));
+  // A comment that states units is no header.
+  EXPECT_EQ(centreline_faults("# x,y,z\n# units: x mm, y mm, z mm\n0,0,0\n0,0,3\n0,0,6\n0,0,10\n"),
+            "no fault");
+  EXPECT_EQ(
+      centreline_faults("% Length unit,\"m\"\n# units: x mm, y mm, z mm\nx,y,z\n0,0,0\n0,0,3\n"
+                        "0,0,6\n0,0,10\n"),
+      "no fault");
   // Between commas a cell too many is no number of a row.
   EXPECT_THAT(centreline_faults("x [mm],y [mm],z [mm]\n0,0,0,0\n"),
               HasSubstr("are there commas in the numbers?"));

@@ -305,6 +305,8 @@ TEST_F(MeasuredFiles, AreNotPairedByTheirOrderInSilence) {
   EXPECT_THAT(refused("x [mN],value [mm]\n4,9,6\n1,1\n2,2\n"),
               StartsWith("a.csv:2:5: the row has 3 cells and the header 2: are there commas"));
   EXPECT_EQ(faults(",value [mm]\n0,1\n1,2\n2,3\n"), "no fault");  // pandas counts rows so
+  EXPECT_THAT(refused("value [mm]\n1;3\n2;1\n4;2\n"),
+              StartsWith("a.csv:1:1: the row"));  // the first may be the loads
   EXPECT_THAT(
       refused("x [mN],value [mm]\n4,1\n1,1\n2,2\n", "load = \"y\"\n"),
       StartsWith("a.csv:1:1: there is no column 'y', which 'load' names (others: 'x [mN]')"));

@@ -105,6 +105,8 @@ TEST(SweepCase, IsWrittenBack) {
         replaced(good_sweep, "interference = \"1 mm\"", "clearance = \"0.25 mm\""),
         replaced(replaced(good_sweep, "samples = 31\nreturn = true\n", ""), "travel = \"30 mm\"",
                  "travel = [\"0 mm\", \"2 mm\", \"1 mm\"]"),
+        replaced(replaced(good_sweep, "samples = 31\nreturn = true\n", ""), "travel = \"30 mm\"",
+                 "travel = [\"2 mm\"]"),
         replaced(good_sweep,
                  "\"trapezoid\"\nheight = \"1 mm\"\ntop = \"10 mm\"\nbottom = \"10 mm\"\nflank = "
                  "\"1 mm\"\nradius = \"0.5 mm\"",

@@ -14,7 +14,11 @@
 #include "compare/output/results.h"
 #include "compare/regression/check.h"
 #include "compare/results/quantity.h"
+#include "compare/study/evaluate.h"
+#include "compare/study/reader/study_reader.h"
+#include "tests/support/study_texts.h"
 #include "tests/support/synthetic.h"
+#include "tests/support/temporary_folder.h"
 
 namespace ciliaval::compare {
 namespace {
@@ -88,6 +92,26 @@ TEST_F(ToyQuantity, ConvergesWithTheMesh) {
               0.05 * lean->extrapolation.limit);
   EXPECT_THAT(convergence::study_text({study}, true),
               testing::HasSubstr("steps/1/mechanics/beam/lean"));
+}
+
+TEST_F(ToyQuantity, IsAnOutputOfAStudy) {
+  const test::TemporaryFolder folder;
+  test::write_study_case(folder.path());
+  const study::Study study = study::reader::read_study(test::write_study(
+      folder.path(),
+      test::study_text("pairs = [\"beam/line\"]\noutputs = [\"lean\", \"tip_z\", \"dB_norm\"]\n",
+                       "[[parameter]]\npath = \"load.force\"\nvalues = [\"1 mN\", \"2 mN\"]\n"
+                       "[fixed]\n\"sensor.position.z\" = \"-3 mm\"\n")));
+  const auto results = study::evaluate(study, study.case_at(1), "beam", models::mechanics_models(),
+                                       models::field_models());
+  ASSERT_EQ(results.at(0).values.size(), 3U);
+  const MechanicsStep& step = result.mechanics[1].result.steps[1];
+  // In the order of all outputs: what is seen at the sensor first, then the shape's.
+  EXPECT_NEAR(results[0].values[2].value(), lean_of(step), 1e-9);
+  const double L = problem.cilium.length();
+  EXPECT_NEAR(results[0].values[1].value(), step.deformation->centreline.at(L).position.z(), 1e-12);
+  EXPECT_EQ(study::id(study.outputs[2]), "lean");
+  EXPECT_EQ(study::quantity_of(study.outputs[1], study.load()).unit, "m");
 }
 
 }  // namespace
