@@ -88,6 +88,22 @@ class Report(Results):
             (Path(scratch) / "one" / "beam_0003.csv").unlink()
             self.assertIn("beam_0003.csv: No such file", report.write(scratch)[0])
 
+    def test_there_is_no_empty_figure_where_no_step_has_a_shape(self):
+        data = json.loads((self.folder / "one" / "summary.json").read_text())
+        for step in data["steps"]:
+            for of_model in step["mechanics"].values():
+                of_model.update(status="pulled_in", message="the magnet 'm' pulls the cilium in", tip=None)
+                of_model.update(tip_angle=None, applied_force=None, centreline=None)
+            step["fields"] = {}
+        data["comparisons"] = []
+        with tempfile.TemporaryDirectory() as scratch:
+            (Path(scratch) / "one").mkdir()
+            (Path(scratch) / "one" / "summary.json").write_text(json.dumps(data))
+            self.assertEqual(report.write(scratch), [])
+            page = (Path(scratch) / "report.html").read_text()
+            self.assertNotIn("Shapes", page)
+            self.assertIn("pulls the cilium in", page)
+
     def test_tables_have_the_numbers_of_the_files(self):
         tip = self.result.tip("elastica")[0]
         row = re.search(r">1, elastica</th>(.*?)</tr>", self.html).group(1)

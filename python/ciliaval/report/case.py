@@ -61,14 +61,11 @@ def _sketch(result: Result) -> Image | None:
 
 
 def _figures(result: Result) -> list[Image]:
-    drawn = [
-        image(
-            "Shapes",
-            "Centrelines of all models in the plane of the load"
-            + ("; the numbers are loads of the axis of the signals." if len(result.steps) > 1 else "."),
-            plot.shapes(result),
-        )
-    ]
+    drawn = []
+    if any("converged" in result.status(model) for model in result.models):
+        text = "Centrelines of all models in the plane of the load"
+        text += "; the numbers are loads of the axis of the signals." if len(result.steps) > 1 else "."
+        drawn.append(image("Shapes", text, plot.shapes(result)))
     if result.pairs:
         for sensor, name in enumerate(result.sensor_names):
             title = f"Signal at sensor {name}"
