@@ -227,7 +227,7 @@ Field<Owner> only_with(T Owner::*member, std::type_identity_t<T> value, std::str
 template <class Whole, class Part, class Function>
 Field<Whole> of_part(const Field<Part>& field, const Function& part) {
   Field<Whole> result;
-  static_cast<Key&>(result) = field;
+  static_cast<Key&>(result) = static_cast<const Key&>(field);
   result.get = [=, get = field.get](const Whole& whole) { return get(part(whole)); };
   result.set = [=, set = field.set](Whole& whole, const Value& value) { set(part(whole), value); };
   if (field.condition)

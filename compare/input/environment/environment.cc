@@ -153,6 +153,7 @@ std::string to_toml(const LoadPath& path) {
   if (is_stated(pair_of(2), all) || (!has_weight && magnets == 0)) text += lines(pair_of(2), all);
   for (std::size_t i = 0; i < magnets; ++i) {
     std::vector<Magnet> along;
+    along.reserve(steps.size());
     for (const Environment& step : steps) along.push_back(step.magnets.at(i));
     text += fmt::format("\n[[{}]]\n", magnet_table) +
             lines(description::fields<Magnet>(), std::span<const Magnet>(along));
