@@ -30,7 +30,7 @@ auto member(std::optional<double> MechanicsStep::*number) {
   return [=](const MechanicsStep& step) { return one_or_none(step.*number); };
 }
 
-/// The same, of a deformed cilium only.
+/// As member(), but of a deformed cilium only.
 auto of_deformation(std::optional<double> MechanicsStep::*number) {
   return [=](const MechanicsStep& step) {
     return step.deformation ? one_or_none(step.*number) : std::vector<double>{};
@@ -140,7 +140,7 @@ std::vector<Quantity> own_quantities() {
            },
        .uncertainty = [](const MechanicsStep& step) { return step.applied_force_uncertainty; },
        .size = force,
-       // Of an environment alone it is nothing but rounding.
+       // Under an environment alone it is nothing but rounding.
        .is_compared = [](const MechanicsStep& step) { return !step.load.is<EnvironmentLoad>(); }});
   all.push_back({.name = "contact_arclength",
                  .unit = "m",
@@ -154,7 +154,7 @@ std::vector<Quantity> own_quantities() {
                          of_deformation(&MechanicsStep::tip_angle_uncertainty), angle));
   all.push_back(estimate("applied_force_uncertainty", "N",
                          of_deformation(&MechanicsStep::applied_force_uncertainty), force));
-  // Of a probe it is that of the displacement.
+  // Under a probe it belongs to the displacement.
   const auto slip_off = [](bool of_probe) {
     return [of_probe](const MechanicsStep& step) {
       return step.load.is<ProbeLoad>() == of_probe ? step.slip_off_uncertainty : std::nullopt;

@@ -27,7 +27,7 @@ struct Extent {
   explicit Extent(const models::MechanicsRun& run);
 };
 
-/// What the error of a number is a part of, in its unit.
+/// The sizes that errors of a number are parts of, in its unit.
 struct Size {
   double scale = 0;  ///< its rounding
   double group = 0;  ///< its tolerance: the largest of its kind
@@ -38,15 +38,15 @@ struct Quantity {
   std::string_view name;                       ///< in summary.json, baselines, …
   std::string_view unit;                       ///< SI; empty: a plain number
   std::vector<std::string_view> components{};  ///< empty: a number
-  /// Of a step, one for each component; empty: there is none.
+  /// Gives the step's values, one for each component; empty: there is none.
   std::function<std::vector<double>(const MechanicsStep&)> values;
   /// Numerical, of each of them; empty: not known of any step.
   std::function<std::optional<double>(const MechanicsStep&)> uncertainty{};
   /// Empty: the largest of its values over the path.
   std::function<Size(const Extent&, std::size_t component)> size{};
-  /// Whether a baseline and a mesh study have it of the step; empty: of any.
+  /// True if baselines and mesh studies have it of the step; empty: of any.
   std::function<bool(const MechanicsStep&)> is_compared{};
-  /// Whether summary.json says that the step has none, by a null; empty: it does.
+  /// True if summary.json has a null where the step has none; empty: it does.
   std::function<bool(const MechanicsStep&)> belongs{};
   bool is_in_summary = true;  ///< summary.json has it
   bool is_estimate = false;   ///< the error of another one
