@@ -26,6 +26,7 @@ done
 
 install_packages
 scripts/check_includes.sh
+python3 scripts/check_names.py
 configure_options=(-D CILIAVAL_BENCHMARKS=$all)
 [ "$preset" != release ] || configure_options+=(-D CILIAVAL_ODR=$all)
 build "$preset"

@@ -11,20 +11,21 @@ problem:
 analytic: problem
 meshes: problem
 fem: problem
-fem/beam: problem fem/lanczos.h
+fem/beam: problem analytic/joints fem/lanczos.h
+fem/end_problem: problem analytic/joints meshes fem
 fem/potential: problem fem/parallel.h
 fem/solid: problem meshes fem
 fem/calculix: problem meshes fem
-compare/input: problem compare/signal
-compare/models: problem analytic fem meshes compare/input
+compare/input: problem compare/signal compare/results/quantity.h
+compare/models: problem analytic fem meshes compare/input compare/results/quantity.h
 compare/results: problem compare/input compare/models
 compare/output: problem compare/results meshes analytic/rod/field_models.h analytic/sources/push_forward.h compare/input compare/models ciliaval_version.h
 compare/regression: $shared
 compare/convergence: $shared compare/regression
-compare/budget: $shared analytic/elastica/elastica.h analytic/rod/field_models.h analytic/body/mesh_field.h fem/beam/beam.h fem/potential/potential.h
+compare/budget: $shared
 compare/sensing: $shared
 compare/signal: problem
-compare/study: $shared compare/budget analytic/elastica/elastica.h
+compare/study: $shared compare/budget
 compare/validation: $shared compare/study
 compare/claims: $shared compare/sensing compare/signal compare/study analytic/rod/field_models.h
 compare/app: .

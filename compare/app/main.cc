@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -159,7 +160,7 @@ ExitCode execute(int argc, char** argv) {
        {commands::add_new, commands::add_draw, commands::add_run, commands::add_validate,
         commands::add_mesh, commands::add_check, commands::add_converge, commands::add_budget,
         commands::add_sense, commands::add_study, commands::add_claims, commands::add_report,
-        commands::add_list, commands::add_schema})
+        commands::add_list, commands::add_schema, commands::add_help})
     add(line);
   check_words(app, std::span(argv, static_cast<std::size_t>(argc)));
   try {
@@ -212,6 +213,7 @@ int main(int argc, char** argv) {
   bool alone = false;
   try {
     open_standard_streams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of a file's size says so then
     if (ciliaval::fem::launched_on_several_ranks()) start_ranks();
     ciliaval::compare::output::set_line_width(ciliaval::compare::app::terminal_columns());
     code = execute(argc, argv);

@@ -53,13 +53,16 @@ std::vector<std::string> lines_of(const fs::path& log) {
 
 }  // namespace
 
-ModuleEnd run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+ModuleEnd run_python_module(const std::string& module, const std::vector<fs::path>& files,
+                            const std::vector<std::string>& options) {
   const support::SignalPause pause;  // the folder is removed before a signal ends the program
   const support::WorkFolder folder;
   support::ChildCommand command;
   command.program = interpreter();
   command.arguments = {"-m", module};
-  command.arguments.insert(command.arguments.end(), arguments.begin(), arguments.end());
+  command.arguments.insert(command.arguments.end(), options.begin(), options.end());
+  command.arguments.emplace_back("--");  // a file may be called -o
+  for (const fs::path& file : files) command.arguments.push_back(file.string());
   command.folder = fs::current_path();  // the arguments may be relative
   command.log = folder.path() / "log";
   command.time_limit = time_limit;
@@ -89,7 +92,7 @@ ModuleEnd run_python_module(const std::string& module, const std::vector<std::st
 }
 
 void draw_figure(const fs::path& results, const fs::path& figure) {
-  const ModuleEnd end = run_python_module("ciliaval.plot", {results.string(), figure.string()});
+  const ModuleEnd end = run_python_module("ciliaval.plot", {results, figure});
   for (const std::string& what : end.warnings) warn(what);
 }
 

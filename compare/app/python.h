@@ -14,10 +14,12 @@ struct ModuleEnd {
   std::vector<std::string> warnings;  ///< what it could not show, a line each
 };
 
-/// Runs `python3 -m MODULE ARGUMENTS…` with the package of this build, of this installation, or of
-/// PYTHONPATH. Throws FileError with the module's message if it made nothing, and with what to
-/// install if Python, the package or something that it needs is missing.
-ModuleEnd run_python_module(const std::string& module, const std::vector<std::string>& arguments);
+/// Runs `python3 -m MODULE OPTIONS… -- FILES…` with the package of this build, of this
+/// installation, or of PYTHONPATH. Throws FileError with the module's message if it made nothing,
+/// and with what to install if Python, the package or something that it needs is missing.
+ModuleEnd run_python_module(const std::string& module,
+                            const std::vector<std::filesystem::path>& files,
+                            const std::vector<std::string>& options = {});
 
 /// Draws the main figure of a JSON file of results: SVG, PDF or PNG, by the name of `figure`. A
 /// study has a figure for each output: `figure` is a folder. Throws FileError.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "compare/budget/sensitivity.h"
+#include "compare/results/quantity.h"
 #include "problem/error.h"
 #include "problem/types.h"
 
@@ -90,7 +91,7 @@ void compute(const input::Case& problem, std::span<const models::MechanicsEntry>
   for (const Stage& stage : chain.mechanics) {
     input::Case surrounded = problem;
     surrounded.load_path = loads_of(stage, computed.path.loads);
-    surrounded.options = mechanics_options(stage, problem.options);
+    stage.set(surrounded.options);
     const models::MechanicsEntry& entry = models::entry_of(mechanics, stage.mechanics);
     const models::MechanicsRun& run =
         computed.around
@@ -147,38 +148,46 @@ void add_row(BudgetRow row, const Numbers& numbers, const Chain& chain,
   rows.push_back(std::move(row));
 }
 
-/// Adds tip and tip angle at a step. The first stages of the chain are the mechanics models, in
-/// their order.
+/// Adds what people look at first of the shapes at a step, where every mechanics model has it. The
+/// first stages of the chain are the mechanics models, in their order.
 void add_mechanics(const Chain& chain, const Computed& computed, std::size_t step,
                    std::vector<BudgetRow>& rows) {
-  std::vector<const models::MechanicsRun*> runs;
+  std::vector<const MechanicsStep*> steps;
   std::vector<std::string> names;
   for (const Stage& stage : chain.mechanics) {
     names.push_back(stage.mechanics_name());
-    runs.push_back(&computed.alone.at(names.back()));
+    steps.push_back(&computed.alone.at(names.back()).result.steps[step]);
   }
-  const auto add = [&](const char* quantity, const std::string& component, const char* unit,
-                       const auto& value, const auto& uncertainty) {
-    Numbers numbers{names, {}, {}};
-    for (const models::MechanicsRun* run : runs) {
-      const Centreline& centreline = run->result.steps[step].deformation->centreline;
-      numbers.values.emplace_back(value(centreline.at(centreline.length())));
+  for (const results::Quantity& quantity : results::quantities()) {
+    if (!quantity.is_looked_at || !quantity.is_accepted) continue;
+    const std::size_t components = std::max<std::size_t>(1, quantity.components.size());
+    std::vector<std::vector<double>> values;
+    for (const MechanicsStep* of_stage : steps) values.push_back(quantity.values(*of_stage));
+    if (std::ranges::any_of(values, [&](const auto& v) { return v.size() != components; }))
+      continue;
+    for (std::size_t c = 0; c < components; ++c) {
+      Numbers numbers{names, {}, {}};
+      for (const std::vector<double>& of_stage : values) numbers.values.emplace_back(of_stage[c]);
+      numbers.uncertainty = [&](std::size_t a, std::size_t b) -> std::optional<double> {
+        if (!quantity.uncertainty) return std::nullopt;
+        const std::optional<double> ua = quantity.uncertainty(*steps[a]);
+        const std::optional<double> ub = quantity.uncertainty(*steps[b]);
+        return ua && ub ? std::optional(std::abs(*ua) + std::abs(*ub)) : std::nullopt;
+      };
+      const std::string component(quantity.components.empty() ? "" : quantity.components[c]);
+      add_row({step,
+               {},
+               std::string(quantity.name),
+               component,
+               std::string(quantity.kind.unit),
+               0,
+               0,
+               {},
+               {},
+               {}},
+              numbers, chain, rows);
     }
-    numbers.uncertainty = [&](std::size_t a, std::size_t b) -> std::optional<double> {
-      const std::optional<double> ua = uncertainty(*runs[a]);
-      const std::optional<double> ub = uncertainty(*runs[b]);
-      return ua && ub ? std::optional(std::abs(*ua) + std::abs(*ub)) : std::nullopt;
-    };
-    add_row({step, {}, quantity, component, unit, 0, 0, {}, {}, {}}, numbers, chain, rows);
-  };
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    add(
-        "tip", axis_names[static_cast<std::size_t>(axis)], "m",
-        [&](const CentrelinePoint& tip) { return tip.position[axis]; },
-        [&](const models::MechanicsRun& run) { return run.result.steps[step].tip_uncertainty; });
-  add(
-      "tip_angle", "", "rad", [](const CentrelinePoint& tip) { return tip.theta(); },
-      [&](const models::MechanicsRun& run) { return models::tip_angle_uncertainty(run, step); });
+  }
 }
 
 /// Adds B, ΔB and dB/dF at a sensor and a step.
@@ -222,12 +231,9 @@ void add_fields(const Chain& chain, const Computed& computed, std::size_t step, 
     if (!fields.stage->sensitivity) return std::nullopt;
     return sensitivity(fields.run, computed.path, step, sensor);
   };
-  const std::string_view unit = magnitude_unit(computed.path.loads.front());
+  const Quantity& magnitude = computed.path.loads.front().type().parameters.front().quantity;
   add(
-      "sensitivity",
-      unit == "N/m"  ? "T/(N/m)"
-      : unit.empty() ? "T"
-                     : fmt::format("T/{}", unit),
+      "sensitivity", std::string(results::flux_density_per(magnitude).unit),
       [&](const StageFields& fields) -> Vector {
         const auto value = derivative(fields);
         return value ? Vector(value->value) : std::nullopt;
@@ -335,7 +341,7 @@ Budget error_budget(const input::Case& problem, std::span<const models::Mechanic
   budget.case_name = problem.name;
   budget.sensor_names = input::sensor_names(problem);
   budget.load_path = problem.load_path;
-  budget.chain = make_chain(problem, without);
+  budget.chain = make_chain(problem, mechanics, fields, without);
   const Chain& chain = budget.chain;
   Computed computed;
   compute(problem, mechanics, fields, chain, progress, computed);

@@ -23,18 +23,20 @@ enum class Around {
 
 /// A pair of models on the way from the paper's to the best one.
 struct Stage {
-  std::string mechanics;  ///< id
-  std::string field;      ///< id
-  std::string variant;    ///< of the field model: "stacked"; empty if it has none
-  std::function<void(input::ModelOptions&)> set;  ///< makes the variant
-  std::string physics;      ///< the assumption that changes from the stage before
-  bool sensitivity = true;  ///< whether dB/dF is computed here
+  std::string mechanics;                          ///< id
+  std::string field;                              ///< id
+  std::string mechanics_variant;                  ///< "joints corrected"; empty if it has none
+  std::string field_variant;                      ///< "stacked"; empty if it has none
+  std::function<void(input::ModelOptions&)> set;  ///< makes the variants
+  std::string physics;                            ///< what changes from the stage before
+  bool sensitivity = true;                        ///< whether dB/dF is computed here
   Around around = Around::all;
-  bool joints = false;  ///< whether the rods' joints are corrected
 
   /// The id with what is around it or changed in it: "elastica alone", "beam, joints corrected".
   std::string mechanics_name() const;
-  std::string field_name() const { return variant.empty() ? field : field + ' ' + variant; }
+  std::string field_name() const {
+    return field_variant.empty() ? field : field + ' ' + field_variant;
+  }
   std::string name() const { return mechanics_name() + '/' + field_name(); }
 };
 
@@ -49,18 +51,20 @@ struct Chain {
   std::string physics(std::size_t from, std::size_t to) const;
 };
 
-/// elastica alone/line, if the case has an environment → elastica/line → beam/line → the same with
-/// corrected joints, if the case has them in the beam → solid/line, in a field by both magnetic
-/// energies → solid/volume stacked → solid/volume wedge → solid/mesh R →
-/// solid/mesh F → solid/potential mu_r = 1 → the same with the case's μ_r, if it is another → with
-/// the case's plates, if it has any. The options are the case's but for those named; line and
-/// potential push forward by F. `without` names models to leave out: beam, solid (its fields then
-/// go with the beam, and mesh with it is left out), volume, mesh, potential, dipole; "sensitivity"
-/// leaves out dB/dF. Throws InputError if one is not one of these.
-Chain make_chain(const input::Case& problem, const std::vector<std::string>& without);
-
-/// The case's options with the rods' joints as at a stage.
-input::ModelOptions mechanics_options(const Stage& stage, input::ModelOptions options);
+/// What the models' entries say that they add to the ones before them (Entry::budget_stages), an
+/// assumption a stage: the mechanics with the field of the paper's pair, which is the first of
+/// each, then the fields on the best mechanics. Of the shipped models: elastica/line → beam/line →
+/// the same with corrected joints, if the case has them in the beam → solid/line → solid/volume
+/// stacked → solid/volume wedge → solid/mesh R → solid/mesh F → solid/potential mu_r = 1 → the same
+/// with the case's μ_r, if it is another → with the case's plates, if it has any. In an environment
+/// the first ones stand alone up to the first model that takes it, and in a field the best
+/// mechanics has both magnetic energies. `without` names models to leave out, all but the paper's:
+/// without the last body the fields go with the rod before, and those of a body are left out;
+/// "sensitivity" leaves out dB/dF. Throws InputError if one is not one of these.
+Chain make_chain(const input::Case& problem,
+                 std::span<const models::MechanicsEntry> mechanics_entries,
+                 std::span<const models::FieldEntry> field_entries,
+                 const std::vector<std::string>& without);
 
 /// The effect of one change of model on one number: next − previous.
 struct BudgetLink {
@@ -76,14 +80,14 @@ struct BudgetLink {
 struct BudgetRow {
   std::size_t step = 0;
   std::optional<std::size_t> sensor;  ///< none: of the mechanics
-  std::string quantity;               ///< "tip", "tip_angle", "B", "dB", "sensitivity"
-  std::string component;              ///< "x", "y", "z" or none
-  std::string unit;                   ///< "m", "rad", "T", "T/N", "T/(N/m)", "T/m"
-  double paper = 0;                   ///< by the paper's model
-  double best = 0;                    ///< by the best model
-  BudgetLink total;                   ///< best − paper
-  std::vector<BudgetLink> links;      ///< from the paper's model to the best one
-  std::optional<BudgetLink> beside;   ///< a model that is not on the way, less the paper's
+  std::string quantity;   ///< of the mechanics results::Quantity::name; "B", "dB", "sensitivity"
+  std::string component;  ///< "x", "y", "z" or none
+  std::string unit;       ///< SI: "m", "rad", "T", "T/N", …
+  double paper = 0;       ///< by the paper's model
+  double best = 0;        ///< by the best model
+  BudgetLink total;       ///< best − paper
+  std::vector<BudgetLink> links;     ///< from the paper's model to the best one
+  std::optional<BudgetLink> beside;  ///< a model that is not on the way, less the paper's
 };
 
 struct Budget {
@@ -101,7 +105,8 @@ struct Budget {
 };
 
 /// Splits the difference between the paper's model and the best one of make_chain() into its links:
-/// tip and tip angle of the mechanics, B, ΔB and dB/dF at each sensor, at each load step. The
+/// what people look at first of the mechanics (results::Quantity), B, ΔB and dB/dF at each sensor,
+/// at each load step. The
 /// mechanics models are solved once, on the path with the loads around each step that dB/dF needs;
 /// the case's own lists of models do not matter.
 ///

@@ -8,22 +8,14 @@
 #include <string_view>
 #include <utility>
 
-#include "analytic/body/mesh_field.h"
-#include "analytic/elastica/elastica.h"
-#include "analytic/rod/field_models.h"
 #include "compare/budget/budget.h"
-#include "fem/beam/beam.h"
-#include "fem/potential/potential.h"
 #include "problem/error.h"
 #include "problem/support/words.h"
-#include "problem/surroundings/plane.h"
 
 namespace ciliaval::compare::budget {
 namespace {
 
-using analytic::sources::PushForward;
-using fem::potential::PotentialOptions;
-using Set = std::function<void(input::ModelOptions&)>;
+using Options = input::ModelOptions;
 
 /// Throws InputError unless each word names a model of the stages, which begin with the paper's,
 /// or the sensitivity.
@@ -48,125 +40,98 @@ void require_words(const std::vector<std::string>& without, std::span<const Stag
   }
 }
 
-/// Sets one option of a field model.
-template <class Options, class Value>
-Set set(Value Options::*option, Value value) {
-  return [=](input::ModelOptions& options) { options.of<Options>().*option = value; };
-}
-
-Set set_potential(double relative_permeability, bool plates) {
-  return [=](input::ModelOptions& options) {
-    auto& potential = options.of<PotentialOptions>();
-    potential.push_forward = fem::potential::MagnetPushForward::F;
-    potential.relative_permeability = relative_permeability;
-    if (!plates) potential.plates.clear();
+/// Sets the options of a mechanics model's stage, then those of a field model's.
+std::function<void(Options&)> both(const input::BudgetStage& mechanics,
+                                   const input::BudgetStage& field) {
+  return [=](Options& options) {
+    for (const auto& set : {mechanics.set, field.set})
+      if (set) set(options);
   };
 }
 
-/// The mechanics, with dipoles along the centreline. What is around the cilium, which the paper
-/// leaves out, comes at the elastica or, where it does not take it, at the beam.
-std::vector<Stage> mechanics_stages(const input::Case& problem) {
-  const Set line = set(&analytic::rod::LineOptions::push_forward, PushForward::F);
-  const std::string_view around = "weight, fluid and fields around the cilium";
-  const Stage elastica{"elastica", "line", "", line, ""};
-  const Stage beam{"beam", "line", "", line, "shear and extension of the rod"};
-  const Stage solid{
-      "solid", "line", "", line,
-      "three dimensions: bonded ends, near-incompressibility, a contact of some width"};
-  std::vector<Stage> corrected;
-  if (problem.options.of<fem::beam::BeamOptions>().joints == joints::Correction::corrected) {
-    corrected.push_back(beam);
-    corrected.front().joints = true;
-    corrected.front().physics = "joints as stiff as bonded sections make them";
-  }
-  const auto with = [](Stage stage, Around what, std::string_view physics) {
-    stage.around = what;
-    if (!physics.empty()) stage.physics = physics;
-    return stage;
-  };
+/// A model's stage, with its entry.
+template <class Entry>
+struct Of {
+  const Entry* entry;
+  input::BudgetStage stage;
+};
+
+template <class Entry>
+std::vector<Of<Entry>> stages_of(std::span<const Entry> entries, const Options& options) {
+  std::vector<Of<Entry>> all;
+  for (const Entry& entry : entries)
+    if (entry.budget_stages)
+      for (const input::BudgetStage& stage : entry.budget_stages(options))
+        all.push_back({&entry, stage});
+  return all;
+}
+
+using MechanicsStages = std::vector<Of<models::MechanicsEntry>>;
+using FieldStages = std::vector<Of<models::FieldEntry>>;
+
+Stage stage(const Of<models::MechanicsEntry>& mechanics, const Of<models::FieldEntry>& field) {
+  return {mechanics.entry->id,
+          field.entry->id,
+          mechanics.stage.variant,
+          field.stage.variant,
+          both(mechanics.stage, field.stage),
+          mechanics.stage.physics,
+          field.stage.bears_differences};
+}
+
+/// The mechanics, with the field of the paper's model. What is around the cilium, which the paper
+/// leaves out, comes at the first model that takes it.
+std::vector<Stage> mechanics_stages(const input::Case& problem, const MechanicsStages& mechanics,
+                                    const Of<models::FieldEntry>& field) {
+  std::vector<Stage> plain;
+  for (const auto& of : mechanics) plain.push_back(stage(of, field));
+  plain.front().physics =
+      fmt::format("the paper's model: {}, {}", plain.front().physics, field.stage.physics);
   bool is_empty = true;
   bool has_field = false;
-  bool is_for_the_beam = false;  // magnets, or out of the plane of the load
   for (const Load& load : problem.load_path) {
     const surroundings::Environment& environment = load.environment();
     is_empty = is_empty && surroundings::is_empty(environment);
-    const bool has_magnets = !environment.magnets.empty();
-    is_for_the_beam = is_for_the_beam || has_magnets ||
-                      !surroundings::lies_in_plane(environment, problem.cilium, direction(load));
-    has_field = has_field || has_magnets || !environment.uniform_field.isZero();
+    has_field = has_field || !environment.magnets.empty() || !environment.uniform_field.isZero();
   }
-  if (is_empty) {
-    std::vector<Stage> stages{elastica, beam};
-    stages.insert(stages.end(), corrected.begin(), corrected.end());
-    stages.push_back(solid);
-    return stages;
+  if (is_empty) return plain;
+  const auto takes_it = [&](std::size_t i) {
+    input::Case of_stage = problem;
+    plain[i].set(of_stage.options);
+    return models::fault_of(*mechanics[i].entry, of_stage).empty();
+  };
+  std::size_t first = 0;
+  while (first + 1 < plain.size() && !takes_it(first)) ++first;
+  std::vector<Stage> stages;
+  for (std::size_t i = 0; i <= first; ++i) {
+    stages.push_back(plain[i]);
+    stages.back().around = Around::nothing;
   }
-  std::vector<Stage> stages{with(elastica, Around::nothing, "")};
-  if (is_for_the_beam)
-    stages.push_back(with(beam, Around::nothing, ""));
-  else
-    stages.push_back(with(elastica, Around::all, around));
-  stages.push_back(is_for_the_beam ? with(beam, Around::all, around) : beam);
-  stages.insert(stages.end(), corrected.begin(), corrected.end());
-  if (has_field) {
-    const bool is_F =
-        problem.load_path.front().environment().magnetic_energy == surroundings::MagneticEnergy::F;
-    stages.push_back(with(solid, Around::other_law, ""));
-    stages.push_back(with(solid, Around::all,
-                          is_F ? "the magnetic energy by F, in place of R"
-                               : "the magnetic energy by R, in place of F"));
-  } else {
-    stages.push_back(solid);
-  }
-  return stages;
-}
-
-/// The fields on the best mechanics.
-std::vector<Stage> field_stages(const input::Case& problem, const std::string& mechanics) {
-  using analytic::body::MeshOptions;
-  using analytic::rod::VolumeOptions;
-  std::vector<Stage> stages{
-      {mechanics, "volume", "stacked", set(&VolumeOptions::slices, VolumeOptions::Slices::stacked),
-       "the magnet's thickness, in flat slices (Eq. 8-9)"},
-      {mechanics, "volume", "wedge", set(&VolumeOptions::slices, VolumeOptions::Slices::wedge),
-       "wedges in place of flat slices: Jacobian 1 - kappa*offset"},
-      {mechanics, "mesh", "R", set(&MeshOptions::push_forward, PushForward::R),
-       "the solid's own sections, warped and stretched, with rotated moments"},
-      {mechanics, "mesh", "F", set(&MeshOptions::push_forward, PushForward::F),
-       "moments carried along by F, in place of the rotation R"},
-      {mechanics, "potential", "mu_r = 1", set_potential(1, false),
-       "the same physics by another method: a potential by finite elements", false}};
-  const auto& potential = problem.options.of<PotentialOptions>();
-  const std::string permeability = fmt::format("mu_r = {:g}", potential.relative_permeability);
-  if (potential.relative_permeability != 1)
-    stages.push_back({mechanics, "potential", permeability,
-                      set_potential(potential.relative_permeability, false),
-                      "recoil permeability of the magnet", false});
-  if (!potential.plates.empty())
-    stages.push_back({mechanics, "potential", permeability + ", plates",
-                      set_potential(potential.relative_permeability, true), "permeable plates",
-                      false});
+  plain[first].physics = "weight, fluid and fields around the cilium";
+  stages.insert(stages.end(), plain.begin() + static_cast<std::ptrdiff_t>(first), plain.end());
+  if (!has_field) return stages;
+  Stage other = stages.back();
+  other.around = Around::other_law;
+  const bool is_F =
+      problem.load_path.front().environment().magnetic_energy == surroundings::MagneticEnergy::F;
+  stages.back().physics =
+      is_F ? "the magnetic energy by F, in place of R" : "the magnetic energy by R, in place of F";
+  stages.insert(stages.end() - 1, other);
   return stages;
 }
 
 }  // namespace
 
-input::ModelOptions mechanics_options(const Stage& stage, input::ModelOptions options) {
-  const auto joints = stage.joints ? joints::Correction::corrected : joints::Correction::none;
-  options.of<fem::beam::BeamOptions>().joints = joints;
-  options.of<analytic::elastica::ElasticaOptions>().joints = joints;
-  return options;
-}
-
 std::string Stage::mechanics_name() const {
-  if (joints) return mechanics + ", joints corrected";
+  const std::string name =
+      mechanics_variant.empty() ? mechanics : fmt::format("{}, {}", mechanics, mechanics_variant);
   switch (around) {
     case Around::nothing:
-      return mechanics + " alone";
+      return name + " alone";
     case Around::other_law:
-      return mechanics + " by the other law";
+      return name + " by the other law";
     default:
-      return mechanics;
+      return name;
   }
 }
 
@@ -176,41 +141,64 @@ std::string Chain::physics(std::size_t from, std::size_t to) const {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-Chain make_chain(const input::Case& problem, const std::vector<std::string>& without) {
-  const std::vector<Stage> mechanics = mechanics_stages(problem);
-  const std::string paper = mechanics.front().mechanics;
-  Stage beside{paper, "dipole", "", [](input::ModelOptions&) {},
-               "the whole magnet as one dipole at its centroid"};
-  beside.around = mechanics.front().around;
+Chain make_chain(const input::Case& problem,
+                 std::span<const models::MechanicsEntry> mechanics_entries,
+                 std::span<const models::FieldEntry> field_entries,
+                 const std::vector<std::string>& without) {
+  const MechanicsStages of_mechanics = stages_of(mechanics_entries, problem.options);
+  FieldStages of_fields = stages_of(field_entries, problem.options);
+  const auto on_the_way =
+      std::ranges::stable_partition(of_fields, [](const auto& of) { return !of.stage.is_beside; });
+  const FieldStages of_beside(on_the_way.begin(), on_the_way.end());
+  of_fields.erase(on_the_way.begin(), on_the_way.end());
+  if (of_mechanics.empty() || of_fields.empty())
+    throw InputError("no model says what it adds to the others: there is no budget");
+  const std::vector<Stage> mechanics = mechanics_stages(problem, of_mechanics, of_fields.front());
   std::vector<Stage> all = mechanics;
-  for (const Stage& stage : field_stages(problem, paper)) all.push_back(stage);
-  all.push_back(beside);
+  for (const auto& of : of_fields) all.push_back(stage(of_mechanics.front(), of));
+  for (const auto& of : of_beside) all.push_back(stage(of_mechanics.front(), of));
   require_words(without, all);
   const auto is_left_out = [&](const std::string& word) {
     return std::ranges::find(without, word) != without.end();
+  };
+  const auto without_name = [](const Stage& stage, const std::string& missing) {
+    return fmt::format("{}: without {}", stage.name(), missing);
   };
   Chain chain;
   const auto add = [&](const Stage& stage, const std::string& missing) {
     if (missing.empty())
       chain.stages.push_back(stage);
     else
-      chain.not_run.push_back(fmt::format("{}: without {}", stage.name(), missing));
+      chain.not_run.push_back(without_name(stage, missing));
   };
+  std::string left_out_body;  // the model whose body is missing
+  const models::MechanicsEntry* best = nullptr;
   for (const Stage& stage : mechanics) {
     add(stage, is_left_out(stage.mechanics) ? stage.mechanics : "");
-    if (!is_left_out(stage.mechanics)) chain.mechanics.push_back(stage);
+    const models::MechanicsEntry& entry = models::entry_of(mechanics_entries, stage.mechanics);
+    if (entry.has_body && is_left_out(stage.mechanics)) left_out_body = stage.mechanics;
+    if (is_left_out(stage.mechanics)) continue;
+    chain.mechanics.push_back(stage);
+    best = &entry;
   }
-  const std::string best = chain.mechanics.back().mechanics;
-  for (Stage& stage : field_stages(problem, best)) {
-    stage.joints = chain.mechanics.back().joints;
-    add(stage, is_left_out(stage.field)                   ? stage.field
-               : stage.field == "mesh" && best != "solid" ? "solid"
-                                                          : "");
+  const auto best_stage = std::ranges::find_if(of_mechanics.rbegin(), of_mechanics.rend(),
+                                               [&](const auto& of) { return of.entry == best; });
+  for (std::size_t i = 1; i < of_fields.size(); ++i) {
+    Stage on_best = stage(*best_stage, of_fields[i]);
+    on_best.physics = of_fields[i].stage.physics;
+    on_best.around = chain.mechanics.back().around;
+    const bool has_no_body = of_fields[i].entry->has_body && !best->has_body;
+    add(on_best, is_left_out(on_best.field) ? on_best.field : has_no_body ? left_out_body : "");
   }
-  if (is_left_out(beside.field))
-    chain.not_run.push_back(fmt::format("{}: without {}", beside.name(), beside.field));
-  else
-    chain.beside = beside;
+  for (const auto& of : of_beside) {
+    Stage beside = stage(of_mechanics.front(), of);
+    beside.physics = of.stage.physics;
+    beside.around = mechanics.front().around;
+    if (is_left_out(beside.field))
+      chain.not_run.push_back(without_name(beside, beside.field));
+    else
+      chain.beside = beside;
+  }
   if (is_left_out("sensitivity")) {
     for (Stage& stage : chain.stages) stage.sensitivity = false;
     if (chain.beside) chain.beside->sensitivity = false;

@@ -39,13 +39,21 @@ std::string interval_cell(const BudgetLink& link, std::string_view unit) {
 /// The rows that stand side by side in a table.
 using Group = std::vector<const BudgetRow*>;
 
-/// The rows of one quantity at one step: of the mechanics, or at the first sensor.
-Group group_of(const Budget& budget, std::size_t step, std::string_view quantity) {
+/// The rows of one quantity at one step at the first sensor; none: those of the mechanics.
+Group group_of(const Budget& budget, std::size_t step, std::optional<std::string_view> quantity) {
   Group group;
   for (const BudgetRow& row : budget.rows)
-    if (row.step == step && row.quantity == quantity && row.sensor.value_or(0) == 0)
+    if (row.step == step && (quantity ? row.quantity == *quantity && row.sensor == 0 : !row.sensor))
       group.push_back(&row);
   return group;
+}
+
+/// "tip x", "tip angle"; of a field its component.
+std::string column_name(const BudgetRow& row) {
+  if (row.sensor) return row.component;
+  std::string name = row.quantity;
+  std::ranges::replace(name, '_', ' ');
+  return row.component.empty() ? name : fmt::format("{} {}", name, row.component);
 }
 
 /// |link| over |best|, as vectors.
@@ -65,8 +73,8 @@ std::string group_table(const Group& group, const std::string& title, bool is_fi
   output::TextRows rows{{title}};
   std::string alignment = "<";
   for (const BudgetRow* row : group) {
-    rows[0].push_back(fmt::format("{} ({})", row->component.empty() ? "angle" : row->component,
-                                  output::shown_unit(row->unit).name));
+    rows[0].push_back(
+        fmt::format("{} ({})", column_name(*row), output::shown_unit(row->unit).name));
     rows[0].emplace_back();
     alignment += "><";
   }
@@ -105,12 +113,9 @@ std::string sensor_name(const Budget& budget, std::size_t sensor) {
 }
 
 std::string step_text(const Budget& budget, std::size_t step) {
-  Group mechanics = group_of(budget, step, "tip");
-  const Group angle = group_of(budget, step, "tip_angle");
-  mechanics.insert(mechanics.end(), angle.begin(), angle.end());
   const std::string at = " at sensor " + sensor_name(budget, 0);
   const std::string text =
-      group_table(mechanics, "tip", false) +
+      group_table(group_of(budget, step, {}), "shape", false) +
       group_table(group_of(budget, step, "B"), "B" + at, true) +
       group_table(group_of(budget, step, "dB"), "dB" + at, true) +
       group_table(group_of(budget, step, "sensitivity"), "d(dB)/d(load)" + at, true);
@@ -123,10 +128,7 @@ std::string step_text(const Budget& budget, std::size_t step) {
 std::string chain_text(const Budget& budget) {
   output::TextRows rows;
   for (const Stage& stage : budget.chain.stages)
-    if (&stage == &budget.chain.stages.front())
-      rows.push_back({stage.name(), "the paper's model: elastica, dipoles along the centreline"});
-    else
-      rows.push_back({"-> " + stage.name(), stage.physics});
+    rows.push_back({(rows.empty() ? "" : "-> ") + stage.name(), stage.physics});
   if (budget.chain.beside)
     rows.push_back({"beside: " + budget.chain.beside->name(),
                     budget.chain.beside->physics + "; not in the sum"});

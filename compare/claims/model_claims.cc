@@ -16,6 +16,7 @@
 #include "compare/models/errors.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "compare/results/quantity.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::claims {
@@ -66,7 +67,8 @@ Claim base_bends(const models::CaseResult& result) {
       const double part =
           100 * line.at(result.problem.cilium.segments.front().length).theta() / tip;
       // Either angle may be off by as much, in proportion.
-      share.add(part, 2 * part * models::tip_angle_uncertainty(run, step).value() / std::abs(tip));
+      share.add(part, 2 * part * results::tip_angle_uncertainty(run.result.steps[step]).value() /
+                          std::abs(tip));
     }
     claim.evidence.push_back(in_range(run.model, share, "%", 50, 100));
   }

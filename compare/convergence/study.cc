@@ -134,7 +134,7 @@ Extrapolation extrapolation_of(const std::vector<RefinementLevel>& levels,
 void extrapolate_all(const std::vector<Quantities>& levels, const ModelRefinement& refinement,
                      RefinementStudy& study) {
   for (const auto& [id, finest] : levels.front()) {
-    ConvergedQuantity quantity{id, finest.unit, finest.size(), finest.is_looked_at, {}, {}};
+    ConvergedQuantity quantity{finest, {}, {}};
     for (std::size_t i = 0; i < levels.size() && levels[i].contains(id); ++i)
       quantity.levels.push_back(
           {refinement.sequence.size(study.settings[i]), levels[i].at(id).value});
@@ -159,7 +159,16 @@ std::array<std::pair<const char*, std::optional<double>>, 4> numbers_of(const Ex
 
 Json quantity_json(const ConvergedQuantity& quantity) {
   const Extrapolation& e = quantity.extrapolation;
-  Json json{{"id", quantity.id}, {"unit", quantity.unit}, {"levels", Json::array()}};
+  const results::Observation& row = quantity.finest;
+  Json json{{"id", row.id()},
+            {"step", row.step ? Json(*row.step) : Json(nullptr)},
+            {"mechanics", row.mechanics},
+            {"field", output::or_null(row.field)},
+            {"sensor", row.sensor ? Json(*row.sensor) : Json(nullptr)},
+            {"quantity", row.quantity},
+            {"component", output::or_null(row.component)},
+            {"unit", row.unit},
+            {"levels", Json::array()}};
   for (const RefinementLevel& level : quantity.levels)
     json["levels"].push_back({{"size", level.size}, {"value", level.value}});
   json["conclusive"] = e.conclusive;
@@ -194,11 +203,11 @@ Judgement judge(const RefinementStudy& study) {
     ++result.numbers;
     if (!quantity.extrapolation.conclusive) continue;
     ++result.conclusive;
-    const double relative =
-        quantity.scale > 0 ? quantity.extrapolation.uncertainty / quantity.scale : 0;
+    const double scale = quantity.finest.size();
+    const double relative = scale > 0 ? quantity.extrapolation.uncertainty / scale : 0;
     if (relative > result.largest || result.where.empty()) {
       result.largest = relative;
-      result.where = quantity.id;
+      result.where = quantity.finest.id();
     }
   }
   return result;
@@ -225,19 +234,19 @@ std::string verdict(const Judgement& all) {
 std::string quantity_table(const RefinementStudy& study) {
   output::TextRows rows{{"quantity", "finest", "order", "extrapolated", "+-", "unit"}};
   for (const ConvergedQuantity& quantity : study.quantities) {
-    if (!quantity.is_looked_at) continue;
+    if (!quantity.finest.is_looked_at) continue;
     const Extrapolation& e = quantity.extrapolation;
     if (e.conclusive) {
-      rows.push_back({quantity.id, output::number_cell(quantity.levels.front().value, 1, "{:.9g}"),
-                      output::number_cell(e.order, 1, "{:.2f}"),
-                      output::number_cell(e.limit, 1, "{:.9g}"),
-                      output::number_cell(e.uncertainty, 1, "{:.2g}"), quantity.unit});
+      rows.push_back(
+          {quantity.finest.id(), output::number_cell(quantity.levels.front().value, 1, "{:.9g}"),
+           output::number_cell(e.order, 1, "{:.2f}"), output::number_cell(e.limit, 1, "{:.9g}"),
+           output::number_cell(e.uncertainty, 1, "{:.2g}"), quantity.finest.unit});
       continue;
     }
     std::vector<double> values;
     for (const RefinementLevel& level : quantity.levels) values.push_back(level.value);
-    rows.push_back({quantity.id, "-", "-", "-", "-",
-                    fmt::format("{}; inconclusive: {}: {:.9g}", quantity.unit, e.reason,
+    rows.push_back({quantity.finest.id(), "-", "-", "-", "-",
+                    fmt::format("{}; inconclusive: {}: {:.9g}", quantity.finest.unit, e.reason,
                                 fmt::join(values, ", "))});
   }
   return output::text_table(rows, "<>>>><");
@@ -350,7 +359,8 @@ std::string study_csv(const std::vector<RefinementStudy>& studies) {
   for (const RefinementStudy& study : studies)
     for (const ConvergedQuantity& quantity : study.quantities) {
       const Extrapolation& e = quantity.extrapolation;
-      for (const std::string& text : {study.model, study.option, quantity.id, quantity.unit})
+      for (const std::string& text :
+           {study.model, study.option, quantity.finest.id(), quantity.finest.unit})
         csv.add(text);
       csv.add(e.conclusive ? 1 : 0);
       for (const auto& [name, value] : numbers_of(e)) csv.add(value);

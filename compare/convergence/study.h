@@ -8,6 +8,7 @@
 #include "compare/convergence/extrapolation.h"
 #include "compare/input/case.h"
 #include "compare/output/provenance.h"
+#include "compare/results/observation.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::compare::convergence {
@@ -26,14 +27,9 @@ struct ModelRefinement {
 /// Those of the models that the case asks for, with the method that it asks for.
 std::vector<ModelRefinement> refinements(const input::Case& problem);
 
-/// One quantity of a case on all levels, finest first: those of compare/results/quantity.h,
-/// and made of them `…/tip/deflection`, the tip's horizontal distance √(x² + y²) from the base, and
-/// `…/dB/SENSOR/norm`, |ΔB|.
+/// A row of the table of results on all levels, finest first.
 struct ConvergedQuantity {
-  std::string id;
-  std::string unit;
-  double scale = 0;  ///< results::Observation::size(): the largest deflection, |ΔB|, …
-  bool is_looked_at = false;
+  results::Observation finest;
   std::vector<RefinementLevel> levels;
   Extrapolation extrapolation;
 };
@@ -61,8 +57,9 @@ RefinementStudy refinement_study(const input::Case& problem, const ModelRefineme
 /// the levels say; then the verdict on all.
 std::string study_text(const std::vector<RefinementStudy>& studies, bool list);
 /// {"schema": 1, "case", "provenance", "studies": [{"model", "option", "size_name", "settings",
-/// "seconds", "failure", "quantities": [{"id", "unit", "levels": [{"size", "value"}], "conclusive",
-/// "reason", "order", "limit", "uncertainty", "safety"}]}]}
+/// "seconds", "failure", "quantities": [{"id", "step", "mechanics", "field", "sensor", "quantity",
+/// "component", "unit", "levels": [{"size", "value"}], "conclusive", "reason", "order", "limit",
+/// "uncertainty", "safety"}]}]}
 std::string study_json(const std::string& case_name, const std::vector<RefinementStudy>& studies,
                        const output::Provenance& provenance);
 /// A row for each quantity: model, option, quantity, unit, conclusive, order, limit, uncertainty,

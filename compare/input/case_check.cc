@@ -175,19 +175,19 @@ void check_models(const Case& c, const Models& known, const RightTables& right,
       std::vector<std::string_view> names;
       names.reserve(loads.size());
       for (const LoadType* type : loads) names.push_back(type->name);
-      report(path_of_id("mechanics", c.mechanics, entry.id),
+      report(path_of_id(keys().mechanics.name, c.mechanics, entry.id),
              fmt::format("{0} takes the load types '{1}', not '{2}': leave out '{0}', or state the "
                          "load as one of those",
                          entry.id, fmt::join(names, "', '"), type(c.load_path.front())));
     } else if (is_mechanics && right.load && !entry.takes_environment &&
                has_environment(c.load_path)) {
       report(
-          path_of_id("mechanics", c.mechanics, entry.id),
+          path_of_id(keys().mechanics.name, c.mechanics, entry.id),
           fmt::format("{0} takes no [environment]: leave out '{0}', or the environment", entry.id));
     }
     if (is_asked_for && right.cilium && !entry.takes_sections &&
         c.cilium.section.shape != CrossSection::Shape::circle)
-      report(path_of_id(is_mechanics ? "mechanics" : "fields",
+      report(path_of_id(is_mechanics ? keys().mechanics.name : keys().fields.name,
                         is_mechanics ? c.mechanics : c.fields, entry.id),
              fmt::format("{0} takes circular sections only: leave out '{0}', or [cilium.section]",
                          entry.id));
@@ -212,7 +212,7 @@ void check_fields(const Case& c, const Models& known, bool cilium_is_right, cons
     if (entry.has_body) with_body.push_back(entry.id);
   for (const FieldEntry& entry : known.fields)
     if (entry.has_body && asks_for(c.fields, entry.id) && bodies(c, known) == 0)
-      report(path_of_id("fields", c.fields, entry.id),
+      report(path_of_id(keys().fields.name, c.fields, entry.id),
              fmt::format("the field model '{}' needs the body of a solid: add one of {} to "
                          "'mechanics'",
                          entry.id, fmt::join(with_body, ", ")));

@@ -74,7 +74,7 @@ std::vector<std::filesystem::path> read_file_names(const toml::node& node, std::
 void read_name(const toml::node& node, const Models& known,
                const std::vector<external::ExternalModel>& others, external::ExternalModel& model,
                Faults& faults) {
-  model.name = read_text(node, "name", faults).value_or("");
+  model.name = read_text(node, keys().external_name.name, faults).value_or("");
   bool is_taken = std::any_of(others.begin(), others.end(), [&](const external::ExternalModel& m) {
     return m.name == model.name;
   });
@@ -92,13 +92,13 @@ external::ExternalModel read_model(Section& table, const Models& known,
                                    const std::vector<external::ExternalModel>& others) {
   Faults& faults = table.faults();
   external::ExternalModel model;
-  if (const toml::node* node = table.require("name"))
+  if (const toml::node* node = table.require(keys().external_name.name))
     read_name(*node, known, others, model, faults);
-  if (const toml::node* node = table.find("centrelines"))
-    model.centreline_files = read_file_names(*node, "centrelines", faults);
+  if (const toml::node* node = table.find(keys().centrelines.name))
+    model.centreline_files = read_file_names(*node, keys().centrelines.name, faults);
   const std::size_t before = faults.size();
   read(table, description::fields<external::ExternalModel>(), model);
-  if (model.readings_file.empty() && table.find("centrelines") == nullptr &&
+  if (model.readings_file.empty() && table.find(keys().centrelines.name) == nullptr &&
       faults.size() == before)
     faults.add(table.where(), fmt::format("{} needs 'centrelines' or 'readings'", table.name()));
   return model;
@@ -107,14 +107,13 @@ external::ExternalModel read_model(Section& table, const Models& known,
 }  // namespace
 
 void read_readings(Section& root, std::string_view file, external::ReadingOptions& readings) {
-  constexpr std::size_t longest = 1000;  // a map of many sensors
   Section table = root.section("readings");
-  for (const auto& [key, text] : external::reading_keys)
-    if (const toml::node* node = table.find(key)) {
-      const auto value = read_line(*node, key, longest, table.faults());
-      readings.*
-          text = {value.value_or(""), fmt::format("{}:{}:{}: [readings] {}", file,
-                                                  place(*node).line, place(*node).column, key)};
+  for (const external::ReadingKey& key : external::reading_keys())
+    if (const toml::node* node = table.find(key.name)) {
+      const auto value = read_line(*node, key.name, key.longest, table.faults());
+      readings.*key.option = {value.value_or(""),
+                              fmt::format("{}:{}:{}: [readings] {}", file, place(*node).line,
+                                          place(*node).column, key.name)};
     }
   table.finish();
 }
@@ -130,9 +129,10 @@ void check_external(const Case& c, const Report& report) {
     const external::ExternalModel& model = c.external[i];
     const std::string path = fmt::format("{}[{}].", external::table_name, i);
     if (!model.centreline_files.empty() && model.centreline_files.size() != c.load_path.size())
-      report(path + "centrelines", fmt::format("there are {} files of centrelines and {} load "
-                                               "steps: one file for each",
-                                               model.centreline_files.size(), c.load_path.size()));
+      report(path + std::string(keys().centrelines.name),
+             fmt::format("there are {} files of centrelines and {} load "
+                         "steps: one file for each",
+                         model.centreline_files.size(), c.load_path.size()));
     if (!model.readings_file.empty() && c.sensors.empty())
       report(path + "readings", "readings need a place: add [sensor] with 'position'");
   }

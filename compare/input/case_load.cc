@@ -183,16 +183,16 @@ void read_load(Section& root, const std::filesystem::path& folder, Case& c) {
   }
   Section table = require_section(root, "load");
   if (!table.exists()) return;
-  const toml::node* node = table.require("type");
+  const toml::node* node = table.require(keys().load_type.name);
   std::optional<std::string> type;
   std::vector<std::string_view> names;
   for (const LoadType* known : load_types()) names.push_back(known->name);
-  if (node != nullptr) type = read_choice(*node, "type", names, faults);
+  if (node != nullptr) type = read_choice(*node, keys().load_type.name, names, faults);
   const auto surface = read_surface(root, folder, type, c);
   if (!type) return read_any_type(table, length);
   Section typed(table.table(), fmt::format("[load] of type '{}'", *type), "load", table.where(),
                 faults);
-  typed.find("type");
+  typed.find(keys().load_type.name);
   StatedLoad load = read_type(typed, *find_load_type(*type), length);
   typed.finish();
   if (*type == EnvironmentLoad::type().name && !has_environment)

@@ -72,7 +72,7 @@ void read_cross_section(Section& cilium, Cilium& result) {
   const std::size_t before = faults.size();
   if (table.exists()) read(table, description::fields<CrossSection>(), section);
   table.finish();
-  const toml::node* diameter = cilium.find("diameter");
+  const toml::node* diameter = cilium.find(description::diameter_key);
   if (section.shape == CrossSection::Shape::rectangle) {
     if (diameter != nullptr)
       faults.add(place(*diameter), "a rectangle has 'width' and 'height' in place of 'diameter'");
@@ -80,7 +80,7 @@ void read_cross_section(Section& cilium, Cilium& result) {
   }
   if (faults.size() != before && diameter == nullptr) return;  // it may be a rectangle
   read(cilium, description::fields<Cilium>(), result);
-  if (const toml::node* hole = table.find("inner_diameter");
+  if (const toml::node* hole = table.find(description::inner_diameter_key);
       hole != nullptr && diameter != nullptr && result.diameter > 0 &&
       section.inner_diameter >= result.diameter)
     faults.add(place(*hole), fmt::format("the hole of a tube is narrower than its 'diameter', {}",
@@ -92,8 +92,8 @@ void read_named_sensors(Section& root, Case& c) {
   root.tables("sensor", 1, most_sensors, [&](Section& table) {
     Faults& faults = table.faults();
     std::string name;
-    if (const toml::node* node = table.require("name")) {
-      name = read_text(*node, "name", faults).value_or("unknown");
+    if (const toml::node* node = table.require(keys().sensor_name.name)) {
+      name = read_text(*node, keys().sensor_name.name, faults).value_or("unknown");
       const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
       if (!is_plain_file_name(name) || is_number)
         faults.add(place(*node),
@@ -107,8 +107,8 @@ void read_named_sensors(Section& root, Case& c) {
                    fmt::format("the sensor name {} is already taken", in_quotes(name)));
     }
     std::optional<Vector3> point;
-    if (const toml::node* node = table.require("position"))
-      point = read_point(*node, sensor_position(), faults);
+    if (const toml::node* node = table.require(keys().sensor_position.name))
+      point = read_point(*node, keys().sensor_position, faults);
     c.sensor_names.push_back(std::move(name));
     c.sensors.push_back(point.value_or(Vector3::Zero()));
   });
@@ -147,20 +147,44 @@ std::optional<Vector3> read_point(const toml::node& node, const description::Key
   return right ? std::optional<Vector3>(point) : std::nullopt;
 }
 
-const description::Key& sensor_position() {
-  static const description::Key key = [] {
-    description::Key position;
-    position.name = "position";
-    position.quantity = quantity::length;
-    position.range = {-1000, 1000, false, "a sensor farther away is taken for a slip in the unit"};
-    position.doc =
+const Keys& keys() {
+  using description::text_key;
+  static const Keys all = [] {
+    Keys k;
+    k.case_name = text_key("name",
+                           "Name of the results' folder: letters, digits, `.`, `_`, `-`, not "
+                           "starting with `.` or `-`, at most 100.",
+                           "", "", longest_name);
+    k.title = text_key("title", "A line for people, at most 200 characters.", "the name", "",
+                       longest_title);
+    k.sensor_name = text_key("name",
+                             "`[[sensor]]`, a table for each sensor with its `position`: the name "
+                             "in tables, files and headers of readings; letters, digits, `.`, `_`, "
+                             "`-`, not digits alone.",
+                             "its number");
+    k.sensor_position.name = "position";
+    k.sensor_position.quantity = quantity::length;
+    k.sensor_position.range = {-1000, 1000, false,
+                               "a sensor farther away is taken for a slip in the unit"};
+    k.sensor_position.doc =
         "The point `[x, y, z]` where the field is computed, or a list of points; required if "
         "`fields` are asked for.";
-    position.initial = Vector3(Vector3::Zero());
-    position.fallback = "none";
-    return position;
+    k.sensor_position.initial = Vector3(Vector3::Zero());
+    k.sensor_position.fallback = "none";
+    k.load_type = text_key("type", "What the load is and does as the cilium bends.");
+    k.mechanics = text_key("mechanics", "The mechanics models to run, at least one.");
+    k.fields = text_key(
+        "fields", "The field models to run on the deformation of each mechanics model", "none");
+    k.external_name = text_key("name",
+                               "Name of an external model (docs/guide/referees.md), not that of a "
+                               "model; a plain file name.");
+    k.centrelines = text_key("centrelines",
+                             "CSV files with a centreline each, one for each load step, beside the "
+                             "case file unless absolute; these or `readings`.",
+                             "none");
+    return k;
   }();
-  return key;
+  return all;
 }
 
 std::optional<std::string> read_line(const toml::node& node, std::string_view name,
@@ -185,8 +209,8 @@ Section require_section(Section& root, std::string_view key) {
 
 void read_name_and_title(Section& table, std::string& name, std::string& title) {
   Faults& faults = table.faults();
-  if (const toml::node* node = table.require("name")) {
-    name = read_text(*node, "name", faults).value_or("unknown");
+  if (const toml::node* node = table.require(keys().case_name.name)) {
+    name = read_text(*node, keys().case_name.name, faults).value_or("unknown");
     if (!is_plain_file_name(name))
       faults.add(place(*node),
                  fmt::format("the {} name {} must be a plain file name, because the results go "
@@ -195,8 +219,9 @@ void read_name_and_title(Section& table, std::string& name, std::string& title) 
                              table.path(), in_quotes(name), longest_name));
   }
   title = name;
-  if (const toml::node* node = table.find("title"))
-    title = read_line(*node, "title", longest_title, faults).value_or("");
+  const description::Key& title_key = keys().title;
+  if (const toml::node* node = table.find(title_key.name))
+    title = read_line(*node, title_key.name, title_key.longest, faults).value_or("");
 }
 
 void read_header(Section& root, Case& c) {
@@ -217,7 +242,7 @@ void read_sensor(Section& root, Case& c) {
   if (const toml::node* node = root.find("sensor"); node != nullptr && node->is_array())
     return read_named_sensors(root, c);
   Section table = root.section("sensor");
-  if (const toml::node* node = table.require("position")) {
+  if (const toml::node* node = table.require(keys().sensor_position.name)) {
     const toml::array* list = node->as_array();
     if (list == nullptr || list->empty() || list->size() > most_sensors) {
       faults.add(place(*node),
@@ -229,9 +254,10 @@ void read_sensor(Section& root, Case& c) {
     } else if (std::any_of(list->begin(), list->end(),
                            [](const toml::node& n) { return n.is_array(); })) {
       for (const toml::node& element : *list) {
-        if (const auto p = read_point(element, sensor_position(), faults)) c.sensors.push_back(*p);
+        if (const auto p = read_point(element, keys().sensor_position, faults))
+          c.sensors.push_back(*p);
       }
-    } else if (const std::optional<Vector3> p = read_point(*list, sensor_position(), faults)) {
+    } else if (const std::optional<Vector3> p = read_point(*list, keys().sensor_position, faults)) {
       c.sensors.push_back(*p);
     }
   }
@@ -242,15 +268,16 @@ void read_models(Section& root, const Models& known, Case& c) {
   Faults& faults = root.faults();
   const std::vector<std::string_view> mechanics = ids(known.mechanics);
   Section table = require_section(root, "models");
-  if (const toml::node* node = table.require("mechanics")) {
+  const std::string_view list = keys().mechanics.name;
+  if (const toml::node* node = table.require(list)) {
     const std::size_t faults_before = faults.size();
-    c.mechanics = read_ids(*node, "mechanics", mechanics, faults);
+    c.mechanics = read_ids(*node, list, mechanics, faults);
     if (c.mechanics.empty() && faults.size() == faults_before)
-      faults.add(place(*node), fmt::format("'mechanics' is empty: name at least one of {}",
+      faults.add(place(*node), fmt::format("'{}' is empty: name at least one of {}", list,
                                            fmt::join(mechanics, ", ")));
   }
-  if (const toml::node* node = table.find("fields"))
-    c.fields = read_ids(*node, "fields", ids(known.fields), faults);
+  if (const toml::node* node = table.find(keys().fields.name))
+    c.fields = read_ids(*node, keys().fields.name, ids(known.fields), faults);
   read_options(table, known, c.options);
   read_external(table, known, c.external);
   table.finish();

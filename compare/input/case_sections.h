@@ -13,8 +13,20 @@
 
 namespace ciliaval::compare::input {
 
-/// A sensor's place.
-const description::Key& sensor_position();
+/// The keys that are no member's, of [case], [load], [[sensor]], [models] and [[models.external]];
+/// what is said of a value is said beside its reader.
+struct Keys {
+  description::Key case_name;
+  description::Key title;
+  description::Key sensor_name;
+  description::Key sensor_position;
+  description::Key load_type;
+  description::Key mechanics;
+  description::Key fields;
+  description::Key external_name;
+  description::Key centrelines;
+};
+const Keys& keys();
 
 /// Each function reads one table of a case file into the case and adds a fault for everything in it
 /// that is wrong by itself; what contradicts another table is check_together()'s.

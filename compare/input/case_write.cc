@@ -66,7 +66,7 @@ std::string sensor(const Case& c) {
   std::vector<std::string> points;
   const bool named = !c.sensor_names.empty();
   for (const Vector3& p : c.sensors) {
-    points.push_back(to_toml(sensor_position(), p));
+    points.push_back(to_toml(keys().sensor_position, p));
   }
   if (named) {
     std::string text;
@@ -81,9 +81,9 @@ std::string sensor(const Case& c) {
 
 std::string readings(const external::ReadingOptions& options) {
   std::string text;
-  for (const auto& [key, value] : external::reading_keys)
-    if (const auto& stated = options.*value; stated.given())
-      text += fmt::format("{} = {}\n", key, toml_text(stated.text));
+  for (const external::ReadingKey& key : external::reading_keys())
+    if (const auto& stated = options.*key.option; stated.given())
+      text += fmt::format("{} = {}\n", key.name, toml_text(stated.text));
   return text.empty() ? text : "\n[readings]\n" + text;
 }
 

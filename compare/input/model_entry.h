@@ -15,6 +15,10 @@
 #include "problem/load.h"
 #include "problem/mechanics_model.h"
 
+namespace ciliaval::meshes {
+struct PlainMesh;
+}
+
 namespace ciliaval::compare::input {
 
 struct Case;
@@ -67,6 +71,15 @@ struct SubTables {
   std::function<std::string(const ModelOptions&)> write{};
 };
 
+/// A stage that a model gives to the error budget (compare/budget/budget.h).
+struct BudgetStage {
+  std::string physics;                       ///< what it takes in that the stages before leave out
+  std::string variant{};                     ///< tells it from the model's other stages
+  std::function<void(ModelOptions&)> set{};  ///< the options that make it; empty: the case's
+  bool is_beside = false;                    ///< a model of its own, not on the way
+  bool bears_differences = true;  ///< its numerical error is small enough for derivatives
+};
+
 /// A model as all others know it. A part that is left out has the simplest meaning: no options, not
 /// refined, every load, serial, quick, accurate to rounding.
 template <class Model>
@@ -90,9 +103,18 @@ struct Entry {
   /// What there is to remark on the files that the options name. Throws InputError.
   std::function<std::vector<std::string>(const Case&)> remarks{};
   SubTables tables{};
+  /// What it adds to the models before it, an assumption a stage; empty: the budget leaves it out.
+  std::function<std::vector<BudgetStage>(const ModelOptions&)> budget_stages{};
+  /// Sets the options by which it takes least time: closed forms, no estimate of its error.
+  std::function<void(ModelOptions&)> hasten{};
+  /// The mesh on which it solves a case, or that of another refinement. Throws InputError.
+  std::function<meshes::PlainMesh(const Case&, std::optional<unsigned int> refinement)> mesh{};
   /// Options that the model's checkpoint does not depend on; none: it keeps no checkpoint, because
   /// it takes but a moment.
   std::optional<std::vector<std::string_view>> checkpoint_without{};
+
+  /// Whether it takes a moment, in any thread, with rods.
+  bool is_quick() const { return !is_slow && !is_collective && !has_body; }
 };
 using MechanicsEntry = Entry<MechanicsModel>;
 using FieldEntry = Entry<FieldModel>;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "compare/results/quantity.h"
 #include "problem/types.h"
 
 namespace ciliaval::compare::models {
@@ -44,7 +45,7 @@ void finish(Comparison& c, double scale, double smallest_scale, const std::strin
 struct Shape {
   const Centreline& curve;
   std::optional<double> tip_uncertainty;        ///< m
-  std::optional<double> tip_angle_uncertainty;  ///< rad, if the model has one of its own
+  std::optional<double> tip_angle_uncertainty;  ///< rad
   Vector3 tip;                                  ///< m
   double tip_angle;                             ///< rad
   double tip_deflection;                        ///< along e, m
@@ -58,7 +59,7 @@ struct Shape {
   Shape(const MechanicsStep& step, const Deformation& undeformed)
       : curve(step.deformation->centreline),
         tip_uncertainty(step.tip_uncertainty),
-        tip_angle_uncertainty(step.tip_angle_uncertainty) {
+        tip_angle_uncertainty(results::tip_angle_uncertainty(step)) {
     const CentrelinePoint end = curve.at(curve.length());
     const Vector3 displacement =
         end.position - undeformed.centreline.at(undeformed.centreline.length()).position;
@@ -74,16 +75,6 @@ std::optional<Shape> shape_of(const MechanicsRun& run, std::size_t step) {
   if (step >= steps.size() || steps[step].status != Status::converged || !steps[step].deformation)
     return std::nullopt;
   return Shape(steps[step], run.result.undeformed);
-}
-
-/// The model's own, or as if the section's rotation were wrong in proportion to the tip's
-/// displacement, rad.
-std::optional<double> angle_uncertainty(const Shape& shape) {
-  if (shape.tip_angle_uncertainty) return shape.tip_angle_uncertainty;
-  if (!shape.tip_uncertainty) return std::nullopt;
-  if (*shape.tip_uncertainty == 0) return 0;
-  if (!shape.moved()) return std::nullopt;
-  return std::abs(shape.tip_angle) * shape.relative_uncertainty();
 }
 
 void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e, Comparison base,
@@ -114,7 +105,7 @@ void compare_shapes(const Shape& model, const Shape& reference, const Vector3& e
   angle.statistic = "value";
   angle.unit = "rad";
   angle.difference = model.tip_angle - reference.tip_angle;
-  angle.uncertainty = sum(angle_uncertainty(model), angle_uncertainty(reference));
+  angle.uncertainty = sum(model.tip_angle_uncertainty, reference.tip_angle_uncertainty);
   finish(angle, reference.tip_angle, vanishing_deflection, "the reference's tip angle");
   out.push_back(std::move(angle));
 
@@ -259,11 +250,6 @@ std::string_view to_string(Verdict verdict) {
       break;
   }
   return "inconclusive";
-}
-
-std::optional<double> tip_angle_uncertainty(const MechanicsRun& run, std::size_t step) {
-  const std::optional<Shape> shape = shape_of(run, step);
-  return shape ? angle_uncertainty(*shape) : std::nullopt;
 }
 
 const MechanicsRun& mechanics_of(const FieldRun& run, const CaseResult& result) {

@@ -67,11 +67,6 @@ std::optional<ShapeAgreement> compare_deflection(const Centreline& model,
                                                  const Centreline& reference,
                                                  const Vector3& direction);
 
-/// Uncertainty of a converged step's tip angle, rad: the model's own estimate; where it has none,
-/// |angle|·u/|tip displacement| with u = `tip_uncertainty`, as if the section's rotation were wrong
-/// in proportion to the displacement.
-std::optional<double> tip_angle_uncertainty(const MechanicsRun& run, std::size_t step);
-
 /// A field value with what is known of its numerical error.
 struct FieldValue {
   Vector3 value;                         ///< B or ΔB, T

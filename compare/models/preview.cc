@@ -104,22 +104,16 @@ class Viewer {
     }
   }
 
-  /// The first model, so the simplest, that has nothing against the case: the paper's elastica, out
-  /// of its plane and beside magnets the beam.
-  const MechanicsEntry& simplest() const {
-    return *std::ranges::find_if(mechanics_models(), [this](const MechanicsEntry& entry) {
-      bool takes = true;
-      const input::Report report = [&](const std::string&, const std::string&) { takes = false; };
-      if (entry.check) entry.check({problem_, true, true, true, report});
-      return takes;
-    });
-  }
-
   void look_at_signal() {
-    const MechanicsEntry& entry = simplest();
-    const std::string& mechanics = entry.id;
-    const std::string field = "volume";  // the magnet in closed form
-    const MechanicsRun run = run_mechanics(mechanics, *entry.make(problem_.options), problem_);
+    // The first one, so the simplest: the paper's elastica, out of its plane and beside magnets the
+    // beam.
+    const auto& entries = mechanics_models();
+    const auto simplest = std::ranges::find_if(entries, [this](const MechanicsEntry& entry) {
+      return entry.is_quick() && fault_of(entry, problem_).empty();
+    });
+    if (simplest == entries.end()) return;
+    const std::string& mechanics = simplest->id;
+    const MechanicsRun run = run_mechanics(*simplest, problem_, field_models());
     std::optional<std::size_t> largest;  // the step that bends most
     double deflection = -1;
     double strain = 0;
@@ -150,7 +144,7 @@ class Viewer {
                       100 * strain));
     MechanicsRun alone = run;
     alone.result.steps = {step};
-    look_at_field(alone, field);
+    look_at_field(alone);
   }
 
   /// How often gravity and field along the axis are borne, at the steps where they are extreme. A
@@ -197,13 +191,13 @@ class Viewer {
     }
   }
 
-  void look_at_field(const MechanicsRun& run, const std::string& field) {
+  void look_at_field(const MechanicsRun& run) {
     if (problem_.sensors.empty()) return;
-    const FieldRun fields =
-        run_field(field, *entry_of(field_models(), field).make(problem_.options), run, problem_);
+    const FieldEntry& entry = quick_one(field_models());
+    const FieldRun fields = run_field(entry.id, *entry.make(problem_.options), run, problem_);
     const auto& step = fields.steps.front();
     if (!step) return;
-    if (!step->failure.empty()) warn(fmt::format("{}: {}", field, step->failure));
+    if (!step->failure.empty()) warn(fmt::format("{}: {}", entry.id, step->failure));
     for (std::size_t s = 0; s < problem_.sensors.size(); ++s) {
       if (!step->dB[s]) continue;
       const double change = step->dB[s]->norm();

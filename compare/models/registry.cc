@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/models/registry.h"
 
+#include <fmt/format.h>
+
 #include <pthread.h>
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <utility>
+
+#include "compare/input/case.h"
 
 // Every model, one line each, the more detailed ones later. CalculiX stands before the solid, which
 // is the reference: it takes every load, and on a mesh of the same size its error is a tenth
@@ -97,6 +102,10 @@ input::Entry<Model> exclusive(input::Entry<Model> entry) {
   return entry;
 }
 
+bool has_environment(const Load& load) {
+  return !surroundings::is_empty(load.environment());
+}
+
 void add(input::Models& models, MechanicsEntry entry) {
   models.mechanics.push_back(exclusive<ExclusiveMechanics>(std::move(entry)));
 }
@@ -119,6 +128,25 @@ input::Models& all() {
 
 const input::Models& known() {
   return all();
+}
+
+std::string fault_of(const MechanicsEntry& entry, const input::Case& problem) {
+  const LoadPath& path = problem.load_path;
+  if (!entry.takes_environment && std::ranges::any_of(path, has_environment))
+    return fmt::format("{} takes no environment", entry.id);
+  const auto takes = [&](const Load& load) {
+    return entry.loads.empty() || std::ranges::find(entry.loads, &load.type()) != entry.loads.end();
+  };
+  if (const auto refused = std::ranges::find_if_not(path, takes); refused != path.end())
+    return fmt::format("{} takes no load of the type '{}'", entry.id, type(*refused));
+  if (!entry.takes_sections && problem.cilium.section.shape != CrossSection::Shape::circle)
+    return fmt::format("{} takes a full circular section", entry.id);
+  std::string first;
+  const input::Report report = [&](const std::string& /*where*/, const std::string& fault) {
+    if (first.empty()) first = fmt::format("{}: {}", entry.id, fault);
+  };
+  if (!path.empty() && entry.check) entry.check({problem, true, true, true, report});
+  return first;
 }
 
 void add_model(MechanicsEntry entry) {

@@ -34,4 +34,19 @@ const typename Entries::value_type& entry_of(const Entries& entries, const std::
   throw InputError("there is no model `" + id + "`; `ciliaval list` names them all");
 }
 
+/// What a mechanics model does not take of a case, beginning with its id: its load, what is around
+/// the cilium, or what its own check looks at; empty: it takes the case.
+std::string fault_of(const MechanicsEntry& entry, const input::Case& problem);
+
+/// The last of the quick ones, the most detailed that takes but a moment. Throws InputError if
+/// there is none.
+template <class Entries>
+const typename Entries::value_type& quick_one(const Entries& entries) {
+  const typename Entries::value_type* last = nullptr;
+  for (const auto& entry : entries)
+    if (entry.is_quick()) last = &entry;
+  if (last == nullptr) throw InputError("there is no quick model of this kind");
+  return *last;
+}
+
 }  // namespace ciliaval::compare::models

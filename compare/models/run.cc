@@ -12,6 +12,7 @@
 #include <memory>
 #include <utility>
 
+#include "compare/models/evaluator.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
@@ -32,24 +33,6 @@ std::vector<const Entry*> chosen(std::span<const Entry> entries,
   for (const Entry& entry : entries)
     if (std::find(ids.begin(), ids.end(), entry.id) != ids.end()) result.push_back(&entry);
   return result;
-}
-
-void fail(MechanicsStep& step, std::string message) {
-  step.status = Status::failed;
-  step.message = std::move(message);
-  step.deformation.reset();
-}
-
-/// A converged step must have a deformation that is finite all along the centreline.
-void check(MechanicsStep& step) {
-  if (step.status != Status::converged) return;
-  if (!step.deformation || step.deformation->centreline.pieces().empty())
-    return fail(step, "the model says converged but gave no deformation");
-  for (const double S : step.deformation->centreline.breaks()) {
-    const CentrelinePoint point = step.deformation->centreline.at(S);
-    if (!point.position.allFinite() || !point.rotation.coeffs().allFinite())
-      return fail(step, "the deformation is not finite at S = " + std::to_string(S) + " m");
-  }
 }
 
 /// B and its uncertainty at some of the sensors; throws if they are not as many or not finite.
@@ -245,7 +228,7 @@ MechanicsRun external_mechanics(const input::external::ExternalModel& model,
     step.applied_force = stated_force(
         step.load, problem.cilium, model.centrelines[i].at(model.centrelines[i].length()).position);
     step.tip_uncertainty = model.tip_uncertainty;
-    check(step);
+    fail_unless_finite(step);
     run.result.steps.push_back(std::move(step));
   }
   return run;
@@ -325,11 +308,12 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
     for (const Load& load : problem.load_path) {
       MechanicsStep step;
       step.load = load;
-      fail(step, failure);
+      step.status = Status::failed;
+      step.message = failure;
       run.result.steps.push_back(std::move(step));
     }
   }
-  for (MechanicsStep& step : run.result.steps) check(step);
+  for (MechanicsStep& step : run.result.steps) fail_unless_finite(step);
   return run;
 }
 

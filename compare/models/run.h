@@ -83,10 +83,7 @@ MechanicsRun run_mechanics(const std::string& id, const MechanicsModel& model,
                            const input::Case& problem, const Progress& progress = {},
                            const Checkpoint& checkpoint = {});
 
-/// The same of the entry's model. Where the case sets an error limit, the model is refined until
-/// its estimate is below it, or as far as it can be; a message on each step says which it was. The
-/// field whose error may be limited is that of the first of the models that take the body. Throws
-/// as above.
+/// The same of the entry's model, by an Evaluator. Throws as above.
 MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& problem,
                            std::span<const FieldEntry> fields, const Progress& progress = {},
                            const Checkpoint& checkpoint = {});

@@ -6,7 +6,6 @@
 #include <memory>
 #include <utility>
 
-#include "analytic/rod/field_models.h"
 #include "compare/output/results.h"
 #include "problem/error.h"
 
@@ -23,12 +22,6 @@ const models::MechanicsRun* mechanics_to_draw(const models::CaseResult& result) 
   const auto last =
       std::find_if(result.mechanics.rbegin(), result.mechanics.rend(), converged_anywhere);
   return last == result.mechanics.rend() ? nullptr : &*last;
-}
-
-input::ModelOptions with_closed_forms(input::ModelOptions options) {
-  options.of<analytic::rod::LineOptions>().method = analytic::rod::Method::closed_form;
-  options.of<analytic::rod::VolumeOptions>().method = analytic::rod::Method::closed_form;
-  return options;
 }
 
 void lay_out(FieldGrid& grid, const models::CaseResult& result, const models::MechanicsRun& run) {
@@ -100,7 +93,9 @@ std::optional<FieldGrid> field_grid(const models::CaseResult& result,
   for (const models::FieldEntry& entry : fields) {
     if (std::find(asked.begin(), asked.end(), entry.id) == asked.end()) continue;
     if (entry.has_body) continue;
-    auto candidate = entry.make(with_closed_forms(result.problem.options));
+    input::ModelOptions options = result.problem.options;
+    if (entry.hasten) entry.hasten(options);
+    auto candidate = entry.make(options);
     if (!candidate->pointwise()) continue;
     model = std::move(candidate);
     grid.field = entry.id;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "compare/models/magnet_forces.h"
 #include "compare/output/csv_writer.h"
@@ -14,6 +16,7 @@
 #include "compare/output/output_file.h"
 #include "compare/output/sweep.h"
 #include "compare/results/quantity.h"
+#include "problem/description/environment.h"
 
 namespace ciliaval::compare::output {
 namespace {
@@ -30,6 +33,17 @@ void unsign_zeros(Json& json) {
 
 Json vector(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
+}
+
+Json value(const description::Value& value) {
+  return std::visit(
+      [](const auto& v) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, Vector3>)
+          return vector(v);
+        else
+          return v;
+      },
+      value);
 }
 
 /// A row for each sensor, null where there is none; null if there is none at all.
@@ -50,27 +64,20 @@ Json load_json(const Load& load) {
   return json;
 }
 
-Json magnet_json(const surroundings::magnets::Magnet& magnet) {
-  using surroundings::magnets::Shape;
-  const Quaternion& q = magnet.rotation;
-  Json json{{"name", magnet.name},
-            {"shape", surroundings::magnets::name(magnet.shape)},
-            {"position", vector(magnet.position)},
-            {"rotation", {q.w(), q.x(), q.y(), q.z()}},
-            {"magnetization", vector(magnet.magnetization)}};
-  if (magnet.shape == Shape::cuboid) json["edges"] = vector(magnet.edges);
-  if (magnet.shape != Shape::cuboid) json["diameter"] = magnet.diameter;
-  if (magnet.shape == Shape::cylinder) json["length"] = magnet.length;
+/// The values of a struct by their keys, without those that are another way to state one.
+template <class T>
+Json described(const T& owner) {
+  Json json = Json::object();
+  for (const description::Field<T>& field : description::fields<T>())
+    if (field.in_place_of.empty() && field.belongs(owner))
+      json[std::string(field.name)] = value(field.get(owner));
   return json;
 }
 
 Json environment_json(const surroundings::Environment& environment) {
-  Json json{{"gravity", vector(environment.gravity)},
-            {"fluid_density", environment.fluid_density},
-            {"uniform_field", vector(environment.uniform_field)},
-            {"magnetic_energy", surroundings::name(environment.magnetic_energy)}};
+  Json json = described(environment);
   for (const surroundings::magnets::Magnet& magnet : environment.magnets)
-    json["magnets"].push_back(magnet_json(magnet));
+    json["magnets"].push_back(described(magnet));
   return json;
 }
 

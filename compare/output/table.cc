@@ -2,6 +2,7 @@
 #include "compare/output/table.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "compare/output/results.h"
 #include "compare/output/sweep.h"
 #include "compare/output/text_table.h"
+#include "compare/results/quantity.h"
 #include "problem/types.h"
 
 namespace ciliaval::compare::output {
@@ -50,6 +52,23 @@ std::string approach(const continuation::PullIn& pull_in) {
   return text;
 }
 
+/// A line for each quantity that a terminal says of the step.
+std::string sentences(const std::string& model, const MechanicsStep& step) {
+  std::string text;
+  for (const results::Quantity& quantity : results::quantities()) {
+    if (quantity.words.empty() || (quantity.is_said && !quantity.is_said(step))) continue;
+    const ShownUnit unit = shown_unit(quantity.kind.unit);
+    std::vector<std::string> numbers;
+    for (const double value : quantity.values(step))
+      numbers.push_back(number_cell(value, unit.size, "{:.4g}"));
+    if (numbers.empty()) continue;
+    const std::string value =
+        fmt::format("{}{}{}", fmt::join(numbers, ", "), unit.name.empty() ? "" : " ", unit.name);
+    text += fmt::format("  {}: {}\n", model, fmt::format(fmt::runtime(quantity.words), value));
+  }
+  return text;
+}
+
 std::string mechanics_table(const models::CaseResult& result, std::size_t index) {
   TextRows rows{{"mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)", "force(mN)",
                  "unknowns", "iter.", "time (s)"}};
@@ -75,19 +94,10 @@ std::string mechanics_table(const models::CaseResult& result, std::size_t index)
   for (const models::MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
     if (!step.message.empty()) text += fmt::format("  {}: {}\n", run.model, step.message);
-    if (step.smallest_eigenvalue)
-      text += fmt::format("  {}: smallest eigenvalue {:.3g} of that at rest\n", run.model,
-                          *step.smallest_eigenvalue);
+    text += sentences(run.model, step);
     if (step.pull_in && !step.pull_in->approach.empty())
       text += fmt::format("  {}: smallest eigenvalue of that at rest on the way:{}\n", run.model,
                           approach(*step.pull_in));
-    if (step.status != Status::slipped_off) continue;
-    if (step.slip_off_displacement)
-      text += fmt::format("  {}: slips off beyond {:.4g} mm\n", run.model,
-                          *step.slip_off_displacement * 1e3);
-    if (step.slip_off_force)
-      text +=
-          fmt::format("  {}: slips off above {:.4g} mN\n", run.model, *step.slip_off_force * 1e3);
   }
   return text;
 }

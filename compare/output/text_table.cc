@@ -87,9 +87,11 @@ ShownUnit shown_unit(std::string_view si) {
   if (si == "N") return {"mN", 1e-3};
   if (si == "rad") return {"deg", std::numbers::pi / 180};
   if (si == "T") return {"uT", 1e-6};
-  if (si == "T/N") return {"uT/mN", 1e-3};
-  if (si == "T/m") return {"uT/mm", 1e-3};
-  if (si == "T/(N/m)") return {"uT/(N/m)", 1e-6};
+  if (const std::size_t slash = si.find('/'); slash != si.npos && si.starts_with("T/")) {
+    const ShownUnit above = shown_unit(si.substr(0, slash));
+    const ShownUnit below = shown_unit(si.substr(slash + 1));
+    return {fmt::format("{}/{}", above.name, below.name), above.size / below.size};
+  }
   return {std::string(si), 1};
 }
 

@@ -91,6 +91,8 @@ Expected read_expected(const Json& json, const std::string& file) {
   expected.unit = reader.text("unit");
   expected.value = reader.number("value");
   expected.allowed = read_allowed(reader, expected.value);
+  if (expected.allowed.relative == 0 || expected.allowed.absolute == 0)
+    reader.fail("`relative` and `absolute` must be positive: rounding differs between machines");
   if (json.contains("reference")) {
     Reader from(reader.get("reference"), file, id + "/reference");
     Reference reference{from.text("label"), from.number("value"), {}};

@@ -22,7 +22,7 @@ double largest_of(const Quantity& quantity, const models::MechanicsRun& run) {
 
 void add_mechanics(const models::MechanicsRun& run, const std::vector<std::size_t>& steps,
                    std::vector<Observation>& out) {
-  const Extent extent(run);
+  const Extent extent(run.result);
   for (const Quantity& quantity : quantities()) {
     const double largest = quantity.size ? 0 : largest_of(quantity, run);
     for (const std::size_t i : steps) {
@@ -38,7 +38,7 @@ void add_mechanics(const models::MechanicsRun& run, const std::vector<std::size_
                        {},
                        std::string(quantity.name),
                        std::string(quantity.components.empty() ? "" : quantity.components.at(c)),
-                       std::string(quantity.unit),
+                       std::string(quantity.kind.unit),
                        values[c],
                        quantity.uncertainty ? quantity.uncertainty(step) : std::nullopt,
                        size.scale,

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/results/quantity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <map>
+#include <mutex>
 #include <utility>
 
 namespace ciliaval::compare::results {
@@ -40,7 +45,7 @@ auto of_deformation(std::optional<double> MechanicsStep::*number) {
 Quantity position(std::size_t place) {
   const bool is_tip = places.at(place) == "tip";
   return {.name = places.at(place),
-          .unit = "m",
+          .kind = ciliaval::quantity::length,
           .components = {"x", "y", "z"},
           .values = [place](const MechanicsStep& step) -> std::vector<double> {
             if (!step.deformation) return {};
@@ -62,7 +67,7 @@ Quantity position(std::size_t place) {
 /// The tip's horizontal distance from the axis.
 Quantity deflection() {
   return {.name = "tip/deflection",
-          .unit = "m",
+          .kind = ciliaval::quantity::length,
           .values = [](const MechanicsStep& step) -> std::vector<double> {
             if (!step.deformation) return {};
             const Vector3 tip = position_at(step.deformation->centreline, places.size() - 1);
@@ -89,11 +94,11 @@ Size force(const Extent& extent, std::size_t /*component*/) {
 }
 
 /// The error of another quantity, as far as it is a number of the step.
-Quantity estimate(std::string_view name, std::string_view unit,
+Quantity estimate(std::string_view name, const ciliaval::Quantity& kind,
                   std::function<std::vector<double>(const MechanicsStep&)> values,
                   std::function<Size(const Extent&, std::size_t)> size) {
   return {.name = name,
-          .unit = unit,
+          .kind = kind,
           .values = std::move(values),
           .size = std::move(size),
           .is_estimate = true,
@@ -104,7 +109,7 @@ Quantity estimate(std::string_view name, std::string_view unit,
 /// A force of a sweep's contact; summary.json has all of the contact as one table.
 Quantity contact_force(std::string_view name, double SurfaceContact::*force) {
   return {.name = name,
-          .unit = "N",
+          .kind = ciliaval::quantity::force,
           .values =
               [force](const MechanicsStep& step) {
                 return step.contact ? std::vector{step.contact.value().*force}
@@ -121,19 +126,19 @@ std::vector<Quantity> own_quantities() {
   std::vector<Quantity> all;
   for (std::size_t place = 0; place < places.size(); ++place) all.push_back(position(place));
   all.push_back(deflection());
-  all.push_back(
-      {.name = "tip_angle",
-       .unit = "rad",
-       .values =
-           [](const MechanicsStep& step) {
-             return step.deformation ? std::vector{tip_angle(step)} : std::vector<double>{};
-           },
-       .uncertainty = [](const MechanicsStep& step) { return step.tip_angle_uncertainty; },
-       .size = angle,
-       .is_looked_at = true});
+  all.push_back({.name = "tip_angle",
+                 .kind = ciliaval::quantity::angle,
+                 .values =
+                     [](const MechanicsStep& step) {
+                       return step.deformation ? std::vector{tip_angle(step)}
+                                               : std::vector<double>{};
+                     },
+                 .uncertainty = results::tip_angle_uncertainty,
+                 .size = angle,
+                 .is_looked_at = true});
   all.push_back(
       {.name = "applied_force",
-       .unit = "N",
+       .kind = ciliaval::quantity::force,
        .values =
            [](const MechanicsStep& step) {
              return step.deformation ? std::vector{step.applied_force} : std::vector<double>{};
@@ -143,17 +148,20 @@ std::vector<Quantity> own_quantities() {
        // Under an environment alone it is nothing but rounding.
        .is_compared = [](const MechanicsStep& step) { return !step.load.is<EnvironmentLoad>(); }});
   all.push_back({.name = "contact_arclength",
-                 .unit = "m",
+                 .kind = ciliaval::quantity::length,
                  .values = of_deformation(&MechanicsStep::contact_arclength),
                  .size = length});
-  Quantity tip =
-      estimate("tip_uncertainty", "m", of_deformation(&MechanicsStep::tip_uncertainty), length);
+  Quantity tip = estimate("tip_uncertainty", ciliaval::quantity::length,
+                          of_deformation(&MechanicsStep::tip_uncertainty), length);
   tip.is_accepted = true;
   all.push_back(std::move(tip));
-  all.push_back(estimate("tip_angle_uncertainty", "rad",
+  all.push_back(estimate("tip_angle_uncertainty", ciliaval::quantity::angle,
                          of_deformation(&MechanicsStep::tip_angle_uncertainty), angle));
-  all.push_back(estimate("applied_force_uncertainty", "N",
+  all.push_back(estimate("applied_force_uncertainty", ciliaval::quantity::force,
                          of_deformation(&MechanicsStep::applied_force_uncertainty), force));
+  const auto has_slipped_off = [](const MechanicsStep& step) {
+    return step.status == Status::slipped_off;
+  };
   // Under a probe it belongs to the displacement.
   const auto slip_off = [](bool of_probe) {
     return [of_probe](const MechanicsStep& step) {
@@ -161,28 +169,31 @@ std::vector<Quantity> own_quantities() {
     };
   };
   all.push_back({.name = "slip_off_force",
-                 .unit = "N",
+                 .kind = ciliaval::quantity::force,
                  .values = member(&MechanicsStep::slip_off_force),
                  .uncertainty = slip_off(false),
                  .size = force,
-                 .is_looked_at = true});
+                 .is_looked_at = true,
+                 .words = "slips off above {}",
+                 .is_said = has_slipped_off});
   all.push_back({.name = "slip_off_displacement",
-                 .unit = "m",
+                 .kind = ciliaval::quantity::length,
                  .values = member(&MechanicsStep::slip_off_displacement),
                  .uncertainty = slip_off(true),
                  .belongs = [](const MechanicsStep& step) { return step.load.is<ProbeLoad>(); },
-                 .is_looked_at = true});
-  all.push_back(
-      estimate("slip_off_uncertainty", "", member(&MechanicsStep::slip_off_uncertainty), {}));
+                 .is_looked_at = true,
+                 .words = "slips off beyond {}",
+                 .is_said = has_slipped_off});
+  all.push_back(estimate("slip_off_uncertainty", ciliaval::quantity::number,
+                         member(&MechanicsStep::slip_off_uncertainty), {}));
   all.push_back(
       {.name = "smallest_eigenvalue",
-       .unit = "",
        .values = member(&MechanicsStep::smallest_eigenvalue),
        .belongs = [](const MechanicsStep& step) { return step.smallest_eigenvalue.has_value(); },
        .is_accepted = false,
-       .is_converged = false});
+       .is_converged = false,
+       .words = "smallest eigenvalue {} of that at rest"});
   all.push_back({.name = "pull_in_fraction",
-                 .unit = "",
                  .values =
                      [](const MechanicsStep& step) {
                        return step.pull_in ? std::vector{step.pull_in->fraction}
@@ -209,8 +220,8 @@ void raise(double& largest, double value) {
   if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
 }
 
-Extent::Extent(const models::MechanicsRun& run) {
-  for (const MechanicsStep& step : run.result.steps) {
+Extent::Extent(const MechanicsResult& result) {
+  for (const MechanicsStep& step : result.steps) {
     raise(force, step.applied_force);
     raise(force, step.slip_off_force.value_or(0));
     if (step.contact) raise(contact, step.contact->normal_force);
@@ -221,6 +232,43 @@ Extent::Extent(const models::MechanicsRun& run) {
       raise(deflection, position_at(centreline, place).head<2>().norm());
     raise(angle, tip_angle(step));
   }
+}
+
+std::optional<double> tip_angle_uncertainty(const MechanicsStep& step) {
+  constexpr double vanishing = 1e-9;  ///< in lengths of the cilium: rounding
+  if (step.status != Status::converged || !step.deformation) return std::nullopt;
+  if (step.tip_angle_uncertainty) return step.tip_angle_uncertainty;
+  if (!step.tip_uncertainty || *step.tip_uncertainty == 0) return step.tip_uncertainty;
+  const Centreline& centreline = step.deformation->centreline;
+  const double L = centreline.length();
+  const double displacement = (centreline.at(L).position - L * Vector3::UnitZ()).norm();
+  if (!(displacement > vanishing * L)) return std::nullopt;
+  return std::abs(tip_angle(step)) * (*step.tip_uncertainty / displacement);
+}
+
+ciliaval::Quantity flux_density_per(const ciliaval::Quantity& magnitude) {
+  const ciliaval::Quantity& B = ciliaval::quantity::flux_density;
+  if (magnitude.unit.empty())
+    return {B.article, "flux density per factor on the load", B.unit, B.example};
+  struct Texts {
+    std::string name, unit, example;
+  };
+  static std::mutex mutex;
+  static std::map<std::string, Texts, std::less<>> known;  // by unit, which the result refers to
+  const std::lock_guard lock(mutex);
+  auto found = known.find(magnitude.unit);
+  if (found == known.end()) {
+    const bool is_simple = magnitude.unit.find_first_of(" /*.") == std::string_view::npos;
+    const std::string per =
+        is_simple ? fmt::format("/{}", magnitude.unit) : fmt::format("/({})", magnitude.unit);
+    found = known
+                .emplace(magnitude.unit, Texts{fmt::format("{} per {}", B.name, magnitude.name),
+                                               fmt::format("{}{}", B.unit, per),
+                                               fmt::format("{}{}", B.example, per)})
+                .first;
+  }
+  const Texts& texts = found->second;
+  return {B.article, texts.name, texts.unit, texts.example};
 }
 
 const std::vector<Quantity>& quantities() {

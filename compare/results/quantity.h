@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/models/run.h"
 #include "problem/mechanics_model.h"
+#include "problem/parameter.h"
 
 /// The numbers of a result: what they are, declared once, and the table of them.
 namespace ciliaval::compare::results {
@@ -24,7 +24,7 @@ struct Extent {
   double force = 0;       ///< applied, or at which it slips off, N
   double contact = 0;     ///< normal force of a sweep, N
 
-  explicit Extent(const models::MechanicsRun& run);
+  explicit Extent(const MechanicsResult& result);
 };
 
 /// The sizes that errors of a number are parts of, in its unit.
@@ -35,9 +35,9 @@ struct Size {
 
 /// A quantity that a mechanics model gives at a step, a number or a vector.
 struct Quantity {
-  std::string_view name;                       ///< in summary.json, baselines, …
-  std::string_view unit;                       ///< SI; empty: a plain number
-  std::vector<std::string_view> components{};  ///< empty: a number
+  std::string_view name;                                 ///< in summary.json, baselines, …
+  ciliaval::Quantity kind = ciliaval::quantity::number;  ///< whose SI unit the values are in
+  std::vector<std::string_view> components{};            ///< empty: a number
   /// Gives the step's values, one for each component; empty: there is none.
   std::function<std::vector<double>(const MechanicsStep&)> values;
   /// Numerical, of each of them; empty: not known of any step.
@@ -53,7 +53,20 @@ struct Quantity {
   bool is_accepted = true;    ///< a baseline has it
   bool is_converged = true;   ///< a mesh study has it
   bool is_looked_at = false;  ///< people look at it first
+  /// The line of a terminal, with the value in place of {}: "slips off above {}"; empty: none.
+  std::string_view words{};
+  /// True if the step has that line; empty: it does.
+  std::function<bool(const MechanicsStep&)> is_said{};
 };
+
+/// Numerical uncertainty of a converged step's tip angle, rad: the model's own; where it has none,
+/// |angle|·u/|tip displacement| with the tip's uncertainty u, as if the section's rotation were
+/// wrong in proportion to the displacement.
+std::optional<double> tip_angle_uncertainty(const MechanicsStep& step);
+
+/// What a flux density changes per unit of a load's magnitude: in T/N, T/(N/m), of a plain number
+/// in T.
+ciliaval::Quantity flux_density_per(const ciliaval::Quantity& magnitude);
 
 /// Every quantity, first those of this suite.
 const std::vector<Quantity>& quantities();

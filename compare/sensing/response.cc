@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 
+#include "compare/models/evaluator.h"
 #include "compare/models/registry.h"
 #include "problem/cilium.h"
 #include "problem/error.h"
@@ -170,7 +171,7 @@ Shapes shapes_within(const input::Case& problem, const std::string& mechanics, d
   require_load_to_sense(problem);
   if (!(largest > 0) || !std::isfinite(largest))
     throw InputError("the largest load must be finite and positive");
-  const auto model = entry.make(problem.options);
+  const models::Evaluator model(entry, problem, models::field_models());
   std::string limit;
   double range = largest;
   for (std::size_t attempt = 0; attempt < most_ranges; ++attempt) {
@@ -179,7 +180,7 @@ Shapes shapes_within(const input::Case& problem, const std::string& mechanics, d
     for (const auto& [magnitude, is_check] : path)
       loads.push_back(with_magnitude(with_azimuth(problem.load_path.front(), 0), magnitude));
     if (progress) progress({"starting", 0, loads.size()});
-    const MechanicsResult result = model->solve(problem.cilium, loads, progress);
+    const MechanicsResult result = model.solve(problem.cilium, loads, progress);
     const auto missing = std::ranges::find_if(
         result.steps, [](const MechanicsStep& step) { return !step.deformation; });
     if (missing == result.steps.end()) return shapes_of(result, path, std::move(limit));

@@ -233,7 +233,7 @@ void append_environment(const Case& c, std::vector<CaseNumber>& all) {
 void append_sensor(const Case& c, std::vector<CaseNumber>& all) {
   if (c.sensors.empty()) return;
   description::Field<Vector3> place;
-  static_cast<description::Key&>(place) = input::sensor_position();
+  static_cast<description::Key&>(place) = input::keys().sensor_position;
   place.get = [](const Vector3& point) { return description::Value(point); };
   place.set = [](Vector3& point, const description::Value& v) { point = std::get<Vector3>(v); };
   append_numbers({place}, "sensor", c,

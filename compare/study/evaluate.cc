@@ -13,6 +13,7 @@
 
 #include "compare/budget/sensitivity.h"
 #include "compare/models/errors.h"
+#include "compare/models/evaluator.h"
 #include "compare/models/run.h"
 #include "problem/error.h"
 
@@ -90,7 +91,7 @@ PairResult result_of(const Study& study, const MechanicsStep& step, const models
 
 /// The range as the mechanics model has it, into all results.
 void add_range(const Study& study, const input::Case& c, const MechanicsModel& model,
-               const MechanicsStep& step, const Progress& progress,
+               const MechanicsModel& simplest, const MechanicsStep& step, const Progress& progress,
                std::vector<PairResult>& results) {
   const auto output = std::find(study.outputs.begin(), study.outputs.end(), Output::range);
   if (output == study.outputs.end()) return;
@@ -99,8 +100,7 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
   try {
     range = study.rotation
                 ? magnitude_at_rotation(model, c.cilium, step.load, *study.rotation, progress)
-                : slip_off(model, c.cilium, step,
-                           c.options.of<analytic::elastica::ElasticaOptions>(), progress);
+                : slip_off(model, c.cilium, step, simplest, progress);
     if (!std::isfinite(range->magnitude)) throw SolverError("range: it is not finite");
   } catch (const CheckpointError&) {
     throw;
@@ -123,13 +123,12 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
 }  // namespace
 
 LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
-                     const analytic::elastica::ElasticaOptions& elastica,
-                     const Progress& progress) {
+                     const MechanicsModel& simplest, const Progress& progress) {
   if (const auto limit = slip_off_limit(step)) return {*limit, step.slip_off_uncertainty};
   // A model that meets its limit on the way says so: any load beyond will do, and that of the
-  // elastica is near. It is planar, so the environment is left to the model.
-  const MechanicsStep guess = solve_one(analytic::elastica::Elastica(elastica), cilium,
-                                        with_environment(step.load, {}), progress);
+  // simplest is near. Not every model takes an environment, which is left to the model.
+  const MechanicsStep guess =
+      solve_one(simplest, cilium, with_environment(step.load, {}), progress);
   double magnitude = 1.5 * slip_off_limit(guess).value_or(ciliaval::magnitude(step.load));
   constexpr int most_trials = 8;
   for (int i = 0; i < most_trials; ++i, magnitude *= 2) {
@@ -211,7 +210,11 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
     results.push_back(result_of(study, step, fields, path));
     results.back().uncertainty = models::change_uncertainty(run, fields, path.step.front(), 0);
   }
-  add_range(study, c, *entry.make(c.options), step, progress, results);
+  // A root is sought on one mesh: within an error limit each trial would choose its own.
+  for (const input::Refinement& refinement : entry.refinements)
+    if (entry.error_limit && refinement.also) refinement.also(c.options);
+  add_range(study, c, models::Evaluator(entry, c, field_models),
+            models::Evaluator(mechanics_models.front(), c, field_models), step, progress, results);
   return results;
 }
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "analytic/elastica/elastica.h"
 #include "compare/models/registry.h"
 #include "compare/study/study.h"
 #include "problem/mechanics_model.h"
@@ -41,10 +40,9 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
 
 /// The largest magnitude of a contact (N) or a probe's displacement (m) that the model bears: where
 /// it slips off. `step` is the model's step at some magnitude. Throws SolverError if the model
-/// finds none.
+/// finds none. `simplest` is a model that takes but a moment: its range shows where to begin.
 LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
-                     const analytic::elastica::ElasticaOptions& elastica,
-                     const Progress& progress = {});
+                     const MechanicsModel& simplest, const Progress& progress = {});
 
 /// The magnitude of the load at which the tip's rotation from +z is `rotation` (rad, below 90°), to
 /// 1e-6 of it, by bracketing and TOMS 748: each trial is a solution from the straight cilium. Its

@@ -40,9 +40,8 @@ constexpr std::array<Names, static_cast<std::size_t>(Output::first_number)> name
 struct Number {
   std::size_t quantity;  ///< of results::quantities()
   std::size_t component;
-  std::string id;       ///< "tip_x"
-  std::string title;    ///< "tip x"
-  std::string example;  ///< "1 m"
+  std::string id;     ///< "tip_x"
+  std::string title;  ///< "tip x"
 };
 
 /// Those of all quantities. What was returned once stays where it is.
@@ -61,8 +60,7 @@ const std::deque<Number>& numbers() {
       std::ranges::replace(id, '/', '_');
       std::string title = id;
       std::ranges::replace(title, '_', ' ');
-      all.push_back(
-          {known, c, std::move(id), std::move(title), fmt::format("1 {}", quantity.unit)});
+      all.push_back({known, c, std::move(id), std::move(title)});
     }
   }
   return all;
@@ -145,16 +143,13 @@ std::string_view symbol(Output output) {
 Quantity quantity_of(Output output, const Load& load) {
   if (is_number(output)) {
     const Number& number = number_of(output);
-    return {"a", number.title, results::quantities().at(number.quantity).unit, number.example};
+    const Quantity& kind = results::quantities().at(number.quantity).kind;
+    return {kind.article, number.title, kind.unit, kind.example};
   }
   const Quantity& magnitude = load.type().parameters.front().quantity;
   if (output == Output::range || output == Output::resolution) return magnitude;
-  if (output != Output::sensitivity) return quantity::flux_density;
-  if (magnitude.unit == "N") return {"a", "flux density per force", "T/N", "50 uT/mN"};
-  if (magnitude.unit.empty())
-    return {"a", "flux density per factor on the environment", "T", "50 uT"};
-  if (magnitude.unit == "m") return {"a", "flux density per length", "T/m", "50 uT/mm"};
-  return {"a", "flux density per force per length", "T/(N/m)", "50 uT m/N"};
+  return output == Output::sensitivity ? results::flux_density_per(magnitude)
+                                       : quantity::flux_density;
 }
 
 output::ShownUnit unit_of(Output output, const Load& load) {

@@ -10,13 +10,14 @@
 
 #include "compare/models/registry.h"
 #include "compare/output/json_file.h"
+#include "compare/study/folder.h"
 
 namespace ciliaval::compare::study {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* owner = "study";
+constexpr std::string_view owner = store_owner;
 
 /// Whether the models of the study's pairs with this mechanics model may run in several threads
 /// beside each other: collective ones use the cores themselves.

@@ -7,6 +7,7 @@
 
 #include "compare/models/errors.h"
 #include "compare/output/results.h"
+#include "compare/results/quantity.h"
 
 namespace ciliaval::compare::validation {
 namespace {
@@ -59,11 +60,20 @@ std::optional<Vector3> material_point(const SolidBody& body, const Vector3& refe
 Computed computed(const Measurand& measurand, const models::MechanicsRun& run, std::size_t step,
                   const Vector3& direction) {
   const MechanicsStep& of = run.result.steps[step];
+  if (measurand.kind == Kind::number) {
+    const results::Quantity& quantity = results::quantities().at(measurand.index);
+    const std::vector<double> values = quantity.values(of);
+    if (values.empty() || !std::isfinite(values.front())) {
+      if (of.status == Status::converged) return {{}, {}, "the model does not tell it"};
+      return {{}, {}, of.message.empty() ? std::string(output::to_string(of.status)) : of.message};
+    }
+    return {values.front(), quantity.uncertainty ? quantity.uncertainty(of) : std::nullopt, {}};
+  }
   if (of.status != Status::converged || !of.deformation)
     return {{}, {}, of.message.empty() ? std::string(output::to_string(of.status)) : of.message};
   const Centreline& line = of.deformation->centreline;
   const CentrelinePoint tip = line.at(line.length());
-  const std::optional<double> angle = models::tip_angle_uncertainty(run, step);
+  const std::optional<double> angle = results::tip_angle_uncertainty(of);
   if (measurand.kind == Kind::angle) return {tip.theta(), angle, {}};
   const Vector3 offset(measurand.point[0], measurand.point[1], 0);
   const bool is_centre = offset.isZero(0);

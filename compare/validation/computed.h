@@ -22,7 +22,7 @@ struct Computed {
 /// Of a measurand of the end section at a step. Rods: x = r + X d₁ + Y d₂, the section's own
 /// directors; a solid: the material point (X, Y, L). The deflection is the displacement along
 /// `direction`. u_num is that of the tip's position, and of the section's angle times the distance
-/// of the point from the centre.
+/// of the point from the centre. A number is that of the table of results (results::Quantity).
 Computed computed(const input::measurement::Measurand& measurand, const models::MechanicsRun& run,
                   std::size_t step, const Vector3& direction);
 

@@ -7,6 +7,7 @@
 
 #include "compare/validation/validation.h"
 #include "problem/cilium.h"
+#include "problem/description/cilium.h"
 
 namespace ciliaval::compare::validation {
 namespace {
@@ -75,7 +76,7 @@ std::vector<Extent> domain_of(const input::Case& c) {
   add("slenderness", "L over the section's extent along the azimuth", "", {length / plane.extent});
   std::vector<double> ratios;
   for (const Segment& s : c.cilium.segments) ratios.push_back(s.poisson_ratio);
-  add("poisson_ratio", "nu", "", ratios);
+  add(std::string(description::poisson_ratio_key), "nu", "", ratios);
   return domain;
 }
 

@@ -16,26 +16,13 @@ using models::FieldEntry;
 using models::MechanicsEntry;
 using Row = std::vector<std::optional<double>>;  ///< one for each measurement
 
-template <class Entry>
-bool is_quick(const Entry& entry) {
-  return !entry.is_slow && !entry.is_collective && !entry.has_body;
-}
-
-bool takes(const MechanicsEntry& entry, const LoadPath& path) {
-  const bool takes_load = entry.loads.empty() ||
-                          std::ranges::find(entry.loads, &path.front().type()) != entry.loads.end();
-  const bool has_environment = std::ranges::any_of(
-      path, [](const Load& load) { return !surroundings::is_empty(load.environment()); });
-  return takes_load && (entry.takes_environment || !has_environment);
-}
-
 /// The id itself if its entry will do, or the last one that will.
 template <class Entry, class Will>
 std::optional<std::string> quick_one(const std::string& id, std::span<const Entry> entries,
                                      const Will& will) {
   std::optional<std::string> last;
   for (const Entry& entry : entries) {
-    if (!is_quick(entry) || !will(entry)) continue;
+    if (!entry.is_quick() || !will(entry)) continue;
     last = entry.id;
     if (entry.id == id) return id;
   }
@@ -78,7 +65,7 @@ std::optional<Stand> stand_in(const std::string& mechanics, const std::string& f
                               std::span<const MechanicsEntry> mechanics_entries,
                               std::span<const FieldEntry> field_entries) {
   const auto shape = quick_one(mechanics, mechanics_entries, [&](const MechanicsEntry& entry) {
-    return takes(entry, problem.load_path);
+    return models::fault_of(entry, problem).empty();
   });
   if (!shape) return std::nullopt;
   if (field.empty()) return Stand{*shape, {}};

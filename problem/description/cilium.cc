@@ -48,7 +48,7 @@ const Fields<Segment>& fields<Segment>() {
                        "Length along the straight axis.")),
         required(field(&Segment::young_modulus, "young_modulus", quantity::pressure,
                        {1, 1e15, false, unit_slip}, "Young's modulus E.")),
-        required(field(&Segment::poisson_ratio, "poisson_ratio",
+        required(field(&Segment::poisson_ratio, poisson_ratio_key,
                        {-1, 0.5, true,
                         "an elastic solid is stable only in between, and a compressible one below "
                         "0.5"},
@@ -86,7 +86,7 @@ const Fields<CrossSection>& fields<CrossSection>() {
                 "along a side."),
           "0 deg")),
       only_with(&CrossSection::shape, Shape::tube, R"(shape = "tube")",
-                required(field(&CrossSection::inner_diameter, "inner_diameter", quantity::length,
+                required(field(&CrossSection::inner_diameter, inner_diameter_key, quantity::length,
                                length_range, "`tube`: diameter of the hole.")))};
   return all;
 }
@@ -95,7 +95,7 @@ template <>
 const Fields<Cilium>& fields<Cilium>() {
   static const Fields<Cilium> all{[] {
     Field<Cilium> diameter =
-        field(&Cilium::diameter, "diameter", quantity::length, length_range,
+        field(&Cilium::diameter, diameter_key, quantity::length, length_range,
               "Diameter d of the section, the same all along; of a tube the outer one.");
     diameter.condition = [](const Cilium& cilium) { return !cilium.is_rectangular(); };
     diameter.goes_with = "a circle or a tube";

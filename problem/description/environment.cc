@@ -31,7 +31,7 @@ constexpr Range field_range{-100, 100, false, unit_slip};
 /// The unit quaternion from the magnet's own axes to those of space.
 Field<Magnet> rotation_field() {
   Field<Magnet> result;
-  result.name = "rotation";
+  result.name = rotation_key;
   result.range = {-1, 1, false, "a quaternion of a rotation has unit length"};
   result.doc =
       "In place of `axis`: the rotation of its own axes, the unit quaternion `[w, x, y, z]`.";
@@ -50,7 +50,7 @@ Field<Magnet> rotation_field() {
 /// The direction of its third axis; of a zero the quaternion is zero, which is none of a rotation.
 Field<Magnet> axis_field() {
   Field<Magnet> result;
-  result.name = "axis";
+  result.name = axis_key;
   result.range = {-1e6, 1e6, false, unit_slip};
   result.doc =
       "Direction `[x, y, z]` of its own third axis, along which it is magnetised; the other two "
@@ -63,12 +63,12 @@ Field<Magnet> axis_field() {
     const auto& direction = std::get<Vector3>(value);
     magnet.rotation = direction.isZero(0) ? Quaternion(0, 0, 0, 0) : support::turn_to(direction);
   };
-  return in_place_of("rotation", falls_back_to(result, "`[0, 0, 1]`"));
+  return in_place_of(rotation_key, falls_back_to(result, "`[0, 0, 1]`"));
 }
 
 Field<Magnet> remanence_field() {
   Field<Magnet> result;
-  result.name = "remanence";
+  result.name = remanence_key;
   result.quantity = quantity::flux_density;
   result.range = field_range;
   result.doc = "B_r = mu_0 M in place of `magnetization`, along its own third axis.";
@@ -79,7 +79,7 @@ Field<Magnet> remanence_field() {
   result.set = [](Magnet& magnet, const Value& value) {
     magnet.magnetization = std::get<double>(value) / vacuum_permeability * Vector3::UnitZ();
   };
-  return in_place_of("magnetization", falls_back_to(result, "`magnetization`"));
+  return in_place_of(magnetization_key, falls_back_to(result, "`magnetization`"));
 }
 
 /// A size of a magnet of one of the shapes.
@@ -128,7 +128,7 @@ const Fields<Magnet>& fields<Magnet>() {
         required(field(&Magnet::name, "name", "Name of the magnet, different from the others'."));
     its_name.longest = 100;  // bytes
     Field<Magnet> magnetization = required(
-        field(&Magnet::magnetization, "magnetization", quantity::magnetization,
+        field(&Magnet::magnetization, magnetization_key, quantity::magnetization,
               {-1e8, 1e8, false, "the strongest magnets have about 1.2e6 A/m"},
               "M along its own third axis, or three components along its own axes (a cylinder's "
               "along its axis only)."));

@@ -49,10 +49,12 @@ struct Key {
   std::string_view doc;                     ///< one sentence
   Value initial;                            ///< the member's, which says what kind of value it is
   Absence absence = Absence::its_initial_value;
-  std::string fallback{};      ///< the initial value as a person would state it; empty: its TOML
-  std::size_t longest = 0;     ///< bytes of a text for people, of one line and not empty; 0: any
-  bool may_be_axial = false;   ///< of a vector: one number is its third component
-  bool is_along_path = false;  ///< one value, or a list of them, one for each load step
+  std::string fallback{};       ///< the initial value as a person would state it; empty: its TOML
+  std::string_view example{};   ///< of a text or a quantity of any kind, as a file states it
+  bool is_of_any_kind = false;  ///< a quantity of what another key says, or a percentage
+  std::size_t longest = 0;      ///< bytes of a text for people, of one line and not empty; 0: any
+  bool may_be_axial = false;    ///< of a vector: one number is its third component
+  bool is_along_path = false;   ///< one value, or a list of them, one for each load step
   /// The key that this one takes the place of, if a file states it; it is not written back.
   std::string_view in_place_of{};
   File file = File::none;
@@ -90,6 +92,28 @@ using Fields = std::vector<Field<Owner>>;
 /// The keys of a struct that a case can state.
 template <class T>
 const Fields<T>& fields();
+
+/// A line of text for people that is no member; without a fallback a file must state it.
+inline Key text_key(std::string_view name, std::string_view doc, std::string_view fallback = "",
+                    std::string_view example = "", std::size_t longest = 300) {
+  Key key;
+  key.name = name;
+  key.doc = doc;
+  key.initial = std::string();
+  key.fallback = fallback;
+  key.absence = fallback.empty() ? Key::Absence::fault : Key::Absence::nothing;
+  key.example = example;
+  key.longest = longest;
+  return key;
+}
+
+/// A quantity of what another key says, or a percentage.
+inline Key any_quantity_key(std::string_view name, std::string_view doc, std::string_view fallback,
+                            std::string_view example) {
+  Key key = text_key(name, doc, fallback, example);
+  key.is_of_any_kind = true;
+  return key;
+}
 
 /// A key whose value is a member: a number, a flag, a text, two numbers or a vector.
 template <class Owner, class T>

@@ -86,7 +86,8 @@ ChildEnd run_child(const ChildCommand& command) {
       variables[name] = value;
   // Signals as at the start of a program.
   const auto default_signals = [](auto&) {
-    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(number, SIG_DFL);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXFSZ})
+      std::signal(number, SIG_DFL);
   };
   std::error_code error;
   fs::remove(command.log, error);  // Boost.Process would write over its beginning

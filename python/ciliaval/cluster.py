@@ -20,7 +20,8 @@ from typing import Any
 
 from . import program
 from ._core import StudyFile, StudyStore
-from .errors import InputError, SolverError
+from .errors import Error, InputError, SolverError
+from .files import text_of
 
 Task = tuple[int, str]  # point, mechanics model
 
@@ -90,11 +91,19 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
             for future in done:
                 batch = running.pop(future)
                 try:
-                    solved = future.result()
+                    solved = _checked(future.result(), batch)
                 except KilledWorker:
                     (deadly if alone else suspects).append(batch)
                     continue
-                for (point, mechanics), solution in solved:
+                except (CancelledError, Error):
+                    raise
+                except Exception as error:  # whatever a worker may raise, MemoryError among it
+                    point, mechanics = batch[0]
+                    raise SolverError(
+                        f"a worker failed with {mechanics} at point {point} or one of the {len(batch)} "
+                        f"of its batch: {text_of(error)}"
+                    ) from error
+                for (point, mechanics), solution in solved.items():
                     store.keep(point, mechanics, solution)
     except CancelledError as error:
         raise SolverError(_ENDED) from error
@@ -108,6 +117,23 @@ def _distribute(study: StudyFile, store: StudyStore, batches: list[list[Task]], 
             f"too little memory may be why: {len(deadly)} of {len(batches)} batches are missing. All others are kept; the "
             "same call tries these again"
         )
+
+
+def _checked(reply: Any, batch: list[Task]) -> dict[Task, str]:
+    """The solutions of a batch by their tasks, which the reply states. Raises SolverError if it is
+    another batch's, or no reply at all."""
+    point, mechanics = batch[0]
+    try:
+        solved = {(int(task[0]), str(task[1])): solution for task, solution in reply}
+        is_whole = len(reply) == len(batch) and solved.keys() == set(map(tuple, batch))
+    except (TypeError, ValueError, IndexError):
+        solved, is_whole = {}, False
+    if not is_whole or not all(isinstance(solution, str) for solution in solved.values()):
+        raise SolverError(
+            f"a worker's reply to {mechanics} at point {point} and the {len(batch) - 1} others of its batch "
+            "is not the solution of these: all machines need the same build of ciliaval"
+        )
+    return solved
 
 
 def _workers(client: Any) -> int:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .errors import FileError, InputError
+from .files import DAMAGE, content, text_of, within
 
 # The words of a comparison, docs/guide/results.md.
 _WORDS = {
@@ -220,7 +221,7 @@ class Result:
         name = self._of(self.steps[step], model).get("centreline")
         if self.folder is None or name is None:
             raise FileError(f"there is no file of {model}'s centreline at step {step}")
-        return read_table(self.folder / name)
+        return read_table(within(self.folder, name))
 
     def to_meshio(self, model: str, step: int) -> Any:
         """The bent cilium as a meshio.Mesh with its fields, from the folder's VTK files: the body of
@@ -301,17 +302,20 @@ def read(file: str | Path) -> Result | Document:
     """Any JSON file of results, told by its keys. Raises FileError."""
     file = Path(file)
     try:
-        data = json.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FileError(f"{file}: {error.strerror}") from error
-    except ValueError as error:
-        raise FileError(f"{file}: is damaged: {error}") from error
+        data = json.loads(content(file).decode("utf-8"))
+    except FileError:
+        raise
+    except DAMAGE as error:
+        raise FileError(f"{file}: is damaged: {text_of(error)}") from error
     known = data if isinstance(data, dict) and "schema" in data else {}
     key = next((key for key in _KINDS if key in known), None)
     if key is None:
         raise FileError(f"{file}: is no result of ciliaval")
     if key != "passed" and not isinstance(data[key], list):
         raise FileError(f"{file}: is damaged: `{key}` is no list")
+    for name, of in (("case", str), ("study", str), ("title", str), ("provenance", dict)):
+        if not isinstance(data.get(name, of()), of):
+            raise FileError(f"{file}: is damaged: `{name}` is of the wrong type")
     kind = _KINDS[key]
     return _result(data, file) if kind == "case" else Document(kind, data, file)
 
@@ -324,17 +328,20 @@ def from_summary(text: str) -> Result:
 def _result(data: dict[str, Any], file: Path) -> Result:
     try:
         return Result(data, file.parent)
-    except (KeyError, TypeError, ValueError) as error:
+    except DAMAGE as error:
         raise FileError(f"{file}: is damaged: {error!r}") from error
 
 
 def read_table(file: str | Path) -> dict[str, np.ndarray]:
-    """The columns of one of the program's CSV files; text columns are arrays of str."""
+    """The columns of one of the program's CSV files; text columns are arrays of str. Raises
+    FileError."""
     try:
-        with open(file, encoding="utf-8", newline="") as stream:
-            rows = list(csv.reader(line for line in stream if not line.startswith("#")))
-    except OSError as error:
-        raise FileError(f"{file}: {error.strerror}") from error
+        lines = content(Path(file)).decode("utf-8").splitlines(keepends=True)
+        rows = list(csv.reader(line for line in lines if not line.startswith("#")))
+    except FileError:
+        raise
+    except DAMAGE as error:
+        raise FileError(f"{file}: is damaged: {text_of(error)}") from error
     if not rows or any(len(row) != len(rows[0]) for row in rows):
         raise FileError(f"{file}: is damaged: its rows differ in length")
     columns = {}

@@ -198,7 +198,10 @@ std::string file_name(py::handle value, std::string_view name) {
   if (!path) PyErr_Clear();
   if (!path || !PyUnicode_Check(path.ptr()))
     throw InputError(fmt::format("`{}` is the name of a file, not {}", name, shown(value)));
-  return path.cast<std::string>();
+  // The bytes of the name, which need be no UTF-8: Python has the others as lone surrogates.
+  const auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_EncodeFSDefault(path.ptr()));
+  if (!bytes) throw py::error_already_set();
+  return static_cast<std::string>(bytes);
 }
 
 py::object function(const py::object& value, std::string_view name) {

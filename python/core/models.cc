@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "compare/input/described.h"
-#include "compare/models/estimates.h"
+#include "compare/models/evaluator.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
@@ -66,9 +66,6 @@ std::vector<BentShape> bend(const py::object& rod, const py::object& loads, cons
   const auto path = list_of<Load>(loads, "load");
   const std::string model = text(model_name, "model");
   const input::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), model);
-  for (const Load& load : path)
-    if (!entry.takes_environment && !surroundings::is_empty(load.environment()))
-      throw InputError(fmt::format("{} takes no environment", model));
   input::Case problem;
   problem.cilium = cilium;
   problem.mechanics = {model};
@@ -78,7 +75,7 @@ std::vector<BentShape> bend(const py::object& rod, const py::object& loads, cons
   {
     const Progress told = progress(callback);
     const py::gil_scoped_release released;
-    result = entry.make(problem.options)->solve(cilium, path, told);
+    result = models::Evaluator(entry, problem, models::field_models()).solve(cilium, path, told);
   }
   std::vector<BentShape> shapes;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -221,16 +218,17 @@ py::dict batch(const py::object& cilium_list, const py::object& load_list, const
       models::entry_of(models::field_models(), text(field_name, "field"));
   const std::vector<Vector3> at = where.is_none() ? std::vector<Vector3>{} : points(where);
   std::vector<Design> designs(cilia.size());
-  input::ModelOptions options;
-  set_options(model, mechanics.options, chosen, options);
-  models::without_error_estimates(options);
+  input::Case problem;
+  problem.sensors = at;
+  set_options(model, mechanics.options, chosen, problem.options);
+  if (mechanics.hasten) mechanics.hasten(problem.options);
   const Call call;
   {
     const py::gil_scoped_release released;
-    const auto solver = mechanics.make(options);
-    const auto source = field.make(options);
+    const models::Evaluator solver(mechanics, problem, models::field_models());
+    const auto source = field.make(problem.options);
     const auto one = [&](std::size_t i) {
-      designs[i] = solve(*solver, *source, cilia[i], loads[i], at);
+      designs[i] = solve(solver, *source, cilia[i], loads[i], at);
     };
     if (mechanics.is_collective || (!at.empty() && field.is_collective))
       for (std::size_t i = 0; i < designs.size(); ++i) one(i);
@@ -315,6 +313,7 @@ py::dict described(const Entries& entries) {
 }  // namespace
 
 void bind_models(py::module_& module) {
+  const std::string& field_model = models::quick_one(models::field_models()).id;
   using ShapeClass = py::class_<BentShape>;
   ShapeClass(module, "Shape", "A bent cilium: one model's answer to one load. SI units.")
       .def_property_readonly("model", [](const BentShape& s) { return s.run.model; })
@@ -392,7 +391,7 @@ void bind_models(py::module_& module) {
           },
           "Bending curvature, (n,), 1/m.")
       .def(
-          "field", &field, py::arg("points"), py::arg("model") = "volume",
+          "field", &field, py::arg("points"), py::arg("model") = field_model,
           "Field at points, (3,) or (n, 3), m, by a field model and its options: a dict of\n"
           "B, dB = B - B(straight), B_uncertainty, dB_uncertainty, each (n, 3), T, with NaN where\n"
           "there is none or it is not known, and message, which says why. Raises InputError,\n"
@@ -402,14 +401,14 @@ void bind_models(py::module_& module) {
           [](const BentShape& s, const Array& where, const Text& model, const py::kwargs& options) {
             return py::object(field(s, where, model, options)["B"]);
           },
-          py::arg("points"), py::arg("model") = "volume", "B alone: (n, 3), T.")
+          py::arg("points"), py::arg("model") = field_model, "B alone: (n, 3), T.")
       .def(
           "dB",
           [](const BentShape& s, const Array& where, const Text& model, const py::kwargs& options) {
             return py::object(field(s, where, model, options)["dB"]);
           },
-          py::arg("points"), py::arg("model") = "volume", "B - B(straight): (n, 3), T.")
-      .def("M", &magnetization_at, py::arg("points"), py::arg("model") = "volume",
+          py::arg("points"), py::arg("model") = field_model, "B - B(straight): (n, 3), T.")
+      .def("M", &magnetization_at, py::arg("points"), py::arg("model") = field_model,
            "Magnetisation of the bent magnet at points, as the field model has it: (n, 3), A/m, 0\n"
            "outside of the magnet. H = B / mu_0 - M.")
       .def(py::pickle(&state, &shape_of))
@@ -426,7 +425,7 @@ void bind_models(py::module_& module) {
              py::arg("progress"));
   module.def(
       "bend_batch", &batch, py::arg("cilia"), py::arg("loads"), py::arg("points") = py::none(),
-      py::arg("model") = "elastica", py::arg("field") = "volume",
+      py::arg("model") = models::mechanics_models().front().id, py::arg("field") = field_model,
       "Many designs at once, on all cores: a list of cilia and one load for each, points (m, 3)\n"
       "at which B is asked for (None: nowhere), and options of the mechanics model, such as\n"
       "joints='corrected'. Returns a dict of arrays: converged\n"

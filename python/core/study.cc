@@ -79,7 +79,7 @@ class StudyStore {
   StudyStore(const StudyFile& file, const std::string& results) : study_(file.study) {
     const fs::path folder = fs::path(results) / study_.name;
     study::make_folder(folder);
-    store_.emplace(folder / study::store_name);
+    store_.emplace(folder / study::store_name, std::vector{study::store_owner});
     solutions_.emplace(*store_, study_, output::version_line());
   }
 

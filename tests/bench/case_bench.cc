@@ -53,6 +53,7 @@ void whole_case(benchmark::State& state, const std::string& name, const Change& 
     const output::Provenance origin = output::provenance("bench_case");
     output::write_results(result, models::compare_models(result), origin, folder);
     output::vtk::write_vtk(result, output::field_grid(result, models::field_models()), origin,
+                           output::vtk::drawn_steps(problem.load_path.size(), false),
                            folder / "vtk");
     state.counters["steps"] = static_cast<double>(problem.load_path.size());
   }

@@ -26,6 +26,7 @@
 #include "compare/models/errors.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "compare/results/quantity.h"
 #include "fem/beam/beam.h"
 #include "fem/potential/potential.h"
 #include "fem/solid/solid.h"
@@ -130,7 +131,7 @@ std::vector<Sample> samples(const input::Case& problem, const models::CaseResult
   if (!same_mechanics) {
     all.push_back({"tip" + load, (tip.position - true_tip.position).norm(), step.tip_uncertainty});
     all.push_back({"tip angle", std::abs(tip.theta() - true_tip.theta()),
-                   models::tip_angle_uncertainty(run, 0)});
+                   results::tip_angle_uncertainty(step)});
     all.push_back({"applied force" + load, std::abs(step.applied_force - truth.applied_force),
                    step.applied_force_uncertainty});
   }

@@ -397,5 +397,35 @@ def end_group(process):
         os.killpg(process, signal.SIGKILL)
 
 
+@unittest.skipUnless(HAS_DASK, "dask.distributed is not installed")
+class Replies(unittest.TestCase):
+    """A worker of another build, or one that is broken, must not put numbers at wrong points."""
+
+    batch = [(0, "beam"), (1, "beam")]
+
+    def test_of_the_batch_are_taken_in_any_order(self):
+        whole = [(task, f"solution {task[0]}") for task in self.batch]
+        self.assertEqual(cluster._checked(whole[::-1], self.batch), dict(whole))
+
+    def test_of_anything_else_are_refused(self):
+        one, two = (((i, "beam"), "solution") for i in range(2))
+        other = ((2, "beam"), "solution")
+        for reply in (None, [], [one], [one, two, two], [one, other], [one, one], [one, ((1, "solid"), "s")],
+                      [one, (two[0], None)], [one, 5], "ab", 5):  # fmt: skip
+            with self.assertRaisesRegex(cv.SolverError, "beam at point 0"):
+                cluster._checked(reply, self.batch)
+
+    def test_what_a_worker_raises_is_said_with_the_point(self):
+        for raised in (MemoryError("out of memory"), ZeroDivisionError(), OSError(28, "no space")):
+            future = mock.Mock(**{"done.return_value": True, "result.side_effect": raised})
+            client = mock.Mock(status="running", **{"submit.return_value": future, "nthreads.return_value": {"w": 1}})
+            study = mock.Mock(files=[__file__], fingerprint=())
+            study.name = "mine"
+            store = mock.Mock()
+            with self.assertRaisesRegex(cv.SolverError, "beam at point 0"):
+                cluster._distribute(study, store, [self.batch], client)
+            store.keep.assert_not_called()
+
+
 if __name__ == "__main__":
     unittest.main()

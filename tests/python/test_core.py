@@ -55,6 +55,40 @@ class Bend(unittest.TestCase):
                     shape.B(case.sensors).tolist(), step["fields"][f"{model}/volume"]["B"]
                 )
 
+    def test_a_long_path_takes_memory_in_proportion(self):
+        """18 kB a load on the machine that this was written on; twice that is no square."""
+        code = (
+            "import sys, ciliaval as cv, test_core as t\n"
+            "size = lambda: int(open('/proc/self/statm').read().split()[1]) * 4096\n"
+            "cv.bend(t.paper_cilium(), [t.contact(1e-3)] * 200)\n"
+            "before = size()\n"
+            "kept = cv.bend(t.paper_cilium(), [t.contact(1e-3)] * 3000)\n"
+            "print((size() - before) / 3000)"
+        )
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parent
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertLess(float(done.stdout), 36e3)
+
+    def test_refines_the_solid_to_a_tolerance(self):
+        """Oracle: the model's own estimate, by which the coarsest mesh misses 0.3 % and the next does not."""
+        coarse = cv.bend(paper_cilium(), contact(1e-3), "solid", refinement=0)
+        moved = np.linalg.norm(coarse.tip - [0, 0, 20e-3])
+        self.assertGreater(coarse.tip_uncertainty, 0.003 * moved)
+        shape = cv.bend(paper_cilium(), contact(1e-3), "solid", tolerance=0.3)
+        self.assertLess(shape.tip_uncertainty, 0.003 * moved)
+        self.assertIn("refinement 1, error of at most", shape.message)
+
+    def test_says_what_a_model_does_not_take(self):
+        away = cv.Environment(uniform_field=[0, 1e-3, 0])
+        for model, options, said in (
+            ("elastica", {}, "elastica: the elastica bends in the plane of the load"),
+            ("calculix", {}, "calculix takes no environment"),
+        ):
+            with self.assertRaisesRegex(cv.InputError, said):
+                cv.bend(paper_cilium(), contact(1e-3), model, environment=away, **options)
+
     def test_weight_and_a_field_bend_a_slender_rod_as_linear_theory(self):
         """Oracle: (rho - rho_f) g A L^4 / (8 E I) and M A B L^3 / (3 E I), for a small deflection."""
         rod = cv.Cilium(0.2e-3, [cv.Segment(20e-3, 10e6, magnetization=1e3, density=1200.0)])

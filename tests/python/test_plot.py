@@ -175,7 +175,8 @@ class Plot(unittest.TestCase):
 
     def test_an_order_is_drawn_through_the_errors(self):
         levels = [{"size": h, "value": 1 + h**2} for h in (0.1, 0.2, 0.4)]
-        q = {"id": "steps/0/mechanics/beam/tip/deflection", "unit": "m", "levels": levels}
+        q = {"step": 0, "mechanics": "beam", "field": None, "sensor": None, "quantity": "tip/deflection"}
+        q |= {"component": None, "unit": "m", "levels": levels}
         q |= {"conclusive": True, "reason": "", "order": 2.0, "limit": 1.0, "uncertainty": 0.01}
         study = {"model": "beam", "option": "refinement", "size_name": "size", "quantities": [q]}
         figure = plot.convergence({"studies": [study]}, "beam")

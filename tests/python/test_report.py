@@ -3,12 +3,14 @@
 
 import base64
 import json
+import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+from html import escape as plain_escape
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +21,13 @@ from ciliaval.report import page, view3d
 from ciliaval.report.sentences import findings
 from ciliaval.units import describe_load
 from test_results import quick
+
+
+
+def escape(text: str) -> str:
+    """As Jinja writes it."""
+    return plain_escape(text, quote=True).replace("&#x27;", "&#39;").replace("&quot;", "&#34;")
+
 
 MARKUP = """<script>console.error('ran')</script><b id="main">&amp; 'q'"""
 
@@ -80,7 +89,118 @@ class Report(Results):
                     (folder / "a.json").write_text(json.dumps({**data, key: bad}))
                     damaged = report.write(scratch)
                     self.assertEqual(len(damaged), 1, (key, bad))
-                    self.assertIn("a.json: is damaged", damaged[0])
+                    self.assertRegex(damaged[0], r"a\.json: (is damaged|.*cannot be (shown|drawn))")
+
+    def test_nothing_costs_a_sound_result_its_place(self):
+        """Faults in one result each beside a sound one: each is named, nothing else is lost."""
+        line = self.result.steps[0]["mechanics"]["elastica"]["centreline"]
+
+        def changed(change):
+            def plant(folder: Path):
+                data = json.loads((folder / "summary.json").read_text())
+                change(data)
+                (folder / "summary.json").write_text(json.dumps(data))
+
+            return plant
+
+        def named(name):
+            return changed(lambda d: d["steps"][0]["mechanics"]["elastica"].update(centreline=name))
+
+        def replaced(name, make):
+            def plant(folder: Path):
+                (folder / name).unlink(missing_ok=True)
+                make(folder / name)
+
+            return plant
+
+        grids = [f.name for f in (self.folder / "one" / "vtk").glob("*.vti")]
+        faults = {
+            "provenance": changed(lambda d: d.update(provenance=5)),
+            "case": changed(lambda d: d.update(case=["x"])),
+            "title": changed(lambda d: d.update(title=10**400)),
+            "tip": changed(lambda d: d["steps"][0]["mechanics"]["beam"].update(tip=[10**400, 0, 0])),
+            "force": changed(lambda d: d["steps"][0]["load"].update(force=10**400)),
+            "above": named("../one/elastica_0000.csv"),
+            "absolute": named("/etc/passwd"),
+            "pipe": replaced(line, os.mkfifo),
+            "device": replaced(line, lambda file: file.symlink_to("/dev/zero")),
+            "text": replaced(line, lambda file: file.write_bytes(b"S,x\n1,2,3\n\xff")),
+            "grid": lambda folder: [(folder / "vtk" / name).write_text("<VTKFile>") for name in grids],
+            "deep": replaced("deep.json", lambda file: file.write_text("[" * 100_000)),
+            "waits": replaced("waits.json", os.mkfifo),
+        }
+        with tempfile.TemporaryDirectory() as scratch:
+            shutil.copytree(self.folder / "one", Path(scratch) / "sound")
+            for name, plant in faults.items():
+                shutil.copytree(self.folder / "one", Path(scratch) / name)
+                plant(Path(scratch) / name)
+            (Path(scratch) / "folder.png").mkdir()
+            (Path(scratch) / "dead.png").symlink_to("/nowhere")
+            damaged = report.write(scratch)
+            html = (Path(scratch) / "report.html").read_text()
+            for name in [*faults, "folder.png", "dead.png"]:
+                lines = [line for line in damaged if line.startswith(f"{scratch}/{name}")]
+                self.assertEqual(len(lines), 1, name)
+                self.assertIn(escape(lines[0]), html)
+            self.assertEqual(len(damaged), len(faults) + 2)
+            self.assertGreater(html.count(">Case one"), len(faults) - 4)
+            for name in ("pipe", "above"):
+                with self.assertRaises(cv.FileError):
+                    cv.load(Path(scratch) / name).centreline("elastica", 0)
+
+    def test_every_case_that_is_solved_has_a_page(self):
+        """Nothing bends, all slips off, one step, no sensor, models that fail."""
+        contact = '[load]\ntype = "contact"\nforce = {}\nheight = "16 mm"\n'
+        sensor = '[sensor]\nposition = ["0 mm", "0 mm", "-2 mm"]\n'
+        rods = '[models]\nmechanics = ["elastica", "beam"]\n'
+        fields = 'fields = ["line", "volume"]\n'
+        solid = '[models]\nmechanics = ["beam", "solid"]\n'
+        cases = {
+            "rest": contact.format('["0 mN", "0 mN"]') + sensor + rods + fields,
+            "still": '[load]\ntype = "flow"\nvelocity = ["0 m/s"]\n' + sensor + rods + fields,
+            "upright": '[load]\ntype = "environment"\n[environment]\ngravity = ["0 m/s2", "0 m/s2", "-9.81 m/s2"]\n'
+            + sensor + rods + fields,
+            "off": contact.format('["90 mN"]') + sensor + rods + fields,
+            "one": contact.format('["1 mN"]') + sensor + rods + fields,
+            "blind": contact.format('["1 mN", "2 mN"]') + rods,
+            "failed": contact.format('["4 mN"]') + sensor + solid + fields
+            + "[models.solid]\nrefinement = 0\nmax_iterations = 1\nmax_cutbacks = 0\n",
+        }  # fmt: skip
+        segment = '[[cilium.segment]]\nname = "{}"\nlength = "{} mm"\nyoung_modulus = "{} MPa"\npoisson_ratio = 0.49\ndensity = "1100 kg/m^3"\n'
+        cilium = '[cilium]\ndiameter = "3 mm"\n' + segment.format("base", 3, 0.1)
+        cilium += segment.format("magnet", 17, 3) + 'magnetization = "75 kA/m"\n'
+        with tempfile.TemporaryDirectory() as scratch:
+            for name, text in cases.items():
+                file = Path(scratch) / f"{name}.toml"
+                file.write_text(f'[case]\nname = "{name}"\n{cilium}{text}')
+                program.call("run", file, "-o", Path(scratch) / "out", "--fresh", accept=(0, 3))
+                self.assertTrue((Path(scratch) / "out" / name / "report.html").is_file(), name)
+            self.assertEqual(report.write(Path(scratch) / "out"), [])
+            page = (Path(scratch) / "out" / "report.html").read_text()
+            for name in cases:
+                self.assertIn(f">Case {name}", page)
+
+    def test_a_folder_s_name_need_be_no_utf_8(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(os.fsdecode(os.fsencode(scratch) + b"/out\xff"))
+            shutil.copytree(self.folder / "one", folder / "one")
+            self.assertEqual(report.write(folder), [])
+            self.assertIn("The set-up of one", (folder / "report.html").read_text())
+
+    def test_people_s_dollars_are_text(self):
+        """Half of a formula, which matplotlib would refuse to draw."""
+        data = json.loads((self.folder / "one" / "summary.json").read_text())
+        data.update(title="cost $a_{$ b")
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(scratch) / "one"
+            shutil.copytree(self.folder / "one", folder)
+            (folder / "summary.json").write_text(json.dumps(data))
+            case = (folder / "case.toml").read_text()
+            (folder / "case.toml").write_text(case.replace("'magnet'", "'mag$x^{$'"))
+            self.assertEqual(report.write(scratch), [])
+            page = (Path(scratch) / "report.html").read_text()
+            svg = [base64.b64decode(s).decode() for s in re.findall(r"svg\+xml;base64,([^\"]+)", page)]
+            self.assertTrue(any("mag$x^{$" in picture for picture in svg))
 
     def test_a_missing_file_of_a_shape_is_named(self):
         with tempfile.TemporaryDirectory() as scratch:

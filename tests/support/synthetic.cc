@@ -93,9 +93,14 @@ Field FormulaField::field(const Cilium&, const Deformation& deformation,
 }
 
 compare::models::MechanicsEntry mechanics_entry(std::string id, const ShapeModel::Shape& shape) {
-  return {std::move(id), "a known shape", [shape](const compare::input::ModelOptions&) {
-            return std::make_unique<ShapeModel>(shape, straight_centreline({0, 3e-3, 20e-3}));
-          }};
+  return {.id = std::move(id),
+          .description = "a known shape",
+          .make =
+              [shape](const compare::input::ModelOptions&) {
+                return std::make_unique<ShapeModel>(shape, straight_centreline({0, 3e-3, 20e-3}));
+              },
+          .takes_environment = true,
+          .takes_sections = true};
 }
 
 compare::models::FieldEntry field_entry(std::string id, const FormulaField::Formula& formula,

@@ -20,9 +20,7 @@ namespace {
 struct BudgetOptions {
   std::filesystem::path file;
   std::vector<std::string> without;  ///< models left out, "sensitivity"
-  OptionalFile json;
-  OptionalFile csv;
-  OptionalFile plot;     ///< a figure
+  Outputs outputs;
   bool explain = false;  ///< print the footnotes
 };
 
@@ -33,9 +31,8 @@ budget::Budget run_budget(const input::Case& problem, const std::vector<std::str
 }
 
 /// Splits the difference between the paper's model and the best one into the parts of its
-/// assumptions, whatever models the case lists. The plot comes last: without Python, everything
-/// else is there. Returns `solver` if a model failed somewhere, `undecided` if no link could be
-/// judged.
+/// assumptions, whatever models the case lists. Returns `solver` if a model failed somewhere,
+/// `undecided` if no link could be judged.
 ExitCode execute_budget(const BudgetOptions& options, const std::string& words) {
   require_one_rank("budget");
   const input::Case problem = read_cases({options.file}).front();
@@ -44,15 +41,11 @@ ExitCode execute_budget(const BudgetOptions& options, const std::string& words) 
         fmt::format("{}: an error budget needs a load with a magnitude, such as "
                     "'contact'; the case is a sweep, which `ciliaval run` follows",
                     options.file.string()));
-  output::check_outputs({options.json, options.csv, options.plot},
-                        input_files(options.file, problem));
+  options.outputs.check(input_files(options.file, problem));
   const budget::Budget budget = run_budget(problem, options.without);
   print(budget::budget_text(budget, footnotes_of(options.explain)));
-  if (options.json)
-    output::write_file(*options.json, budget::budget_json(budget, output::provenance(words)));
-  if (options.csv) output::write_file(*options.csv, budget::budget_csv(budget));
-  if (options.plot)
-    draw_figure(budget::budget_json(budget, output::provenance(words)), *options.plot);
+  options.outputs.write([&] { return budget::budget_json(budget, output::provenance(words)); },
+                        [&] { return budget::budget_csv(budget); });
   if (budget.failed) return ExitCode::solver;
   return budget.decided() ? ExitCode::pass : ExitCode::undecided;
 }
@@ -75,11 +68,9 @@ void add_budget(CommandLine& line) {
       ->type_name("MODEL")
       ->expected(1)
       ->take_all();
-  add_output(budget, "--json", options->json, "Write the budget as JSON too");
-  add_output(budget, "--csv", options->csv, "Write the budget as CSV too");
+  options->outputs.declare(budget, "the budget", true,
+                           "Plot tip and dB of the last step as a waterfall: SVG, PDF or PNG");
   add_explain(budget, options->explain);
-  add_plot(budget, options->plot,
-           "Plot tip and dB of the last step as a waterfall: SVG, PDF or PNG");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -24,7 +24,7 @@ struct CheckOptions {
   bool quick = false;   ///< without the models that take more than a moment
   bool accept = false;  ///< write candidates for new baselines instead
   OptionalFile junit;
-  OptionalFile json;
+  Outputs outputs;
 };
 
 /// Those of the case's models that are not run: `--quick` leaves out the slow ones.
@@ -131,7 +131,7 @@ ExitCode execute_check(const CheckOptions& options, const std::string& words) {
   require_one_rank("check");
   if (options.quick && options.accept)
     throw InputError("--accept needs all models: leave out --quick");
-  if (options.accept && (options.json || options.junit))
+  if (options.accept && (options.outputs.json || options.junit))
     throw InputError("--accept writes candidates and no report: leave out --json and --junit");
   const std::vector<fs::path> files = options.files.empty() ? shipped_cases().files : options.files;
   if (files.empty())
@@ -143,7 +143,7 @@ ExitCode execute_check(const CheckOptions& options, const std::string& words) {
     inputs.insert(inputs.end(), of_case.begin(), of_case.end());
     inputs.push_back(regression::baseline_path(files[i]));
   }
-  output::check_outputs({options.json, options.junit}, inputs);
+  options.outputs.check(inputs, options.junit);
   const auto baselines = read_baselines(files, options.accept);
   if (options.accept) {
     for (std::size_t i = 0; i < cases.size(); ++i)
@@ -156,9 +156,9 @@ ExitCode execute_check(const CheckOptions& options, const std::string& words) {
     reports.push_back(
         regression::check(cases[i], run_case(cases[i], left_out), *baselines[i], left_out));
   }
-  print(regression::report_text(reports));  // first: a full disk must not cost the table
+  print(regression::report_text(reports));
   if (options.junit) output::write_file(*options.junit, regression::report_junit(reports));
-  if (options.json) output::write_file(*options.json, regression::report_json(reports));
+  options.outputs.write([&] { return regression::report_json(reports); });
   return verdict(reports);
 }
 
@@ -182,7 +182,7 @@ void add_check(CommandLine& line) {
       "Check nothing: write NAME.baseline.candidate.json beside each case that has\n"
       "changed, and say what changed from what to what. It is accepted by renaming it.");
   add_output(check, "--junit", options->junit, "Write the report as JUnit's XML too");
-  add_output(check, "--json", options->json, "Write the report as JSON too");
+  options->outputs.declare(check, "the report");
 }
 
 }  // namespace ciliaval::compare::app::commands

@@ -13,7 +13,7 @@ namespace {
 
 struct ClaimsOptions {
   bool quick = false;  ///< without the 3D solid
-  OptionalFile json;
+  Outputs outputs;
 };
 
 ExitCode execute_claims(const ClaimsOptions& options, const std::string& words) {
@@ -24,12 +24,11 @@ ExitCode execute_claims(const ClaimsOptions& options, const std::string& words) 
     throw InputError("the shipped cases are not beside the program: " + folder.string() +
                      "/fig3d.toml does not exist");
   for (const auto* inputs : {&shipped.files, &shipped.studies, &shipped.benches})
-    output::check_outputs({options.json}, *inputs);
+    options.outputs.check(*inputs);
   ProgressLine line;
   const std::vector<claims::Claim> all = claims::claims(folder, !options.quick, line.callback());
   print(claims::claims_text(all));
-  if (options.json)
-    output::write_file(*options.json, claims::claims_json(all, output::provenance(words)));
+  options.outputs.write([&] { return claims::claims_json(all, output::provenance(words)); });
   return ExitCode::pass;
 }
 
@@ -44,7 +43,7 @@ void add_claims(CommandLine& line) {
       options, execute_claims);
   claims->add_flag("--quick", options->quick,
                    "Without the 3D solid: seconds instead of two minutes");
-  add_output(claims, "--json", options->json, "Write the ledger as JSON too");
+  options->outputs.declare(claims, "the ledger");
 }
 
 }  // namespace ciliaval::compare::app::commands

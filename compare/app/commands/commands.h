@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compare/output/table.h"
 
@@ -32,6 +33,7 @@ struct CommandLine {
   CLI::App* add(const char* name, const char* description, std::shared_ptr<Options> options,
                 Execute execute) {
     CLI::App* command = program.add_subcommand(name, description);
+    command->footer("Examples of all commands, exit codes: ciliaval help");
     command->callback([this, options, execute] {
       chosen = [this, options, execute] { return execute(*options, words); };
     });
@@ -42,7 +44,7 @@ struct CommandLine {
 using OptionalFile = std::optional<std::filesystem::path>;
 
 /// Takes the name of a file that exists, or the name of a case, study or bench that comes with the
-/// program, without its `.toml`: `fig3b`.
+/// program, as `ciliaval list` names it or without folder and `.toml`: `fig3b`.
 CLI::Validator input_file();
 
 /// A positional file that must exist, or be one that comes with the program.
@@ -51,6 +53,23 @@ CLI::Option* add_file(CLI::App* command, const char* name, std::filesystem::path
 /// An option that names a file to write.
 void add_output(CLI::App* command, const char* name, OptionalFile& file, const char* description,
                 const char* type = "FILE");
+
+/// What a command writes beside its tables, if it is named.
+struct Outputs {
+  OptionalFile json;
+  OptionalFile csv;
+  OptionalFile plot;  ///< a figure
+
+  /// Declares `--json`, which writes `what`; then, if they are asked for, `--csv` and `--plot`.
+  void declare(CLI::App* command, const std::string& what, bool has_csv = false,
+               const char* figure = nullptr);
+  /// Throws InputError if one of them is one of the inputs or another output.
+  void check(std::vector<std::filesystem::path> inputs, const OptionalFile& other = {}) const;
+  /// Writes those that are named, after the table: a full disk must not cost that. The figure comes
+  /// last, because it needs Python.
+  void write(const std::function<std::string()>& to_json,
+             const std::function<std::string()>& to_csv = {}) const;
+};
 
 /// `--explain`, and what it does to a table.
 void add_explain(CLI::App* command, bool& explain);
@@ -78,6 +97,7 @@ void add_study(CommandLine& line);
 void add_claims(CommandLine& line);
 void add_report(CommandLine& line);
 void add_list(CommandLine& line);
+void add_help(CommandLine& line);
 void add_schema(CommandLine& line);
 
 }  // namespace ciliaval::compare::app::commands

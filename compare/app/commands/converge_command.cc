@@ -19,19 +19,16 @@ struct ConvergeOptions {
   std::filesystem::path file;
   unsigned int levels = 3;
   bool list = false;  ///< print the numbers
-  OptionalFile json;
-  OptionalFile csv;
-  OptionalFile plot;  ///< a figure
+  Outputs outputs;
 };
 
-/// Refines each model of a case through the levels of its meshes, degrees, sums and tolerances. The
-/// plot comes last: without Python, everything else is there. Returns `solver` if a model failed
-/// on a level, `undecided` if the case has no model that can be refined.
+/// Refines each model of a case through the levels of its meshes, degrees, sums and tolerances.
+/// Returns `solver` if a model failed on a level, `undecided` if the case has no model that can be
+/// refined.
 ExitCode execute_converge(const ConvergeOptions& options, const std::string& words) {
   require_one_rank("converge");
   const input::Case problem = read_cases({options.file}).front();
-  output::check_outputs({options.json, options.csv, options.plot},
-                        input_files(options.file, problem));
+  options.outputs.check(input_files(options.file, problem));
   for (const auto& [option, mesh] : input::user_meshes(models::known(), problem.options))
     throw InputError(options.file.string() +
                      ": a mesh of the user has no levels of refinement: leave out " + option);
@@ -45,16 +42,13 @@ ExitCode execute_converge(const ConvergeOptions& options, const std::string& wor
   }
   print(studies.empty()
             ? "The case has no model that can be refined: a closed form has no levels.\n"
-            : convergence::study_text(studies,
-                                      options.list));  // first: a full disk must not cost the table
-  if (options.json)
-    output::write_file(*options.json,
-                       convergence::study_json(problem.name, studies, output::provenance(words)));
-  if (options.csv) output::write_file(*options.csv, convergence::study_csv(studies));
+            : convergence::study_text(studies, options.list));
+  Outputs outputs = options.outputs;
+  if (studies.empty()) outputs.plot.reset();
+  outputs.write(
+      [&] { return convergence::study_json(problem.name, studies, output::provenance(words)); },
+      [&] { return convergence::study_csv(studies); });
   if (studies.empty()) return ExitCode::undecided;
-  if (options.plot)
-    draw_figure(convergence::study_json(problem.name, studies, output::provenance(words)),
-                *options.plot);
   return failed ? ExitCode::solver : ExitCode::pass;
 }
 
@@ -75,10 +69,9 @@ void add_converge(CommandLine& line) {
       ->capture_default_str();
   converge->add_flag("--all", options->list,
                      "Print each number with its order, extrapolated value and interval");
-  add_output(converge, "--json", options->json, "Write the study as JSON too");
-  add_output(converge, "--csv", options->csv, "Write the study as CSV too");
-  add_plot(converge, options->plot,
-           "Plot the errors over the levels' sizes, with the fitted orders: SVG, PDF or PNG");
+  options->outputs.declare(
+      converge, "the study", true,
+      "Plot the errors over the levels' sizes, with the fitted orders: SVG, PDF or PNG");
 }
 
 }  // namespace ciliaval::compare::app::commands

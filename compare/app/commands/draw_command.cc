@@ -22,7 +22,7 @@ ExitCode draw(const DrawOptions& options, const std::string&) {
   const input::Case problem = read_cases({options.file}).front();
   const fs::path figure = options.figure.value_or(problem.name + ".svg");
   output::check_outputs({figure}, input_files(options.file, problem));
-  run_python_module("ciliaval.plot", {options.file.string(), figure.string()});
+  run_python_module("ciliaval.plot", {options.file, figure});
   print(fmt::format("{}: {}\n", options.file.string(), figure.string()));
   return ExitCode::pass;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 #include <numbers>
 
@@ -13,7 +14,6 @@
 #include "compare/output/provenance.h"
 #include "compare/output/vtk/datasets.h"
 #include "compare/output/vtk/files.h"
-#include "fem/solid/solid.h"
 #include "meshes/gmsh/write_gmsh.h"
 #include "meshes/plain_mesh.h"
 #include "problem/error.h"
@@ -29,20 +29,13 @@ struct MeshOptions {
   std::optional<unsigned int> refinement;
 };
 
+/// Of the most detailed model that has one.
 meshes::PlainMesh make_mesh(const input::Case& problem, std::optional<unsigned int> refinement) {
-  auto options = problem.options.of<fem::solid::SolidOptions>();
-  if (options.mesh.empty()) {
-    options.symmetry = false;
-    if (refinement) options.refinement = *refinement;
-    return meshes::plain_cylinder(problem.cilium,
-                                  fem::solid::cylinder_mesh_options(options, problem.load_path));
-  }
-  if (refinement)
-    throw InputError(
-        fmt::format("the case has a mesh of its own ({}), which has no refinement: "
-                    "leave out --refinement",
-                    options.mesh.string()));
-  return meshes::plain_gmsh({options.mesh, options.mesh_unit}, problem.cilium);
+  const auto& entries = models::mechanics_models();
+  const auto last = std::find_if(entries.rbegin(), entries.rend(),
+                                 [](const models::MechanicsEntry& entry) { return !!entry.mesh; });
+  if (last == entries.rend()) throw InputError("no model has a mesh");
+  return last->mesh(problem, refinement);
 }
 
 /// The meshed section against the exact one, whose sides are along x and y if it has any.

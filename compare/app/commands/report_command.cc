@@ -49,9 +49,9 @@ ExitCode execute_report(const ReportOptions& options, const std::string& words) 
   output::check_outputs({file}, {});
   const output::Provenance maker = output::provenance(words);
   const ModuleEnd made = run_python_module(
-      "ciliaval.report",
-      {folder.string(), "-o", file.string(), "--made-by",
-       fmt::format("{} on {}: {}", output::version_line(), maker.date, maker.command)});
+      "ciliaval.report", {folder},
+      {"--output=" + file.string(),
+       fmt::format("--made-by={} on {}: {}", output::version_line(), maker.date, maker.command)});
   for (const std::string& what : made.warnings) warn(what);
   print(fmt::format("Report: {}\n", file.string()));
   return made.warnings.empty() ? ExitCode::pass : ExitCode::input_output;

@@ -37,6 +37,7 @@ struct RunOptions {
   std::vector<fs::path> files;
   fs::path directory = "results";
   bool fresh = false;    ///< empty the stores of runs that were killed
+  bool all_vtk = false;  ///< VTK files of every step of a long path
   bool explain = false;  ///< print the footnotes
 };
 
@@ -61,7 +62,8 @@ Prepared prepare(const fs::path& file, const input::Case& problem, const RunOpti
     if (!fingerprint) continue;
     if (!result.store)
       result.store = std::make_unique<output::store::Store>(
-          options.directory / ("." + problem.name + ".sqlite"), options.fresh);
+          options.directory / ("." + problem.name + ".sqlite"),
+          input::ids(models::mechanics_models()), options.fresh);
     fingerprint->emplace_back("program", output::version_line());
     output::store::Store& store = *result.store;
     store.require_fingerprint(id, *fingerprint);
@@ -104,13 +106,14 @@ void end_store(output::store::Store& store, const models::CaseResult& result) {
 /// report.html beside summary.json. The results are as good without it.
 void write_case_report(const fs::path& folder) {
   try {
-    run_python_module("ciliaval.report", {folder.string(), "--case"});
+    const ModuleEnd made = run_python_module("ciliaval.report", {folder}, {"--case"});
+    for (const std::string& what : made.warnings) warn(what);
   } catch (const FileError& error) {
     warn(fmt::format("there is no report.html: {}", error.what()));
   }
 }
 
-ExitCode run_one(Prepared& prepared, output::Footnotes footnotes, const std::string& words) {
+ExitCode run_one(Prepared& prepared, const RunOptions& options, const std::string& words) {
   ProgressLine line;
   const Progress progress = line.callback();
   const input::Case& problem = prepared.problem;
@@ -125,12 +128,19 @@ ExitCode run_one(Prepared& prepared, output::Footnotes footnotes, const std::str
   output::write_file(folder.path() / "case.toml", input::to_toml(problem, models::known()));
   output::write_results(result, comparisons, origin, folder.path(),
                         measured ? validation::json(*measured) : "");
-  tbb::parallel_invoke([&] { output::vtk::write_vtk(result, grid, origin, folder.path() / "vtk"); },
-                       [&] { write_case_report(folder.path()); });
+  const std::vector<std::size_t> drawn =
+      output::vtk::drawn_steps(problem.load_path.size(), options.all_vtk);
+  tbb::parallel_invoke(
+      [&] { output::vtk::write_vtk(result, grid, origin, drawn, folder.path() / "vtk"); },
+      [&] { write_case_report(folder.path()); });
   folder.commit();
   line.clear();
+  const output::Footnotes footnotes = footnotes_of(options.explain);
   print(output::table(result, comparisons, footnotes));
   if (measured) print('\n' + validation::text(*measured, footnotes));
+  if (drawn.size() < problem.load_path.size())
+    print(fmt::format("VTK files of {} of the {} steps; --all-vtk writes all.\n", drawn.size(),
+                      problem.load_path.size()));
   if (prepared.store) end_store(*prepared.store, result);
   return models::all_solved(result) ? ExitCode::pass : ExitCode::solver;
 }
@@ -161,7 +171,7 @@ ExitCode execute_run(const RunOptions& options, const std::string& words) {
     prepared.push_back(prepare(options.files[i], cases[i], options));
   ExitCode code = ExitCode::pass;
   for (std::size_t i = 0; i < prepared.size(); ++i) {
-    const ExitCode one = run_one(prepared[i], footnotes_of(options.explain), words);
+    const ExitCode one = run_one(prepared[i], options, words);
     if (one != ExitCode::pass) code = one;
     print(fmt::format("Results: {}\n{}", prepared[i].folder.target().string(),
                       i + 1 < prepared.size() ? "\n" : ""));
@@ -182,6 +192,8 @@ void add_run(CommandLine& line) {
       ->capture_default_str();
   run->add_flag("--fresh", options->fresh,
                 "Start anew: forget what a run that was killed or did not converge has solved");
+  run->add_flag("--all-vtk", options->all_vtk,
+                "Write VTK files of every step of a long path, not of 200, evenly chosen");
   add_explain(run, options->explain);
 }
 

@@ -53,9 +53,7 @@ struct SenseOptions {
   std::string models = "elastica/volume";
   std::string noise = "1 uT";          ///< standard deviation of each component of a reading
   std::optional<std::string> largest;  ///< load; else 1.25 times the case's largest
-  OptionalFile json;
-  OptionalFile csv;
-  OptionalFile plot;               ///< a figure
+  Outputs outputs;
   std::vector<std::string> given;  ///< names of the options on the command line
 };
 
@@ -96,15 +94,12 @@ void refuse_options(const SenseOptions& options, std::initializer_list<std::stri
 /// Simulates the test bench `options.file`.
 ExitCode simulate_bench(const SenseOptions& options, const std::string& words) {
   const sensing::Bench bench = sensing::read_bench(options.file);
-  output::check_outputs({options.json, options.plot}, input_files(options.file, bench.problem));
+  options.outputs.check(input_files(options.file, bench.problem));
   ProgressLine line;
   const sensing::BenchResult result = sensing::run_bench(bench, line.callback());
   print(sensing::bench_text(bench, result));
-  if (options.json)
-    output::write_file(*options.json,
-                       sensing::bench_json(bench, result, output::provenance(words)));
-  if (options.plot)
-    draw_figure(sensing::bench_json(bench, result, output::provenance(words)), *options.plot);
+  options.outputs.write(
+      [&] { return sensing::bench_json(bench, result, output::provenance(words)); });
   return ExitCode::pass;
 }
 
@@ -122,11 +117,11 @@ sensing::SensorReadings readings_of(const SenseOptions& options, const input::Ca
   std::vector<std::filesystem::path> inputs = input_files(options.file, problem);
   inputs.push_back(options.readings);
   if (options.background) inputs.push_back(*options.background);
-  output::check_outputs({options.json, options.csv, options.plot}, inputs);
+  options.outputs.check(inputs);
   // What the command line says goes before the case.
   input::external::ReadingOptions reading = problem.readings;
-  for (const auto& [key, text] : input::external::reading_keys)
-    if ((options.reading.*text).given()) reading.*text = options.reading.*text;
+  for (const input::external::ReadingKey& key : input::external::reading_keys())
+    if ((options.reading.*key.option).given()) reading.*key.option = options.reading.*key.option;
   sensing::SensorReadings read = sensing::read_sensor_readings(
       options.readings, options.background, input::sensor_names(problem), reading);
   read.remark = fmt::format("{}: {}.", options.readings.filename().string(), read.remark);
@@ -159,11 +154,8 @@ ExitCode sense_surface(const input::Case& problem, const SenseOptions& options,
     print(fmt::format("Interferences are looked for up to {:.4g} mm, not {:.4g} mm: {}\n",
                       1e3 * curve.largest(), 1e3 * largest, curve.limit()));
   print(sensing::profile_text(profile));
-  if (options.json)
-    output::write_file(*options.json, sensing::profile_json(profile, output::provenance(words)));
-  if (options.csv) output::write_file(*options.csv, sensing::profile_csv(profile));
-  if (options.plot)
-    draw_figure(sensing::profile_json(profile, output::provenance(words)), *options.plot);
+  options.outputs.write([&] { return sensing::profile_json(profile, output::provenance(words)); },
+                        [&] { return sensing::profile_csv(profile); });
   return profile.levels.empty() ? ExitCode::undecided : ExitCode::pass;
 }
 
@@ -205,11 +197,8 @@ ExitCode sense_readings(const SenseOptions& options, const std::string& words) {
                                     : Eigen::VectorXd(sample.change - response.undeformed()),
                read.error(sample)));
   print(sensing::sensing_text(sensing));
-  if (options.json)
-    output::write_file(*options.json, sensing::sensing_json(sensing, output::provenance(words)));
-  if (options.csv) output::write_file(*options.csv, sensing::sensing_csv(sensing));
-  if (options.plot)
-    draw_figure(sensing::sensing_json(sensing, output::provenance(words)), *options.plot);
+  options.outputs.write([&] { return sensing::sensing_json(sensing, output::provenance(words)); },
+                        [&] { return sensing::sensing_csv(sensing); });
   return exit_code(sensing);
 }
 
@@ -276,11 +265,10 @@ void add_sense(CommandLine& line) {
       ->add_option("--largest", options->largest,
                    "The largest load to look for; left out: 1.25 times the case's largest")
       ->type_name("QUANTITY");
-  add_output(sense, "--json", options->json, "Write the loads as JSON too");
-  add_output(sense, "--csv", options->csv, "Write the loads as CSV too");
-  add_plot(sense, options->plot,
-           "Figure of the loads found: over time with their bands, or over the true loads of\n"
-           "a bench, or of the levels of a surface; SVG, PDF or PNG");
+  options->outputs.declare(
+      sense, "the loads", true,
+      "Figure of the loads found: over time with their bands, or over the true loads of\n"
+      "a bench, or of the levels of a surface; SVG, PDF or PNG");
   sense->parse_complete_callback([options, sense] {
     for (const CLI::Option* option : sense->get_options())
       if (option->count() > 0) options->given.push_back(option->get_name());

@@ -61,7 +61,7 @@ same command is given again. All keys and outputs: docs/guide/studies.md; exampl
 struct StudyOptions {
   fs::path file;
   fs::path directory = "results";
-  OptionalFile json;
+  Outputs outputs;
   bool fresh = false;  ///< forget what an earlier run of the study has computed
 };
 
@@ -115,9 +115,9 @@ ExitCode execute_study(const StudyOptions& options, const std::string& words) {
   const fs::path folder = options.directory / study.name;
   std::vector<fs::path> inputs = input_files(options.file, study.base);
   inputs.push_back(folder / study::store_name);
-  output::check_outputs({options.json}, inputs);
+  options.outputs.check(inputs);
   study::make_folder(folder);
-  output::store::Store store(folder / study::store_name, options.fresh);
+  output::store::Store store(folder / study::store_name, {study::store_owner}, options.fresh);
   output::remove_unfinished(folder);
   study::Solutions solutions(store, study, output::version_line());
   announce(study, solutions.size());
@@ -139,7 +139,7 @@ ExitCode execute_study(const StudyOptions& options, const std::string& words) {
   const std::string json_text = output::to_text(json);
   output::write_file(folder / "study.json", json_text);
   print(text + fmt::format("\nResults: {}\n", folder.string()));
-  if (options.json) output::write_file(*options.json, json_text);  // a full disk costs no table
+  options.outputs.write([&] { return json_text; });
   try {
     draw_figure(folder / "study.json", folder);
   } catch (const FileError& error) {
@@ -167,7 +167,7 @@ void add_study(CommandLine& line) {
                    "is solved, in a subfolder of the study's name")
       ->type_name("DIR")
       ->capture_default_str();
-  add_output(study, "--json", options->json, "Write study.json to this file too");
+  options->outputs.declare(study, "the results");
   study->add_flag("--fresh", options->fresh,
                   "Start anew: forget what an earlier run of the study has solved");
 }

@@ -66,14 +66,15 @@ void check_magnet(Section& table, const Magnet& magnet, const std::vector<Magnet
   if (std::ranges::find(others, magnet.name, &Magnet::name) != others.end())
     refuse({"name"}, fmt::format("the magnet name {} is already taken", in_quotes(magnet.name)));
   if (std::abs(magnet.rotation.norm() - 1) > 1e-9) {
-    refuse({"axis"}, "'axis' must point somewhere: it is zero");
-    refuse({"rotation"},
+    refuse({description::axis_key}, "'axis' must point somewhere: it is zero");
+    refuse({description::rotation_key},
            "'rotation' must be a unit quaternion [w, x, y, z], such as [0.8, 0, 0.6, 0]");
   }
   if (magnet.magnetization.isZero(0))
-    refuse({"magnetization", "remanence"}, "a magnet's magnetisation is zero");
+    refuse({description::magnetization_key, description::remanence_key},
+           "a magnet's magnetisation is zero");
   if (magnet.shape == Shape::cylinder && !magnet.magnetization.head<2>().isZero(0))
-    refuse({"magnetization"},
+    refuse({description::magnetization_key},
            "a cylinder is magnetised along its axis only: across it the field has no closed form "
            "here; take a cuboid or a ball");
 }

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
-#include <string_view>
-#include <utility>
+
+#include "problem/description/field.h"
 
 namespace ciliaval::compare::input::external {
 
@@ -22,11 +23,33 @@ struct ReadingOptions {
   Text unloaded;  ///< "0 s..1 s", "rows 1..20" or "model"
 };
 
-/// The keys of [readings].
-inline constexpr std::array<std::pair<std::string_view, ReadingOptions::Text ReadingOptions::*>, 4>
-    reading_keys{{{"map", &ReadingOptions::map},
-                  {"unit", &ReadingOptions::unit},
-                  {"scale", &ReadingOptions::scale},
-                  {"unloaded", &ReadingOptions::unloaded}}};
+/// A key of [readings].
+struct ReadingKey : description::Key {
+  ReadingOptions::Text ReadingOptions::*option;
+};
+inline const std::array<ReadingKey, 4>& reading_keys() {
+  constexpr std::size_t longest = 1000;  // a map of many sensors
+  using description::text_key;
+  static const std::array<ReadingKey, 4> keys{
+      {{text_key("map",
+                 "Of `ciliaval sense`, as its option `--map`: the columns of a file of readings "
+                 "(docs/guide/sensing.md).",
+                 "none", R"("bx=Ch 1, by=Ch 2, bz=Ch 3")", longest),
+        &ReadingOptions::map},
+       {text_key("unit", "As `--unit`: T, mT, uT, nT, G, mG or LSB, of columns that state none.",
+                 "none", R"("mG")", longest),
+        &ReadingOptions::unit},
+       {text_key("scale",
+                 "As `--scale`: the flux density of an LSB, `\"6842 LSB/G\"`, or three for x, y, "
+                 "z.",
+                 "none", R"("0.15 uT")", longest),
+        &ReadingOptions::scale},
+       {text_key("unloaded",
+                 "As `--unloaded`: the readings of the straight cilium by time, `\"rows 1..20\"`, "
+                 "or `\"model\"`.",
+                 "none", R"("0 s..1 s")", longest),
+        &ReadingOptions::unloaded}}};
+  return keys;
+}
 
 }  // namespace ciliaval::compare::input::external

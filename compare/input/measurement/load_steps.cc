@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "compare/input/case.h"
 #include "compare/input/units.h"
+#include "problem/description/environment.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::input::measurement {
@@ -54,15 +56,25 @@ std::vector<LoadNumber> all_numbers(const Case& c) {
   for (const LoadParameter& key : type.parameters)
     numbers.push_back(number_of(c, std::string(key.name), key.quantity,
                                 [&](const Load& load) { return key.number(load); }));
-  const auto field = [](const Load& load) { return acting_environment(load).uniform_field; };
-  add_vector(c, "uniform_field", quantity::flux_density, field, numbers);
-  numbers.push_back(number_of(c, "|uniform_field|", quantity::flux_density,
-                              [&](const Load& load) { return field(load).norm(); }));
+  for (const auto& key : description::fields<surroundings::Environment>()) {
+    if (!key.is_along_path) continue;
+    const auto vector = [&key](const Load& load) {
+      return std::get<Vector3>(key.get(acting_environment(load)));
+    };
+    add_vector(c, std::string(key.name), key.quantity, vector, numbers);
+    numbers.push_back(number_of(c, fmt::format("|{}|", key.name), key.quantity,
+                                [&](const Load& load) { return vector(load).norm(); }));
+  }
   const auto& magnets = c.load_path.front().environment().magnets;
   for (std::size_t m = 0; m < magnets.size(); ++m)
-    add_vector(
-        c, fmt::format("magnet {} position", magnets[m].name), quantity::length,
-        [&](const Load& load) { return load.environment().magnets.at(m).position; }, numbers);
+    for (const auto& key : description::fields<surroundings::magnets::Magnet>())
+      if (key.is_along_path)
+        add_vector(
+            c, fmt::format("magnet {} {}", magnets[m].name, key.name), key.quantity,
+            [&](const Load& load) {
+              return std::get<Vector3>(key.get(load.environment().magnets.at(m)));
+            },
+            numbers);
   return numbers;
 }
 

@@ -28,22 +28,25 @@ struct Measurand {
     deflection,  ///< of that point's displacement, the part along the load's azimuth, m
     angle,       ///< θ of the end section, rad
     B,           ///< a component of B at a sensor, T
-    dB           ///< of B − B(straight)
+    dB,          ///< of B − B(straight)
+    number       ///< another number of a load step: results::quantities()
   };
-  std::string name;  ///< as the case states it: "tip.x", "dB.left.z"
+  std::string name;  ///< as the case states it: "tip.x", "dB.left.z", "slip_off_force"
   Kind kind = Kind::deflection;
   std::size_t axis = 0;           ///< of a coordinate or component: 0 x, 1 y, 2 z
   std::size_t sensor = 0;         ///< of B and dB
   std::array<double, 2> point{};  ///< X, Y of the point in the end section, m
+  std::size_t index = 0;          ///< of a number: among results::quantities()
 
   bool operator==(const Measurand&) const = default;
-  /// Length, angle or flux density.
-  const Quantity& quantity() const;
+  /// Length, angle, flux density or the number's.
+  const ciliaval::Quantity& quantity() const;
   bool is_field() const { return kind == Kind::B || kind == Kind::dB; }
 };
 
-/// The key `point`: a place in the end section.
-const description::Field<Measurand>& point_key();
+/// The keys of [[measurement]] and [[input_uncertainty]].
+std::vector<const description::Key*> measurement_keys();
+std::vector<const description::Key*> input_keys();
 
 /// A measured value. SI units.
 struct Measurement {

@@ -130,13 +130,15 @@ Json table_of(const std::vector<Key>& keys) {
 /// [sensor] with a point or several, or [[sensor]] with a name and a point each.
 Json sensors_of(const std::vector<Key>& keys) {
   Json one = table_of(keys);
-  one["required"] = {"name", "position"};
+  const std::string place(input::keys().sensor_position.name);
+  const std::string name(input::keys().sensor_name.name);
+  one["required"] = {name, place};
   Json all = one;
-  const Json point = one["properties"]["position"];
-  all["properties"].erase("name");
-  all["required"] = {"position"};
-  all["properties"]["position"] = {{"anyOf", {point, list_of(point)}},
-                                   {"description", point["description"]}};
+  const Json point = one["properties"][place];
+  all["properties"].erase(name);
+  all["required"] = {place};
+  all["properties"][place] = {{"anyOf", {point, list_of(point)}},
+                              {"description", point["description"]}};
   return {{"anyOf", {all, list_of(one)}}};
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/input/case_sections.h"
 #include "compare/input/units.h"
 
 namespace ciliaval::compare::input::schema {
@@ -121,8 +122,8 @@ std::string starter_case(const std::string& name, const LoadType& load, const Mo
   if (&load == &SweepLoad::type()) text += surface;
   if (&load == &EnvironmentLoad::type()) text += field;
   return text + sensor + "[models]                         # `ciliaval list` says what they are\n" +
-         models_line("mechanics", models.mechanics, takes_load) +
-         models_line("fields", models.fields, is_of_rods);
+         models_line(keys().mechanics.name, models.mechanics, takes_load) +
+         models_line(keys().fields.name, models.fields, is_of_rods);
 }
 
 }  // namespace ciliaval::compare::input::schema

@@ -6,9 +6,23 @@
 #include "compare/models/entries/values.h"
 
 namespace ciliaval::compare::models::entries {
+namespace {
+
+using fem::beam::BeamOptions;
+
+std::vector<input::BudgetStage> budget_stages(const input::ModelOptions& options) {
+  using analytic::joints::Correction;
+  std::vector<input::BudgetStage> stages{{.physics = "shear and extension of the rod",
+                                          .set = set(&BeamOptions::joints, Correction::none)}};
+  if (options.of<BeamOptions>().joints == Correction::corrected)
+    stages.push_back(
+        {.physics = "joints as stiff as bonded sections make them", .variant = "joints corrected"});
+  return stages;
+}
+
+}  // namespace
 
 input::MechanicsEntry beam() {
-  using fem::beam::BeamOptions;
   return {
       .id = "beam",
       .description =
@@ -44,6 +58,8 @@ input::MechanicsEntry beam() {
           [](const input::CaseCheck& check) {
             check_joints(check, "beam", check.problem.options.of<BeamOptions>().joints);
           },
+      .budget_stages = budget_stages,
+      .hasten = set(&BeamOptions::error_estimate, false),
   };
 }
 

@@ -12,6 +12,11 @@ input::FieldEntry dipole() {
       .options = {input::choice(&DipoleOptions::push_forward, "push_forward", push_forwards(),
                                 rod_push_forward)},
       .takes_sections = true,
+      .budget_stages =
+          [](const input::ModelOptions&) {
+            return std::vector<input::BudgetStage>{
+                {.physics = "the whole magnet as one dipole at its centroid", .is_beside = true}};
+          },
   };
 }
 

@@ -40,6 +40,13 @@ input::FieldEntry line() {
                   elements},
       .refinements = {sums, integrals},
       .takes_sections = true,
+      .budget_stages =
+          [](const input::ModelOptions&) {
+            return std::vector<input::BudgetStage>{
+                {.physics = "dipoles along the centreline",
+                 .set = set(&LineOptions::push_forward, analytic::sources::PushForward::F)}};
+          },
+      .hasten = set(&LineOptions::method, Method::closed_form),
   };
 }
 

@@ -19,6 +19,17 @@ input::FieldEntry mesh() {
       .takes_sections = true,
       .has_body = true,
       .accuracy = 1e-8,
+      .budget_stages =
+          [](const input::ModelOptions&) {
+            using analytic::sources::PushForward;
+            return std::vector<input::BudgetStage>{
+                {.physics = "the solid's own sections, warped and stretched, with rotated moments",
+                 .variant = "R",
+                 .set = set(&MeshOptions::push_forward, PushForward::R)},
+                {.physics = "moments carried along by F, in place of the rotation R",
+                 .variant = "F",
+                 .set = set(&MeshOptions::push_forward, PushForward::F)}};
+          },
   };
 }
 

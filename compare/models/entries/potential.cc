@@ -85,6 +85,32 @@ std::string write_plates(const input::ModelOptions& options) {
   return text;
 }
 
+/// Vacuum's permeability, then the case's, then its plates, as far as it states them.
+std::vector<input::BudgetStage> budget_stages(const input::ModelOptions& options) {
+  const auto stage = [](std::string physics, double permeability, bool has_plates) {
+    return input::BudgetStage{
+        .physics = std::move(physics),
+        .variant = fmt::format("mu_r = {:g}{}", permeability, has_plates ? ", plates" : ""),
+        .set =
+            [=](input::ModelOptions& all) {
+              auto& potential = all.of<PotentialOptions>();
+              potential.push_forward = MagnetPushForward::F;
+              potential.relative_permeability = permeability;
+              if (!has_plates) potential.plates.clear();
+            },
+        .bears_differences = false};
+  };
+  const auto& stated = options.of<PotentialOptions>();
+  std::vector<input::BudgetStage> stages{
+      stage("the same physics by another method: a potential by finite elements", 1, false)};
+  if (stated.relative_permeability != 1)
+    stages.push_back(
+        stage("recoil permeability of the magnet", stated.relative_permeability, false));
+  if (!stated.plates.empty())
+    stages.push_back(stage("permeable plates", stated.relative_permeability, true));
+  return stages;
+}
+
 /// The potential, which takes seconds to minutes for each deformation. What the mechanics' error
 /// makes of its field is told by the field of the same magnets in vacuum.
 class PotentialAndItsChanges : public FieldModel {
@@ -173,6 +199,7 @@ input::FieldEntry potential() {
                  {plate_fields().begin(), plate_fields().end()},
                  read_plates,
                  write_plates},
+      .budget_stages = budget_stages,
   };
 }
 

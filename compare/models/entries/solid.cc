@@ -10,6 +10,7 @@
 #include "fem/solid/material/hyperelastic.h"
 #include "meshes/plain_mesh.h"
 #include "problem/cilium.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::models::entries {
 namespace {
@@ -93,6 +94,23 @@ std::vector<std::string> remarks(const input::Case& problem) {
       meshes::plain_gmsh({options.mesh, options.mesh_unit}, problem.cilium).remarks;
   for (std::string& remark : remarks) remark = fmt::format("{}: {}", options.mesh.string(), remark);
   return remarks;
+}
+
+/// The whole mesh, not its half: the built-in one or the user's.
+meshes::PlainMesh mesh_of(const input::Case& problem, std::optional<unsigned int> refinement) {
+  auto options = problem.options.of<SolidOptions>();
+  if (options.mesh.empty()) {
+    options.symmetry = false;
+    if (refinement) options.refinement = *refinement;
+    return meshes::plain_cylinder(problem.cilium,
+                                  fem::solid::cylinder_mesh_options(options, problem.load_path));
+  }
+  if (refinement)
+    throw InputError(
+        fmt::format("the case has a mesh of its own ({}), which has no refinement: "
+                    "leave out --refinement",
+                    options.mesh.string()));
+  return meshes::plain_gmsh({options.mesh, options.mesh_unit}, problem.cilium);
 }
 
 /// The solid's energies. The defaults of the ratios are the orders of magnitude of rubbers, none
@@ -199,6 +217,13 @@ input::MechanicsEntry solid() {
       .accuracy = 1e-8,
       .check = check,
       .remarks = remarks,
+      .budget_stages =
+          [](const input::ModelOptions&) {
+            return std::vector<input::BudgetStage>{
+                {.physics = "three dimensions: bonded ends, near-incompressibility, a contact of "
+                            "some width"}};
+          },
+      .mesh = mesh_of,
       // These may be raised to go on after a failure.
       .checkpoint_without = std::vector<std::string_view>{"max_iterations", "max_cutbacks"},
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -29,6 +30,12 @@ inline input::Choices<analytic::rod::Method> methods() {
   return {{"closed_form", analytic::rod::Method::closed_form},
           {"quadrature", analytic::rod::Method::quadrature},
           {"uniform", analytic::rod::Method::uniform}};
+}
+
+/// Sets one option.
+template <class Options, class Value>
+std::function<void(input::ModelOptions&)> set(Value Options::*option, Value value) {
+  return [=](input::ModelOptions& options) { options.of<Options>().*option = value; };
 }
 
 /// The option `tolerance`, which the model promises to keep.

@@ -65,6 +65,17 @@ input::FieldEntry volume() {
       .refinements = {sums, integrals},
       .takes_sections = true,
       .check = check_volume,
+      .budget_stages =
+          [](const input::ModelOptions&) {
+            return std::vector<input::BudgetStage>{
+                {.physics = "the magnet's thickness, in flat slices (Eq. 8-9)",
+                 .variant = "stacked",
+                 .set = set(&VolumeOptions::slices, Slices::stacked)},
+                {.physics = "wedges in place of flat slices: Jacobian 1 - kappa*offset",
+                 .variant = "wedge",
+                 .set = set(&VolumeOptions::slices, Slices::wedge)}};
+          },
+      .hasten = set(&VolumeOptions::method, Method::closed_form),
   };
 }
 

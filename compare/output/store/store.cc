@@ -4,7 +4,9 @@
 #include <fmt/core.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <initializer_list>
@@ -113,7 +115,8 @@ class Statement {
 
 }  // namespace
 
-Store::Store(fs::path file, bool fresh) : file_(std::move(file)) {
+Store::Store(fs::path file, std::vector<std::string_view> owners, bool fresh)
+    : file_(std::move(file)), owners_(std::move(owners)) {
   while (!open(fresh)) database_.reset();
 }
 
@@ -139,10 +142,13 @@ void Store::fail() const {
                     file_.string()));
   if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB || code == SQLITE_ERROR)
     refuse(file_, "it is damaged: " + reason);
-  throw CheckpointError(fmt::format(
-      "cannot write to `{}`: {}; make room on the disk if it is full, or choose another "
-      "folder with -o DIR",
-      file_.string(), reason));
+  const int of_system = sqlite3_system_errno(database_.get());
+  const bool may_be_full = code == SQLITE_FULL || of_system == ENOSPC || of_system == EDQUOT ||
+                           of_system == EFBIG || (code == SQLITE_IOERR && of_system == 0);
+  throw CheckpointError(
+      fmt::format("cannot write to `{}`: {}; {}choose another folder with -o DIR", file_.string(),
+                  of_system != 0 ? std::generic_category().message(of_system) : reason,
+                  may_be_full ? "make room on the disk if it is full, or " : ""));
 }
 
 void Store::execute(const char* sql) const {
@@ -159,6 +165,7 @@ bool Store::open(bool fresh) {
   if (opened != SQLITE_OK) fail();
   // In this mode SQLite keeps the lock until the file is closed.
   execute("PRAGMA locking_mode = EXCLUSIVE");
+  require_owners();
   if (fresh) {
     sqlite3_db_config(database, SQLITE_DBCONFIG_RESET_DATABASE, 1, nullptr);
     execute("VACUUM");
@@ -174,6 +181,15 @@ bool Store::open(bool fresh) {
   if (Statement(database, "SELECT 1 FROM sqlite_schema").step() == SQLITE_DONE) execute(schema);
   execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL");
   return true;
+}
+
+void Store::require_owners() const {
+  if (owners_.empty()) return;
+  // Of a file without tables, or a damaged one, verify() knows more.
+  Statement all(database_.get(), "SELECT DISTINCT owner FROM entries");
+  while (all.step() == SQLITE_ROW)
+    if (std::ranges::find(owners_, all.column(0)) == owners_.end())
+      refuse_foreign(file_, fmt::format("it holds results of something else, `{}`", all.column(0)));
 }
 
 void Store::verify() const {

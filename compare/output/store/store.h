@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "problem/support/fingerprint.h"
 
@@ -29,9 +30,11 @@ using Entries = std::map<std::string, std::string>;
 class Store {
  public:
   /// Opens the file, or makes it, and verifies all of it; `fresh` empties it first. Refused are a
-  /// file that another process has, a damaged one, and anything that is not a store, which is never
-  /// emptied.
-  explicit Store(std::filesystem::path file, bool fresh = false);
+  /// file that another process has, a damaged one, and what is not ours, which is never emptied:
+  /// anything that is not a store, and a store with entries of other owners than these. Without
+  /// owners any is ours.
+  explicit Store(std::filesystem::path file, std::vector<std::string_view> owners = {},
+                 bool fresh = false);
   /// Deletes the file if it has no entries.
   ~Store();
   Store(const Store&) = delete;
@@ -54,6 +57,7 @@ class Store {
     void operator()(sqlite3* database) const;
   };
   bool open(bool fresh);
+  void require_owners() const;
   void verify() const;
   void put(std::string_view owner, std::string_view name, std::string_view bytes);
   void execute(const char* sql) const;
@@ -61,6 +65,7 @@ class Store {
 
   using Clock = std::chrono::steady_clock;
   std::filesystem::path file_;
+  std::vector<std::string_view> owners_;
   std::unique_ptr<sqlite3, Close> database_;
   Clock::time_point flushed_ = Clock::now();
   std::mutex mutex_;

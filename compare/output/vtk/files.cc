@@ -14,11 +14,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <variant>
 
-#include "compare/input/environment/environment.h"
 #include "compare/output/output_file.h"
 #include "compare/output/results.h"
 #include "compare/output/sweep.h"
+#include "problem/description/environment.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::output::vtk {
@@ -36,6 +37,13 @@ void add_vector(vtkDataSet& data, const char* name, const Vector3& vector) {
   array->SetName(name);
   array->SetNumberOfComponents(3);
   array->InsertNextTuple(vector.data());
+  data.GetFieldData()->AddArray(array);
+}
+
+void add_number(vtkDataSet& data, const char* name, double number) {
+  const vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->InsertNextValue(number);
   data.GetFieldData()->AddArray(array);
 }
 
@@ -63,19 +71,19 @@ void add_provenance(vtkDataSet& data, const Provenance& provenance) {
 void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load) {
   add_provenance(data, provenance);
   add_strings(data, "load_unit", {std::string(magnitude_unit(load))});
-  const vtkNew<vtkDoubleArray> value;
-  value->SetName("load");
-  value->InsertNextValue(magnitude(load));
-  data.GetFieldData()->AddArray(value);
+  add_number(data, "load", magnitude(load));
   const surroundings::Environment& around = load.environment();
   if (surroundings::is_empty(around)) return;
-  add_vector(data, "gravity", around.gravity);
-  add_vector(data, "uniform_field", around.uniform_field);
-  const vtkNew<vtkDoubleArray> density;
-  density->SetName("fluid_density");
-  density->InsertNextValue(around.fluid_density);
-  data.GetFieldData()->AddArray(density);
-  add_strings(data, "magnetic_energy", {std::string(name(around.magnetic_energy))});
+  for (const auto& field : description::fields<surroundings::Environment>()) {
+    const std::string name(field.name);
+    const description::Value stated = field.get(around);
+    if (const auto* vector = std::get_if<Vector3>(&stated))
+      add_vector(data, name.c_str(), *vector);
+    else if (const auto* text = std::get_if<std::string>(&stated))
+      add_strings(data, name.c_str(), {*text});
+    else
+      add_number(data, name.c_str(), std::get<double>(stated));
+  }
 }
 
 void write(vtkDataSet& data, const std::filesystem::path& file) {

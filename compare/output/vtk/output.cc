@@ -72,10 +72,11 @@ bool any_field(const models::CaseResult& result, std::size_t step) {
 
 /// The steps whose bodies and grids, some MB each, are written: of a sweep, which has hundreds,
 /// some.
-std::vector<std::size_t> steps_of_large_files(const input::Case& problem) {
+std::vector<std::size_t> steps_of_large_files(const input::Case& problem,
+                                              const std::vector<std::size_t>& drawn) {
   constexpr std::size_t most = 21;
   const std::size_t steps = problem.load_path.size();
-  return support::evenly(steps, is_sweep(problem) ? std::min(steps, most) : steps);
+  return is_sweep(problem) ? support::evenly(steps, std::min(steps, most)) : drawn;
 }
 
 /// The first files first, which are the largest: the threads then end at about the same time.
@@ -88,8 +89,14 @@ void write_in_order(const std::vector<std::function<void()>>& files) {
 
 }  // namespace
 
+std::vector<std::size_t> drawn_steps(std::size_t steps, bool all) {
+  constexpr std::size_t most = 200;
+  return support::evenly(steps, all ? steps : std::min(steps, most));
+}
+
 void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>& grid,
-               const Provenance& provenance, const std::filesystem::path& folder) {
+               const Provenance& provenance, const std::vector<std::size_t>& drawn,
+               const std::filesystem::path& folder) {
   const input::Case& problem = result.problem;
   Output output(folder, provenance, problem.load_path);
   std::vector<std::function<void()>> files;
@@ -99,8 +106,7 @@ void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>&
       if (const vtkSmartPointer<vtkDataSet> data = make()) output.add(series, step, *data);
     });
   };
-  const std::size_t steps = problem.load_path.size();
-  const std::vector<std::size_t> large = steps_of_large_files(problem);
+  const std::vector<std::size_t> large = steps_of_large_files(problem, drawn);
   for (const std::size_t step : large)
     for (const models::MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
@@ -119,7 +125,7 @@ void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>&
         add("field_" + run.mechanics + "_" + run.field, step,
             [&mesh = *run.steps[step]->mesh] { return octree_grid(mesh); });
   }
-  for (std::size_t step = 0; step < steps; ++step) {
+  for (const std::size_t step : drawn) {
     for (const models::MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
       if (!deformation) continue;

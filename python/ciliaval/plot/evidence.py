@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -99,12 +98,11 @@ def convergence(data: dict[str, Any], model: str | None = None) -> Figure | None
 def _curves(study: dict[str, Any]) -> list[tuple[str, dict[str, Any], np.ndarray, np.ndarray]]:
     """Name, quantity, sizes and relative errors of what is drawn."""
     quantities = study["quantities"] or []
-    steps = [int(m[1]) for q in quantities if (m := re.match(r"steps/(\d+)/", q["id"]))]
-    prefix = f"steps/{max(steps, default=0)}/"
+    last = max((q["step"] for q in quantities if q["step"] is not None), default=0)
     found = []
     for q in quantities:
-        name = _curve_name(q["id"].removeprefix(prefix), study["model"])
-        if not q["id"].startswith(prefix) or name is None or not q["levels"]:
+        name = _curve_name(q, study["model"])
+        if q["step"] != last or name is None or not q["levels"]:
             continue
         h = np.array([level["size"] for level in q["levels"]])
         values = np.array([level["value"] for level in q["levels"]])
@@ -139,11 +137,12 @@ def _errors(axes: Axes, study: dict[str, Any]) -> None:
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False, fontsize=8)
 
 
-def _curve_name(quantity: str, model: str) -> str | None:
-    if quantity == f"mechanics/{model}/tip/deflection":
+def _curve_name(q: dict[str, Any], model: str) -> str | None:
+    if q["quantity"] == "tip/deflection" and q["mechanics"] == model:
         return "tip"
-    found = re.fullmatch(r"fields/(.*)/dB/0/norm", quantity)
-    return f"|ΔB| {found[1]}" if found else None
+    if (q["quantity"], q["sensor"], q["component"]) == ("dB", 0, "norm"):
+        return f"|ΔB| {q['mechanics']}/{q['field']}"
+    return None
 
 
 def bench(data: dict[str, Any]) -> Figure:

@@ -28,6 +28,7 @@ _STYLE = {
     "svg.fonttype": "none",
     "svg.hashsalt": "ciliaval",  # the same figure, the same file
     "font.family": ["DejaVu Sans"],
+    "text.parse_math": False,  # people's texts have dollars
 }
 
 

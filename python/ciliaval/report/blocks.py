@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import base64
 import io
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Union
 
 from matplotlib.figure import Figure as Drawing
 
+from ..files import text_of
 from ..plot.style import style
 
 
@@ -49,13 +51,14 @@ class Table:
 
 @dataclass
 class Image:
-    """A figure as a picture in the page itself, with its size in CSS pixels."""
+    """A figure as a picture in the page itself, with its size in CSS pixels; or why there is none."""
 
     title: str
     caption: str
     source: str
     width: int
     height: int
+    fault: str = ""
 
 
 @dataclass
@@ -103,7 +106,7 @@ class View:
     data: dict
 
 
-Block = Union[Text, Items, Table, Images, Opening, Details, Code, Heading, View]
+Block = Union[Text, Items, Table, Images, Opening, Details, Code, Heading, View, "Fault"]
 
 
 @dataclass
@@ -115,11 +118,43 @@ class Section:
     blocks: list[Block]
 
 
-def image(title: str, caption: str, drawing: Drawing) -> Image:
-    """A figure of matplotlib's as SVG."""
-    stream = io.BytesIO()
-    with style():
-        drawing.savefig(stream, format="svg", metadata={"Date": None})
+@dataclass
+class Fault:
+    """What of a result could not be shown, and why."""
+
+    text: str
+
+
+def image(title: str, caption: str, draw: Callable[[], Drawing]) -> Image:
+    """A figure of matplotlib's as SVG. One that cannot be drawn leaves the others as they are."""
+    try:
+        drawing = draw()
+        stream = io.BytesIO()
+        with style():
+            drawing.savefig(stream, format="svg", metadata={"Date": None})
+    except Exception as error:  # whatever the numbers of a damaged file make of a drawing
+        return Image(title, caption, "", 0, 0, f"{title}: cannot be drawn: {text_of(error)}")
     source = base64.b64encode(stream.getvalue()).decode()
     width, height = (round(96 * size) for size in drawing.get_size_inches())
     return Image(title, caption, f"data:image/svg+xml;base64,{source}", width, height)
+
+
+def guarded(what: str, make: Callable[[], list[Block]]) -> list[Block]:
+    """A part of a page; where it cannot be made, why, in its place."""
+    try:
+        return make()
+    except Exception as error:  # the other parts are as good without it
+        return [Fault(f"{what}: cannot be shown: {text_of(error)}")]
+
+
+def faults(blocks: list[Block]) -> Iterator[str]:
+    """What of these blocks is missing, and why."""
+    for block in blocks:
+        if isinstance(block, Fault):
+            yield block.text
+        elif isinstance(block, Images):
+            yield from (i.fault for i in block.images if i.fault)
+        elif isinstance(block, Opening) and block.image and block.image.fault:
+            yield block.image.fault
+        elif isinstance(block, Details):
+            yield from faults(block.blocks)

@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .. import plot
-from ..errors import Error
+from ..files import content
 from ..plot.style import best_first
 from ..results import Result
 from ..units import in_words, number, quantity
 from . import view3d
-from .blocks import Block, Code, Details, Heading, Image, Images, Items, Opening, Table, image
+from .blocks import (
+    Block, Code, Details, Heading, Image, Images, Items, Opening, Table, guarded, image,
+)  # fmt: skip
 from .sentences import findings, remarks
 from .validation import validation_blocks
 
@@ -19,45 +23,56 @@ _MOST_ROWS = 120  # of a table: of a sweep's hundreds of samples some
 
 
 def case_blocks(result: Result) -> list[Block]:
-    """A sketch and five sentences, figures, an interactive view, the numbers."""
-    blocks: list[Block] = [Opening(_sketch(result), findings(result))]
+    """A sketch and five sentences, figures, an interactive view, the numbers. What a damaged file
+    keeps from being shown is named in its place."""
+    parts: list[tuple[str, Callable[[], list[Block]]]] = [
+        ("What was found", lambda: [Opening(_sketch(result), findings(result))]),
+        ("Remarks of the models", lambda: _remarks(result)),
+        ("Figures", lambda: [Images(_figures(result))]),
+        ("Against measurements", lambda: validation_blocks(result)),
+        ("The interactive view", lambda: [view] if (view := view3d.view(result)) else []),
+        ("The field's numbers", lambda: _field_details(result)),
+        ("The shapes' numbers", lambda: [Details("The shapes' numbers", [_shapes(result)])]),
+        ("Differences", lambda: _differences(result)),
+        ("The case file", lambda: _case_file(result)),
+    ]
+    return [block for what, make in parts for block in guarded(what, make)]
+
+
+def _remarks(result: Result) -> list[Block]:
     said = list(remarks(result))
-    if said:
-        blocks += [Heading("Remarks of the models"), Items(said)]
-    blocks += [Images(_figures(result))]
-    blocks += validation_blocks(result)
-    view = view3d.view(result)
-    if view:
-        blocks.append(view)
-    if result.pairs:
-        components = [
-            image(
-                f"B at sensor {name}",
-                "The flux density itself.",
-                plot.signal(result, sensor, "B"),
-            )
-            for sensor, name in enumerate(result.sensor_names)
-        ]
-        blocks.append(Details("B itself, and the field's numbers", [Images(components), _fields(result)]))
-    blocks.append(Details("The shapes' numbers", [_shapes(result)]))
-    differences = [t for t in (_over_path(result), _agreement(result)) if t.rows]
-    if differences:
-        blocks.append(Details("Differences over the load path", list(differences)))
-    if result.folder and (result.folder / "case.toml").exists():
-        text = (result.folder / "case.toml").read_text(encoding="utf-8", errors="replace")
-        blocks.append(Details("The case with every value that was used", [Code("Case file", text)]))
-    return blocks
+    return [Heading("Remarks of the models"), Items(said)] if said else []
+
+
+def _field_details(result: Result) -> list[Block]:
+    if not result.pairs:
+        return []
+    components = [
+        image(f"B at sensor {name}", "The flux density itself.", lambda: plot.signal(result, sensor, "B"))
+        for sensor, name in enumerate(result.sensor_names)
+    ]
+    return [Details("B itself, and the field's numbers", [Images(components), _fields(result)])]
+
+
+def _differences(result: Result) -> list[Block]:
+    tables = [t for t in (_over_path(result), _agreement(result)) if t.rows]
+    return [Details("Differences over the load path", list(tables))] if tables else []
+
+
+def _case_file(result: Result) -> list[Block]:
+    if result.folder is None or not (result.folder / "case.toml").exists():
+        return []
+    text = content(result.folder / "case.toml").decode("utf-8", errors="replace")
+    return [Details("The case with every value that was used", [Code("Case file", text)])]
 
 
 def _sketch(result: Result) -> Image | None:
-    try:
-        drawing = plot.setup(result)
-    except Error:  # without its case.toml
+    if result.folder is None or not (result.folder / "case.toml").exists():
         return None
     text = f"To scale, under the last load. Bending by {in_words(best_first(result.models))}"
     fields = dict.fromkeys(pair.split("/", 1)[-1] for pair in best_first(result.pairs))
     text += f"; field by {in_words(fields)}." if result.pairs else "; no field."
-    return image(f"The set-up of {result.name}", text, drawing)
+    return image(f"The set-up of {result.name}", text, lambda: plot.setup(result))
 
 
 def _figures(result: Result) -> list[Image]:
@@ -65,15 +80,15 @@ def _figures(result: Result) -> list[Image]:
     if any("converged" in result.status(model) for model in result.models):
         text = "Centrelines of all models in the plane of the load"
         text += "; the numbers are loads of the axis of the signals." if len(result.steps) > 1 else "."
-        drawn.append(image("Shapes", text, plot.shapes(result)))
+        drawn.append(image("Shapes", text, lambda: plot.shapes(result)))
     if result.pairs:
         for sensor, name in enumerate(result.sensor_names):
             title = f"Signal at sensor {name}"
             text = "Colour: bending model; line: field model; band: numerical error of the field."
-            drawn.append(image(title, text, plot.signal(result, sensor)))
+            drawn.append(image(title, text, lambda: plot.signal(result, sensor)))
     if result.loads[0]["type"] == "sweep":
         text = "Contact along the way; shaded: between two samples a model jumps."
-        drawn.append(image("Contact forces and tip", text, plot.sweep(result)))
+        drawn.append(image("Contact forces and tip", text, lambda: plot.sweep(result)))
     step = _last_compared(result)
     for name, text in [
         ("centreline", "Largest distance of two shapes over the reference's deflection"),
@@ -83,7 +98,7 @@ def _figures(result: Result) -> list[Image]:
             title = {"centreline": "Differences of shapes", "dB": "Differences of signals"}[name]
             caption = f"{text}, load step {step + 1}; the reference leaves out less, it is not the truth. "
             caption += "Grey: below the numerical error, or that is not known."
-            drawn.append(image(title, caption, plot.pairs(result, name, step)))
+            drawn.append(image(title, caption, lambda: plot.pairs(result, name, step)))
     return drawn
 
 

@@ -34,7 +34,7 @@ def study_blocks(study: dict[str, Any]) -> list[Block]:
             where = "; ".join(largest(study, output["id"]))
             caption = f"Largest in magnitude: {where}." if where else "No point has a value."
             name = f"{symbol(output['id'])} over {parameters[0]['name']}"
-            drawings.append(image(name, caption, plot.curves(study, output["id"])))
+            drawings.append(image(name, caption, lambda: plot.curves(study, output["id"])))
         blocks.append(Images(drawings))
         tables = [_points(study, pair) for pair in best_first(study["pairs"])]
         blocks.append(Details("The points' numbers", list(tables)))
@@ -94,7 +94,7 @@ def _tolerances(study: dict[str, Any]) -> list[Block]:
             caption += f" ({percent(deviation / abs(nominal), 2)})"
         caption += ", one standard deviation; bars: each number by its own."
         name = f"Tolerances of {symbol(output['id'])}"
-        drawings.append(image(name, caption, plot.tornado(study, best, output["id"])))
+        drawings.append(image(name, caption, lambda: plot.tornado(study, best, output["id"])))
     table = Table(
         "One standard deviation of all numbers together",
         ["output", *best_first(list(tolerances["pairs"]))],
@@ -123,7 +123,7 @@ def _optimum(study: dict[str, Any]) -> list[Block]:
     drawing = plot.optimum_slices(study)
     if drawing:
         caption = "One parameter is moved, the others stay at the best design's."
-        blocks.append(Images([image("Slices through the optimum", caption, drawing)]))
+        blocks.append(Images([image("Slices through the optimum", caption, lambda: drawing)]))
     designs = Table("The designs", ["parameter", "from", "to", *(d["name"] for d in optimum["designs"])])
     for p in optimum["parameters"]:
         size = unit_of(p).size
@@ -163,8 +163,7 @@ def _limits(optimum: dict[str, Any]) -> list[str]:
 def budget_blocks(budget: dict[str, Any]) -> list[Block]:
     chain = Table("From the paper's model to the best one, an assumption at a time", ["model", "what changes"])
     for stage in budget["chain"]:
-        what = stage["physics"] or "the paper's model: elastica, dipoles along the centreline"
-        chain.rows.append([stage["name"], Cell(what, "text")])
+        chain.rows.append([stage["name"], Cell(stage["physics"], "text")])
     loads = budget.get("loads") or []
     rows = [r for r in budget["rows"] if r["links"]]
     blocks: list[Block] = []
@@ -173,7 +172,7 @@ def budget_blocks(budget: dict[str, Any]) -> list[Block]:
     if drawing:
         load = f", {loads[steps[-1]]}" if loads else ""
         caption = f"Load step {steps[-1] + 1}{load}. Whiskers: numerical error; grey: below it; hollow: not known."
-        blocks.append(Images([image("What each assumption changes", caption, drawing)]))
+        blocks.append(Images([image("What each assumption changes", caption, lambda: drawing)]))
     blocks.append(chain)
     notes = [*budget["remarks"], *(f"not run: {name}" for name in budget["not_run"])]
     if notes:
@@ -215,7 +214,7 @@ def convergence_blocks(data: dict[str, Any]) -> list[Block]:
         drawing = plot.convergence(data, study["model"])
         if drawing:
             caption = f"{study['model']}, {study['option']}: distance from the extrapolated limit f₀; lines: the observed order."
-            drawings.append(image(f"Convergence of {study['model']}", caption, drawing))
+            drawings.append(image(f"Convergence of {study['model']}", caption, lambda: drawing))
         table = Table(
             f"{study['model']}, {study['option']} {', '.join(map(number, study['settings']))}, finest first",
             ["quantity", "unit", "finest", "order", "extrapolated", "±", "remark"],
@@ -262,7 +261,7 @@ def bench_blocks(bench: dict[str, Any]) -> list[Block]:
     blocks: list[Block] = [Text(text)]
     if bench.get("first_draw"):
         caption = "The first sensor drawn, with all errors: circles are true loads, dots what was found."
-        blocks.append(Images([image("Loads found on the bench", caption, plot.bench(bench))]))
+        blocks.append(Images([image("Loads found on the bench", caption, lambda: plot.bench(bench))]))
     return [*blocks, inversion, loads, fit]
 
 
@@ -283,7 +282,7 @@ def readings_blocks(sensing: dict[str, Any]) -> list[Block]:
         table.rows.append(row)
     if len(samples) > _MOST_POINTS:
         table.caption += f": the first {_MOST_POINTS} of {len(samples)}"
-    drawing = image("Load and direction", "Bands: 95 %.", plot.readings(sensing))
+    drawing = image("Load and direction", "Bands: 95 %.", lambda: plot.readings(sensing))
     return [Text(f"{text}."), Images([drawing]), Details("The loads' numbers", [table])]
 
 
@@ -298,7 +297,7 @@ def surface_blocks(profile: dict[str, Any]) -> list[Block]:
         row = [f"{level['first'] + 1} to {level['last'] + 1}"]
         row += [number(level[key], 1e-3) for key in ("interference", "interval", "height")]
         table.rows.append(row)
-    drawing = image("Levels found", "Grey: single readings.", plot.levels(profile))
+    drawing = image("Levels found", "Grey: single readings.", lambda: plot.levels(profile))
     return [Text(f"{text}."), Images([drawing]), table]
 
 

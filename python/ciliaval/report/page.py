@@ -14,11 +14,13 @@ from typing import Any, Union
 from jinja2 import Environment, PackageLoader
 
 from ..errors import FileError
-from ..files import replacing
+from ..files import DAMAGE, content, replacing, text_of
 from ..results import Document, Result, read
 from ..units import in_words, number
 from . import evidence, view3d
-from .blocks import Block, Cell, Details, Image, Images, Items, Section, Table, Text, View
+from .blocks import (
+    Block, Cell, Details, Image, Images, Items, Section, Table, Text, View, faults,
+)  # fmt: skip
 from .case import case_blocks, case_row
 
 _LARGEST_PICTURE = 4 << 20
@@ -53,10 +55,12 @@ def case_page(folder: Path) -> Page:
     result = read(folder / "summary.json")
     if not isinstance(result, Result):
         raise FileError(f"{folder / 'summary.json'}: is not the summary of a case")
-    section = Section("case", _title(result), [*_blocks(result, folder / "summary.json")])
-    section.blocks.append(_origins([(folder / "summary.json", result)], folder))
+    file = folder / "summary.json"
+    section = Section("case", _title(result), [*_blocks(result, file)])
+    damaged = _lost(file, section)
+    section.blocks.append(_origins([(file, result)], folder))
     footer = "Made by `ciliaval run` from summary.json and the files beside it."
-    return Page(_html(f"CiliaVal: {result.name}", "", [section], footer), [])
+    return Page(_html(f"CiliaVal: {result.name}", "", [section], footer), damaged)
 
 
 def results_page(folder: Path, made_by: str) -> Page:
@@ -71,20 +75,30 @@ def results_page(folder: Path, made_by: str) -> Page:
             damaged.append(str(error))
     order = list(_PARTS)
     found.sort(key=lambda entry: order.index(_kind(entry[1])))
-    sections, shown = [], []
+    sections, shown, rows = [], [], []
     for n, (file, data) in enumerate(found):
         name = re.sub(r"[^a-z0-9]+", "-", str(file.relative_to(folder)).lower())
         try:
-            sections.append(Section(f"part-{n}-{name}", _title(data), _blocks(data, file)))
-            shown.append((file, data))
+            section = Section(f"part-{n}-{name}", _title(data), _blocks(data, file))
+            if isinstance(data, Result):
+                steps, models, *values = case_row(data)
+                row = [Cell(data.name, link=section.id), steps, Cell(models, "text"), *values]
+                rows.append(row)
         except FileError as error:
             damaged.append(str(error))
+            continue
+        except Exception as error:  # one result must not cost the others their place
+            damaged.append(f"{file}: cannot be shown: {text_of(error)}")
+            continue
+        sections.append(section)
+        shown.append((file, data))
+        damaged += _lost(file, section)
     pictures = _pictures(folder, damaged)
     if not shown and not pictures and not damaged:
         raise FileError(
             f"there are no results in `{folder}`: `ciliaval run CASE.toml -o {folder}` makes some"
         )
-    first = [_overview(shown, sections)] if any(isinstance(d, Result) for _, d in shown) else []
+    first = [_overview(rows)] if rows else []
     if damaged:
         first.append(Section("damaged", "Files that could not be shown", [Items(list(damaged))]))
     if pictures:
@@ -124,27 +138,28 @@ def _blocks(data: Found, file: Path) -> list[Block]:
     """Raises FileError if the file is damaged."""
     try:
         return _PARTS[_kind(data)][1](data)
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError, StopIteration) as error:
+    except DAMAGE as error:
         raise FileError(f"{file}: is damaged: {error!r}") from error
+
+
+def _lost(file: Path, section: Section) -> list[str]:
+    """A line on what of a file could not be shown; none if all was."""
+    lost = list(faults(section.blocks))
+    more = f" (and {len(lost) - 1} more of its parts)" if len(lost) > 1 else ""
+    return [f"{file}: {lost[0]}{more}"] if lost else []
 
 
 def _json_files(folder: Path) -> Iterator[Path]:
     """Of the folder and the folders in it, sorted; hidden ones are unfinished."""
     for path in sorted([*folder.glob("*.json"), *folder.glob("*/*.json")]):
-        if path.is_file() and not any(p.startswith(".") for p in path.relative_to(folder).parts):
+        if not any(p.startswith(".") for p in path.relative_to(folder).parts):
             yield path
 
 
-def _overview(shown: list[tuple[Path, Found]], sections: list[Section]) -> Section:
-    table = Table(
-        "The cases; tip and |ΔB| at the last step by the model that leaves out least",
-        ["case", "load steps", "bending", "tip moves aside", "|ΔB| at the first sensor"],
-    )
-    for (_, data), section in zip(shown, sections):
-        if isinstance(data, Result):
-            steps, models, *values = case_row(data)
-            table.rows.append([Cell(data.name, link=section.id), steps, Cell(models, "text"), *values])
-    return Section("overview", "What was run", [table])
+def _overview(rows: list[list[str | Cell]]) -> Section:
+    head = ["case", "load steps", "bending", "tip moves aside", "|ΔB| at the first sensor"]
+    text = "The cases; tip and |ΔB| at the last step by the model that leaves out least"
+    return Section("overview", "What was run", [Table(text, head, rows)])
 
 
 def _missing(shown: list[tuple[Path, Found]], pictures: bool, folder: Path) -> Iterator[str]:
@@ -174,7 +189,11 @@ def _pictures(folder: Path, damaged: list[str]) -> list[Image]:
     """The PNG files of the folder and of pictures/ in it; one that is too large is named."""
     pictures, total = [], 0
     for file in sorted([*folder.glob("*.png"), *folder.glob("pictures/*.png")]):
-        data = file.read_bytes()
+        try:
+            data = content(file)
+        except FileError as error:
+            damaged.append(str(error))
+            continue
         if data[:8] != b"\x89PNG\r\n\x1a\n" or len(data) < 33:
             damaged.append(f"{file}: is no PNG picture")
             continue
@@ -204,8 +223,8 @@ def _origins(shown: list[tuple[Path, Found]], folder: Path) -> Block:
             row.append(Cell(str(origin.get(key) or "not stated"), kind))
         table.rows.append(row)
         if origin.get("git"):
-            states.add(origin["git"])
-        if origin.get("libraries"):
+            states.add(str(origin["git"]))
+        if isinstance(origin.get("libraries"), dict):
             libraries.add(in_words(f"{name} {v}" for name, v in origin["libraries"].items()))
     blocks: list[Block] = [table, *(Text(f"Libraries: {line}.") for line in sorted(libraries))]
     if len(states) > 1:

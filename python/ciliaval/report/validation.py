@@ -20,7 +20,7 @@ def validation_blocks(result: Result) -> list[Block]:
             f"Measured: {describe(*measurand)}",
             "Above: crosses with ± 2 u_D are measured; bands are ± 2 √(u_num² + u_input²) of a model. "
             "Below: E = S − D with ± 2 u_val; where a bar leaves out zero, the model's error is seen.",
-            plot.validation(result, which),
+            lambda: plot.validation(result, which),
         )
         for which, measurand in enumerate(measurands(result))
     ]

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ..files import content
 from ..plot.style import SEGMENTS, best_first
 from ..results import Result
 from ..units import describe_load, in_words
@@ -140,7 +141,7 @@ def _trilinear(values: np.ndarray, at: np.ndarray) -> np.ndarray:
 def read_grid(file: Path) -> dict[str, Any]:
     """B of a .vti file of the program's: origin, spacing (m), B[z, y, x, component] (T). The format:
     VTK's XML with one appended, base64-coded, zlib-compressed section."""
-    text = file.read_bytes()
+    text = content(file)
     head, _, tail = text.partition(b"<AppendedData")
     data = tail[tail.index(b"_") + 1 : tail.index(b"</AppendedData")].strip()
     root = ElementTree.fromstring(head + b"</VTKFile>")

@@ -55,7 +55,12 @@ TEST(CommandLine, HelpTeachesByExample) {
   EXPECT_EQ(help.code, 0);
   EXPECT_THAT(help.out, HasSubstr("ciliaval run my.toml"));
   EXPECT_THAT(help.out, HasSubstr("Exit codes"));
-  EXPECT_EQ(ciliaval(folder.path(), "run --help").code, 0);
+  EXPECT_EQ(ciliaval(folder.path(), "help").out, help.out);
+  const Outcome of_run = ciliaval(folder.path(), "run --help");
+  EXPECT_EQ(of_run.code, 0);
+  EXPECT_THAT(of_run.out, Not(HasSubstr("ciliaval budget")));  // its own alone
+  EXPECT_EQ(ciliaval(folder.path(), "help run").out, of_run.out);
+  EXPECT_THAT(ciliaval(folder.path(), "help rnu").err, HasSubstr("there is no command `rnu`"));
   const Outcome version = ciliaval(folder.path(), "--version");
   EXPECT_EQ(version.code, 0);
   EXPECT_THAT(version.out, HasSubstr("ciliaval "));
@@ -68,6 +73,7 @@ TEST(CommandLine, ListsModelsLoadsAndShippedCases) {
   for (const char* word : {"elastica", "beam", "solid", "dipole", "line", "volume", "mesh",
                            "contact", "flow", "probe", "paper/fig3b.toml"})
     EXPECT_THAT(list.out, HasSubstr(word));
+  EXPECT_EQ(ciliaval(folder.path(), "validate paper/fig3b.toml").code, 0);  // as it is listed
 }
 
 TEST(CommandLine, ValidatesWithoutRunning) {

@@ -76,8 +76,8 @@ void expect_same(const input::Case& a, const input::Case& b) {
   EXPECT_EQ(a.stated_by, b.stated_by);
   EXPECT_EQ(a.sensors, b.sensors);
   EXPECT_EQ(a.sensor_names, b.sensor_names);
-  for (const auto& [key, text] : input::external::reading_keys)
-    EXPECT_EQ((a.readings.*text).text, (b.readings.*text).text) << key;
+  for (const auto& key : input::external::reading_keys())
+    EXPECT_EQ((a.readings.*key.option).text, (b.readings.*key.option).text) << key.name;
   EXPECT_EQ(a.mechanics, b.mechanics);
   EXPECT_EQ(a.fields, b.fields);
   for (const auto& [model, option] : all_options())
@@ -369,7 +369,7 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().degree, 2U);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().refinement, 4U);
   EXPECT_TRUE(o.of<fem::beam::BeamOptions>().shear_rigid);
-  EXPECT_EQ(o.of<fem::beam::BeamOptions>().joints, joints::Correction::corrected);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().joints, analytic::joints::Correction::corrected);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().tolerance, 1e-8);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_iterations, 11U);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_cutbacks, 3U);
@@ -379,7 +379,8 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().material,
             fem::solid::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().mooney_ratio, 0.1);
-  EXPECT_EQ(mooney.of<analytic::elastica::ElasticaOptions>().joints, joints::Correction::corrected);
+  EXPECT_EQ(mooney.of<analytic::elastica::ElasticaOptions>().joints,
+            analytic::joints::Correction::corrected);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().method, analytic::rod::Method::uniform);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().elements, 7U);
   EXPECT_EQ(mooney.of<analytic::rod::VolumeOptions>().method, analytic::rod::Method::uniform);

@@ -12,6 +12,7 @@
 
 #include "compare/models/errors.h"
 #include "compare/models/run.h"
+#include "compare/results/quantity.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::test {
@@ -65,7 +66,7 @@ TEST(ErrorEstimate, IsTheSumOfThePartsAndOfTheAlgebraicError) {
   EXPECT_NEAR(*step.tip_uncertainty,
               0.5 * distance_of_tips(0.1, 0.12) + 2 * distance_of_tips(0.12, 0.15) + 1e-3 * L,
               1e-16);
-  EXPECT_EQ(models::tip_angle_uncertainty(run, 0), step.tip_angle_uncertainty);
+  EXPECT_EQ(results::tip_angle_uncertainty(run.result.steps[0]), step.tip_angle_uncertainty);
 }
 
 TEST(ErrorEstimate, OfAProbesForceHasTheAlgebraicError) {

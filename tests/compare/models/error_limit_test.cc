@@ -7,7 +7,9 @@
 #include <map>
 #include <string>
 
+#include "compare/models/evaluator.h"
 #include "compare/models/run.h"
+#include "problem/error.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::test {
@@ -155,6 +157,40 @@ TEST(ErrorLimit, EachRefinementHasACheckpointOfItsOwn) {
   models::run_mechanics(halving(), problem_with({.percent = 1.01 * tip_error(1)}), {}, {},
                         checkpoint);
   EXPECT_EQ(kept, (Checkpoint::Entries{{"refinement 0: 1", "0"}, {"refinement 1: 1", "1"}}));
+}
+
+// The one door: what it refuses is said by the entry, before the model runs.
+TEST(Evaluator, RefusesWhatTheModelDoesNotTake) {
+  models::MechanicsEntry entry = halving();
+  entry.loads = {&ContactLoad::type()};
+  const input::Case problem = problem_with({});
+  const auto message = [&](const LoadPath& path) {
+    try {
+      models::Evaluator(entry, problem, {}).solve(problem.cilium, path);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_EQ(message(problem.load_path), "taken");
+  EXPECT_EQ(message({FlowLoad{1, 0}}), "halving takes no load of the type 'flow'");
+  EXPECT_EQ(message({with_environment(problem.load_path[0], {.gravity = {0, 0, -9.81}})}),
+            "halving takes no environment");
+  EXPECT_EQ(message({}), "taken");
+  entry.check = [](const input::CaseCheck& check) {
+    if (check.problem.load_path.size() > 1) check.report("load", "one step is enough");
+  };
+  EXPECT_EQ(message(problem.load_path), "halving: one step is enough");
+}
+
+// As in studies and in `sense`: the path is not that of the case.
+TEST(Evaluator, RefinesWhateverPathItIsGiven) {
+  const input::Case problem = problem_with({.percent = 1.01 * tip_error(2)});
+  const auto entry = halving();
+  const MechanicsResult result =
+      models::Evaluator(entry, problem, {}).solve(problem.cilium, {ContactLoad{5e-3, 16e-3, 0}});
+  ASSERT_EQ(result.steps.size(), 1U);
+  EXPECT_THAT(result.steps[0].message, HasSubstr("refinement 2,"));
 }
 
 }  // namespace

@@ -100,6 +100,10 @@ input::MechanicsEntry hinge() {
             if (check.is_asked_for && check.problem.options.of<HingeOptions>().pieces == 13)
               check.report("models.hinge.pieces", "thirteen pieces are not made");
           },
+      .budget_stages =
+          [](const input::ModelOptions&) {
+            return std::vector<input::BudgetStage>{{.physics = "a stiff rod on a soft joint"}};
+          },
   };
 }
 
@@ -117,7 +121,13 @@ input::FieldEntry lamp() {
                            .size_name = "tolerance",
                            .law = input::Refinement::Law::tolerance}},
           .is_slow = true,
-          .accuracy = 1e-5};
+          .accuracy = 1e-5,
+          .budget_stages = [](const input::ModelOptions&) {
+            const auto twice = [](input::ModelOptions& o) { o.of<LampOptions>().strength *= 2; };
+            return std::vector<input::BudgetStage>{
+                {.physics = "light in place of poles", .variant = "single"},
+                {.physics = "twice the light", .variant = "double", .set = twice}};
+          }};
 }
 
 class ToyModel : public testing::Test {
@@ -151,7 +161,8 @@ class ToyModel : public testing::Test {
     app::commands::CommandLine line{program, words, {}};
     for (const auto add :
          {app::commands::add_run, app::commands::add_check, app::commands::add_converge,
-          app::commands::add_study, app::commands::add_list})
+          app::commands::add_study, app::commands::add_list, app::commands::add_schema,
+          app::commands::add_budget})
       add(line);
     program.parse(words);
     testing::internal::CaptureStdout();
@@ -196,6 +207,8 @@ TEST_F(ToyModel, IsReadWrittenBackAndDocumentedFromItsDeclaration) {
       keys,
       HasSubstr("| `models.hinge.stiffness` | moment, `\"1 mN m\"` | from 1e-09 N m to 1 N m |"));
   EXPECT_THAT(keys, HasSubstr("`solid`, `hinge` |"));
+  const auto schema = nlohmann::json::parse(program("schema"));
+  EXPECT_THAT(schema.dump(), HasSubstr("Of the spring at the base."));
 }
 
 TEST_F(ToyModel, IsRefusedWithItsOwnRangeLoadsAndCheck) {
@@ -266,6 +279,32 @@ TEST_F(ToyModel, IsRefinedByItsOwnLevels) {
   }
   EXPECT_TRUE(found);
   EXPECT_EQ(studies.at(1).at("model"), "lamp");
+}
+
+// The fields of the best mechanics model, which the hinge is, being the last one; the lamp's is the
+// number of the closed form, and twice that.
+TEST_F(ToyModel, AddsItsStagesToTheBudget) {
+  const fs::path file = write("toy.toml", case_text());
+  const std::string text =
+      program("budget " + file.string() + " --without solid --without potential --json " +
+              (folder_.path() / "budget.json").string());
+  EXPECT_THAT(text, HasSubstr("-> hinge/line            a stiff rod on a soft joint\n"));
+  const auto budget = json("budget.json");
+  std::vector<std::string> chain;
+  for (const auto& stage : budget.at("chain")) chain.push_back(stage.at("name"));
+  EXPECT_THAT(chain, testing::ElementsAre("elastica/line", "beam/line", "hinge/line",
+                                          "hinge/volume stacked", "hinge/volume wedge",
+                                          "hinge/lamp single", "hinge/lamp double"));
+  bool found = false;
+  for (const auto& row : budget.at("rows")) {
+    if (row.at("quantity") == "tip_angle" && row.at("step") == 1)
+      EXPECT_NEAR(row.at("best").get<double>(), angle(2e-3), 1e-12);
+    if (row.at("quantity") != "B") continue;
+    found = true;
+    const auto& links = row.at("links");
+    EXPECT_NEAR(links.back().at("value").get<double>() * 2, row.at("best").get<double>(), 1e-16);
+  }
+  EXPECT_TRUE(found);
 }
 
 TEST_F(ToyModel, IsCheckedAgainstItsBaseline) {

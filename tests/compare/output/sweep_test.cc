@@ -164,7 +164,9 @@ TEST(SweepResults, TableFitsATerminalAndTellsTheJump) {
 
 TEST(SweepResults, VtkHasTheSurfaceAndTheForceOfEachSample) {
   const test::TemporaryFolder folder;
-  output::vtk::write_vtk(result(), std::nullopt, run_origin, folder.path());
+  output::vtk::write_vtk(result(), std::nullopt, run_origin,
+                         output::vtk::drawn_steps(result().problem.load_path.size(), true),
+                         folder.path());
   for (const char* series : {"surface.pvd", "contact_elastica.pvd", "centreline_elastica.pvd"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / series)) << series;
   const MechanicsStep& step = result().mechanics[0].result.steps[7];

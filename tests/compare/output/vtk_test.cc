@@ -327,6 +327,16 @@ TEST(SeriesTimes, OfAProbeAreItsDisplacements) {
 
 // Every series lists the files that exist, with the load as its time; all of them carry the load
 // and where they come from.
+TEST(WriteVtk, DrawsSomeStepsOfALongPath) {
+  EXPECT_THAT(output::vtk::drawn_steps(3, false), testing::ElementsAre(0, 1, 2));
+  const std::vector<std::size_t> some = output::vtk::drawn_steps(10'000, false);
+  EXPECT_EQ(some.size(), 200U);
+  EXPECT_EQ(some.front(), 0U);
+  EXPECT_EQ(some.back(), 9'999U);
+  EXPECT_TRUE(std::is_sorted(some.begin(), some.end()));
+  EXPECT_EQ(output::vtk::drawn_steps(10'000, true).size(), 10'000U);
+}
+
 TEST(WriteVtk, MakesASeriesOfEachKindFromWhatExists) {
   const TemporaryFolder folder;
   const models::CaseResult result = two_models();
@@ -340,7 +350,9 @@ TEST(WriteVtk, MakesASeriesOfEachKindFromWhatExists) {
     return output::FieldGrid::Step{std::vector<Vector3>(8, Vector3::Ones()),
                                    std::vector<std::uint8_t>(8, 1)};
   };
-  output::vtk::write_vtk(result, grid, origin, folder.path() / "vtk");
+  output::vtk::write_vtk(result, grid, origin,
+                         output::vtk::drawn_steps(result.problem.load_path.size(), true),
+                         folder.path() / "vtk");
 
   std::map<std::string, std::vector<std::string>> listed;
   for (const auto& entry : fs::directory_iterator(folder.path() / "vtk")) {
@@ -397,7 +409,9 @@ TEST(WriteVtk, WritesSensorsWhereThereIsAFieldAndMasksThoseWithoutOne) {
         return d.centreline.at(L).position + x;
       })};
   const models::CaseResult result = models::run(c, mechanics, fields);
-  output::vtk::write_vtk(result, std::nullopt, origin, folder.path() / "vtk");
+  output::vtk::write_vtk(result, std::nullopt, origin,
+                         output::vtk::drawn_steps(result.problem.load_path.size(), true),
+                         folder.path() / "vtk");
   EXPECT_FALSE(fs::exists(folder.path() / "vtk" / "sensors_0001.vtp"));
   const auto reader = read_back<vtkXMLPolyDataReader>(folder.path() / "vtk" / "sensors_0000.vtp");
   vtkPolyData* sensors = reader->GetOutput();

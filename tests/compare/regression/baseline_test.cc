@@ -208,6 +208,10 @@ TEST(Baseline, ADamagedOneIsRefusedWithItsPlace) {
          j["quantities"][0]["relative"] = 0;
          j["quantities"][0]["absolute"] = 0;
        }},
+      {first + ": `relative` and `absolute` must be positive",
+       [](Json& j) { j["quantities"][0]["relative"] = 0; }},
+      {first + ": `relative` and `absolute` must be positive",
+       [](Json& j) { j["quantities"][0]["absolute"] = 0; }},
       {"checks nothing", [](Json& j) { j["quantities"][0]["relative"] = 0.5; }},
       {first + "/reference: `label` is empty",
        [](Json& j) { j["quantities"][0]["reference"]["label"] = ""; }},

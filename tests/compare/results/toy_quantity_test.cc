@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A number of a result that only this file declares goes into summary.json, baselines, checks and
-// mesh studies.
+// A number of a result that only this file declares goes into summary.json, baselines, checks, mesh
+// studies, studies, the budget and what can be measured.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "compare/budget/budget.h"
+#include "compare/budget/report.h"
 #include "compare/convergence/study.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
+#include "compare/output/table.h"
 #include "compare/regression/check.h"
 #include "compare/results/quantity.h"
 #include "compare/study/evaluate.h"
 #include "compare/study/reader/study_reader.h"
+#include "compare/validation/validation.h"
+#include "problem/error.h"
 #include "tests/support/study_texts.h"
 #include "tests/support/synthetic.h"
 #include "tests/support/temporary_folder.h"
@@ -34,13 +40,13 @@ class ToyQuantity : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     results::add_quantity({.name = "lean",
-                           .unit = "",
                            .values =
                                [](const MechanicsStep& step) {
                                  return step.deformation ? std::vector{lean_of(step)}
                                                          : std::vector<double>{};
                                },
-                           .is_looked_at = true});
+                           .is_looked_at = true,
+                           .words = "leans by {}"});
   }
 
   const input::Case problem =
@@ -59,6 +65,12 @@ TEST_F(ToyQuantity, IsInTheSummary) {
   };
   EXPECT_EQ(of_beam(1).get<double>(), lean_of(result.mechanics[1].result.steps[1]));
   EXPECT_TRUE(of_beam(2).is_null());  // it slips off
+}
+
+TEST_F(ToyQuantity, IsSaidOnTheTerminal) {
+  EXPECT_THAT(output::table(result, {}, output::Footnotes::reference),
+              testing::HasSubstr(fmt::format("  beam: leans by {:.4g}\n",
+                                             lean_of(result.mechanics[1].result.steps[1]))));
 }
 
 TEST_F(ToyQuantity, IsCheckedAgainstABaseline) {
@@ -84,8 +96,9 @@ TEST_F(ToyQuantity, ConvergesWithTheMesh) {
   const auto beam = std::ranges::find(all, "beam", &convergence::ModelRefinement::model);
   ASSERT_NE(beam, all.end());
   const convergence::RefinementStudy study = convergence::refinement_study(problem, *beam, 3);
-  const auto lean = std::ranges::find(study.quantities, "steps/1/mechanics/beam/lean",
-                                      &convergence::ConvergedQuantity::id);
+  const auto lean = std::ranges::find_if(study.quantities, [](const auto& quantity) {
+    return quantity.finest.id() == "steps/1/mechanics/beam/lean";
+  });
   ASSERT_NE(lean, study.quantities.end());
   EXPECT_TRUE(lean->extrapolation.conclusive) << lean->extrapolation.reason;
   EXPECT_NEAR(lean->extrapolation.limit, lean_of(result.mechanics[0].result.steps[1]),
@@ -112,6 +125,53 @@ TEST_F(ToyQuantity, IsAnOutputOfAStudy) {
   EXPECT_NEAR(results[0].values[1].value(), step.deformation->centreline.at(L).position.z(), 1e-12);
   EXPECT_EQ(study::id(study.outputs[2]), "lean");
   EXPECT_EQ(study::quantity_of(study.outputs[1], study.load()).unit, "m");
+}
+
+TEST_F(ToyQuantity, IsInTheBudget) {
+  const budget::Budget budget =
+      budget::error_budget(problem, models::mechanics_models(), models::field_models(),
+                           {"solid", "volume", "mesh", "potential", "sensitivity"});
+  const auto row = std::ranges::find_if(budget.rows, [](const budget::BudgetRow& of) {
+    return of.quantity == "lean" && of.step == 1;
+  });
+  ASSERT_NE(row, budget.rows.end());
+  const double paper = lean_of(result.mechanics[0].result.steps[1]);
+  EXPECT_NEAR(row->paper, paper, 1e-9);
+  EXPECT_NEAR(row->links.at(0).value, lean_of(result.mechanics[1].result.steps[1]) - paper, 1e-9);
+  EXPECT_EQ(row->links[0].verdict, models::Verdict::inconclusive);  // it has no uncertainty
+  EXPECT_THAT(budget::budget_text(budget, output::Footnotes::reference),
+              testing::HasSubstr("lean"));
+}
+
+TEST_F(ToyQuantity, IsMeasured) {
+  const auto with = [](const std::string& measurement) {
+    return input::read_case(
+        test::case_text({.name = "toy", .force = R"(["1 mN", "2 mN"])"},
+                        "mechanics = [\"elastica\"]\n[[measurement]]\nsource = \"a photograph\"\n"
+                        "uncertainty = 0.001\n" +
+                            measurement),
+        "toy.toml", models::known());
+  };
+  const input::Case measured = with("quantity = \"lean\"\nstep = 1\nvalue = 0.3\n");
+  const models::CaseResult of_elastica =
+      models::run(measured, models::mechanics_models(), models::field_models());
+  const auto validation =
+      validation::validate(of_elastica, models::mechanics_models(), models::field_models());
+  ASSERT_TRUE(validation);
+  const validation::Point& point = validation->series.at(0).points.at(0);
+  EXPECT_EQ(point.simulated, lean_of(of_elastica.mechanics[0].result.steps[1]));
+  EXPECT_EQ(point.measured.value, 0.3);
+  EXPECT_EQ(
+      input::read_case(input::to_toml(measured, models::known()), "again.toml", models::known())
+          .measured.measurements[0]
+          .measurand,
+      point.measured.measurand);
+  try {
+    with("quantity = \"leen\"\nstep = 1\nvalue = 0.3\n");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("did you mean 'lean'?"));
+  }
 }
 
 }  // namespace

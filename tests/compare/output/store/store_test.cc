@@ -79,7 +79,7 @@ void fill(const fs::path& file) {
 /// What opening the file is refused with; empty if it is not.
 std::string refusal(const fs::path& file, bool fresh = false) {
   try {
-    Store(file, fresh).require_fingerprint("solid", of_the_case);
+    Store(file, {}, fresh).require_fingerprint("solid", of_the_case);
   } catch (const CheckpointError& error) {
     return error.what();
   }
@@ -277,6 +277,23 @@ TEST_F(StoreFile, WhatIsNotAStoreIsRefusedAndLeftAsItIs) {
       EXPECT_TRUE(read_bytes(file_) == bytes);
     }
   }
+}
+
+// Nor is a study's store under a run's name, which holds what no run of a case can.
+TEST_F(StoreFile, OfAnotherOwnerIsRefusedAndLeftAsItIs) {
+  fill(file_);
+  const std::string bytes = read_bytes(file_);
+  for (const bool fresh : {false, true}) {
+    try {
+      Store(file_, {"solid", "elastica"}, fresh);
+      FAIL();
+    } catch (const CheckpointError& error) {
+      EXPECT_THAT(error.what(),
+                  AllOf(HasSubstr(file_.string()), HasSubstr("`beam`"), HasSubstr("move it away")));
+    }
+    EXPECT_TRUE(read_bytes(file_) == bytes);
+  }
+  EXPECT_THAT(Store(file_, {"solid", "beam"}).read("beam"), ElementsAre(Pair("1", "")));
 }
 
 TEST_F(StoreFile, ThroughALinkOrADeviceIsRefusedAndLeftAsItIs) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/models/evaluator.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,47 +90,98 @@ Checkpoint part_of(const Checkpoint& checkpoint, const std::string& prefix) {
 
 }  // namespace
 
-MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& problem,
-                           std::span<const FieldEntry> fields, const Progress& progress,
-                           const Checkpoint& checkpoint) {
-  const ErrorLimit limit =
-      entry.error_limit ? entry.error_limit(problem.options) : input::ErrorLimit{};
-  if (limit.percent == 0)
-    return run_mechanics(entry.id, *entry.make(problem.options), problem, progress, checkpoint);
+Evaluator::Evaluator(const MechanicsEntry& entry, const input::Case& problem,
+                     std::span<const FieldEntry> fields)
+    : entry_(entry), fields_(fields) {
+  problem_.name = problem.name;
+  problem_.mechanics = {entry.id};
+  problem_.options = problem.options;
+  problem_.sensors = problem.sensors;
+  problem_.sensor_names = problem.sensor_names;
+}
 
-  const input::Refinement& refinement = entry.refinements.front();
+MechanicsResult Evaluator::solve(const Cilium& cilium, const LoadPath& path,
+                                 const Progress& progress) const {
+  return solve_from(cilium, path, {}, progress);
+}
+
+MechanicsResult Evaluator::solve_from(const Cilium& cilium, const LoadPath& path,
+                                      const Checkpoint& checkpoint,
+                                      const Progress& progress) const {
+  input::Case problem = problem_;
+  problem.cilium = cilium;
+  problem.load_path = path;
+  if (const std::string fault = fault_of(entry_, problem); !fault.empty()) throw InputError(fault);
+  const ErrorLimit limit =
+      entry_.error_limit ? entry_.error_limit(problem.options) : input::ErrorLimit{};
+  if (limit.percent == 0) {
+    MechanicsResult result =
+        entry_.make(problem.options)->solve_from(cilium, path, checkpoint, progress);
+    for (MechanicsStep& step : result.steps) fail_unless_finite(step);
+    return result;
+  }
+
+  const input::Refinement& refinement = entry_.refinements.front();
   const input::Option& option =
-      *std::ranges::find(entry.options, refinement.option, &input::Option::name);
+      *std::ranges::find(entry_.options, refinement.option, &input::Option::name);
   // The field of the model's own body, the same on all ranks.
   const auto field =
-      std::ranges::find_if(fields, [&](const FieldEntry& of) { return of.has_body; });
-  if (limit.of == ErrorLimit::Of::field && field == fields.end())
-    throw InputError(entry.id + ": there is no field model of its body to refine for");
-  const auto error_of = [&](const MechanicsRun& run) {
-    return limit.of == ErrorLimit::Of::tip ? largest_tip_error(run.result)
-                                           : largest_field_error(run, problem, *field);
+      std::ranges::find_if(fields_, [&](const FieldEntry& of) { return of.has_body; });
+  if (limit.of == ErrorLimit::Of::field && field == fields_.end())
+    throw InputError(entry_.id + ": there is no field model of its body to refine for");
+  const auto error_of = [&](MechanicsResult& result) {
+    if (limit.of == ErrorLimit::Of::tip) return largest_tip_error(result);
+    MechanicsRun run{entry_.id, std::move(result)};
+    const double error = largest_field_error(run, problem, *field);
+    result = std::move(run.result);
+    return error;
   };
-  std::vector<double> seconds(problem.load_path.size(), 0);  // of all refinements
+  std::vector<double> seconds(path.size(), 0);  // of all refinements
   for (std::size_t i = 0;; ++i) {
     const std::string name = fmt::format("{} {:g}", refinement.option, refinement.values[i]);
     input::ModelOptions options = problem.options;
     option.set_number(options, refinement.values[i]);
-    MechanicsRun run =
-        run_mechanics(entry.id, *entry.make(options), problem, with_prefix(progress, name + ", "),
-                      part_of(checkpoint, name + ": "));
-    for (std::size_t step = 0; step < seconds.size(); ++step)
-      run.result.steps[step].seconds = seconds[step] += run.result.steps[step].seconds;
-    if (!all_solved(run)) return run;
-    const double error = 100 * error_of(run);
+    MechanicsResult result = entry_.make(options)->solve_from(
+        cilium, path, part_of(checkpoint, name + ": "), with_prefix(progress, name + ", "));
+    bool is_solved = result.steps.size() == path.size();
+    for (std::size_t step = 0; step < std::min(result.steps.size(), path.size()); ++step) {
+      fail_unless_finite(result.steps[step]);
+      is_solved = is_solved && result.steps[step].status != Status::failed;
+      result.steps[step].seconds = seconds[step] += result.steps[step].seconds;
+    }
+    if (!is_solved) return result;
+    const double error = 100 * error_of(result);
     // Where the model does not know its error, it says why, and finer meshes are not tried.
     const bool is_last = i + 1 == refinement.values.size() || !std::isfinite(error);
     if (error > limit.percent && !is_last) continue;
-    const std::string result = outcome(name, error, limit);
-    for (MechanicsStep& step : run.result.steps)
+    const std::string reached = outcome(name, error, limit);
+    for (MechanicsStep& step : result.steps)
       if (step.status == Status::converged)
-        step.message += (step.message.empty() ? "" : "; ") + result;
-    return run;
+        step.message += (step.message.empty() ? "" : "; ") + reached;
+    return result;
   }
+}
+
+void fail_unless_finite(MechanicsStep& step) {
+  if (step.status != Status::converged) return;
+  const auto fail = [&](std::string message) {
+    step.status = Status::failed;
+    step.message = std::move(message);
+    step.deformation.reset();
+  };
+  if (!step.deformation || step.deformation->centreline.pieces().empty())
+    return fail("the model says converged but gave no deformation");
+  for (const double S : step.deformation->centreline.breaks()) {
+    const CentrelinePoint point = step.deformation->centreline.at(S);
+    if (!point.position.allFinite() || !point.rotation.coeffs().allFinite())
+      return fail("the deformation is not finite at S = " + std::to_string(S) + " m");
+  }
+}
+
+MechanicsRun run_mechanics(const MechanicsEntry& entry, const input::Case& problem,
+                           std::span<const FieldEntry> fields, const Progress& progress,
+                           const Checkpoint& checkpoint) {
+  return run_mechanics(entry.id, Evaluator(entry, problem, fields), problem, progress, checkpoint);
 }
 
 }  // namespace ciliaval::compare::models
