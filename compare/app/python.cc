@@ -30,7 +30,7 @@ fs::path package_folder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (const char* place : {"python", CILIAVAL_INSTALLED_PYTHON, "../.."}) {
-    const fs::path folder = (program / place).lexically_normal();
+    fs::path folder = (program / place).lexically_normal();
     if (!program.empty() && fs::exists(folder / "ciliaval" / "report" / "__main__.py", error))
       return folder;
   }

@@ -123,7 +123,7 @@ std::vector<Stage> mechanics_stages(const input::Case& problem, const MechanicsS
 }  // namespace
 
 std::string Stage::mechanics_name() const {
-  const std::string name =
+  std::string name =
       mechanics_variant.empty() ? mechanics : fmt::format("{}, {}", mechanics, mechanics_variant);
   switch (around) {
     case Around::nothing:
@@ -147,10 +147,10 @@ Chain make_chain(const input::Case& problem,
                  const std::vector<std::string>& without) {
   const MechanicsStages of_mechanics = stages_of(mechanics_entries, problem.options);
   FieldStages of_fields = stages_of(field_entries, problem.options);
-  const auto on_the_way =
-      std::ranges::stable_partition(of_fields, [](const auto& of) { return !of.stage.is_beside; });
-  const FieldStages of_beside(on_the_way.begin(), on_the_way.end());
-  of_fields.erase(on_the_way.begin(), on_the_way.end());
+  const auto on_the_way = std::stable_partition(of_fields.begin(), of_fields.end(),
+                                                [](const auto& of) { return !of.stage.is_beside; });
+  const FieldStages of_beside(on_the_way, of_fields.end());
+  of_fields.erase(on_the_way, of_fields.end());
   if (of_mechanics.empty() || of_fields.empty())
     throw InputError("no model says what it adds to the others: there is no budget");
   const std::vector<Stage> mechanics = mechanics_stages(problem, of_mechanics, of_fields.front());

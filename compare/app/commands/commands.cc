@@ -70,7 +70,7 @@ void Outputs::declare(CLI::App* command, const std::string& what, bool has_csv,
   if (figure != nullptr) add_plot(command, plot, figure);
 }
 
-void Outputs::check(std::vector<fs::path> inputs, const OptionalFile& other) const {
+void Outputs::check(const std::vector<fs::path>& inputs, const OptionalFile& other) const {
   output::check_outputs({json, csv, plot, other}, inputs);
 }
 

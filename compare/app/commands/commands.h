@@ -64,7 +64,8 @@ struct Outputs {
   void declare(CLI::App* command, const std::string& what, bool has_csv = false,
                const char* figure = nullptr);
   /// Throws InputError if one of them is one of the inputs or another output.
-  void check(std::vector<std::filesystem::path> inputs, const OptionalFile& other = {}) const;
+  void check(const std::vector<std::filesystem::path>& inputs,
+             const OptionalFile& other = {}) const;
   /// Writes those that are named, after the table: a full disk must not cost that. The figure comes
   /// last, because it needs Python.
   void write(const std::function<std::string()>& to_json,
