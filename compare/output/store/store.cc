@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -142,7 +143,9 @@ void Store::fail() const {
                     file_.string()));
   if (code == SQLITE_CORRUPT || code == SQLITE_NOTADB || code == SQLITE_ERROR)
     refuse(file_, "it is damaged: " + reason);
-  const int of_system = sqlite3_system_errno(database_.get());
+  // SQLite opens what may only be read, and fails at the lock.
+  const bool may_write = access(file_.c_str(), R_OK | W_OK) == 0 || errno == ENOENT;
+  const int of_system = may_write ? sqlite3_system_errno(database_.get()) : errno;
   const bool may_be_full = code == SQLITE_FULL || of_system == ENOSPC || of_system == EDQUOT ||
                            of_system == EFBIG || (code == SQLITE_IOERR && of_system == 0);
   throw CheckpointError(

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -294,6 +295,27 @@ TEST_F(StoreFile, OfAnotherOwnerIsRefusedAndLeftAsItIs) {
     EXPECT_TRUE(read_bytes(file_) == bytes);
   }
   EXPECT_THAT(Store(file_, {"solid", "beam"}).read("beam"), ElementsAre(Pair("1", "")));
+}
+
+TEST_F(StoreFile, WithoutPermissionSaysTheSystemsReason) {
+  fill(file_);
+  for (const mode_t mode : {0, 0444}) {
+    ASSERT_EQ(chmod(file_.c_str(), mode), 0);
+    chmod(folder_.c_str(), 0777);
+    const pid_t child = fork();
+    if (child == 0) {
+      // The superuser may do all.
+      if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(9);
+      const std::string said = refusal(file_);
+      const bool is_right = said.find("Permission denied") != std::string::npos &&
+                            said.find("make room") == std::string::npos;
+      if (!is_right) std::fprintf(stderr, "%s\n", said.c_str());
+      _exit(is_right ? 7 : 1);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 7) << mode;
+  }
 }
 
 TEST_F(StoreFile, ThroughALinkOrADeviceIsRefusedAndLeftAsItIs) {
