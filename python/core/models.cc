@@ -30,15 +30,24 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+/// What bend() gave: shared by the shapes of all loads, so that a long path takes no more than its
+/// results.
+struct BentPath {
+  input::Case problem;  ///< cilium, the mechanics model's options
+  models::MechanicsRun run;
+};
+
 /// One step of a bent cilium, with its companions, from which errors of fields follow.
 struct BentShape {
-  input::Case problem;  ///< cilium, this step's load, the mechanics model's options
-  models::MechanicsRun run;
+  std::shared_ptr<const BentPath> path;
+  std::size_t index = 0;  ///< of the step
 
-  const MechanicsStep& step() const { return run.result.steps.front(); }
+  const std::string& model() const { return path->run.model; }
+  const input::Case& problem() const { return path->problem; }
+  const MechanicsStep& step() const { return path->run.result.steps.at(index); }
   const Deformation& deformation() const {
     if (!step().deformation)
-      throw SolverError(fmt::format("{} has no equilibrium with this load ({}): {}", run.model,
+      throw SolverError(fmt::format("{} has no equilibrium with this load ({}): {}", model(),
                                     output::to_string(step().status), step().message));
     return *step().deformation;
   }
@@ -77,12 +86,10 @@ std::vector<BentShape> bend(const py::object& rod, const py::object& loads, cons
     const py::gil_scoped_release released;
     result = models::Evaluator(entry, problem, models::field_models()).solve(cilium, path, told);
   }
+  const auto bent =
+      std::make_shared<const BentPath>(BentPath{std::move(problem), {model, std::move(result)}});
   std::vector<BentShape> shapes;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    input::Case one = problem;
-    one.load_path = {path[i]};
-    shapes.push_back({std::move(one), {model, step_of(result, i)}});
-  }
+  for (std::size_t i = 0; i < path.size(); ++i) shapes.push_back({bent, i});
   return shapes;
 }
 
@@ -106,30 +113,30 @@ py::object with_mechanics(const models::AtSensors& own,
 /// State of a shape: its problem as the model's id, cilium, load and options, and its result.
 py::tuple state(const BentShape& shape) {
   py::dict options;
-  for (const auto& option : models::entry_of(models::mechanics_models(), shape.run.model).options)
-    options[py::str(std::string(option.name))] = option.get(shape.problem.options);
-  return py::make_tuple(build(), shape.run.model, packed(shape.problem.cilium),
-                        packed(shape.problem.load_path.front()), options, packed(shape.run.result));
+  for (const auto& option : models::entry_of(models::mechanics_models(), shape.model()).options)
+    options[py::str(std::string(option.name))] = option.get(shape.problem().options);
+  return py::make_tuple(build(), shape.model(), packed(shape.problem().cilium), options,
+                        packed(step_of(shape.path->run.result, shape.index)));
 }
 
 BentShape shape_of(const py::tuple& state) {
   require_own_build(state[0].cast<std::string>());
-  BentShape shape;
-  shape.run.model = state[1].cast<std::string>();
-  shape.problem.mechanics = {shape.run.model};
-  shape.problem.cilium = unpacked<Cilium>(state[2].cast<py::bytes>());
-  shape.problem.load_path = {unpacked<Load>(state[3].cast<py::bytes>())};
-  const auto& entry = models::entry_of(models::mechanics_models(), shape.run.model);
-  set_options(entry.id, entry.options, state[4].cast<py::dict>(), shape.problem.options);
-  shape.run.result = unpacked<MechanicsResult>(state[5].cast<py::bytes>());
-  return shape;
+  BentPath path;
+  path.run.model = state[1].cast<std::string>();
+  path.problem.mechanics = {path.run.model};
+  path.problem.cilium = unpacked<Cilium>(state[2].cast<py::bytes>());
+  const auto& entry = models::entry_of(models::mechanics_models(), path.run.model);
+  set_options(entry.id, entry.options, state[3].cast<py::dict>(), path.problem.options);
+  path.run.result = unpacked<MechanicsResult>(state[4].cast<py::bytes>());
+  return {std::make_shared<const BentPath>(std::move(path)), 0};
 }
 
 py::dict field(const BentShape& shape, const Array& where, const Text& model_name,
                const py::kwargs& options) {
   const std::string model = text(model_name, "model");
   const input::FieldEntry& entry = models::entry_of(models::field_models(), model);
-  input::Case problem = shape.problem;
+  input::Case problem = shape.problem();
+  problem.load_path = {shape.step().load};
   problem.sensors = points(where);
   problem.fields = {model};
   set_options(model, entry.options, options, problem.options);
@@ -139,7 +146,8 @@ py::dict field(const BentShape& shape, const Array& where, const Text& model_nam
   {
     const Progress told = progress(py::none());
     const py::gil_scoped_release released;
-    run = models::run_field(model, *entry.make(problem.options), shape.run, problem, told);
+    const models::MechanicsRun of_step{shape.model(), step_of(shape.path->run.result, shape.index)};
+    run = models::run_field(model, *entry.make(problem.options), of_step, problem, told);
   }
   const bool is_missing = !run.steps.front() || !run.steps.front()->any();
   if (is_missing && !problem.sensors.empty())
@@ -158,7 +166,7 @@ py::object magnetization_at(const BentShape& shape, const Array& where, const Te
                             const py::kwargs& options) {
   const std::string model = text(model_name, "model");
   const input::FieldEntry& entry = models::entry_of(models::field_models(), model);
-  input::ModelOptions chosen = shape.problem.options;
+  input::ModelOptions chosen = shape.problem().options;
   set_options(model, entry.options, options, chosen);
   const std::vector<Vector3> at = points(where);
   const Deformation& deformation = shape.deformation();
@@ -166,7 +174,7 @@ py::object magnetization_at(const BentShape& shape, const Array& where, const Te
   const Call call;
   {
     const py::gil_scoped_release released;
-    M = entry.make(chosen)->magnetization(shape.problem.cilium, deformation, at);
+    M = entry.make(chosen)->magnetization(shape.problem().cilium, deformation, at);
   }
   return array(M);
 }
@@ -316,8 +324,8 @@ void bind_models(py::module_& module) {
   const std::string& field_model = models::quick_one(models::field_models()).id;
   using ShapeClass = py::class_<BentShape>;
   ShapeClass(module, "Shape", "A bent cilium: one model's answer to one load. SI units.")
-      .def_property_readonly("model", [](const BentShape& s) { return s.run.model; })
-      .def_property_readonly("cilium", [](const BentShape& s) { return s.problem.cilium; })
+      .def_property_readonly("model", [](const BentShape& s) { return s.model(); })
+      .def_property_readonly("cilium", [](const BentShape& s) { return s.problem().cilium; })
       .def_property_readonly("load", [](const BentShape& s) { return s.step().load; })
       .def_property_readonly(
           "status",
@@ -363,7 +371,7 @@ void bind_models(py::module_& module) {
             const Call call;
             {
               const py::gil_scoped_release released;
-              forces = models::forces_on_magnets(s.problem.cilium, s.step());
+              forces = models::forces_on_magnets(s.problem().cilium, s.step());
             }
             py::dict result;
             for (const models::MagnetForce& on : forces)
@@ -414,10 +422,10 @@ void bind_models(py::module_& module) {
       .def(py::pickle(&state, &shape_of))
       .def("__repr__", [](const BentShape& s) {
         return s.step().deformation
-                   ? fmt::format("<Shape by {}: tip ({:.4g}, {:.4g}, {:.4g}) mm>", s.run.model,
+                   ? fmt::format("<Shape by {}: tip ({:.4g}, {:.4g}, {:.4g}) mm>", s.model(),
                                  1e3 * s.tip().position.x(), 1e3 * s.tip().position.y(),
                                  1e3 * s.tip().position.z())
-                   : fmt::format("<Shape by {}: {}>", s.run.model,
+                   : fmt::format("<Shape by {}: {}>", s.model(),
                                  output::to_string(s.step().status));
       });
 

@@ -56,7 +56,7 @@ class Bend(unittest.TestCase):
                 )
 
     def test_a_long_path_takes_memory_in_proportion(self):
-        """18 kB a load on the machine that this was written on; twice that is no square."""
+        """docs/measurements/program.md: 13 kB a load."""
         code = (
             "import sys, ciliaval as cv, test_core as t\n"
             "size = lambda: int(open('/proc/self/statm').read().split()[1]) * 4096\n"
@@ -69,7 +69,7 @@ class Bend(unittest.TestCase):
             [sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parent
         )
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertLess(float(done.stdout), 36e3)
+        self.assertLess(float(done.stdout), 20e3)
 
     def test_refines_the_solid_to_a_tolerance(self):
         """Oracle: the model's own estimate, by which the coarsest mesh misses 0.3 % and the next does not."""
