@@ -113,7 +113,7 @@ struct Entry {
   /// it takes but a moment.
   std::optional<std::vector<std::string_view>> checkpoint_without{};
 
-  /// Whether it takes a moment, in any thread, with rods.
+  /// True if it takes a moment, in any thread, with rods.
   bool is_quick() const { return !is_slow && !is_collective && !has_body; }
 };
 using MechanicsEntry = Entry<MechanicsModel>;

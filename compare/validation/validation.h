@@ -28,7 +28,7 @@ struct Point {
 
 /// One model, or pair of models, and the values of one measurand.
 struct Series {
-  std::string model;  ///< "solid", "beam/volume"
+  std::string model;  ///< its id, of a pair MECHANICS/FIELD
   std::string
       sensitivities_by;       ///< whose derivatives u_input is from; empty: no quick model has any
   std::vector<Point> points;  ///< in the order of the case
