@@ -11,8 +11,7 @@ problem:
 analytic: problem
 meshes: problem
 fem: problem
-fem/beam: problem analytic/joints fem/lanczos.h
-fem/end_problem: problem analytic/joints meshes fem
+fem/beam: problem fem/lanczos.h
 fem/potential: problem fem/parallel.h
 fem/solid: problem meshes fem
 fem/calculix: problem meshes fem

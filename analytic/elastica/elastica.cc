@@ -16,9 +16,9 @@
 #include "analytic/elastica/planar.h"
 #include "analytic/elastica/probe.h"
 #include "analytic/elastica/sweep_path.h"
-#include "analytic/joints/companions.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
+#include "problem/joints/companions.h"
 
 namespace ciliaval::analytic::elastica {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analytic/elastica/tip_contact.h"
-#include "analytic/joints/joints.h"
+#include "problem/joints/joints.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::analytic::elastica {

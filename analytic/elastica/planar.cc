@@ -9,8 +9,8 @@
 #include <numeric>
 #include <utility>
 
-#include "analytic/joints/shear_coefficient.h"
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
 #include "problem/lagrange.h"
 #include "problem/types.h"
 

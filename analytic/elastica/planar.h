@@ -7,9 +7,9 @@
 #include <optional>
 #include <vector>
 
-#include "analytic/joints/joints.h"
 #include "problem/centreline.h"
 #include "problem/cilium.h"
+#include "problem/joints/joints.h"
 #include "problem/load.h"
 
 /// The planar elastica without units, which both forms of analytic::Elastica solve: lengths in L,
@@ -24,8 +24,7 @@ enum class PlanarLoad {
   dead      ///< H = 1 − S, M = ∫_S^1 (z(σ) − z(S)) dσ
 };
 
-/// The second-order law of bending (analytic/joints/joints.h) without units: θ' = … + 2 p N M + g
-/// M³
+/// The second-order law of bending (problem/joints/joints.h) without units: θ' = … + 2 p N M + g M³
 /// + h M⁵, along the normal … + p M².
 struct PlanarLaw {
   double lengthening = 0;        ///< p
@@ -38,8 +37,8 @@ struct PlanarLaw {
   }
 };
 
-/// A joint (analytic/joints/joints.h): Δθ = a M + b Q, along the section b M + c Q, along its
-/// normal e N, and what its law adds.
+/// A joint (problem/joints/joints.h): Δθ = a M + b Q, along the section b M + c Q, along its normal
+/// e N, and what its law adds.
 struct PlanarJoint {
   double rotation = 0;      ///< a
   double coupling = 0;      ///< b

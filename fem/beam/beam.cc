@@ -7,7 +7,6 @@
 #include <optional>
 #include <sstream>
 
-#include "analytic/joints/companions.h"
 #include "fem/beam/centreline.h"
 #include "fem/beam/cilium_beam.h"
 #include "fem/beam/contact.h"
@@ -17,6 +16,7 @@
 #include "fem/beam/sweep/sweep.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
+#include "problem/joints/companions.h"
 
 namespace ciliaval::fem::beam {
 namespace {
@@ -33,7 +33,7 @@ void require_valid(const BeamOptions& options) {
 /// Dead and flow loads: the equilibrium is followed from the straight cilium to the load.
 class PathSolver {
  public:
-  PathSolver(Cilium cilium, BeamOptions options, analytic::joints::Corrections corrections)
+  PathSolver(Cilium cilium, BeamOptions options, joints::Corrections corrections)
       : cilium_(std::move(cilium)), options_(options), corrections_(std::move(corrections)) {}
 
   MechanicsStep solve(const Load& load, const PathProgress& progress) {
@@ -94,7 +94,7 @@ class PathSolver {
 
   Cilium cilium_;
   BeamOptions options_;
-  analytic::joints::Corrections corrections_;
+  joints::Corrections corrections_;
   std::optional<double> load_at_;
   std::optional<CiliumBeam> beam_;
   std::optional<double> eigenvalue_at_rest_;
@@ -135,7 +135,7 @@ MechanicsStep solve_step(const Cilium& cilium, const Load& load, PathSolver& pat
 
 std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path,
                                       const BeamOptions& options,
-                                      const analytic::joints::Corrections& corrections,
+                                      const joints::Corrections& corrections,
                                       const Progress& progress) {
   std::vector<MechanicsStep> steps;
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -186,8 +186,7 @@ void turn(MechanicsResult& result, const LoadPath& path, double angle) {
 }
 
 MechanicsResult solve_all(const Cilium& cilium, const LoadPath& path, const BeamOptions& options,
-                          const analytic::joints::Corrections& corrections,
-                          const Progress& progress) {
+                          const joints::Corrections& corrections, const Progress& progress) {
   MechanicsResult result;
   const CiliumBeam straight = cilium_beam(cilium, options);
   result.undeformed.centreline = centreline(straight.system, straight.system.reference_state());
@@ -214,13 +213,13 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
     turn(result, path, angle);
     return result;
   }
-  const bool corrects = options_.joints == analytic::joints::Correction::corrected;
+  const bool corrects = options_.joints == joints::Correction::corrected;
   if (corrects && is_sweep(path))
     throw InputError("beam: joints = \"corrected\" takes no sweep: take joints = \"none\"");
-  const analytic::joints::Corrections corrections =
-      corrects ? analytic::joints::corrections(cilium) : analytic::joints::Corrections{};
+  const joints::Corrections corrections =
+      corrects ? joints::corrections(cilium) : joints::Corrections{};
   MechanicsResult result = solve_all(cilium, path, options_, corrections, progress);
-  if (corrects) analytic::joints::remark_on_strains(cilium, result.steps);
+  if (corrects) joints::remark_on_strains(cilium, result.steps);
   if (options_.error_estimate) {
     BeamOptions higher = options_;
     higher.degree += companion_degrees;
@@ -231,11 +230,10 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
     for (std::size_t i = 0; i < path.size(); ++i)
       result.steps[i].seconds += result.companions.front().steps[i].seconds;
     if (corrects)
-      analytic::joints::add_companion(
-          result, cilium, corrections,
-          [&](const LoadPath& loads, const analytic::joints::Corrections& changed) {
-            return solve_path(cilium, loads, options_, changed, {});
-          });
+      joints::add_companion(result, cilium, corrections,
+                            [&](const LoadPath& loads, const joints::Corrections& changed) {
+                              return solve_path(cilium, loads, options_, changed, {});
+                            });
     estimate_errors(result);
     // Where it slips off, the force follows from the tip's height, to Newton's tolerance.
     for (MechanicsStep& step : result.steps)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include "analytic/joints/joints.h"
+#include "problem/joints/joints.h"
 #include "problem/mechanics_model.h"
 
 namespace ciliaval::fem::beam {
@@ -21,7 +21,7 @@ struct BeamOptions {
   bool error_estimate = true;    ///< by a companion of a higher degree; over half of the work
   /// Of other loads than a sweep. With error_estimate the error is the corrections' uncertainty,
   /// too.
-  analytic::joints::Correction joints = analytic::joints::Correction::none;
+  joints::Correction joints = joints::Correction::none;
 };
 
 /// Geometrically exact (Simo–Reissner) beam: bending, torsion, shear and extension, finite 3D

@@ -28,7 +28,7 @@ SectionStiffness stiffness(const Cilium& cilium, const Segment& s) {
 }
 
 Section segment_section(const Cilium& cilium, std::size_t segment, const BeamOptions& options,
-                        const analytic::joints::Corrections& corrections) {
+                        const joints::Corrections& corrections) {
   const Segment& s = cilium.segments[segment];
   Section law = section(stiffness(cilium, s));
   if (options.shear_rigid) return rigid_in_shear(law);
@@ -49,8 +49,7 @@ void append(Mesh& mesh, double end, const Section& law, const BeamOptions& optio
 }
 
 /// Appends the joint below segment k.
-void append_joint(Mesh& mesh, double S, const analytic::joints::Corrections& corrections,
-                  std::size_t k) {
+void append_joint(Mesh& mesh, double S, const joints::Corrections& corrections, std::size_t k) {
   if (corrections.empty()) return;
   if (mesh.vertices.empty()) mesh.vertices.push_back(S);
   mesh.vertices.push_back(S);
@@ -67,8 +66,7 @@ CiliumBeam finished(Mesh mesh, std::size_t loaded, const Cilium& cilium) {
 }  // namespace
 
 CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
-                       std::optional<double> load_at,
-                       const analytic::joints::Corrections& corrections) {
+                       std::optional<double> load_at, const joints::Corrections& corrections) {
   const std::vector<double> ends = cilium.interfaces();
   const double L = ends.back();
   Mesh mesh;
@@ -90,7 +88,7 @@ CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
 
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
                                           std::size_t host,
-                                          const analytic::joints::Corrections& corrections) {
+                                          const joints::Corrections& corrections) {
   const std::vector<double> ends = cilium.interfaces();
   const std::size_t n = std::size_t{1} << options.refinement;
   Mesh mesh;

@@ -24,13 +24,13 @@ struct CiliumBeam {
 /// corrected, is an element of length zero below its segment; a load at an interface acts below it.
 CiliumBeam cilium_beam(const Cilium& cilium, const BeamOptions& options,
                        std::optional<double> load_at = {},
-                       const analytic::joints::Corrections& corrections = {});
+                       const joints::Corrections& corrections = {});
 
 /// The same with a vertex that moves inside segment `host`, at S_host + s for State::shift s: the
 /// elements of the host below and above it stretch and shrink in proportion and may vanish.
 CiliumBeam cilium_beam_with_moving_vertex(const Cilium& cilium, const BeamOptions& options,
                                           std::size_t host,
-                                          const analytic::joints::Corrections& corrections = {});
+                                          const joints::Corrections& corrections = {});
 
 /// Weight and field of the environment that acts under the load.
 Loads environment_loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam);

@@ -107,7 +107,7 @@ struct SunkTip {
   double deflection = 0;  ///< m
 };
 std::optional<SunkTip> force_that_sinks_the_tip(const Cilium& cilium, const BeamOptions& options,
-                                                const analytic::joints::Corrections& corrections,
+                                                const joints::Corrections& corrections,
                                                 const Load& load, int& iterations) {
   const double height = contact_height(load).value();
   CiliumBeam beam = cilium_beam(cilium, options, cilium.length(), corrections);

@@ -17,7 +17,7 @@ namespace ciliaval::fem::beam {
 /// segment the contact slips off.
 class ContactSolver {
  public:
-  ContactSolver(Cilium cilium, BeamOptions options, analytic::joints::Corrections corrections)
+  ContactSolver(Cilium cilium, BeamOptions options, joints::Corrections corrections)
       : cilium_(std::move(cilium)), options_(options), corrections_(std::move(corrections)) {}
 
   /// From the cilium that the environment alone bends; nothing of an earlier load is kept. The load
@@ -72,7 +72,7 @@ class ContactSolver {
 
   Cilium cilium_;
   BeamOptions options_;
-  analytic::joints::Corrections corrections_;
+  joints::Corrections corrections_;
   std::optional<CiliumBeam> beam_;
   Loaded current_;
   Loads applied_;

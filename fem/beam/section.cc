@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "analytic/joints/shear_coefficient.h"
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
 
 namespace ciliaval::fem::beam {
 
@@ -43,7 +43,7 @@ SectionStiffness circular_section(double diameter, double young_modulus, double 
   const double area = std::numbers::pi * diameter * diameter / 4;
   const double I = std::numbers::pi * std::pow(diameter, 4) / 64;
   const double G = young_modulus / (2 * (1 + poisson_ratio));
-  const double kGA = analytic::joints::cowper_shear_coefficient(poisson_ratio) * G * area;
+  const double kGA = joints::cowper_shear_coefficient(poisson_ratio) * G * area;
   return {.EA = young_modulus * area,
           .kGA1 = kGA,
           .kGA2 = kGA,
@@ -85,7 +85,7 @@ SectionStiffness rectangular_section(double a, double b, double young_modulus,
           .EI2 = young_modulus * std::pow(a, 3) * b / 12};
 }
 
-Section joint_section(const analytic::joints::Joint& joint) {
+Section joint_section(const joints::Joint& joint) {
   return {{joint.displacement, joint.displacement, joint.extension},
           {joint.rotation, joint.rotation, 0},
           joint.coupling,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-#include "analytic/joints/joints.h"
+#include "problem/joints/joints.h"
 #include "problem/types.h"
 
 namespace ciliaval::fem::beam {
@@ -15,7 +15,7 @@ struct Section {
   /// The entries are of the jumps across an element of any length, also zero: times m. They may be
   /// negative.
   bool is_joint = false;
-  analytic::joints::BendingLaw beyond{};  ///< small strains; zero: linear
+  joints::BendingLaw beyond{};  ///< small strains; zero: linear
 
   /// Γ and K, of a joint the jumps.
   Vector3 force_strain(const Vector3& n, const Vector3& m) const {
@@ -73,7 +73,7 @@ SectionStiffness rectangular_section(double a, double b, double young_modulus,
                                      double poisson_ratio);
 
 /// The jumps of a joint.
-Section joint_section(const analytic::joints::Joint& joint);
+Section joint_section(const joints::Joint& joint);
 
 /// The same section without shear and extension: C_n = 0, Kirchhoff's inextensible rod.
 Section rigid_in_shear(const Section& section);

@@ -24,8 +24,8 @@
 #include <cstddef>
 #include <numbers>
 
-#include "analytic/joints/shear_coefficient.h"
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
 
 namespace ciliaval::fem::end_problem {
 namespace {
@@ -280,7 +280,7 @@ Excess excess(const std::vector<Bar>& bars, Base base, double z, const Resolutio
     const double EI = bar.young_modulus * second_moment;
     const double EA = bar.young_modulus * area;
     const double kGA =
-        analytic::joints::energy_shear_coefficient(bar.poisson_ratio) * shear_modulus(bar) * area;
+        joints::energy_shear_coefficient(bar.poisson_ratio) * shear_modulus(bar) * area;
     const double from = z - begin;  // arms of Q
     const double to = from - bar.length;
     result.rotation -= bar.length / EI;

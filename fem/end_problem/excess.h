@@ -17,7 +17,7 @@ struct Bar {
 /// Compliance beyond that of Saint-Venant's solution in each bar, in units of 1/E and the diameter:
 /// a quadratic form in the moment M and the shear force Q at a height z, and in the axial force N.
 /// The bars' own compliance is that of a Timoshenko beam with the shear coefficient of the energy
-/// (analytic/joints/shear_coefficient.h): with Cowper's the end faces' moments would appear beside
+/// (problem/joints/shear_coefficient.h): with Cowper's the end faces' moments would appear beside
 /// it.
 struct Excess {
   double rotation = 0;      ///< of M by M

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How many diameters of the bending law a joint takes away (layer() in analytic/joints/joints.cc):
-// a bar between a clamp and a stiffer body of 10 diameters, bent by a force on a section of that,
+// How many diameters of the bending law a joint takes away (layer() in problem/joints/joints.cc): a
+// bar between a clamp and a stiffer body of 10 diameters, bent by a force on a section of that,
 // once by the solid and once by the beam. Differences at a small load, of the meshes, are taken
 // off.
 //   cmake --build build/release --target joint_layers && build/release/fem/joint_layers
@@ -12,12 +12,12 @@
 #include <exception>
 #include <vector>
 
-#include "analytic/joints/joints.h"
 #include "fem/beam/centreline.h"
 #include "fem/beam/cilium_beam.h"
 #include "fem/beam/newton.h"
 #include "fem/solid/solid.h"
 #include "problem/error.h"
+#include "problem/joints/joints.h"
 
 namespace {
 
@@ -48,12 +48,12 @@ CentrelinePoint pose(const Bar& bar, const Centreline& line) {
 
 CentrelinePoint by_beam(const Bar& bar, double strain, const Layers& layers) {
   const Cilium cilium = bar.cilium();
-  analytic::joints::Corrections corrections = analytic::joints::corrections(cilium);
-  const analytic::joints::BendingLaw& law = corrections.laws[0];
-  for (analytic::joints::Joint& joint : corrections.joints)
+  joints::Corrections corrections = joints::corrections(cilium);
+  const joints::BendingLaw& law = corrections.laws[0];
+  for (joints::Joint& joint : corrections.joints)
     joint.beyond = {-layers[1] * d * law.lengthening, -layers[0] * d * law.softening,
                     -layers[0] * d * law.further_softening};
-  const fem::beam::BeamOptions options{.joints = analytic::joints::Correction::corrected};
+  const fem::beam::BeamOptions options{.joints = joints::Correction::corrected};
   const Load load = bar.load(strain);
   fem::beam::CiliumBeam beam =
       fem::beam::cilium_beam(cilium, options, bar.load(strain).arclength, corrections);
@@ -103,7 +103,7 @@ Layers layers_of(const Bar& bar, double strain) {
 int main() {
   try {
     fmt::print(
-        "mean of the two joints, in diameters; in use: that of analytic::joints::corrections()\n"
+        "mean of the two joints, in diameters; in use: that of joints::corrections()\n"
         "{:>6} {:>7} {:>6} {:>7} {:>10} {:>7} {:>12} {:>7}\n",
         "nu", "E/E", "L/d", "strain", "softening", "in use", "lengthening", "in use");
     for (const double poisson : {0.3, 0.4, 0.49})
@@ -112,16 +112,15 @@ int main() {
           for (const double strain : {0.15, 0.3}) {
             const Bar bar{poisson, ratio, length};
             const auto [softening, lengthening] = layers_of(bar, strain);
-            const auto joints = analytic::joints::corrections(bar.cilium()).joints;
-            const analytic::joints::BendingLaw law =
-                analytic::joints::bending_law(d, bar.cilium().segments[0]);
-            const auto in_use = [&](double analytic::joints::BendingLaw::*part) {
+            const auto joints = joints::corrections(bar.cilium()).joints;
+            const joints::BendingLaw law = joints::bending_law(d, bar.cilium().segments[0]);
+            const auto in_use = [&](double joints::BendingLaw::*part) {
               return -(joints[0].beyond.*part + joints[1].beyond.*part) / (2 * d * law.*part);
             };
             fmt::print("{:6.2f} {:7.4f} {:6.2f} {:7.2f} {:10.3f} {:7.3f} {:12.3f} {:7.3f}\n",
                        poisson, ratio, length, strain, softening,
-                       in_use(&analytic::joints::BendingLaw::softening), lengthening,
-                       in_use(&analytic::joints::BendingLaw::lengthening));
+                       in_use(&joints::BendingLaw::softening), lengthening,
+                       in_use(&joints::BendingLaw::lengthening));
             std::fflush(stdout);
           }
     return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Makes analytic/joints/table.cc, on standard output:
+// Makes problem/joints/table.cc, on standard output:
 //   cmake --build build/release --target joint_table && build/release/fem/joint_table > table.cc
 #include <fmt/format.h>
 
@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "analytic/joints/joints.h"
-#include "analytic/joints/table.h"
 #include "fem/end_problem/excess.h"
+#include "problem/joints/joints.h"
+#include "problem/joints/table.h"
 
 namespace {
 
-namespace problem = ciliaval::analytic::joints;
+namespace problem = ciliaval::joints;
 using ciliaval::fem::end_problem::Bar;
 using ciliaval::fem::end_problem::Base;
 using ciliaval::fem::end_problem::Excess;
@@ -100,8 +100,8 @@ int main() {
       "// SPDX-License-Identifier: LGPL-2.1-or-later\n"
       "// Made by fem/end_problem/make_table.cc; not to be edited.\n"
       "// clang-format off\n"
-      "#include \"analytic/joints/table.h\"\n\n"
-      "namespace ciliaval::analytic::joints {{\n\n"
+      "#include \"problem/joints/table.h\"\n\n"
+      "namespace ciliaval::joints {{\n\n"
       "const Entry alone[n_poisson][n_poisson][n_ratio] = {{\n");
   const std::vector<double> poisson = poisson_nodes();
   const std::vector<double> ratios = ratio_nodes();
@@ -118,5 +118,5 @@ int main() {
       print_row(segments_between(nu, t), t == ratios.front(), t == ratios.back());
       tell(done += n_length, all);
     }
-  fmt::print("}};\n\n}}  // namespace ciliaval::analytic::joints\n");
+  fmt::print("}};\n\n}}  // namespace ciliaval::joints\n");
 }

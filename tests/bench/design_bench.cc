@@ -29,7 +29,7 @@ const std::vector<RandomCase>& drawn(const std::string& type_of_load) {
 }
 
 void evaluate(benchmark::State& state, const std::string& type_of_load,
-              analytic::joints::Correction correction) {
+              joints::Correction correction) {
   const std::vector<RandomCase>& cases = drawn(type_of_load);
   const analytic::elastica::Elastica elastica({.joints = correction, .error_estimate = false});
   const analytic::rod::VolumeField volume;
@@ -46,12 +46,12 @@ void evaluate(benchmark::State& state, const std::string& type_of_load,
   state.counters["solved"] = static_cast<double>(solved) / static_cast<double>(next);
 }
 
-BENCHMARK_CAPTURE(evaluate, contact_plain, "contact", analytic::joints::Correction::none);
-BENCHMARK_CAPTURE(evaluate, contact_corrected, "contact", analytic::joints::Correction::corrected);
-BENCHMARK_CAPTURE(evaluate, section_plain, "section", analytic::joints::Correction::none);
-BENCHMARK_CAPTURE(evaluate, section_corrected, "section", analytic::joints::Correction::corrected);
-BENCHMARK_CAPTURE(evaluate, flow_plain, "flow", analytic::joints::Correction::none);
-BENCHMARK_CAPTURE(evaluate, flow_corrected, "flow", analytic::joints::Correction::corrected);
+BENCHMARK_CAPTURE(evaluate, contact_plain, "contact", joints::Correction::none);
+BENCHMARK_CAPTURE(evaluate, contact_corrected, "contact", joints::Correction::corrected);
+BENCHMARK_CAPTURE(evaluate, section_plain, "section", joints::Correction::none);
+BENCHMARK_CAPTURE(evaluate, section_corrected, "section", joints::Correction::corrected);
+BENCHMARK_CAPTURE(evaluate, flow_plain, "flow", joints::Correction::none);
+BENCHMARK_CAPTURE(evaluate, flow_corrected, "flow", joints::Correction::corrected);
 
 }  // namespace
 }  // namespace ciliaval::test

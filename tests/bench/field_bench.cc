@@ -124,7 +124,7 @@ void corrected_elastica_solve(benchmark::State& run, bool error_estimate) {
   const Cilium cilium = magnetic_cilium();
   const LoadPath path{paper_load()};
   elastica::ElasticaOptions options;
-  options.joints = analytic::joints::Correction::corrected;
+  options.joints = joints::Correction::corrected;
   options.error_estimate = error_estimate;
   const elastica::Elastica model(options);
   for (auto _ : run) benchmark::DoNotOptimize(model.solve(cilium, path).steps.data());

@@ -114,8 +114,8 @@ void print_quantiles(const std::string& name, std::vector<double> values) {
 void compare(std::uint32_t designs, std::uint32_t first_seed) {
   using fem::beam::Beam;
   const Beam plain;
-  const Beam corrected({.joints = analytic::joints::Correction::corrected});
-  const analytic::elastica::Elastica elastica({.joints = analytic::joints::Correction::corrected});
+  const Beam corrected({.joints = joints::Correction::corrected});
+  const analytic::elastica::Elastica elastica({.joints = joints::Correction::corrected});
   const std::vector<std::pair<std::string, const MechanicsModel*>> models{
       {"beam", &plain}, {"corrected beam", &corrected}, {"corrected elastica", &elastica}};
   std::vector<Rod> rods;

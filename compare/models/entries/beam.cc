@@ -11,7 +11,7 @@ namespace {
 using fem::beam::BeamOptions;
 
 std::vector<input::BudgetStage> budget_stages(const input::ModelOptions& options) {
-  using analytic::joints::Correction;
+  using joints::Correction;
   std::vector<input::BudgetStage> stages{{.physics = "shear and extension of the rod",
                                           .set = set(&BeamOptions::joints, Correction::none)}};
   if (options.of<BeamOptions>().joints == Correction::corrected)

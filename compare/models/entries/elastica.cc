@@ -67,7 +67,7 @@ void refuse_magnets(const input::CaseCheck& check) {
 void check_corrected(const input::CaseCheck& check) {
   const auto& options = check.problem.options.of<ElasticaOptions>();
   check_joints(check, "elastica", options.joints);
-  if (options.joints == analytic::joints::Correction::none) return;
+  if (options.joints == joints::Correction::none) return;
   constexpr const char* option = "models.elastica.joints";
   if (options.form == ElasticaOptions::Form::height)
     check.report(option,
@@ -115,7 +115,7 @@ input::MechanicsEntry elastica() {
           [](const input::ModelOptions&) {
             return std::vector<input::BudgetStage>{
                 {.physics = "elastica",
-                 .set = set(&ElasticaOptions::joints, analytic::joints::Correction::none)}};
+                 .set = set(&ElasticaOptions::joints, joints::Correction::none)}};
           },
       .hasten = set(&ElasticaOptions::error_estimate, false),
   };

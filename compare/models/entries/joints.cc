@@ -9,14 +9,14 @@
 namespace ciliaval::compare::models::entries {
 
 void check_joints(const input::CaseCheck& check, std::string_view model,
-                  analytic::joints::Correction correction) {
-  if (!check.is_asked_for || correction == analytic::joints::Correction::none) return;
+                  joints::Correction correction) {
+  if (!check.is_asked_for || correction == joints::Correction::none) return;
   const std::string option = fmt::format("models.{}.joints", model);
   if (check.load_is_right && check.problem.load_path.front().is<SweepLoad>())
     return check.report(option, "the corrected joints take no sweep: use joints = 'none'");
   if (!check.cilium_is_right) return;
   try {
-    analytic::joints::corrections(check.problem.cilium);
+    joints::corrections(check.problem.cilium);
   } catch (const InputError& error) {
     check.report(option, error.what());
   }

@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "analytic/joints/joints.h"
 #include "compare/input/model_entry.h"
+#include "problem/joints/joints.h"
 
 /// The option `joints` of the rods.
 namespace ciliaval::compare::models::entries {
@@ -14,13 +14,12 @@ inline constexpr std::string_view joints_doc =
     "as stiff as in the solid, large strains of bending soften as in neo-Hooke's, and what the "
     "corrections are uncertain by counts as the model's error.";
 
-inline input::Choices<analytic::joints::Correction> corrections() {
-  return {{"none", analytic::joints::Correction::none},
-          {"corrected", analytic::joints::Correction::corrected}};
+inline input::Choices<joints::Correction> corrections() {
+  return {{"none", joints::Correction::none}, {"corrected", joints::Correction::corrected}};
 }
 
 /// Reports, at the option of the model, what the corrections do not reach: the cilium, or a sweep.
 void check_joints(const input::CaseCheck& check, std::string_view model,
-                  analytic::joints::Correction correction);
+                  joints::Correction correction);
 
 }  // namespace ciliaval::compare::models::entries

@@ -343,9 +343,8 @@ TEST(Chain, FollowsTheCase) {
 
 TEST(Chain, HasALinkForTheJoints) {
   input::Case problem = test::paper_case({1e-3});
-  problem.options.of<fem::beam::BeamOptions>().joints = analytic::joints::Correction::corrected;
-  problem.options.of<analytic::elastica::ElasticaOptions>().joints =
-      analytic::joints::Correction::corrected;
+  problem.options.of<fem::beam::BeamOptions>().joints = joints::Correction::corrected;
+  problem.options.of<analytic::elastica::ElasticaOptions>().joints = joints::Correction::corrected;
   const budget::Chain chain = chain_of(problem, {"mesh", "potential"});
   EXPECT_THAT(names(chain.stages),
               ElementsAre("elastica/line", "beam/line", "beam, joints corrected/line", "solid/line",
@@ -357,8 +356,7 @@ TEST(Chain, HasALinkForTheJoints) {
                             ? options.of<analytic::elastica::ElasticaOptions>().joints
                             : options.of<fem::beam::BeamOptions>().joints;
     if (stage.mechanics != "solid")  // which has no corrections
-      EXPECT_EQ(joints == analytic::joints::Correction::corrected,
-                stage.mechanics_name() != stage.mechanics);
+      EXPECT_EQ(joints == joints::Correction::corrected, stage.mechanics_name() != stage.mechanics);
   }
   EXPECT_THAT(
       names(chain_of(problem, {"solid", "mesh", "potential"}).stages),

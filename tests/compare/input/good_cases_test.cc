@@ -369,7 +369,7 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().degree, 2U);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().refinement, 4U);
   EXPECT_TRUE(o.of<fem::beam::BeamOptions>().shear_rigid);
-  EXPECT_EQ(o.of<fem::beam::BeamOptions>().joints, analytic::joints::Correction::corrected);
+  EXPECT_EQ(o.of<fem::beam::BeamOptions>().joints, joints::Correction::corrected);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().tolerance, 1e-8);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_iterations, 11U);
   EXPECT_EQ(o.of<fem::beam::BeamOptions>().max_cutbacks, 3U);
@@ -379,8 +379,7 @@ TEST(Options, ReachTheOptionsOfTheirModel) {
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().material,
             fem::solid::SolidOptions::Material::mooney_rivlin);
   EXPECT_EQ(mooney.of<fem::solid::SolidOptions>().mooney_ratio, 0.1);
-  EXPECT_EQ(mooney.of<analytic::elastica::ElasticaOptions>().joints,
-            analytic::joints::Correction::corrected);
+  EXPECT_EQ(mooney.of<analytic::elastica::ElasticaOptions>().joints, joints::Correction::corrected);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().method, analytic::rod::Method::uniform);
   EXPECT_EQ(mooney.of<analytic::rod::LineOptions>().elements, 7U);
   EXPECT_EQ(mooney.of<analytic::rod::VolumeOptions>().method, analytic::rod::Method::uniform);

@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "analytic/elastica/elastica.h"
-#include "analytic/joints/companions.h"
 #include "analytic/rod/field_models.h"
 #include "fem/beam/beam.h"
 #include "fem/beam/cilium_beam.h"
 #include "fem/beam/section.h"
 #include "fem/beam/stability/stability.h"
 #include "problem/error.h"
+#include "problem/joints/companions.h"
 #include "problem/lagrange.h"
 #include "problem/surroundings/surface.h"
 
@@ -35,14 +35,14 @@ constexpr double degree = std::numbers::pi / 180;
 
 ElasticaOptions corrected_elastica(bool error_estimate = false) {
   ElasticaOptions options;
-  options.joints = analytic::joints::Correction::corrected;
+  options.joints = joints::Correction::corrected;
   options.error_estimate = error_estimate;
   return options;
 }
 
 BeamOptions corrected_beam(bool error_estimate = false) {
   BeamOptions options;
-  options.joints = analytic::joints::Correction::corrected;
+  options.joints = joints::Correction::corrected;
   options.error_estimate = error_estimate;
   return options;
 }
@@ -76,7 +76,7 @@ CentrelinePoint tip(const MechanicsStep& step) {
 /// The tip's deflection and angle under a small dead force on it, per force: of the segments'
 /// bending and shear, and at each joint, l below the tip, a l² + 2 b l + c and a l + b.
 std::pair<double, double> response(const Cilium& cilium) {
-  const analytic::joints::Corrections corrections = analytic::joints::corrections(cilium);
+  const joints::Corrections corrections = joints::corrections(cilium);
   const std::vector<double> ends = cilium.interfaces();
   double w = 0;
   double theta = 0;
@@ -85,7 +85,7 @@ std::pair<double, double> response(const Cilium& cilium) {
     const auto k = fem::beam::circular_section(cilium.diameter, s.young_modulus, s.poisson_ratio);
     const double below = ends.back() - ends[i];
     const double above = ends.back() - ends[i + 1];
-    const analytic::joints::Joint& joint = corrections.joints[i];
+    const joints::Joint& joint = corrections.joints[i];
     w += (std::pow(below, 3) - std::pow(above, 3)) / (3 * k.EI1) + s.length / k.kGA1 +
          joint.rotation * below * below + 2 * joint.coupling * below + joint.displacement;
     theta +=
@@ -202,7 +202,7 @@ int unstable_modes(double lambda, double a) {
   const Cilium rod{d, {{"rod", 1, 64 / (std::numbers::pi * std::pow(d, 4)), 0.3, 1 / area}}};
   BeamOptions options;
   options.shear_rigid = true;
-  const analytic::joints::Corrections corrections{{{.rotation = a}}, {{}}};
+  const joints::Corrections corrections{{{.rotation = a}}, {{}}};
   fem::beam::CiliumBeam beam = fem::beam::cilium_beam(rod, options, {}, corrections);
   fem::beam::State state = beam.system.reference_state();
   const fem::beam::Loads loads = fem::beam::loads(
@@ -253,7 +253,7 @@ TEST(Joints, OfTheElasticaAreInEquilibriumAndObeyTheirLaw) {
   int judged = 0;
   for (int n = 0; n < 8; ++n) {
     const Cilium cilium = random_cilium(engine);
-    const analytic::joints::Corrections corrections = analytic::joints::corrections(cilium);
+    const joints::Corrections corrections = joints::corrections(cilium);
     for (const Load& any : loads_on(cilium)) {
       const Load load = turning(cilium, any, 45 * degree);
       const Vector3 e = direction(load);
@@ -283,7 +283,7 @@ TEST(Joints, OfTheElasticaAreInEquilibriumAndObeyTheirLaw) {
         const double theta = (angle(lower) + angle(upper)) / 2;
         const Vector3 normal = std::cos(theta) * Vector3::UnitZ() + std::sin(theta) * e;
         const Vector3 across = std::cos(theta) * e - std::sin(theta) * Vector3::UnitZ();
-        const analytic::joints::Joint& joint = corrections.joints[i];
+        const joints::Joint& joint = corrections.joints[i];
         const double Q = H * std::cos(theta);
         const double N = H * std::sin(theta);
         const auto& [p, g, h] = joint.beyond;
@@ -379,7 +379,7 @@ TEST(Joints, SayWhereTheyAreOutOfTheirDomain) {
     const MechanicsStep step = solved(Elastica(corrected_elastica()), paper(), load);
     const MechanicsStep beam = solved(Beam(corrected_beam()), paper(), load);
     const double strain = step.deformation->centreline.at(0).bending_curvature() * 1.5e-3;
-    const bool is_outside = strain > analytic::joints::largest_strain;
+    const bool is_outside = strain > joints::largest_strain;
     EXPECT_EQ(is_outside, F > 2e-3) << strain;
     for (const MechanicsStep& each : {step, beam}) {
       EXPECT_EQ(each.message.empty(), !is_outside) << each.message;

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <vector>
 
-#include "analytic/joints/joints.h"
 #include "fem/solid/material/hyperelastic.h"
+#include "problem/joints/joints.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 namespace {
 
 using fem::solid::material::Hyperelastic;
@@ -181,4 +181,4 @@ TEST(BendingLaw, TensionSoftensBending) {
 }
 
 }  // namespace
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

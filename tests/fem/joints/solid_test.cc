@@ -22,7 +22,7 @@ Cilium two_segments(double length, double poisson, double ratio) {
 }
 
 MechanicsResult corrected(const Cilium& cilium, const LoadPath& path) {
-  return beam::Beam({.joints = analytic::joints::Correction::corrected}).solve(cilium, path);
+  return beam::Beam({.joints = joints::Correction::corrected}).solve(cilium, path);
 }
 
 /// Displacement of the tip, m.

@@ -9,12 +9,12 @@
 #include <random>
 #include <vector>
 
-#include "analytic/joints/joints.h"
-#include "analytic/joints/shear_coefficient.h"
 #include "fem/end_problem/excess.h"
 #include "problem/error.h"
+#include "problem/joints/joints.h"
+#include "problem/joints/shear_coefficient.h"
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 namespace {
 
 using fem::end_problem::Bar;
@@ -130,4 +130,4 @@ TEST(JointTable, SaysWhereItEnds) {
 }
 
 }  // namespace
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

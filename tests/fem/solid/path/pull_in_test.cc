@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "analytic/joints/joints.h"
 #include "fem/beam/beam.h"
 #include "fem/solid/solid.h"
+#include "problem/joints/joints.h"
 #include "problem/support/rotation.h"
 #include "tests/fem/solid/cilia.h"
 
@@ -44,7 +44,7 @@ TEST(SolidPullInSlow, AgreesWithTheBeam) {
   const auto steps = Solid(options).solve(stub_and_magnet(), path).steps;
   ASSERT_EQ(steps[0].status, Status::pulled_in) << steps[0].message;
   const continuation::PullIn& solid = *steps[0].pull_in;
-  const MechanicsStep beam = beam::Beam({.joints = analytic::joints::Correction::corrected})
+  const MechanicsStep beam = beam::Beam({.joints = joints::Correction::corrected})
                                  .solve(stub_and_magnet(), {path[0]})
                                  .steps[0];
   ASSERT_EQ(beam.status, Status::pulled_in) << beam.message;

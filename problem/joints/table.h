@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 
 /// An excess compliance in units of the softer material: d/EI, d²/EI, d³/EI and d/EA.
 struct Entry {
@@ -38,4 +38,4 @@ extern const Entry alone[n_poisson][n_poisson][n_ratio];
 /// has beyond its two joints alone, M taken at its middle.
 extern const Entry together[n_poisson][n_ratio][n_length];
 
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

@@ -4,10 +4,10 @@
 #include <functional>
 #include <vector>
 
-#include "analytic/joints/joints.h"
+#include "problem/joints/joints.h"
 #include "problem/mechanics_model.h"
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 
 /// Largest strain ε = |κ| d/2 of bending up to which the corrections were compared with the solid.
 inline constexpr double largest_strain = 0.6;
@@ -31,4 +31,4 @@ void add_companion(MechanicsResult& result, const Cilium& cilium, Corrections co
 /// Adds a remark to the converged steps in which the ε of a segment is above largest_strain.
 void remark_on_strains(const Cilium& cilium, std::vector<MechanicsStep>& steps);
 
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "analytic/joints/companions.h"
+#include "problem/joints/companions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include "problem/error_estimate.h"
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 
 std::vector<double> strains(const Cilium& cilium, const Centreline& centreline) {
   std::vector<double> result(cilium.segments.size(), 0);
@@ -55,4 +55,4 @@ void remark_on_strains(const Cilium& cilium, std::vector<MechanicsStep>& steps) 
   }
 }
 
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 
 /// Cowper's shear coefficient of a circle, k = 6(1+ν)/(7+6ν), of mean displacements (G. R. Cowper,
 /// The shear coefficient in Timoshenko's beam theory, J. Appl. Mech. 33, 1966, Eq. 34).
@@ -16,4 +16,4 @@ constexpr double energy_shear_coefficient(double nu) {
   return 6 * (1 + nu) * (1 + nu) / (7 + 14 * nu + 8 * nu * nu);
 }
 
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Made by fem/end_problem/make_table.cc; not to be edited.
 // clang-format off
-#include "analytic/joints/table.h"
+#include "problem/joints/table.h"
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 
 const Entry alone[n_poisson][n_poisson][n_ratio] = {
 {{{-5.29926e-11, -3.76620e-12, -1.62682e-03, -1.21176e-11},
@@ -557,4 +557,4 @@ const Entry together[n_poisson][n_ratio][n_length] = {
 {2.37029e-08, 1.71285e-08, 1.20969e-08, 4.44787e-08}}},
 };
 
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "analytic/joints/joints.h"
+#include "problem/joints/joints.h"
 
 #include <algorithm>
 #include <array>
@@ -9,12 +9,12 @@
 #include <string>
 #include <utility>
 
-#include "analytic/joints/shear_coefficient.h"
-#include "analytic/joints/table.h"
 #include "problem/error.h"
+#include "problem/joints/shear_coefficient.h"
+#include "problem/joints/table.h"
 #include "problem/lagrange.h"
 
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 namespace {
 
 constexpr double half_ratio = 0.2;  // κ
@@ -262,4 +262,4 @@ Corrections uncertainties(const Cilium& cilium) {
   return result;
 }
 
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints

@@ -8,7 +8,7 @@
 /// What a rod's joints, its clamp and the interfaces of its segments, really do: beside a bonded
 /// interface of two materials the section can neither contract nor warp as the rod assumes, over
 /// about a diameter. docs/theory/joints.md has the derivation and the table.
-namespace ciliaval::analytic::joints {
+namespace ciliaval::joints {
 
 /// Whether a rod corrects its joints; `none` is the paper's model.
 enum class Correction { none, corrected };
@@ -60,4 +60,4 @@ Corrections corrections(const Cilium& cilium);
 /// and left out of it (docs/theory/joints.md).
 Corrections uncertainties(const Cilium& cilium);
 
-}  // namespace ciliaval::analytic::joints
+}  // namespace ciliaval::joints
