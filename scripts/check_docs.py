@@ -47,6 +47,8 @@ for name, text in texts.items():
 
 tests = {f"{suite}.{test}" for name, text in texts.items() if name.startswith("tests/")
          for suite, test in re.findall(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", text, flags=re.M)}
+tests |= {f"{pathlib.Path(name).stem}.{suite}" for name, text in texts.items() if name.startswith("tests/python/")
+          for suite in re.findall(r"^class (\w+)\(unittest", text, flags=re.M)}
 folders = "problem|analytic|meshes|fem|compare|cases|paraview|scripts|tests|docs"
 for name in (n for n in texts if n.startswith("docs/") and not n.startswith("docs/measurements/")):
     for path in re.findall(rf"`((?:{folders})/[a-z_/.0-9]*)`", texts[name]):

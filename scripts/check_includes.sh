@@ -26,7 +26,6 @@ compare/sensing: $shared
 compare/signal: problem
 compare/study: $shared compare/budget
 compare/validation: $shared compare/study
-compare/claims: $shared compare/sensing compare/signal compare/study analytic/rod/field_models.h
 compare/app: .
 python/core: problem compare/input compare/models compare/output compare/study compare/validation fem/solid/archive.h
 tests: ."

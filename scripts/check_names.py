@@ -3,7 +3,7 @@
 """A key of what is described (problem/description/) and a model's id stand in one product file.
 
 Prints each other file that has one as a string, and returns 1. Not looked at are the names of
-Python's arguments, which are its interface, the claims, which are about the paper's models, and
+Python's arguments, which are its interface, and
 other models among the choices of an entry's option.
 """
 import re
@@ -32,7 +32,7 @@ def main() -> int:
         f'{file}: "{name}" is stated in {min(homes[name])}'
         for file, text in sorted(texts.items())
         for name in sorted(homes.keys() - WORDS)
-        if f'"{name}"' in text and file not in homes[name] and not file.startswith(("compare/claims/", "compare/models/entries/"))
+        if f'"{name}"' in text and file not in homes[name] and not file.startswith("compare/models/entries/")
     ]
     print("\n".join(faults) or f"{len(homes)} names, each in one file")
     return 1 if faults else 0

@@ -2,7 +2,9 @@
 #include "compare/app/python.h"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -20,9 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr double time_limit = 600;  // s; a report of many cases takes ten
 constexpr const char* needs =
-    "; it needs the Python package `ciliaval` and, on Debian, python3-numpy, python3-matplotlib "
-    "and "
-    "python3-jinja2 (docs/guide/python.md)";
+    "; it needs the Python package `ciliaval` and, on Debian, python3-numpy, python3-scipy, "
+    "python3-matplotlib and python3-jinja2 (docs/guide/python.md)";
 
 /// Where the package lies beside this program: in a build tree, in an installation, or around it,
 /// as pip installs it. Empty if it is none of these.
@@ -41,6 +42,15 @@ fs::path package_folder() {
 std::string interpreter() {
   const char* stated = std::getenv("CILIAVAL_PYTHON");
   return stated != nullptr && *stated != '\0' ? stated : CILIAVAL_PYTHON_EXECUTABLE;
+}
+
+/// PYTHONPATH with the package that goes with this program before the user's own; empty if there is
+/// neither.
+std::string python_path() {
+  std::string path = package_folder().string();
+  if (const char* others = std::getenv("PYTHONPATH"); others != nullptr && *others != '\0')
+    path += (path.empty() ? "" : ":") + std::string(others);
+  return path;
 }
 
 std::vector<std::string> lines_of(const fs::path& log) {
@@ -66,10 +76,7 @@ ModuleEnd run_python_module(const std::string& module, const std::vector<fs::pat
   command.folder = fs::current_path();  // the arguments may be relative
   command.log = folder.path() / "log";
   command.time_limit = time_limit;
-  std::string path = package_folder().string();
-  if (const char* others = std::getenv("PYTHONPATH"); others != nullptr && *others != '\0')
-    path += (path.empty() ? "" : ":") + std::string(others);
-  if (!path.empty()) command.variables["PYTHONPATH"] = path;
+  if (const std::string path = python_path(); !path.empty()) command.variables["PYTHONPATH"] = path;
   const support::ChildEnd end = support::run_child(command);
   if (end.how == support::ChildEnd::How::not_found)
     throw FileError(fmt::format("there is no Python `{}`{}", command.program, needs));
@@ -89,6 +96,20 @@ ModuleEnd run_python_module(const std::string& module, const std::vector<fs::pat
     throw FileError(fmt::format("`{} -m {}` {}: {}{}", command.program, module, end.text(), last,
                                 last.find("No module named") != std::string::npos ? needs : ""));
   return result;
+}
+
+void become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words{interpreter(), "-m", "ciliaval.command", module};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  if (const std::string path = python_path(); !path.empty()) setenv("PYTHONPATH", path.c_str(), 1);
+  std::error_code error;
+  setenv("CILIAVAL_PROGRAM", fs::read_symlink("/proc/self/exe", error).c_str(), 1);
+  execvp(pointers.front(), pointers.data());
+  throw FileError(fmt::format("cannot start Python `{}` ({}){}", words.front(),
+                              std::generic_category().message(errno), needs));
 }
 
 void draw_figure(const fs::path& results, const fs::path& figure) {

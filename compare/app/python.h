@@ -21,6 +21,12 @@ ModuleEnd run_python_module(const std::string& module,
                             const std::vector<std::filesystem::path>& files,
                             const std::vector<std::string>& options = {});
 
+/// Becomes `python3 -m ciliaval.command MODULE ARGUMENTS…`, whose output, signals and exit code are
+/// then the program's; the module finds this program in $CILIAVAL_PROGRAM. Throws FileError if
+/// there is no Python.
+[[noreturn]] void become_python_module(const std::string& module,
+                                       const std::vector<std::string>& arguments);
+
 /// Draws the main figure of a JSON file of results: SVG, PDF or PNG, by the name of `figure`. A
 /// study has a figure for each output: `figure` is a folder. Throws FileError.
 void draw_figure(const std::filesystem::path& results, const std::filesystem::path& figure);

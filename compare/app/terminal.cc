@@ -95,6 +95,10 @@ void silence_progress() {
   is_silent = true;
 }
 
+bool shows_progress() {
+  return !is_silent;
+}
+
 bool has_colours(int stream) {
   const char* no_colour = std::getenv("NO_COLOR");
   return isatty(stream) != 0 && (no_colour == nullptr || *no_colour == '\0');

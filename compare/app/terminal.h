@@ -51,6 +51,7 @@ class ProgressLine {
 
 /// No progress from now on.
 void silence_progress();
+bool shows_progress();
 
 /// Whether text for a terminal is coloured: it goes to one, and the environment's NO_COLOR is not
 /// set (https://no-color.org).

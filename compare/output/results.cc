@@ -367,19 +367,31 @@ std::string centreline_csv(const Centreline& centreline) {
   return csv.text();
 }
 
+std::vector<ResultFile> result_files(const models::CaseResult& result,
+                                     const std::vector<models::Comparison>& comparisons,
+                                     const Provenance& provenance, std::string_view validation) {
+  std::vector<ResultFile> files;
+  for (const models::MechanicsRun& run : result.mechanics)
+    for (std::size_t i = 0; i < run.result.steps.size(); ++i)
+      if (const auto& deformation = run.result.steps[i].deformation)
+        files.push_back({step_file(run.model, i, "csv"),
+                         [&deformation] { return centreline_csv(deformation->centreline); }});
+  if (is_sweep(result.problem)) files.push_back({"sweep.csv", [&] { return sweep_csv(result); }});
+  if (result.problem.signal) files.push_back({"signal.csv", [&] { return signal_csv(result); }});
+  if (!result.fields.empty()) files.push_back({"fields.csv", [&] { return fields_csv(result); }});
+  files.push_back(
+      {"errors.csv", [&] { return errors_csv(comparisons, input::sensor_names(result.problem)); }});
+  files.push_back({"summary.json", [&, provenance, validation = std::string(validation)] {
+                     return summary_json(result, comparisons, provenance, validation);
+                   }});
+  return files;
+}
+
 void write_results(const models::CaseResult& result,
                    const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
                    const std::filesystem::path& folder, std::string_view validation) {
-  for (const models::MechanicsRun& run : result.mechanics)
-    for (std::size_t i = 0; i < run.result.steps.size(); ++i)
-      if (run.result.steps[i].deformation)
-        write_file(folder / step_file(run.model, i, "csv"),
-                   centreline_csv(run.result.steps[i].deformation->centreline));
-  if (is_sweep(result.problem)) write_file(folder / "sweep.csv", sweep_csv(result));
-  if (result.problem.signal) write_file(folder / "signal.csv", signal_csv(result));
-  if (!result.fields.empty()) write_file(folder / "fields.csv", fields_csv(result));
-  write_file(folder / "errors.csv", errors_csv(comparisons, input::sensor_names(result.problem)));
-  write_file(folder / "summary.json", summary_json(result, comparisons, provenance, validation));
+  for (const ResultFile& file : result_files(result, comparisons, provenance, validation))
+    write_file(folder / file.name, file.text());
 }
 
 }  // namespace ciliaval::compare::output

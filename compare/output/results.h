@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,8 +48,19 @@ std::string fields_csv(const models::CaseResult& result);
 /// of the upper piece.
 std::string centreline_csv(const Centreline& centreline);
 
-/// Writes summary.json, errors.csv, fields.csv of a case with fields, the centrelines of all
-/// converged steps and of a sweep sweep.csv and signal.csv into a folder.
+/// A file of results: its text is made when it is asked for.
+struct ResultFile {
+  std::string name;
+  std::function<std::string()> text;
+};
+
+/// The centrelines of all converged steps, of a sweep sweep.csv and signal.csv, fields.csv of a
+/// case with fields, errors.csv and summary.json. They refer to the result and the comparisons.
+std::vector<ResultFile> result_files(const models::CaseResult& result,
+                                     const std::vector<models::Comparison>& comparisons,
+                                     const Provenance& provenance,
+                                     std::string_view validation = {});
+/// Writes them into a folder.
 void write_results(const models::CaseResult& result,
                    const std::vector<models::Comparison>& comparisons, const Provenance& provenance,
                    const std::filesystem::path& folder, std::string_view validation = {});

@@ -32,8 +32,7 @@ fields = ["line"]
 """
 with tempfile.TemporaryDirectory() as folder:
     Path(folder, "paper.toml").write_text(CASE)
-    options = ["--without", "potential", "--without", "sensitivity"]
-    budget = cv.budget(Path(folder, "paper.toml"), *options)
+    budget = cv.budget(Path(folder, "paper.toml"), without=["potential", "sensitivity"])
 
 for row in budget["rows"]:
     if row["quantity"] == "tip" and row["component"] == "x":

@@ -43,7 +43,7 @@ with tempfile.TemporaryDirectory() as folder:
     B += random.normal(0, 1e-6, B.shape)
     rows = np.column_stack([0.1 * np.arange(len(B)), 1e6 * B])
     np.savetxt(log, rows, delimiter=",", header="time [s], Bx [uT], By [uT], Bz [uT]", comments="", fmt="%.3f")
-    found = cv.sense(file, log, "--models", "beam/volume", "--noise", "1 uT", "--unloaded", "0 s..1.9 s")
+    found = cv.sense(file, log, models="beam/volume", noise="1 uT", unloaded="0 s..1.9 s")
 
 samples = [s for s in found["samples"] if s["status"] == "found"]
 print(f"{len(samples)} of {len(found['samples'])} samples have a load")

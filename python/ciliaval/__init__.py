@@ -17,13 +17,13 @@ _HOMES = {
     ),
     **dict.fromkeys(["Case", "bend"], ".model"),
     **dict.fromkeys(["budget", "converge", "run", "sense", "study"], ".program"),
-    "load": ".results",
+    **dict.fromkeys(["load", "load_study"], ".results"),
 }
 
 __all__ = ["Error", "FileError", "InputError", "SolverError", *sorted(_HOMES)]
 
 
-_MODULES = ["magpylib", "plot", "program", "report", "results"]
+_MODULES = ["magpylib", "paper", "plot", "program", "report", "results"]
 
 
 def __getattr__(name: str):

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import json
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from . import _core
 from ._core import Cilium, Environment, Load, Shape
+from .errors import InputError
+from .results import Result, from_run
 
 Progress = Callable[[str], None]
 
@@ -51,14 +54,54 @@ def bend(
 
 
 class Case:
-    """A case file (TOML): cilium, loads, sensors, models.
+    """A case file (TOML): cilium, loads, sensors, models. from_text() and from_dict() make one
+    without a file.
 
     Raises InputError with every fault of the file, a line each.
     """
 
     def __init__(self, file: str | Path):
         self._core = _core.CaseFile(file)
-        self.file = Path(file)
+        self.file: Path | None = Path(file)
+
+    @classmethod
+    def _of(cls, core: Any, file: Path | None = None) -> Case:
+        case = cls.__new__(cls)
+        case._core, case.file = core, file
+        return case
+
+    @classmethod
+    def from_text(cls, toml: str, name: str = "the text") -> Case:
+        """The case that a file with this text would be; messages call it `name`; files that it
+        names lie beside that, or else in the working folder. Raises InputError."""
+        return cls._of(_core.CaseFile.from_text(toml, name))
+
+    @classmethod
+    def from_dict(cls, tables: Mapping[str, Any], name: str = "the dictionary") -> Case:
+        """The case that a file with these tables would be, as `tomllib.load` gives them: quantities
+        with their units. Raises InputError.
+
+        >>> import ciliaval as cv
+        >>> case = cv.Case.from_dict({
+        ...     "case": {"name": "soft"},
+        ...     "cilium": {"diameter": "3 mm", "segment": [
+        ...         {"name": "base", "length": "3 mm", "young_modulus": "0.1 MPa", "poisson_ratio": 0.49},
+        ...         {"name": "magnet", "length": "17 mm", "young_modulus": "3 MPa", "poisson_ratio": 0.49,
+        ...          "magnetization": "75 kA/m"}]},
+        ...     "load": {"type": "contact", "force": "1 mN", "height": "16 mm"},
+        ...     "models": {"mechanics": ["elastica"]}})
+        >>> case.name
+        'soft'
+        """
+        return cls.from_text(toml_of(tables), name)
+
+    def changed(self, values: Mapping[str, Any]) -> Case:
+        """This case with other numbers, by the paths that studies have for them
+        (docs/guide/studies.md), in SI units or with a unit: changed({"load.height": "15 mm"}).
+
+        Raises InputError for a path that the case does not have, or a number out of its range.
+        """
+        return self._of(self._core.changed(dict(values)), self.file)
 
     @property
     def name(self) -> str:
@@ -108,15 +151,43 @@ class Case:
         """The case with every value it uses, defaults included, in SI units."""
         return self._core.toml()
 
-    def run(self, progress: Progress | None = None):
+    def run(self, progress: Progress | None = None) -> Result:
         """Runs all models and compares them: the object that load() makes of a result folder.
 
         Nothing is written: `ciliaval run` makes the folder with VTK files and pages. What one model
         cannot solve is a failed step of that model.
         """
-        from .results import from_summary
-
-        return from_summary(self._core.summary(progress))
+        return from_run(self._core.run(progress))
 
     def __repr__(self) -> str:
-        return f"Case('{self.file}')"
+        return f"Case('{self.file or self.name}')"
+
+
+def toml_of(tables: Mapping[str, Any]) -> str:
+    """The text of a TOML file with these tables: what tomllib.loads reads as them. Raises InputError for
+    a value that such a file cannot state."""
+    return "".join(f"{_quoted(key)} = {_toml(value, key)}\n" for key, value in tables.items())
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _toml(value: Any, key: str) -> str:
+    """A value on one line of TOML, tables inline."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_quoted(k)} = {_toml(v, k)}" for k, v in value.items()) + "}"
+    if isinstance(value, (str, Path)):
+        return _quoted(str(value))
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(_toml(v, key) for v in value) + "]"
+    if hasattr(value, "tolist"):  # of NumPy
+        return _toml(value.tolist(), key)
+    try:
+        return repr(float(value))
+    except (TypeError, ValueError) as error:
+        raise InputError(f"`{key}` is a {type(value).__name__}, which no case file can state") from error

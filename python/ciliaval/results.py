@@ -130,7 +130,7 @@ class Result:
     know. `summary` is the whole of summary.json. `validation` is None without [[measurement]].
     """
 
-    def __init__(self, summary: dict[str, Any], folder: Path | None = None):
+    def __init__(self, summary: dict[str, Any], folder: Path | None = None, run: Any = None):
         for key in ("sensors", "steps"):
             if not isinstance(summary[key], list):
                 raise TypeError(f"`{key}` is no list")
@@ -146,11 +146,40 @@ class Result:
         self.models: list[str] = list(dict.fromkeys(m for s in self.steps for m in s["mechanics"]))
         self.pairs: list[str] = list(dict.fromkeys(f for s in self.steps for f in s["fields"]))
         self.provenance: dict[str, Any] = summary["provenance"]
+        self._run = run  # of Case.run(), in place of a folder
         self.validation: Validation | None = _validation(summary.get("validation"))
 
     def load(self, parameter: str) -> np.ndarray:
-        """A parameter of the load at each step, (steps,): load("force"), N."""
+        """A parameter of the load at each step, (steps,): load("force"), N. Raises InputError for one
+        that it does not have."""
+        known = [name for name, value in self.loads[0].items() if not isinstance(value, str)]
+        if parameter not in known:
+            raise InputError(f"the load has no parameter {parameter!r}, but {', '.join(known)}")
         return np.array([float(load[parameter]) for load in self.loads])
+
+    def sensor(self, name: int | str) -> int:
+        """The number of a sensor by its name in the case, or by itself. Raises InputError."""
+        if name in self.sensor_names:
+            return self.sensor_names.index(str(name))
+        if isinstance(name, (int, np.integer)) and 0 <= name < len(self.sensors):
+            return int(name)
+        raise InputError(f"{self.name} has no sensor {name!r}, but {', '.join(self.sensor_names) or 'none'}")
+
+    @property
+    def case_text(self) -> str:
+        """The case with every value it used, as TOML. Raises FileError if it is not beside the summary."""
+        return self._text("case.toml")
+
+    def has_case(self) -> bool:
+        return self._run is not None or (self.folder is not None and (self.folder / "case.toml").exists())
+
+    def _text(self, name: str) -> str:
+        """The text of one of the files of results, on the disk or not."""
+        if self._run is not None:
+            return str(self._run.text(name))
+        if self.folder is None:
+            raise FileError(f"{self.name}: there is no {name} beside its summary.json")
+        return content(within(self.folder, name)).decode("utf-8", errors="replace")
 
     def uniform_field(self) -> np.ndarray:
         """The field around the cilium at each step, (steps, 3), T: not a part of B."""
@@ -177,7 +206,11 @@ class Result:
         return self._mechanics(model, "applied_force")
 
     def contact(self, model: str, quantity: str = "normal_force") -> np.ndarray:
-        """A number of a sweep's contact at each sample, (steps,), SI."""
+        """A number of a sweep's contact at each sample, (steps,), SI: normal_force, friction_force,
+        elastic_energy, …; NaN where the cilium touches nothing."""
+        known = {k for s in self.steps for k, v in self._of(s, model).get("contact", {}).items() if _is_number(v)}
+        if quantity not in known:
+            raise InputError(f"{model}'s contact has no number {quantity!r}, but {', '.join(sorted(known)) or 'none'}")
         return _numbers([self._of(s, model).get("contact", {}).get(quantity) for s in self.steps])
 
     def B(self, pair: str) -> np.ndarray:
@@ -219,9 +252,9 @@ class Result:
     def centreline(self, model: str, step: int) -> dict[str, np.ndarray]:
         """S, x, y, z (m), theta (rad) and kappa (1/m) along a deformed centreline."""
         name = self._of(self.steps[step], model).get("centreline")
-        if self.folder is None or name is None:
+        if name is None:
             raise FileError(f"there is no file of {model}'s centreline at step {step}")
-        return read_table(within(self.folder, name))
+        return table_of(self._text(name), str((self.folder or Path()) / name))
 
     def to_meshio(self, model: str, step: int) -> Any:
         """The bent cilium as a meshio.Mesh with its fields, from the folder's VTK files: the body of
@@ -238,7 +271,7 @@ class Result:
 
     def _of(self, step: dict[str, Any], model: str) -> dict[str, Any]:
         if model not in self.models:
-            raise KeyError(f"{self.name} has no model '{model}', but {', '.join(self.models)}")
+            raise InputError(f"{self.name} has no model '{model}', but {', '.join(self.models)}")
         return step["mechanics"].get(model, {})
 
     def _mechanics(self, model: str, quantity: str, size: int | None = None) -> np.ndarray:
@@ -249,7 +282,7 @@ class Result:
 
     def _field(self, pair: str, quantity: str) -> np.ndarray:
         if pair not in self.pairs:
-            raise KeyError(f"{self.name} has no pair '{pair}', but {', '.join(self.pairs)}")
+            raise InputError(f"{self.name} has no pair '{pair}', but {', '.join(self.pairs) or 'none'}")
         none = [None, None, None]
         rows = []
         for step in self.steps:
@@ -298,6 +331,15 @@ def load(folder: str | Path) -> Result:
     return found
 
 
+def load_study(folder: str | Path) -> Document:
+    """The results of a study in the folder that `ciliaval study` has written. Raises FileError."""
+    folder = Path(folder)
+    found = read(folder / "study.json" if folder.is_dir() else folder)
+    if not isinstance(found, Document) or found.kind != "study":
+        raise FileError(f"{folder}: is no result of `ciliaval study`")
+    return found
+
+
 def read(file: str | Path) -> Result | Document:
     """Any JSON file of results, told by its keys. Raises FileError."""
     file = Path(file)
@@ -325,6 +367,11 @@ def from_summary(text: str) -> Result:
     return Result(json.loads(text))
 
 
+def from_run(run: Any) -> Result:
+    """The result of a case that has run in this process: _core.CaseRun."""
+    return Result(json.loads(run.text("summary.json")), run=run)
+
+
 def _result(data: dict[str, Any], file: Path) -> Result:
     try:
         return Result(data, file.parent)
@@ -336,10 +383,17 @@ def read_table(file: str | Path) -> dict[str, np.ndarray]:
     """The columns of one of the program's CSV files; text columns are arrays of str. Raises
     FileError."""
     try:
-        lines = content(Path(file)).decode("utf-8").splitlines(keepends=True)
+        text = content(Path(file)).decode("utf-8")
+    except ValueError as error:
+        raise FileError(f"{file}: is damaged: {text_of(error)}") from error
+    return table_of(text, str(file))
+
+
+def table_of(text: str, file: str) -> dict[str, np.ndarray]:
+    """The columns of a CSV text; errors name the file. Raises FileError."""
+    try:
+        lines = text.splitlines(keepends=True)
         rows = list(csv.reader(line for line in lines if not line.startswith("#")))
-    except FileError:
-        raise
     except DAMAGE as error:
         raise FileError(f"{file}: is damaged: {text_of(error)}") from error
     if not rows or any(len(row) != len(rows[0]) for row in rows):
@@ -381,6 +435,10 @@ def _chosen(entries: Any, kind: Any, what: dict[str, Any], valid: dict[str, Any]
             if value not in known:
                 raise InputError(f"{name}={value!r}: there is {', '.join(map(repr, known)) or 'none'}")
     return [e for e in entries if all(getattr(e, name) == value for name, value in what.items())]
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _numbers(values: list[Any], size: int | None = None) -> np.ndarray:

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "compare/input/case.h"
 #include "compare/models/errors.h"
@@ -10,8 +16,11 @@
 #include "compare/models/run.h"
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
+#include "compare/study/case_number.h"
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
+#include "problem/error.h"
+#include "problem/support/words.h"
 #include "python/core/calls.h"
 #include "python/core/convert.h"
 #include "python/core/pickle.h"
@@ -22,17 +31,64 @@ using namespace compare;
 
 namespace {
 
-std::string summary(const input::Case& problem, const py::object& callback) {
+/// What a case gave, with the texts of the files that `ciliaval run` would write.
+class CaseRun {
+ public:
+  CaseRun(const input::Case& problem, const Progress& shown)
+      : result_(models::run(problem, models::mechanics_models(), models::field_models(), shown)),
+        comparisons_(models::compare_models(result_)) {
+    const auto measured =
+        validation::validate(result_, models::mechanics_models(), models::field_models(), shown);
+    files_ = output::result_files(result_, comparisons_, output::provenance("ciliaval.Case.run()"),
+                                  measured ? validation::json(*measured) : "");
+    files_.push_back({"case.toml", [this] { return to_toml(result_.problem, models::known()); }});
+  }
+  CaseRun(const CaseRun&) = delete;  // the files refer to the members
+  CaseRun& operator=(const CaseRun&) = delete;
+  ~CaseRun() = default;
+
+  std::string text(const std::string& name) const {
+    const auto file = std::ranges::find(files_, name, &output::ResultFile::name);
+    if (file == files_.end()) throw FileError("there is no " + name + " among the results");
+    return file->text();
+  }
+
+ private:
+  models::CaseResult result_;
+  std::vector<models::Comparison> comparisons_;
+  std::vector<output::ResultFile> files_;
+};
+
+std::unique_ptr<CaseRun> run(const input::Case& problem, const py::object& callback) {
   const Progress shown = progress(callback);
   const Call call;
   const py::gil_scoped_release released;
-  const models::CaseResult result =
-      models::run(problem, models::mechanics_models(), models::field_models(), shown);
-  const auto measured =
-      validation::validate(result, models::mechanics_models(), models::field_models(), shown);
-  return output::summary_json(result, models::compare_models(result),
-                              output::provenance("ciliaval.Case.run()"),
-                              measured ? validation::json(*measured) : "");
+  return std::make_unique<CaseRun>(problem, shown);
+}
+
+input::Case checked(input::Case problem) {
+  validation::read_inputs(problem);  // throws if a number is not the case's
+  return problem;
+}
+
+/// The case with other numbers, by the paths that studies have for them.
+input::Case changed(const input::Case& problem, const py::dict& values) {
+  const std::vector<study::CaseNumber> numbers = study::case_numbers(problem);
+  std::vector<study::Setting> settings;
+  for (const auto& [key, value] : values) {
+    const std::string path = text(key, "path");
+    const auto number = std::ranges::find(numbers, path, &study::CaseNumber::path);
+    if (number == numbers.end()) {
+      std::vector<std::string_view> paths;
+      for (const study::CaseNumber& known : numbers) paths.emplace_back(known.path);
+      throw InputError(fmt::format("the case has no number `{}`{} Its numbers: {}", path,
+                                   support::did_you_mean(path, paths), fmt::join(paths, ", ")));
+    }
+    const description::Value set = value_of(value, *number);
+    const auto* whole = std::get_if<unsigned int>(&set);
+    settings.push_back({*number, whole != nullptr ? *whole : std::get<double>(set)});
+  }
+  return study::with_settings(problem, settings);
 }
 
 }  // namespace
@@ -40,12 +96,18 @@ std::string summary(const input::Case& problem, const py::object& callback) {
 void bind_case(py::module_& module) {
   py::class_<input::Case>(module, "CaseFile")
       .def(py::init([](const Text& file) {
-             input::Case problem =
-                 input::read_case(std::filesystem::path(file_name(file, "file")), models::known());
-             validation::read_inputs(problem);  // throws if a number is not the case's
-             return problem;
+             return checked(
+                 input::read_case(std::filesystem::path(file_name(file, "file")), models::known()));
            }),
            py::arg("file"))
+      .def_static(
+          "from_text",
+          [](const Text& toml, const Text& name) {
+            return checked(
+                input::read_case(text(toml, "toml"), text(name, "name"), models::known()));
+          },
+          py::arg("toml"), py::arg("name"))
+      .def("changed", &changed, py::arg("values"))
       .def_readonly("name", &input::Case::name)
       .def_readonly("title", &input::Case::title)
       .def_readonly("cilium", &input::Case::cilium)
@@ -73,7 +135,17 @@ void bind_case(py::module_& module) {
             require_own_build(state[0].cast<std::string>());
             return input::read_case(state[1].cast<std::string>(), "a pickle", models::known());
           }))
-      .def("summary", &summary, py::arg("progress"));
+      .def("run", &run, py::arg("progress"));
+  py::class_<CaseRun>(module, "CaseRun")
+      .def(
+          "text", [](const CaseRun& run, const Text& name) { return run.text(text(name, "name")); },
+          py::arg("name"));
+  module.def(
+      "provenance",
+      [](const Text& command) {
+        return output::to_json(output::provenance(text(command, "command"))).dump();
+      },
+      py::arg("command"));
 }
 
 }  // namespace ciliaval::python::core

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import tomllib
 import textwrap
 import time
 import unittest
@@ -32,6 +33,77 @@ def paper_cilium(base_length=3e-3):
 
 def contact(force):
     return cv.Load("contact", force=force, height=13e-3)
+
+
+class Cases(unittest.TestCase):
+    TABLES = {
+        "case": {"name": "soft", "title": 'a "quoted" \U0001f600 title'},
+        "cilium": {
+            "diameter": "3 mm",
+            "segment": [
+                {"name": "base", "length": "3 mm", "young_modulus": "0.1 MPa", "poisson_ratio": 0.49},
+                {"name": "magnet", "length": "17 mm", "young_modulus": "3 MPa", "poisson_ratio": 0.49,
+                 "magnetization": "75 kA/m"},
+            ],
+        },
+        "load": {"type": "contact", "force": ["1 mN", "2 mN"], "height": "16 mm"},
+        "sensor": {"position": ["0 mm", "0 mm", "-1.55 mm"]},
+        "models": {"mechanics": ["elastica"], "fields": ["line"]},
+    }  # fmt: skip
+
+    def test_a_dictionary_is_the_file_that_it_was_read_from(self):
+        for file in sorted((SOURCE / "cases").rglob("*.toml")):
+            if len(file.suffixes) > 1:  # a study or bench
+                continue
+            with self.subTest(file.name):
+                tables = tomllib.loads(file.read_text())
+                self.assertEqual(cv.Case.from_dict(tables, str(file)).toml(), cv.Case(file).toml())
+
+    def test_a_text_or_dictionary_is_a_case(self):
+        case = cv.Case.from_dict(self.TABLES)
+        self.assertEqual((case.name, case.title), ("soft", self.TABLES["case"]["title"]))
+        self.assertEqual(cv.Case.from_text(case.toml()).toml(), case.toml())
+        self.assertIsNone(case.file)
+        for tables, text in (
+            ({"case": {"name": None}}, "`name` is a NoneType"),
+            ({**self.TABLES, "case": {"nam": "soft"}}, "the dictionary:.*did you mean 'name'"),
+            ({**self.TABLES, "cilium": {"diameter": 3e-3}}, "diameter.*has no unit"),
+        ):
+            with self.assertRaisesRegex(cv.InputError, text):
+                cv.Case.from_dict(tables)
+
+    def test_other_numbers_by_the_paths_of_studies(self):
+        case = cv.Case.from_dict(self.TABLES)
+        changed = case.changed({"cilium.segment.base.young_modulus": "0.2 MPa", "sensor.position.z": -2e-3})
+        self.assertEqual(changed.cilium.segments[0].young_modulus, 0.2e6)
+        self.assertEqual(changed.sensors[0, 2], -2e-3)
+        self.assertEqual(case.cilium.segments[0].young_modulus, 0.1e6)
+        for values, text in (
+            ({"load.hight": 1}, "no number `load.hight`; did you mean 'load.height'.*Its numbers: cilium.diameter"),
+            ({"load.height": "1 N"}, "height"),
+            ({"cilium.diameter": -1.0}, "diameter"),
+            ({"load.height": "high"}, "height"),
+            ({3: 1.0}, "path"),
+        ):
+            with self.subTest(values), self.assertRaisesRegex(cv.InputError, text):
+                case.changed(values)
+
+    def test_a_run_in_memory_has_what_a_folder_has(self):
+        case = cv.Case.from_dict(self.TABLES)
+        result = case.run()
+        self.assertEqual(result.case_text, case.toml())
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "case.toml"
+            file.write_text(case.toml())
+            written = cv.run(file, folder)
+            for step in range(2):
+                a, b = (r.centreline("elastica", step) for r in (result, written))
+                for name in a:
+                    np.testing.assert_array_equal(a[name], b[name])
+        for figure in (cv.plot.setup, cv.plot.shapes, cv.plot.signal):
+            self.assertTrue(figure(result).axes)
+        with self.assertRaisesRegex(cv.FileError, "no beam_0000.csv"):
+            result._text("beam_0000.csv")
 
 
 class Bend(unittest.TestCase):

@@ -81,7 +81,7 @@ class Export(unittest.TestCase):
             self.result.to_meshio("beam", 2)
         with self.assertRaises(IndexError):
             self.result.to_meshio("beam", 3)
-        with self.assertRaisesRegex(KeyError, "no model 'elastica', but beam, solid"):
+        with self.assertRaisesRegex(cv.InputError, "no model 'elastica', but beam, solid"):
             self.result.to_meshio("elastica", 0)
         case = cv.Case(self.folder / "case.toml")
         case.mechanics = ["beam"]

@@ -65,8 +65,12 @@ class Results(unittest.TestCase):
         for wrong, text in [
             (lambda: self.result.tip("solid"), "elastica, beam"),
             (lambda: self.result.B("beam/mesh"), "beam/volume"),
+            (lambda: self.result.load("forze"), "force, height, azimuth"),
+            (lambda: self.result.contact("beam", "normal"), "but none"),
+            (lambda: self.result.sensor("east"), "has no sensor 'east', but 0"),
+            (lambda: cv.plot.signal(self.result, "east"), "has no sensor 'east'"),
         ]:
-            with self.assertRaisesRegex(KeyError, text):
+            with self.assertRaisesRegex(cv.InputError, text):
                 wrong()
         with self.assertRaisesRegex(TypeError, "colour"):
             self.result.compare(colour=1)
@@ -147,7 +151,7 @@ class Commands(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             case = Path(folder) / "case.toml"
             case.write_text(quick("fig3b"))
-            budget = cv.budget(case, "--without", "solid", "--without", "potential")
+            budget = cv.budget(case, without=["solid", "potential"])
             self.assertEqual(budget.kind, "budget")
             self.assertTrue(budget["rows"])
             self.assertEqual(cv.converge(case).kind, "converge")
@@ -156,6 +160,15 @@ class Commands(unittest.TestCase):
                 "sample, Bx [uT], By [uT], Bz [uT]\n"
                 "unloaded, 67.6, -97.5, 2204.9\nfirst, 140.3, -50.7, 2208.6\n"
             )
+            with self.assertRaisesRegex(cv.InputError, "3 levels of refinement or more, not 2"):
+                cv.converge(case, levels=2)
+            sensed = cv.sense(case, readings, models="elastica/line", noise="2 uT")
+            self.assertEqual(sensed["models"], "elastica/line")
+            with self.assertRaisesRegex(cv.InputError, "--noise"):
+                cv.sense(case, readings, noise="2 T")
+            # Nothing to be told is a result, not an error: exit code 5.
+            (Path(folder) / "rest.csv").write_text("sample, dBx [uT], dBy [uT], dBz [uT]\na, 9e5, 9e5, 9e5\n")
+            self.assertEqual(len(cv.sense(case, Path(folder) / "rest.csv")["samples"]), 1)
             sensed = cv.sense(case, readings)
             self.assertEqual(sensed.kind, "sense")
             self.assertEqual(len(sensed["samples"]), 1)
@@ -171,6 +184,10 @@ class Commands(unittest.TestCase):
             )
             document = cv.study(study)
             self.assertEqual(document.kind, "study")
+            kept = cv.study(study, folder, fresh=True)
+            self.assertEqual(cv.load_study(Path(folder) / "mine")["points"], kept["points"])
+            with self.assertRaisesRegex(cv.FileError, "No such file"):
+                cv.load_study(folder)
             self.assertEqual(len(document["points"]), 2)
 
     def test_raise_the_program_s_errors(self):

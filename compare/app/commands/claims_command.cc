@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/app/commands/commands.h"
-
 #include "compare/app/case_files.h"
+#include "compare/app/commands/commands.h"
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
-#include "compare/claims/claim.h"
-#include "compare/output/output_file.h"
-#include "compare/output/provenance.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
@@ -25,11 +22,12 @@ ExitCode execute_claims(const ClaimsOptions& options, const std::string& words) 
                      "/fig3d.toml does not exist");
   for (const auto* inputs : {&shipped.files, &shipped.studies, &shipped.benches})
     options.outputs.check(*inputs);
-  ProgressLine line;
-  const std::vector<claims::Claim> all = claims::claims(folder, !options.quick, line.callback());
-  print(claims::claims_text(all));
-  options.outputs.write([&] { return claims::claims_json(all, output::provenance(words)); });
-  return ExitCode::pass;
+  std::vector<std::string> arguments{"--command=" + words};
+  if (options.quick) arguments.emplace_back("--quick");
+  if (!shows_progress()) arguments.emplace_back("--quiet");
+  if (options.outputs.json) arguments.push_back("--json=" + options.outputs.json->string());
+  arguments.insert(arguments.end(), {"--", folder.string()});
+  become_python_module("ciliaval.paper", arguments);
 }
 
 }  // namespace
@@ -39,10 +37,11 @@ void add_claims(CommandLine& line) {
   CLI::App* claims = line.add(
       "claims",
       "The paper's quantitative statements, each with what the models find: reproduced, not\n"
-      "reproduced, depends on the model, or not checkable and why (docs/evidence/paper.md).",
+      "reproduced, depends on what the paper does not state (and where it holds), or not\n"
+      "checkable and why (docs/evidence/paper.md).",
       options, execute_claims);
   claims->add_flag("--quick", options->quick,
-                   "Without the 3D solid: seconds instead of two minutes");
+                   "Without the 3D solid, which takes some minutes the first time");
   options->outputs.declare(claims, "the ledger");
 }
 

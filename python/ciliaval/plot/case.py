@@ -57,14 +57,16 @@ def shapes(result: Result, step: int | None = None) -> Figure:
         return figure
 
 
-def signal(result: Result, sensor: int = 0, quantity_name: str = "dB") -> Figure:
-    """ΔB ("dB") or B ("B") at a sensor, by components and in magnitude, over the load.
+def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> Figure:
+    """ΔB ("dB") or B ("B") at a sensor, by its number or name, by components and in magnitude, over
+    the load.
 
     Bands are the field models' own numerical errors. A curve of ΔB begins where there is no load,
     unless the load is a sweep's travel. Samples between which a model jumps are shaded.
     """
     if quantity_name not in ("dB", "B"):
         raise ValueError(f'a signal is "dB" or "B", not "{quantity_name}"')
+    sensor = result.sensor(sensor)
     change = quantity_name == "dB"
     symbol, unit, size = ("ΔB", "µT", 1e-6) if change else ("B", "mT", 1e-3)
     load, label = abscissa(result)

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
-from ..errors import FileError
 from ..results import Result
 from ..units import number, quantity
 from .style import SEGMENTS, best_first, style
@@ -23,16 +22,14 @@ _FIELD = "#1F5FA8"
 def setup(case: Result | Any) -> Figure:
     """A case as a sketch: from the side, in the plane of the load, and from above.
 
-    case: a Case, or the Result of one with its folder, which shows the bent cilium too, by the most
-    detailed model at the last step. Raises FileError if the folder has no case.toml.
+    case: a Case, or the Result of one, which shows the bent cilium too, by the most detailed model at
+    the last step. Raises FileError if its folder has no case.toml.
     """
     from .._core import CaseFile
 
     result = case if isinstance(case, Result) else None
     if result is not None:
-        if result.folder is None or not (result.folder / "case.toml").exists():
-            raise FileError(f"{result.name}: there is no case.toml beside its summary.json")
-        case = CaseFile(str(result.folder / "case.toml"))
+        case = CaseFile.from_text(result.case_text, "case.toml")
     cilium, load = case.cilium, case.loads[-1]
     sensors = np.asarray(case.sensors).reshape(-1, 3)
     names = case.sensor_names

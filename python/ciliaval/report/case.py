@@ -8,7 +8,6 @@ from collections.abc import Callable
 import numpy as np
 
 from .. import plot
-from ..files import content
 from ..plot.style import best_first
 from ..results import Result
 from ..units import in_words, number, quantity
@@ -60,14 +59,13 @@ def _differences(result: Result) -> list[Block]:
 
 
 def _case_file(result: Result) -> list[Block]:
-    if result.folder is None or not (result.folder / "case.toml").exists():
+    if not result.has_case():
         return []
-    text = content(result.folder / "case.toml").decode("utf-8", errors="replace")
-    return [Details("The case with every value that was used", [Code("Case file", text)])]
+    return [Details("The case with every value that was used", [Code("Case file", result.case_text)])]
 
 
 def _sketch(result: Result) -> Image | None:
-    if result.folder is None or not (result.folder / "case.toml").exists():
+    if not result.has_case():
         return None
     text = f"To scale, under the last load. Bending by {in_words(best_first(result.models))}"
     fields = dict.fromkeys(pair.split("/", 1)[-1] for pair in best_first(result.pairs))

@@ -306,7 +306,7 @@ def claims_blocks(data: dict[str, Any]) -> list[Block]:
         "The paper's statements and what the models find",
         ["place", "statement", "verdict", "model or measure", "value", "holds"],
     )
-    counts = Counter(claim["verdict"] for claim in data["claims"])
+    counts = Counter(_kind_of(claim["verdict"]) for claim in data["claims"])
     for claim in data["claims"]:
         note = f" ({claim['note']})" if claim.get("note") else ""
         rows = max(len(claim["findings"]), 1)
@@ -323,7 +323,45 @@ def claims_blocks(data: dict[str, Any]) -> list[Block]:
         if not claim["findings"]:
             table.rows.append([*row, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN])
     text = in_words(f"{count} {verdict}" for verdict, count in counts.most_common())
-    return [Text(f"{len(data['claims'])} claims: {text}."), table]
+    blocks: list[Block] = [Text(f"{len(data['claims'])} claims: {text}."), table]
+    ranges = _ranges(data["claims"])
+    return [*blocks, ranges] if ranges.rows else blocks
+
+
+def _kind_of(verdict: str) -> str:
+    depends = "depends on "
+    return "depend on what the paper does not state, or on the model" if verdict.startswith(depends) else verdict
+
+
+def _ranges(claims: list[dict[str, Any]]) -> Table:
+    """What the paper does not state, over which range it was varied, and where the claim holds."""
+    table = Table(
+        "What the verdicts hang on",
+        ["statement", "not stated", "model or measure", "varied over", "holds in", "in the ledger"],
+    )
+    for claim in claims:
+        entries = [e for key in ("depends_on", "holds_throughout") for e in claim.get(key, []) if e["unit"] is not None]
+        row: list[str | Cell] = [Cell(claim["statement"], "text", max(len(entries), 1))]
+        for entry in entries:
+            unit = f" {entry['unit']}" if entry["unit"] else ""
+            held = ", ".join(_interval(interval) for interval in entry["holds"])
+            whole = entry["holds"] == [entry["scanned"]]
+            table.rows.append(
+                [
+                    *row,
+                    Cell(f"{entry['parameter']}: {entry['reason']}", "text plain"),
+                    Cell(entry["models"], "text plain"),
+                    _interval(entry["scanned"]) + unit,
+                    "all of it" if whole else held + unit if held else "nowhere",
+                    number(entry["used"]) + unit,
+                ]
+            )
+            row = []
+    return table
+
+
+def _interval(ends: list[float]) -> str:
+    return f"{number(ends[0])} to {number(ends[1])}"
 
 
 def _finding(finding: dict[str, Any]) -> str:

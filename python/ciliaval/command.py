@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the program's commands that are written in Python share: progress, errors, exit codes.
+
+python3 -m ciliaval.command MODULE ARGUMENTS…: what the program starts for them.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import shutil
+import signal
+import sys
+import time
+from collections.abc import Callable
+
+from .errors import FileError, InputError
+
+PASS, TOLERANCE, USAGE, SOLVER, INPUT_OUTPUT, UNDECIDED = range(6)  # docs/guide/README.md
+
+_QUIET_FOR = 2.0  # s, before anything is said
+_INTERVAL = 1.0  # s, between two lines
+
+
+class Progress:
+    """Called with a text, says it on stderr: on a terminal as one line that is written over, elsewhere
+    as a line for each other text; at most one a second and none in the first two seconds."""
+
+    def __init__(self, is_silent: bool = False):
+        self._is_silent = is_silent
+        self._start = time.monotonic()
+        self._last = self._start
+        self._shown = False
+        self._said = ""
+
+    def __call__(self, text: str) -> None:
+        now = time.monotonic()
+        if self._is_silent or now - self._start < _QUIET_FOR or now - self._last < _INTERVAL:
+            return
+        self._last = now
+        line = f"{text} ({now - self._start:.0f} s)"
+        if sys.stderr.isatty():
+            width = shutil.get_terminal_size().columns - 1
+            sys.stderr.write("\r\033[K" + line[:width])
+            self._shown = True
+        elif text != self._said:
+            sys.stderr.write(line + "\n")
+        self._said = text
+        sys.stderr.flush()
+
+    def clear(self) -> None:
+        """Takes the line off the terminal."""
+        if self._shown:
+            sys.stderr.write("\r\033[K")
+            self._shown = False
+
+
+def write_out(text: str) -> None:
+    """To stdout, which is the result. Raises FileError if it cannot be written."""
+    try:
+        sys.stdout.write(text + "\n")
+        sys.stdout.flush()
+    except OSError as error:
+        raise FileError(f"standard output: {error.strerror}") from error
+
+
+def run_command(execute: Callable[[], int]) -> int:
+    """The exit code of a command; an error is said on stderr, Ctrl-C ends the process by its signal."""
+    try:
+        return execute()
+    except KeyboardInterrupt:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        os.kill(os.getpid(), signal.SIGINT)
+        raise
+    except (InputError, FileError, RuntimeError, OSError) as error:
+        print(f"ciliaval: {error}", file=sys.stderr)
+        if isinstance(error, InputError):
+            return USAGE
+        return INPUT_OUTPUT if isinstance(error, OSError) else SOLVER
+
+
+def main() -> int:
+    # While the module is imported Ctrl-C ends the process: an import that is interrupted may raise anything.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    module = importlib.import_module(f"{sys.argv[1]}.__main__")
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    del sys.argv[1]
+    return run_command(module.main)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
