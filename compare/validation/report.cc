@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "compare/output/json_file.h"
 #include "compare/output/text_table.h"
@@ -24,9 +25,9 @@ constexpr const char* legend =
     "D measured, S simulated, E = S - D. u_num: numerical uncertainty as the model\n"
     "    states it, taken for a standard one; u_in: what the uncertainties of the\n"
     "    inputs make of S; u_D: that of D; u_val^2 = u_num^2 + u_in^2 + u_D^2 (ASME\n"
-    "    V&V 20). Where |E| > 2 u_val the model's error is seen, and below\n"
-    "    |E| + 2 u_val; else it hides in the uncertainties. f: parameters were\n"
-    "    fitted to this value.\n"
+    "    V&V 20). Where |E| > 2 u_val the model's error is seen, between\n"
+    "    |E| - 2 u_val and |E| + 2 u_val; else it is not seen, but below the latter.\n"
+    "    f: parameters were fitted to this value.\n"
     "(1) E^T V^-1 E, V = diag(u_num^2 + u_D^2) + C C^T: an input's error is the same\n"
     "    at all values. In brackets what it is without any error of the model.\n";
 
@@ -73,8 +74,12 @@ int digits_for(const Series& series, double unit) {
 }
 
 std::string verdict_cell(const Point& point, const ShownUnit& unit) {
-  if (point.verdict() != Verdict::bounded) return std::string(to_string(point.verdict()));
-  return fmt::format("below {:.3g} {}", point.assessment->bound / unit.size, unit.name);
+  if (!point.assessment) return std::string(to_string(point.verdict()));
+  const auto [least, bound] =
+      std::pair(point.assessment->least / unit.size, point.assessment->bound / unit.size);
+  return point.verdict() == Verdict::bounded
+             ? fmt::format("seen, {:.2g} to {:.2g}", least, bound)
+             : fmt::format("not seen, < {:.3g}", bound);
 }
 
 /// Each note once, with its steps.
@@ -124,10 +129,17 @@ std::string series_text(const Series& series) {
                         *series.rms_error / unit.size, unit.name,
                         series.chi_squared ? fmt::format("{:.3g}", *series.chi_squared) : "-", n,
                         n == 1 ? "" : "s", n, std::sqrt(2.0 * static_cast<double>(n)));
-  text += fmt::format("  model error bounded at {}, not resolved at {}",
-                      series.count(Verdict::bounded), series.count(Verdict::not_resolved));
+  text += fmt::format("  model error seen at {}, not seen at {}", series.count(Verdict::bounded),
+                      series.count(Verdict::not_resolved));
   if (const std::size_t unknown = series.count(Verdict::not_known))
     text += fmt::format(", not known at {}", unknown);
+  if (n > 0) {
+    std::vector<std::string> seen;
+    for (const double factor : factors_of_u_D)
+      if (factor != 1)
+        seen.push_back(fmt::format("{} ({:g} u_D)", series.seen_with(factor), factor));
+    text += fmt::format("\n  seen with another u_D: {}", fmt::join(seen, ", "));
+  }
   return text + '\n';
 }
 
@@ -173,7 +185,8 @@ Json point_json(const Point& point) {
             {"u_num", or_null(point.u_num)},
             {"u_input", or_null(point.u_input)},
             {"u_val", a ? Json(a->u_val) : Json(nullptr)},
-            {"bound", a && a->verdict == Verdict::bounded ? Json(a->bound) : Json(nullptr)},
+            {"least", a ? Json(a->least) : Json(nullptr)},
+            {"bound", a ? Json(a->bound) : Json(nullptr)},
             {"verdict", to_string(point.verdict())},
             {"fitted", point.measured.fitted},
             {"source", point.measured.source},
@@ -194,10 +207,13 @@ Json series_json(const Series& series) {
             {"assessed", series.assessed},
             {"bounded", series.count(Verdict::bounded)},
             {"not_resolved", series.count(Verdict::not_resolved)},
+            {"bounded_with_u_D", Json::array()},
             {"fitted", series.fitted()},
             {"chi_squared", or_null(series.chi_squared)},
             {"rms_error", or_null(series.rms_error)},
             {"points", Json::array()}};
+  for (const double factor : factors_of_u_D)
+    json["bounded_with_u_D"].push_back({{"factor", factor}, {"bounded", series.seen_with(factor)}});
   for (const Point& point : series.points) json["points"].push_back(point_json(point));
   return json;
 }

@@ -2,6 +2,7 @@
 #include "compare/validation/statistics.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace ciliaval::compare::validation {
@@ -22,6 +23,7 @@ Assessment assess(double simulated, double measured, const Uncertainties& u) {
   Assessment result;
   result.error = simulated - measured;
   result.u_val = std::hypot(u.numerical, u.input, u.measured);
+  result.least = std::max(0.0, std::abs(result.error) - 2 * result.u_val);
   result.bound = std::abs(result.error) + 2 * result.u_val;
   if (std::abs(result.error) > 2 * result.u_val) result.verdict = Verdict::bounded;
   return result;

@@ -9,8 +9,8 @@
 namespace ciliaval::compare::validation {
 
 enum class Verdict {
-  bounded,       ///< |E| > 2 u_val: the model's error is seen, and bounded
-  not_resolved,  ///< it is not: the model's error hides in the uncertainties
+  bounded,       ///< |E| > 2 u_val: the model's error is seen, between two bounds
+  not_resolved,  ///< it is not seen, but below a bound
   not_known      ///< the model has no value, or an uncertainty is not known
 };
 std::string_view to_string(Verdict verdict);
@@ -25,7 +25,8 @@ struct Uncertainties {
 struct Assessment {
   double error = 0;                         ///< E = S − D
   double u_val = 0;                         ///< √(u_num² + u_input² + u_D²)
-  double bound = 0;                         ///< |E| + 2 u_val, which the model's error is below
+  double least = 0;                         ///< |E| − 2 u_val, or 0: the model's error is above
+  double bound = 0;                         ///< |E| + 2 u_val, which it is below
   Verdict verdict = Verdict::not_resolved;  ///< whether |E| > 2 u_val
 };
 

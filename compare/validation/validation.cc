@@ -146,6 +146,15 @@ std::size_t Series::count(Verdict verdict) const {
       points, [&](const Point& point) { return point.verdict() == verdict; }));
 }
 
+std::size_t Series::seen_with(double factor) const {
+  return static_cast<std::size_t>(std::ranges::count_if(points, [&](const Point& point) {
+    return point.assessment &&
+           assess(*point.simulated, point.measured.value,
+                  {*point.u_num, *point.u_input, factor * point.measured.uncertainty})
+                   .verdict == Verdict::bounded;
+  }));
+}
+
 std::size_t Series::fitted() const {
   return static_cast<std::size_t>(
       std::ranges::count_if(points, [](const Point& point) { return point.measured.fitted; }));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,6 +42,8 @@ struct Series {
     return points.front().measured.measurand;
   }
   std::size_t count(Verdict verdict) const;
+  /// Points at which the model's error would be seen with a u_D `factor` times as large.
+  std::size_t seen_with(double factor) const;
   std::size_t fitted() const;  ///< points to which parameters were fitted
 };
 
@@ -52,6 +55,10 @@ struct Extent {
   double from = 0;
   double to = 0;
 };
+
+/// How many times as large a u_D the verdicts are also asked for: where it is assumed, as of a
+/// picture that was digitised, a verdict may hang on it.
+inline constexpr std::array<double, 4> factors_of_u_D{0.5, 1, 2, 3};
 
 struct Validation {
   std::vector<Input> inputs;

@@ -59,8 +59,8 @@ class ValidationPoint:
     """A measured value beside a model's; None is not known. SI.
 
     error = simulated - measured; u_val² = u_num² + u_input² + u_D² (ASME V&V 20).
-    verdict: "bounded": |error| > 2 u_val, the model's error is below `bound` = |error| + 2 u_val;
-    "not resolved": it hides in the uncertainties; "not known".
+    verdict: "bounded": |error| > 2 u_val, the model's error is seen, between `least` = |error| - 2 u_val
+    and `bound` = |error| + 2 u_val; "not resolved": it is not seen, but below `bound`; "not known".
     contributions: what one standard uncertainty of each input makes of `simulated`.
     """
 
@@ -78,6 +78,7 @@ class ValidationPoint:
     source: str
     contributions: tuple[float | None, ...] = ()
     note: str = ""
+    least: float | None = None
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,7 @@ class ValidationSeries:
     chi_squared: float | None
     rms_error: float | None
     points: tuple[ValidationPoint, ...]
+    bounded_with_u_D: tuple[dict[str, Any], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -280,7 +280,7 @@ class Command(unittest.TestCase):
         text = file.read_text()
         self.assertEqual(made.damaged, [])
         self.assertIn("depends on E2/E1", text)
-        self.assertIn("1 to 1.94", text)
+        self.assertIn("E2/E1 1 to 1.9", text)
 
     def test_a_file_that_cannot_be_written_is_said(self):
         program = os.environ["CILIAVAL_PROGRAM"]

@@ -302,30 +302,48 @@ def surface_blocks(profile: dict[str, Any]) -> list[Block]:
 
 
 def claims_blocks(data: dict[str, Any]) -> list[Block]:
-    table = Table(
-        "The paper's statements and what the models find",
-        ["place", "statement", "verdict", "model or measure", "value", "holds"],
-    )
     counts = Counter(_kind_of(claim["verdict"]) for claim in data["claims"])
+    text = in_words(f"{count} {verdict}" for verdict, count in counts.most_common())
+    verdicts = Table("The paper's statements", ["place", "statement", "verdict", "holds"])
+    found = Table(
+        "What the models find", ["statement", "remark", "model or measure", "value", "holds"]
+    )
     for claim in data["claims"]:
-        note = f" ({claim['note']})" if claim.get("note") else ""
+        kind = "text plain" if claim["verdict"] == "reproduced" else "text"
+        verdicts.rows.append(
+            [
+                Cell(claim["place"], "text plain"),
+                Cell(claim["statement"], "text plain"),
+                Cell(claim["verdict"], kind),
+                Cell("; ".join(_where(e) for e in claim.get("depends_on", [])), "text plain"),
+            ]
+        )
         rows = max(len(claim["findings"]), 1)
-        kind = "word" if claim["verdict"] == "reproduced" else "word strong"
         row: list[str | Cell] = [
-            Cell(claim["place"], "text", rows),
-            Cell(f"{claim['statement']}.{note}" if note else claim["statement"], "text", rows),
-            Cell(claim["verdict"], kind, rows),
+            Cell(claim["statement"], "text plain", rows),
+            Cell(claim.get("note") or "", "text plain", rows),
         ]
         for f in claim["findings"]:
             answer = {None: "undecided", True: "yes", False: "no"}[f["holds"]]
-            table.rows.append([*row, Cell(f["models"], "text plain"), _finding(f), answer])
+            found.rows.append([*row, Cell(f["models"], "text plain"), _finding(f), answer])
             row = []
         if not claim["findings"]:
-            table.rows.append([*row, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN])
-    text = in_words(f"{count} {verdict}" for verdict, count in counts.most_common())
-    blocks: list[Block] = [Text(f"{len(data['claims'])} claims: {text}."), table]
+            found.rows.append([*row, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN])
+    blocks: list[Block] = [
+        Text(f"{len(data['claims'])} claims: {text}."), verdicts, Details("What the models find", [found])
+    ]  # fmt: skip
     ranges = _ranges(data["claims"])
-    return [*blocks, ranges] if ranges.rows else blocks
+    return [*blocks, Details("What the paper does not state, and how it was varied", [ranges])] if ranges.rows else blocks
+
+
+def _where(entry: dict[str, Any]) -> str:
+    """ "sensor z -2.69 to -2.08 mm (elastica: B)" """
+    if entry["unit"] is None:
+        return "by " + ", ".join(name for names in entry["holds"] for name in names)
+    held = ", ".join(_interval(interval) for interval in entry["holds"]) or "nowhere"
+    unit = f" {entry['unit']}" if entry["unit"] and entry["holds"] else ""
+    whole = "all of " if entry["holds"] == [entry["scanned"]] else ""
+    return f"{entry['parameter']} {whole}{held}{unit} ({entry['models']})"
 
 
 def _kind_of(verdict: str) -> str:

@@ -42,14 +42,24 @@ def _findings(validation: Validation) -> list[str]:
         if not series.assessed:
             found.append(f"{name}: not known: {series.points[0].note}.")
         elif known:
+            least = max(p.least or 0.0 for p in known)
             worst = max(p.bound or 0.0 for p in known)
             found.append(
-                f"{name}: the model's error is seen at {len(known)} of {series.assessed} values, "
-                f"where it is below {quantity(worst, series.unit, 3)}."
+                f"{name}: the model's error is seen at {len(known)} of {series.assessed} values, at one of them it is "
+                f"above {quantity(least, series.unit, 2)}, at all below {quantity(worst, series.unit, 3)}.{_over(series)}"
             )
         else:
-            found.append(f"{name}: not resolved: the error hides in the uncertainties everywhere.")
+            worst = max((p.bound or 0.0 for p in series.points), default=0.0)
+            found.append(
+                f"{name}: the model's error is not seen: it is below {quantity(worst, series.unit, 3)}.{_over(series)}"
+            )
     return found
+
+
+def _over(series: ValidationSeries) -> str:
+    """How the verdicts hang on u_D, which may be assumed."""
+    others = [f"{of['bounded']} (u_D {number(of['factor'])} times)" for of in series.bounded_with_u_D if of["factor"] != 1]
+    return f" Seen with another uncertainty of the measured values: {', '.join(others)}." if others else ""
 
 
 def _domain(validation: Validation) -> str:
@@ -64,7 +74,7 @@ def _summary(validation: Validation) -> Table:
     table = Table(
         "χ² of all values, an input's error being the same at all of them; without any error of the "
         "model it is about their number",
-        ["model", "measured", "values", "bounded", "not resolved", "r.m.s. of E", "χ²", "u_input by"],
+        ["model", "measured", "values", "error seen", "not seen", "r.m.s. of E", "χ²", "u_input by"],
     )
     for s in validation.series:
         row = [s.model, describe(s.quantity, s.point), *(str(n) for n in (s.assessed, s.bounded, s.not_resolved))]
@@ -89,8 +99,11 @@ def _points(series: ValidationSeries) -> Table:
 
 
 def _verdict(point: ValidationPoint, series: ValidationSeries) -> str:
+    if point.bound is not None and point.verdict == "bounded":
+        least = number(point.least, shown(series.unit).size, 2)
+        return f"seen, {least} to {quantity(point.bound, series.unit, 3)}"
     if point.bound is not None:
-        return f"below {quantity(point.bound, series.unit, 3)}"
+        return f"not seen, below {quantity(point.bound, series.unit, 3)}"
     return f"{point.verdict}: {point.note}" if point.note else point.verdict
 
 

@@ -19,10 +19,12 @@ TEST(Assessment, BoundsAnErrorBeyondTwiceTheUncertaintyAndOnlySuchAnOne) {
   const Assessment seen = assess(4.6, 5.0, u);
   EXPECT_NEAR(seen.error, -0.4, 1e-15);
   EXPECT_NEAR(seen.u_val, 0.13, 1e-15);
+  EXPECT_NEAR(seen.least, 0.14, 1e-15);
   EXPECT_NEAR(seen.bound, 0.66, 1e-15);
   EXPECT_EQ(seen.verdict, Verdict::bounded);
   const Assessment hidden = assess(5.2, 5.0, u);
   EXPECT_NEAR(hidden.error, 0.2, 1e-15);
+  EXPECT_EQ(hidden.least, 0);
   EXPECT_NEAR(hidden.bound, 0.46, 1e-15);
   EXPECT_EQ(hidden.verdict, Verdict::not_resolved);
   // Each of the three counts: without it the second would be seen.

@@ -233,13 +233,25 @@ TEST(Report, FitsATerminalAndNeverSaysValidated) {
   const std::string shown = text(v, output::Footnotes::text);
   for (const std::string& line : lines(shown)) EXPECT_LE(line.size(), 80U) << line;
   EXPECT_THAT(shown, HasSubstr("a_slow_model (u_in by toy)"));
-  EXPECT_THAT(shown, HasSubstr("not resolved"));
-  EXPECT_THAT(shown, HasSubstr("model error bounded at 1, not resolved at 1"));
+  EXPECT_THAT(shown, HasSubstr("not seen, < "));
+  EXPECT_THAT(shown, HasSubstr("model error seen at 1, not seen at 1"));
   EXPECT_EQ(shown.find("validated"), std::string::npos);
   const auto json = nlohmann::json::parse(validation::json(v));
   EXPECT_EQ(json["series"][0]["points"][0]["verdict"], "bounded");
   EXPECT_EQ(json["series"][0]["points"][0]["bound"], v.series[0].points[0].assessment->bound);
-  EXPECT_TRUE(json["series"][0]["points"][1]["bound"].is_null());
+  EXPECT_EQ(json["series"][0]["points"][1]["bound"], v.series[0].points[1].assessment->bound);
+  EXPECT_EQ(json["series"][0]["points"][1]["least"], 0);
+  // With a u_D of another size by hand: |E| against 2 sqrt(u_num^2 + u_in^2 + (f u_D)^2).
+  for (const auto& entry : json["series"][0]["bounded_with_u_D"]) {
+    int seen = 0;
+    for (const Point& p : v.series[0].points)
+      seen += std::abs(p.assessment->error) >
+                      2 * std::hypot(*p.u_num, *p.u_input,
+                                     entry["factor"].get<double>() * p.measured.uncertainty)
+                  ? 1
+                  : 0;
+    EXPECT_EQ(entry["bounded"], seen) << entry;
+  }
   EXPECT_EQ(json["series"][0]["chi_squared"], v.series[0].chi_squared.value());
   EXPECT_EQ(json["inputs"][0]["number"], "load.force");
   EXPECT_EQ(json["inputs"][0]["relative"], true);
