@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/CiliaVal)
 
-install(TARGETS ciliaval_problem ciliaval_analytic ciliaval_meshes ciliaval_fem ciliaval_case ciliaval_signal ciliaval_store ciliaval_compare
+install(TARGETS ciliaval_problem ciliaval_analytic ciliaval_meshes ciliaval_fem ciliaval_case ciliaval_store ciliaval_compare
   EXPORT CiliaValTargets COMPONENT development)
 install(TARGETS ciliaval COMPONENT program)
 install(EXPORT CiliaValTargets NAMESPACE CiliaVal:: DESTINATION ${config_dir} COMPONENT development)

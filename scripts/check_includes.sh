@@ -15,7 +15,7 @@ fem/beam: problem fem/lanczos.h
 fem/potential: problem fem/parallel.h
 fem/solid: problem meshes fem
 fem/calculix: problem meshes fem
-compare/input: problem compare/signal compare/results/quantity.h
+compare/input: problem compare/results/quantity.h
 compare/models: problem analytic fem meshes compare/input compare/results/quantity.h
 compare/results: problem compare/input compare/models
 compare/output: problem compare/results meshes analytic/rod/field_models.h analytic/sources/push_forward.h compare/input compare/models ciliaval_version.h
@@ -23,7 +23,6 @@ compare/regression: $shared
 compare/convergence: $shared compare/regression
 compare/budget: $shared
 compare/sensing: $shared
-compare/signal: problem
 compare/study: $shared compare/budget
 compare/validation: $shared compare/study
 compare/app: .

@@ -32,8 +32,8 @@ struct Case {
   std::vector<LoadStatement::Values> stated_by;
   /// Of a sweep; each of its loads has what is made of it.
   std::optional<surroundings::StatedSurface> surface;
-  std::optional<compare::signal::SignalOptions> signal;  ///< what a logger makes of a sweep
-  std::vector<Vector3> sensors;                          ///< m
+  std::optional<sweep::SignalOptions> signal;  ///< what a logger makes of a sweep
+  std::vector<Vector3> sensors;                ///< m
   std::vector<std::string>
       sensor_names;                    ///< of the sensors by [[sensor]]; empty: they are numbered
   std::vector<std::string> mechanics;  ///< ids of mechanics models, in the order asked for

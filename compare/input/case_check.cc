@@ -136,6 +136,15 @@ void check_signal(const Case& c, const Report& report) {
     way += step;
   }
   const double seconds = way / c.load_path.front().as<SweepLoad>().value().speed;
+  const double intervals = seconds * c.signal->sampling_rate * (1 + 1e-12);
+  if (const std::size_t least = c.signal->least_samples();
+      !(1 + std::floor(intervals) > static_cast<double>(least)))
+    report(
+        "signal.sampling_rate",
+        fmt::format(
+            "the sweep takes {:g} s, of which this rate makes {:g} sample{}: the record needs more "
+            "than {}",
+            seconds, 1 + std::floor(intervals), intervals < 1 ? "" : "s", least));
   if (seconds * c.signal->sampling_rate > longest_record)
     report("signal.sampling_rate",
            fmt::format("the sweep takes {:g} s, of which this rate makes {:g} samples, more than "

@@ -377,7 +377,6 @@ std::vector<ResultFile> result_files(const models::CaseResult& result,
         files.push_back({step_file(run.model, i, "csv"),
                          [&deformation] { return centreline_csv(deformation->centreline); }});
   if (is_sweep(result.problem)) files.push_back({"sweep.csv", [&] { return sweep_csv(result); }});
-  if (result.problem.signal) files.push_back({"signal.csv", [&] { return signal_csv(result); }});
   if (!result.fields.empty()) files.push_back({"fields.csv", [&] { return fields_csv(result); }});
   files.push_back(
       {"errors.csv", [&] { return errors_csv(comparisons, input::sensor_names(result.problem)); }});

@@ -54,7 +54,7 @@ struct ResultFile {
   std::function<std::string()> text;
 };
 
-/// The centrelines of all converged steps, of a sweep sweep.csv and signal.csv, fields.csv of a
+/// The centrelines of all converged steps, of a sweep sweep.csv, fields.csv of a
 /// case with fields, errors.csv and summary.json. They refer to the result and the comparisons.
 std::vector<ResultFile> result_files(const models::CaseResult& result,
                                      const std::vector<models::Comparison>& comparisons,

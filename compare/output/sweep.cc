@@ -303,39 +303,6 @@ std::string sweep_csv(const models::CaseResult& result) {
   return csv.text();
 }
 
-std::string signal_csv(const models::CaseResult& result) {
-  const LoadPath& path = result.problem.load_path;
-  std::vector<double> times = ways(path);
-  for (double& time : times) time /= sweep_of(path.front()).speed;
-  Columns columns;
-  columns.add("time", "s");
-  std::vector<signal::Signal> records;
-  for (const models::FieldRun& run : result.fields)
-    for (std::size_t s = 0; s < result.problem.sensors.size(); ++s) {
-      std::vector<Vector3> dB;
-      for (const auto& step : run.steps)
-        if (step && step->dB[s]) dB.push_back(*step->dB[s]);
-      if (dB.size() != path.size()) continue;
-      for (const char* kind : {"dB", "filtered"})
-        columns.add_vector(
-            fmt::format("{}.{}{}_", run.name(), kind, column_label(result.problem, s)), "T");
-      records.push_back(
-          signal::record(times, dB, *result.problem.signal, static_cast<std::uint32_t>(s)));
-    }
-  CsvWriter csv;
-  columns.write(csv);
-  const std::size_t rows = records.empty() ? 0 : records.front().time.size();
-  for (std::size_t i = 0; i < rows; ++i) {
-    csv.add(records.front().time[i]);
-    for (const signal::Signal& record : records) {
-      add(csv, record.raw[i]);
-      add(csv, record.filtered[i]);
-    }
-    csv.end_row();
-  }
-  return csv.text();
-}
-
 std::string sweep_table(const models::CaseResult& result, std::size_t sensors) {
   std::string text = heading(result.problem.load_path) + models_table(result) + events(result) +
                      differences(result);

@@ -36,11 +36,6 @@ EnergyBalance energy_balance(const models::MechanicsRun& run);
 /// Units in the comment line.
 std::string sweep_csv(const models::CaseResult& result);
 
-/// signal.csv as text: of each pair of models and each sensor ΔB as the logger of [signal] records
-/// it, and filtered, by the time. Pairs without a field at some sample are left out. Throws
-/// InputError as signal::record().
-std::string signal_csv(const models::CaseResult& result);
-
 /// The sweep for a terminal: a line for each model, its jumps, the differences of the tips, the
 /// range of ΔB at the first `sensors`.
 std::string sweep_table(const models::CaseResult& result, std::size_t sensors);

@@ -103,13 +103,14 @@ void end_store(output::store::Store& store, const models::CaseResult& result) {
   if (!needed) store.remove();
 }
 
-/// report.html beside summary.json. The results are as good without it.
-void write_case_report(const fs::path& folder) {
+/// A file that the Python package makes beside summary.json. The results are as good without it.
+void add_by_python(const fs::path& folder, const char* name, const std::string& module,
+                   const std::vector<std::string>& options = {}) {
   try {
-    const ModuleEnd made = run_python_module("ciliaval.report", {folder}, {"--case"});
+    const ModuleEnd made = run_python_module(module, {folder}, options);
     for (const std::string& what : made.warnings) warn(what);
   } catch (const FileError& error) {
-    warn(fmt::format("there is no report.html: {}", error.what()));
+    warn(fmt::format("there is no {}: {}", name, error.what()));
   }
 }
 
@@ -132,7 +133,10 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options, const std::strin
       output::vtk::drawn_steps(problem.load_path.size(), options.all_vtk);
   tbb::parallel_invoke(
       [&] { output::vtk::write_vtk(result, grid, origin, drawn, folder.path() / "vtk"); },
-      [&] { write_case_report(folder.path()); });
+      [&] {
+        if (problem.signal) add_by_python(folder.path(), "signal.csv", "ciliaval.sensing.signal");
+        add_by_python(folder.path(), "report.html", "ciliaval.report", {"--case"});
+      });
   folder.commit();
   line.clear();
   const output::Footnotes footnotes = footnotes_of(options.explain);

@@ -146,7 +146,7 @@ std::vector<Key> all_keys(const Models& models) {
   add_table(all, environment::table_name, description::fields<surroundings::Environment>());
   add_table(all, environment::magnet_table, description::fields<surroundings::magnets::Magnet>());
   add_table(all, "surface", description::fields<surroundings::StatedSurface>());
-  add_table(all, "signal", description::fields<signal::SignalOptions>());
+  add_table(all, "signal", description::fields<sweep::SignalOptions>());
   all.push_back(of_key("sensor", keys().sensor_name));
   all.push_back(of_key("sensor", keys().sensor_position));
   for (const external::ReadingKey& key : external::reading_keys())

@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include "compare/input/described.h"
-#include "compare/signal/butterworth.h"
 
 namespace ciliaval::description {
 
 template <>
-const Fields<compare::signal::SignalOptions>& fields<compare::signal::SignalOptions>() {
-  using compare::signal::SignalOptions;
+const Fields<compare::input::sweep::SignalOptions>& fields<compare::input::sweep::SignalOptions>() {
+  using compare::input::sweep::SignalOptions;
+  constexpr double highest_order = 20;
   using Phase = SignalOptions::Phase;
   static constexpr Range frequency_range{1e-6, 1e9, false, unit_slip};
   const auto of_filter = [](Field<SignalOptions> field) {
@@ -31,11 +31,11 @@ const Fields<compare::signal::SignalOptions>& fields<compare::signal::SignalOpti
                "no filter"),
       field(&SignalOptions::seed, "seed", {0, 4294967295.0, false, "a seed has 32 bits"},
             "Of the noise; each sensor has its own."),
-      of_filter(falls_back_to(
-          field(&SignalOptions::order, "order",
-                {1, compare::signal::highest_order, false, "higher filters are badly conditioned"},
-                "Of the filter."),
-          "4 (the paper's)")),
+      of_filter(
+          falls_back_to(field(&SignalOptions::order, "order",
+                              {1, highest_order, false, "higher filters are badly conditioned"},
+                              "Of the filter."),
+                        "4 (the paper's)")),
       of_filter(choice(&SignalOptions::phase, "phase",
                        {{"causal", Phase::causal}, {"zero_phase", Phase::zero}},
                        "A filter in the logger, or one of the whole record that shifts nothing."))};
@@ -45,8 +45,6 @@ const Fields<compare::signal::SignalOptions>& fields<compare::signal::SignalOpti
 }  // namespace ciliaval::description
 
 namespace ciliaval::compare::input::sweep {
-
-using signal::SignalOptions;
 
 std::optional<SignalOptions> read_signal(Section& root) {
   Section table = root.section("signal");

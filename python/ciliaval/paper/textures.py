@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import signal
 
+from ..sensing import record
 from .cases import Pair, Setting, name_of, run
 from .claim import Claim, Unstated, in_range, scanned
 
@@ -17,7 +17,7 @@ _RIGHT = 90.0  # % of a texture's pieces
 _NOISE = 0.5  # uT, of the shipped cases
 
 
-class Record:
+class Piece:
     """A piece of a texture: dB at the sensor over time, and what its logger and filter are."""
 
     def __init__(self, setting: Setting, texture: str, seed: int):
@@ -37,20 +37,18 @@ class Record:
         piece.mechanics, piece.fields = [_PAIR[0]], [_PAIR[1]]
         result = run(piece, setting)
         travel, speed = result.load("travel"), result.load("speed")[0]
-        time = np.concatenate([[0], np.cumsum(np.abs(np.diff(travel)))]) / speed
+        self.time = np.concatenate([[0], np.cumsum(np.abs(np.diff(travel)))]) / speed
         self.rate = float(tables["signal"]["sampling_rate"].removesuffix(" Hz"))
         self.cutoff = float(tables["signal"]["cutoff"].removesuffix(" Hz"))
         self.seed = seed
-        at = np.arange(0, time[-1] * (1 + 1e-12), 1 / self.rate)
-        change = result.dB(name_of(_PAIR))[:, 0]
-        self.dB = np.stack([np.interp(at, time, component) for component in change.T], axis=1)
+        self.dB = result.dB(name_of(_PAIR))[:, 0]
 
     def features(self, noise: float) -> np.ndarray:
         """What a classifier sees of the filtered record with this noise, T: the logarithms of its root
         mean square and of how often it changes its sign."""
-        read = self.dB + np.random.default_rng(self.seed).normal(0, noise, self.dB.shape)
-        sections = signal.butter(_ORDER, self.cutoff, "highpass", fs=self.rate, output="sos")
-        filtered = signal.sosfiltfilt(sections, read, axis=0)
+        filtered = record(
+            self.time, self.dB, self.rate, noise, self.cutoff, _ORDER, "zero_phase", self.seed
+        ).filtered
         crossings = np.count_nonzero(np.diff(np.signbit(filtered[:, 0])))
         return np.log([np.sqrt(np.mean(np.sum(filtered**2, axis=1))), 1 + crossings])
 
@@ -73,7 +71,7 @@ def confusion(features: np.ndarray) -> np.ndarray:
 
 def told_apart(setting: Setting) -> Claim:
     claim = Claim("3.6, Fig. 6d", "four textures are told apart after a fourth-order high-pass filter")
-    records = [[Record(setting, t, seed) for seed in range(1, _PIECES + 1)] for t in _TEXTURES]
+    records = [[Piece(setting, t, seed) for seed in range(1, _PIECES + 1)] for t in _TEXTURES]
 
     def found(noise: float) -> np.ndarray:
         return confusion(np.array([[piece.features(noise) for piece in of] for of in records]))

@@ -99,7 +99,7 @@ TEST(DescribedKey, IsReadAsItIsWritten) {
   int count = check_fields(description::fields<Segment>()) +
               check_fields(description::fields<CrossSection>()) +
               check_fields(description::fields<Cilium>()) +
-              check_fields(description::fields<signal::SignalOptions>()) +
+              check_fields(description::fields<input::sweep::SignalOptions>()) +
               check_fields(description::fields<surroundings::Environment>()) +
               check_fields(description::fields<surroundings::magnets::Magnet>()) +
               check_fields(description::fields<surroundings::StatedSurface>()) +

@@ -105,8 +105,9 @@ TEST(SweepCase, IsWrittenBack) {
         replaced(good_sweep, "interference = \"1 mm\"", "clearance = \"0.25 mm\""),
         replaced(replaced(good_sweep, "samples = 31\nreturn = true\n", ""), "travel = \"30 mm\"",
                  "travel = [\"0 mm\", \"2 mm\", \"1 mm\"]"),
-        replaced(replaced(good_sweep, "samples = 31\nreturn = true\n", ""), "travel = \"30 mm\"",
-                 "travel = [\"2 mm\"]"),
+        replaced(replaced(replaced(good_sweep, "samples = 31\nreturn = true\n", ""),
+                          "travel = \"30 mm\"", "travel = [\"2 mm\"]"),
+                 "[signal]\nsampling_rate = \"100 Hz\"\nnoise = \"1 uT\"\ncutoff = \"1 Hz\"\n", ""),
         replaced(good_sweep,
                  "\"trapezoid\"\nheight = \"1 mm\"\ntop = \"10 mm\"\nbottom = \"10 mm\"\nflank = "
                  "\"1 mm\"\nradius = \"0.5 mm\"",
@@ -172,6 +173,11 @@ TEST(SweepCase, RefusesWhatMakesNoSense) {
       {"type = \"sweep\"", "type = \"swep\"", "21:8", "did you mean 'sweep'?"},
       {"\"100 Hz\"", "\"1 Hz\"", "30:10", "must be below half the 'sampling_rate'"},
       {"\"100 Hz\"", "\"1 GHz\"", "28:17", "samples, more than 1e+06"},
+      {"\"100 Hz\"\nnoise = \"1 uT\"\ncutoff = \"1 Hz\"", "\"0.1 Hz\"", "28:17",
+       "makes 1 sample: the record needs more than 1"},
+      {"\"100 Hz\"\nnoise = \"1 uT\"\ncutoff = \"1 Hz\"",
+       "\"2 Hz\"\ncutoff = \"0.5 Hz\"\nphase = \"zero_phase\"", "28:17",
+       "makes 13 samples: the record needs more than 15"},
       {"cutoff = \"1 Hz\"", "order = 3", "30:9", "'order' goes with 'cutoff'"},
       {"noise = \"1 uT\"", "noise = \"1 mm\"", "29:9", "flux density"},
   };

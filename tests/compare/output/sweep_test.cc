@@ -141,19 +141,6 @@ TEST(SweepResults, SeriesRepeatsTheSummary) {
   }
 }
 
-TEST(SweepResults, SignalIsAsLongAsTheSweepAndStartsAtRest) {
-  const auto rows = rows_of(output::signal_csv(result()));
-  // 22 mm at 10 mm/s, 50 a second, both ends.
-  ASSERT_EQ(rows.size(), 1 + 111U);
-  EXPECT_EQ(rows[0][0], "time");
-  EXPECT_EQ(rows[0][4], "elastica/volume.filtered0_x");
-  EXPECT_EQ(std::stod(rows[1][4]), 0);
-  double largest = 0;
-  for (std::size_t i = 1; i < rows.size(); ++i)
-    largest = std::max(largest, std::abs(std::stod(rows[i][4])));
-  EXPECT_GT(largest, 20e-6);  // the jump
-}
-
 TEST(SweepResults, TableFitsATerminalAndTellsTheJump) {
   const std::string text = output::sweep_table(result(), 1);
   std::istringstream lines(text);
