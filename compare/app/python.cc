@@ -99,7 +99,15 @@ ModuleEnd run_python_module(const std::string& module, const std::vector<fs::pat
 }
 
 void become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
-  std::vector<std::string> words{interpreter(), "-m", "ciliaval.command", module};
+  const std::string script = fmt::format(
+      "import sys\n"
+      "try:\n"
+      "    from ciliaval.command import main\n"
+      "    sys.exit(main())\n"
+      "except ImportError as error:\n"
+      "    sys.exit(print(f'ciliaval: {{error}}{}', file=sys.stderr) or 4)\n",
+      needs);
+  std::vector<std::string> words{interpreter(), "-c", script, module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());

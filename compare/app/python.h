@@ -21,9 +21,9 @@ ModuleEnd run_python_module(const std::string& module,
                             const std::vector<std::filesystem::path>& files,
                             const std::vector<std::string>& options = {});
 
-/// Becomes `python3 -m ciliaval.command MODULE ARGUMENTS…`, whose output, signals and exit code are
-/// then the program's; the module finds this program in $CILIAVAL_PROGRAM. Throws FileError if
-/// there is no Python.
+/// Becomes Python with `ciliaval.command`, which runs MODULE with ARGUMENTS…, whose output, signals
+/// and exit code are then the program's; the module finds this program in $CILIAVAL_PROGRAM. Throws
+/// FileError if there is no Python; without the package, or what it needs, it ends with that code.
 [[noreturn]] void become_python_module(const std::string& module,
                                        const std::vector<std::string>& arguments);
 

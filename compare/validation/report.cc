@@ -77,9 +77,8 @@ std::string verdict_cell(const Point& point, const ShownUnit& unit) {
   if (!point.assessment) return std::string(to_string(point.verdict()));
   const auto [least, bound] =
       std::pair(point.assessment->least / unit.size, point.assessment->bound / unit.size);
-  return point.verdict() == Verdict::bounded
-             ? fmt::format("seen, {:.2g} to {:.2g}", least, bound)
-             : fmt::format("not seen, < {:.3g}", bound);
+  return point.verdict() == Verdict::bounded ? fmt::format("{:.2g} to {:.3g}", least, bound)
+                                             : fmt::format("not seen, < {:.3g}", bound);
 }
 
 /// Each note once, with its steps.

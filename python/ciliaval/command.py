@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What the program's commands that are written in Python share: progress, errors, exit codes.
 
-python3 -m ciliaval.command MODULE ARGUMENTS…: what the program starts for them.
+main() is what the program starts for them, with the module and its arguments (compare/app/python.cc).
 """
 
 from __future__ import annotations
@@ -57,6 +57,8 @@ class Progress:
 
 def write_out(text: str) -> None:
     """To stdout, which is the result. Raises FileError if it cannot be written."""
+    if sys.stdout is None:
+        raise FileError("standard output is closed")
     try:
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
@@ -82,11 +84,7 @@ def run_command(execute: Callable[[], int]) -> int:
 def main() -> int:
     # While the module is imported Ctrl-C ends the process: an import that is interrupted may raise anything.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    module = importlib.import_module(f"{sys.argv[1]}.__main__")
+    module = importlib.import_module(f"{sys.argv[1]}.__main__")  # an ImportError is the program's to word
     signal.signal(signal.SIGINT, signal.default_int_handler)
     del sys.argv[1]
     return run_command(module.main)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import _core
 from ._core import Cilium, Environment, Load, Shape
 from .errors import InputError
@@ -94,6 +96,30 @@ class Case:
         'soft'
         """
         return cls.from_text(toml_of(tables), name)
+
+    @classmethod
+    def from_objects(
+        cls,
+        cilium: Cilium,
+        loads: Load | Sequence[Load],
+        sensors: Any = (),
+        mechanics: Sequence[str] = ("elastica", "beam"),
+        fields: Sequence[str] = (),
+        name: str = "objects",
+        title: str = "A case of objects",
+    ) -> Case:
+        """The case of a cilium, a load or a load path, and sensors, (n, 3) m, with the models to run;
+        without a list of `fields` volume where there is a sensor. Raises InputError with every fault.
+
+        >>> import ciliaval as cv
+        >>> rod = cv.Cilium(3e-3, [cv.Segment(20e-3, 1e6, magnetization=75e3, name="rod")])
+        >>> case = cv.Case.from_objects(rod, cv.Load("contact", force=1e-3, height=16e-3), [0, 0, -2e-3])
+        >>> case.run().pairs
+        ['elastica/volume', 'beam/volume']
+        """
+        path = [loads] if isinstance(loads, Load) else list(loads)
+        used = list(fields) or (["volume"] if np.size(sensors) else [])
+        return cls._of(_core.CaseFile.of_objects(cilium, path, sensors, list(mechanics), used, name, title))
 
     def changed(self, values: Mapping[str, Any]) -> Case:
         """This case with other numbers, by the paths that studies have for them

@@ -175,6 +175,12 @@ class Result:
     def has_case(self) -> bool:
         return self._run is not None or (self.folder is not None and (self.folder / "case.toml").exists())
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Plain data: a run's files as texts."""
+        if self._run is None:
+            return vars(self)
+        return {**vars(self), "_run": Texts({name: self._run.text(name) for name in self._run.names()})}
+
     def _text(self, name: str) -> str:
         """The text of one of the files of results, on the disk or not."""
         if self._run is not None:
@@ -298,6 +304,21 @@ class Result:
             f"<Result of {self.name}: {len(self.steps)} steps, {', '.join(self.models)}; "
             f"{', '.join(self.pairs) or 'no fields'}>"
         )
+
+
+class Texts:
+    """The texts of files of results by their names, in place of a run."""
+
+    def __init__(self, texts: dict[str, str]):
+        self._texts = texts
+
+    def names(self) -> list[str]:
+        return list(self._texts)
+
+    def text(self, name: str) -> str:
+        if name not in self._texts:
+            raise FileError(f"there is no {name} among the results")
+        return self._texts[name]
 
 
 class Document(dict):

@@ -20,6 +20,7 @@
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
 #include "problem/error.h"
+#include "problem/load.h"
 #include "problem/support/words.h"
 #include "python/core/calls.h"
 #include "python/core/convert.h"
@@ -47,6 +48,11 @@ class CaseRun {
   CaseRun& operator=(const CaseRun&) = delete;
   ~CaseRun() = default;
 
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const output::ResultFile& file : files_) all.push_back(file.name);
+    return all;
+  }
   std::string text(const std::string& name) const {
     const auto file = std::ranges::find(files_, name, &output::ResultFile::name);
     if (file == files_.end()) throw FileError("there is no " + name + " among the results");
@@ -71,6 +77,25 @@ input::Case checked(input::Case problem) {
   return problem;
 }
 
+/// The case of these objects: what a file that states them would be.
+input::Case of_objects(const py::object& cilium, const py::object& loads, const Array& sensors,
+                       const py::object& mechanics, const py::object& fields, const Text& name,
+                       const Text& title) {
+  input::Case problem;
+  problem.name = text(name, "name");
+  problem.title = text(title, "title");
+  problem.cilium = one<Cilium>(cilium, "cilium");
+  problem.load_path = list_of<Load>(loads, "load");
+  if (problem.load_path.empty()) throw InputError("a case has one load or more");
+  if (problem.load_path.front().is<SweepLoad>())
+    throw InputError("the surface of a sweep is stated in a case file: Case.from_text()");
+  problem.sensors = points(sensors);
+  problem.mechanics = list_by<std::string>(mechanics, "mechanics", "models", text);
+  problem.fields = list_by<std::string>(fields, "fields", "models", text);
+  return checked(
+      input::read_case(to_toml(problem, models::known()), "the objects", models::known()));
+}
+
 /// The case with other numbers, by the paths that studies have for them.
 input::Case changed(const input::Case& problem, const py::dict& values) {
   const std::vector<study::CaseNumber> numbers = study::case_numbers(problem);
@@ -88,7 +113,9 @@ input::Case changed(const input::Case& problem, const py::dict& values) {
     const auto* whole = std::get_if<unsigned int>(&set);
     settings.push_back({*number, whole != nullptr ? *whole : std::get<double>(set)});
   }
-  return study::with_settings(problem, settings);
+  // Read again, for the rules that go over several keys.
+  return checked(input::read_case(to_toml(study::with_settings(problem, settings), models::known()),
+                                  "the changed case", models::known()));
 }
 
 }  // namespace
@@ -107,6 +134,9 @@ void bind_case(py::module_& module) {
                 input::read_case(text(toml, "toml"), text(name, "name"), models::known()));
           },
           py::arg("toml"), py::arg("name"))
+      .def_static("of_objects", &of_objects, py::arg("cilium"), py::arg("loads"),
+                  py::arg("sensors"), py::arg("mechanics"), py::arg("fields"), py::arg("name"),
+                  py::arg("title"))
       .def("changed", &changed, py::arg("values"))
       .def_readonly("name", &input::Case::name)
       .def_readonly("title", &input::Case::title)
@@ -137,6 +167,7 @@ void bind_case(py::module_& module) {
           }))
       .def("run", &run, py::arg("progress"));
   py::class_<CaseRun>(module, "CaseRun")
+      .def("names", &CaseRun::names)
       .def(
           "text", [](const CaseRun& run, const Text& name) { return run.text(text(name, "name")); },
           py::arg("name"));

@@ -4,6 +4,7 @@
 import ast
 import json
 import os
+import pickle
 import re
 import signal
 import subprocess
@@ -84,9 +85,25 @@ class Cases(unittest.TestCase):
             ({"cilium.diameter": -1.0}, "diameter"),
             ({"load.height": "high"}, "height"),
             ({3: 1.0}, "path"),
+            ({"load.height": "25 mm"}, "the changed case:.*height"),  # above the tip
         ):
             with self.subTest(values), self.assertRaisesRegex(cv.InputError, text):
                 case.changed(values)
+
+    def test_objects_are_a_case(self):
+        case = cv.Case.from_dict(self.TABLES)
+        made = cv.Case.from_objects(case.cilium, case.loads, case.sensors, ["elastica"], ["line"])
+        np.testing.assert_array_equal(made.run().dB("elastica/line"), case.run().dB("elastica/line"))
+        named = cv.Case.from_objects(case.cilium, case.loads[0], name="mine", title="t")
+        self.assertEqual((named.name, named.title, named.fields), ("mine", "t", []))
+        for arguments, text in (
+            ((case.cilium, []), "one load or more"),
+            ((case.cilium, case.loads, [[0, 0, np.nan]]), "finite"),
+            ((case.cilium, case.loads, (), ["elastika"]), "elastica"),
+            ((3, case.loads), "`cilium` is a Cilium"),
+        ):
+            with self.subTest(text), self.assertRaisesRegex(cv.InputError, text):
+                cv.Case.from_objects(*arguments)
 
     def test_a_run_in_memory_has_what_a_folder_has(self):
         case = cv.Case.from_dict(self.TABLES)
@@ -102,8 +119,12 @@ class Cases(unittest.TestCase):
                     np.testing.assert_array_equal(a[name], b[name])
         for figure in (cv.plot.setup, cv.plot.shapes, cv.plot.signal):
             self.assertTrue(figure(result).axes)
-        with self.assertRaisesRegex(cv.FileError, "no beam_0000.csv"):
-            result._text("beam_0000.csv")
+        copy = pickle.loads(pickle.dumps(result))
+        np.testing.assert_array_equal(copy.centreline("elastica", 1)["x"], result.centreline("elastica", 1)["x"])
+        self.assertEqual(copy.case_text, result.case_text)
+        for of in (result, copy):
+            with self.assertRaisesRegex(cv.FileError, "no beam_0000.csv"):
+                of._text("beam_0000.csv")
 
 
 class Bend(unittest.TestCase):

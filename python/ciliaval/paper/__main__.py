@@ -26,16 +26,17 @@ def main() -> int:
     options = parser.parse_args()
     if options.json and not options.json.absolute().parent.is_dir():  # a minute before it would be met
         raise FileError(f"{options.json}: there is no folder {options.json.parent}")
+    command = options.command.encode("utf-8", "backslashreplace").decode("utf-8")
+    provenance = json.loads(_core.provenance(command))
     progress = Progress(options.quiet)
     ledger = claims(options.folder, not options.quick, progress)
     progress.clear()
-    write_out(ledger_text(ledger, shutil.get_terminal_size((100, 24)).columns))
     if options.json:
-        provenance = json.loads(_core.provenance(options.command))
         entries = [claim.json() for claim in ledger]
         text = json.dumps({"schema": 1, "provenance": provenance, "claims": entries}, indent=2)
         with replacing(options.json) as scratch:
             scratch.write_text(text + "\n", encoding="utf-8")
+    write_out(ledger_text(ledger, shutil.get_terminal_size((100, 24)).columns))
     return PASS
 
 

@@ -97,13 +97,16 @@ def at_rest(load: Load) -> Load:
 
 def _kept(case: Case, make: Callable[[], str], what: str) -> str:
     """What make() gives. Where the solid is among the models, minutes for a range of cases, it is
-    kept in the user's cache folder by the program's version and everything that the case states."""
-    if "solid" not in case.mechanics:
-        return make()
+    kept in the user's cache folder by the program's commit, this package's sources and everything
+    that the case states; not by a program of sources that no commit has."""
     program = json.loads(_core.provenance(""))
-    words = [program["version"], program["git"], case.toml(), what]
+    home = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    is_known = program["git"] not in ("", "unknown") and not program["git"].endswith("-dirty")
+    if "solid" not in case.mechanics or not is_known or home.startswith("~"):
+        return make()
+    sources = [path.read_text(encoding="utf-8") for path in sorted(Path(__file__).parent.glob("*.py"))]
+    words = [program["version"], program["git"], *sources, case.toml(), what]
     name = hashlib.sha256("\n".join(words).encode()).hexdigest()
-    home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     file = Path(home) / "ciliaval" / "claims" / f"{name}.json"
     with contextlib.suppress(FileError, ValueError):
         text = content(file).decode("utf-8")

@@ -18,8 +18,7 @@ NOT_REPRODUCED = "not reproduced"
 DEPENDS_ON = "depends on "
 NOT_CHECKABLE = "not checkable"
 
-_COARSE, _PARTS = 9, 400  # values of a scan before it is refined; then to one of so many parts of the range
-_SOLID = 5, 40  # by the solid, which takes seconds a value
+SOLID = 5, 40  # the fineness of a scan by the solid, which takes seconds a value
 
 
 @dataclass(frozen=True)
@@ -47,11 +46,14 @@ def in_range(
     uncertainty: float = 0.0,
 ) -> Finding:
     """A finding whose values must all lie in [at_least, at_most]: it holds if they do with their
-    uncertainty, fails if they do not even so, and is undecided between. NaN fails."""
+    uncertainty, fails if they do not even so, and is undecided between, or if the uncertainty is not
+    known (NaN). A value that is NaN fails."""
     all_of = np.atleast_1d(np.asarray(values, dtype=float))
     low, high = float(np.min(all_of)), float(np.max(all_of))
     holds: bool | None = None
-    if low - uncertainty >= at_least and high + uncertainty <= at_most:
+    if math.isnan(uncertainty):
+        pass  # not known: nothing is decided
+    elif low - uncertainty >= at_least and high + uncertainty <= at_most:
         holds = True
     elif not (low + uncertainty >= at_least and high - uncertainty <= at_most):
         holds = False
@@ -96,12 +98,18 @@ class Scan:
 
 
 def scanned(
-    unstated: Unstated, models: str, margin: Callable[[float], float], is_slow: bool = False
+    unstated: Unstated,
+    models: str,
+    margin: Callable[[float], float],
+    fineness: tuple[int, int] = (9, 400),
 ) -> Scan:
-    """Scans a claim that holds where `margin` is not negative; where that changes from one value to
-    the next the change is found by bisection, to 1/400 of the range (1/40 if it is slow). NaN (no equilibrium) is no margin: it does not hold
-    there. `margin` of a float is a float."""
-    coarse, parts = _SOLID if is_slow else (_COARSE, _PARTS)
+    """Scans a claim that holds where `margin` is not negative.
+
+    fineness: at how many values at first; then, where that changes from one value to the next, the
+    change is found by bisection to one of so many parts of the range. NaN (no equilibrium) is no
+    margin: it does not hold there. `margin` of a float is a float.
+    """
+    coarse, parts = fineness
     values = list(unstated.values(coarse))
     marks = [margin(float(x)) >= 0 for x in values]
     resolution = (unstated.high - unstated.low) / parts
@@ -178,6 +186,7 @@ class Claim:
             choices = [f.models for f in self.findings]
             holding = [f.models for f in self.findings if f.holds]
             depends_on.append({"parameter": self.differ_by, "unit": None, "scanned": choices, "holds": [holding]})
+        others = [e for e in entries if e["parameter"] not in names]
         return {
             "place": self.place,
             "statement": self.statement,
@@ -188,7 +197,8 @@ class Claim:
                 for f in self.findings
             ],
             "depends_on": depends_on,
-            "holds_throughout": [e for e in entries if e["parameter"] not in names],
+            "holds_throughout": [e for e in others if e["holds"]],
+            "holds_nowhere": [e for e in others if not e["holds"]],
         }
 
 
@@ -196,7 +206,9 @@ def value_text(finding: Finding) -> str:
     """ "6.1 to 7.9 +- 0.2 %" """
     low, high = f"{finding.low:.4g}", f"{finding.high:.4g}"
     text = low if low == high else f"{low} to {high}"
-    if finding.uncertainty > 0:
+    if math.isnan(finding.uncertainty):
+        text += " +- not known"
+    elif finding.uncertainty > 0:
         text += f" +- {finding.uncertainty:.2g}"
     return f"{text} {finding.unit}".rstrip()
 

@@ -72,7 +72,8 @@ def _trend(
         name = name_of(pair)
         holds = bool(first < len(values) - 1 and values[first] <= unstated.used)
         # From the study's first value that the cilium bears: thinner ones have no signal at all.
-        claim.findings.append(Finding(f"{name}: dB from end to end", borne[0], borne[-1], "uT", holds))
+        ends = sorted([float(borne[0]), float(borne[-1])])
+        claim.findings.append(Finding(f"{name}: dB at the ends", *ends, "uT", holds))
         intervals: tuple[Interval, ...] = ()
         if first < len(values) - 1:
             intervals = ((float(values[first]), unstated.high),)
@@ -93,19 +94,41 @@ def youngs_moduli(case: Case) -> list[Claim]:
     )
     _trend(magnitude, stiff, _MAGNET, lowest, 1e6, _magnitude, 1)
 
-    plateau = Claim(
+    return [soft, magnitude, plateau(stiff)]
+
+
+def plateau(case: Case) -> Claim:
+    """How soon dB_x settles as E2 grows, from end to end of a range that the text does not state."""
+    claim = Claim(
         "3.4.1, Fig. 4a",
         "dB_x grows with E2 and reaches a plateau",
-        "A plateau: 95 % of the change by half of the range, 0.1 to 10 MPa.",
+        "A plateau: 95 % of the change from end to end by half of the upper end. Steep curves over a wide range of E2 have one, the "
+        "part above 0.5 MPa alone has not.",
     )
-    values = np.geomspace(0.1, 10, _COUNT)
+    values = np.geomspace(0.1, 30, 4 * _COUNT)
+    lowest = Unstated("lowest E2", "MPa", 0.1, 1, 0.1, "the figure's range is not in the text: a tenth of E1 to E1", _MAGNET, True)
+    highest = Unstated("highest E2", "MPa", 2, 30, 10, "the figure's range is not in the text: twice to thirty times E1", _MAGNET, True)
     for pair in RODS:
-        found = 1e6 * _x(_curve(stiff, _MAGNET, 1e6 * values, pair))
-        settled = values[np.argmax(found - found[0] >= 0.95 * (found[-1] - found[0]))]
-        holds = bool(np.all(np.diff(found) > 0) and settled < values[-1] / 2)
-        plateau.findings.append(Finding(f"{name_of(pair)}: dB_x from end to end", found[0], found[-1], "uT", holds))
-        plateau.findings.append(in_range(f"{name_of(pair)}: 95 % by", settled, "MPa", 0, values[-1] / 2))
-    return [soft, magnitude, plateau]
+        found = 1e6 * _x(_curve(case, _MAGNET, 1e6 * values, pair))
+        name = name_of(pair)
+
+        def settled(low: float, high: float) -> float:
+            """E2 by which 95 % of the change has happened, over the upper end; NaN if it does not grow."""
+            within = (values >= low) & (values <= high)
+            x = np.concatenate([[low], values[within], [high]])
+            y = np.interp(np.log(x), np.log(values), found)
+            if not (np.diff(y[1:-1]) > 0).all():
+                return math.nan
+            return float(np.interp(y[0] + 0.95 * (y[-1] - y[0]), y, x)) / high
+
+        ends = [float(np.interp(np.log(x), np.log(values), found)) for x in (lowest.used, highest.used)]
+        claim.findings.append(in_range(f"{name}: dB_x over the range", ends, "uT"))
+        at = settled(lowest.used, highest.used)
+        claim.findings.append(in_range(f"{name}: 95 % by, of the upper end", at, "", 0, 0.5))
+        claim.scans.append(scanned(lowest, name, lambda x: 0.5 - settled(x, highest.used)))
+        claim.scans.append(scanned(highest, name, lambda x: 0.5 - settled(lowest.used, x)))
+    return claim
+
 
 
 def aspect_ratio(case: Case) -> Claim:

@@ -51,12 +51,12 @@ def _numbers(case: Case) -> list[Unstated]:
         Unstated("sensor z", "mm", -4, -1, 1e3 * float(case.sensors[0, 2]),
                  "-1.55 mm is stated for Fig. 4, not for Fig. 3d: a chip of 1 mm, two cover slips, a printed holder",
                  "sensor.position.z"),
-        Unstated("load height", "mm", 12, 19, 1e3 * case.loads[0].parameters["height"],
-                 "h = 16 mm is stated for Fig. 4, not for Fig. 3d: between the magnet's middle and the tip", "load.height"),
+        Unstated("load height", "mm", 12, 17.5, 1e3 * case.loads[0].parameters["height"],
+                 "h = 16 mm is stated for Fig. 4, not for Fig. 3d: from the magnet's middle to where 4 mN slips off", "load.height"),
     ]  # fmt: skip
 
 
-def _scans(case: Case, margin: Callable[[Fields], float], change: bool) -> list[Scan]:
+def _scans(case: Case, margin: Callable[[Fields], float], change: bool, what: str = "") -> list[Scan]:
     """Of both rods over both numbers; the rods bend once for each height."""
     found = []
     for mechanics in ("elastica", "beam"):
@@ -65,7 +65,11 @@ def _scans(case: Case, margin: Callable[[Fields], float], change: bool) -> list[
         def fields(z: float, h: float) -> Fields:
             if h not in bent:
                 loads = [Load(o.type, **{**o.parameters, "height": h}) for o in case.loads]
-                bent[h] = [s for s in bend(case.cilium, loads, mechanics) if s.status == "converged"]
+                bent[h] = bend(case.cilium, loads, mechanics)
+                if any(shape.status != "converged" for shape in bent[h]):
+                    bent[h] = []  # it does not bear all the loads
+            if not bent[h]:
+                return np.full((1, 3), np.nan), np.full((1, 3), np.nan)
             point = [case.sensors[0] * [1, 1, 0] + [0, 0, z]]
             return tuple(
                 np.array([(s.dB if change else s.B)(point, model, **options)[0] for s in bent[h]])
@@ -74,8 +78,8 @@ def _scans(case: Case, margin: Callable[[Fields], float], change: bool) -> list[
 
         z, h = float(case.sensors[0, 2]), case.loads[0].parameters["height"]
         by_z, by_h = _numbers(case)
-        name = f"{mechanics}: {'dB' if change else 'B'}"
-        found.append(scanned(by_z, name, lambda x: margin(fields(1e-3 * x, h))))
+        name = f"{mechanics}: {'dB' if change else 'B'}{what}"
+        found.append(scanned(by_z, name, lambda x: margin(fields(1e-3 * x, h)), (121, 1200)))  # fields alone are quick
         found.append(scanned(by_h, name, lambda x: margin(fields(z, 1e-3 * x))))
     return found
 
@@ -91,7 +95,10 @@ def fig3d(case: Case, result: Result) -> list[Claim]:
             np.sum((part(volume) - part(line)) ** 2) / np.sum(part(volume) ** 2)
         )
 
-    near_ten = "\"Some 10.0 %\" of several loads: each within 9.5 to 10.5 %."
+    near_ten = (
+        "One figure for several loads, which differ by 0.2 points: each within 9.5 to 10.5 %, or their mean within 9.95 to "
+        "10.05 %."
+    )
     statements = [
         ("multi-dipole: horizontal field stronger by some 10.0 %", stronger(_across), 9.5, 10.5, True, near_ten),
         ("multi-dipole: B_z weaker by 4.8 to 6.3 %", stronger(_up), -6.35, -4.75, False, ""),
@@ -114,6 +121,12 @@ def fig3d(case: Case, result: Result) -> list[Claim]:
 
         # The paper writes dB_x of the horizontal field, and has B_z itself.
         claim.scans = _scans(case, margin, of_change)
+        if at_least == 9.5:
+
+            def mean_margin(fields: Fields) -> float:
+                return 0.05 - abs(float(figure(*fields).mean()) - 10)
+
+            claim.scans += _scans(case, mean_margin, of_change, ", their mean")
         claims.append(claim)
     return claims
 
@@ -133,8 +146,9 @@ def _with_uncertainty(
         prefix = "dB_" if change else ""
         fields.append(np.array([step[key][0] for step in steps]))
         parts = [(step[f"{prefix}uncertainty_of_field"][0], step[f"{prefix}uncertainty_of_shape"][0]) for step in steps]
+        # None, what is not known, is NaN.
         of_field.append(np.array([field for field, _ in parts], dtype=float))
-        of_shape.append(np.array([np.max(shape) for _, shape in parts], dtype=float))
+        of_shape.append(np.array([shape for _, shape in parts], dtype=float).reshape(len(parts), -1).max(axis=1))
     value = np.atleast_1d(figure(*fields))
     total = np.zeros_like(value)
     for i in range(2):

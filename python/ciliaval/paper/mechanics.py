@@ -11,7 +11,7 @@ from ..errors import SolverError
 from ..model import Case, bend
 from ..results import Result
 from .cases import Setting, at_rest, solved
-from .claim import Claim, Finding, Unstated, in_range, scanned
+from .claim import SOLID, Claim, Finding, Unstated, in_range, scanned
 from .equations import printed_fields
 
 _MU_0 = 1.25663706212e-6  # T m/A
@@ -86,7 +86,7 @@ def base_bends(case: Case) -> Claim:
                 raise SolverError(f"claims: {case.name}: {model}: {shape.message}")
             share = 100 * float(np.interp(length, shape.S, shape.theta)) / shape.tip_angle
             # Either angle may be off by as much, in proportion.
-            off = max(off, 2 * share * (shape.tip_angle_uncertainty or 0.0) / abs(shape.tip_angle))
+            off = float(np.maximum(off, 2 * share * _known(shape.tip_angle_uncertainty) / abs(shape.tip_angle)))
             shares.append(share)
         claim.findings.append(in_range(model, shares, "%", 50, 100, off))
     return claim
@@ -159,9 +159,14 @@ def shapes(case: Case, result: Result, setting: Setting) -> Claim:
                 of_loads = solved(other, setting, lambda: _r2_of(other, reference))
                 return min(of_loads, default=math.nan) - _R2
 
-            found = scanned(number, f"elastica - {reference}", margin, reference == "solid")
+            found = scanned(number, f"elastica - {reference}", margin, *([SOLID] if reference == "solid" else []))
             claim.scans.append(found)
     return claim
+
+
+def _known(uncertainty: float | None) -> float:
+    """NaN if it is not known."""
+    return math.nan if uncertainty is None else uncertainty
 
 
 def _r2_of(case: Case, reference: str) -> list[float]:
@@ -179,10 +184,11 @@ def _agreement(result: Result, reference: str) -> tuple[tuple[list[float], float
         pair = (entry["model"], entry["reference"])
         if entry["statistic"] != "r2" or pair != ("elastica", reference) or entry["r2"] is None:
             continue
-        u = (entry["uncertainty"] or 0.0) / entry["scale"]
+        u = _known(entry["uncertainty"]) / entry["scale"]
         r2.append(entry["r2"])
         correlation.append(entry["correlation"])
         misfit = entry["difference"] / entry["scale"]
-        off = max(off, u * (2 * misfit + u))
-        off_correlation = max(off_correlation, u * (2 * math.sqrt(max(1 - entry["correlation"], 0)) + u))
+        off = float(np.maximum(off, u * (2 * misfit + u)))
+        off_by_line = u * (2 * math.sqrt(max(1 - entry["correlation"], 0)) + u)
+        off_correlation = float(np.maximum(off_correlation, off_by_line))
     return (r2, off), (correlation, off_correlation)

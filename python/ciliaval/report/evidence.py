@@ -358,7 +358,7 @@ def _ranges(claims: list[dict[str, Any]]) -> Table:
         ["statement", "not stated", "model or measure", "varied over", "holds in", "in the ledger"],
     )
     for claim in claims:
-        entries = [e for key in ("depends_on", "holds_throughout") for e in claim.get(key, []) if e["unit"] is not None]
+        entries = [e for key in ("depends_on", "holds_throughout", "holds_nowhere") for e in claim.get(key, []) if e["unit"] is not None]
         row: list[str | Cell] = [Cell(claim["statement"], "text", max(len(entries), 1))]
         for entry in entries:
             unit = f" {entry['unit']}" if entry["unit"] else ""
