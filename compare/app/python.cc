@@ -110,6 +110,7 @@ void become_python_module(const std::string& module, const std::vector<std::stri
   std::vector<std::string> words{interpreter(), "-c", script, module};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   if (const std::string path = python_path(); !path.empty()) setenv("PYTHONPATH", path.c_str(), 1);

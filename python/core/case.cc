@@ -105,6 +105,7 @@ input::Case changed(const input::Case& problem, const py::dict& values) {
     const auto number = std::ranges::find(numbers, path, &study::CaseNumber::path);
     if (number == numbers.end()) {
       std::vector<std::string_view> paths;
+      paths.reserve(numbers.size());
       for (const study::CaseNumber& known : numbers) paths.emplace_back(known.path);
       throw InputError(fmt::format("the case has no number `{}`{} Its numbers: {}", path,
                                    support::did_you_mean(path, paths), fmt::join(paths, ", ")));
