@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..units import number, shown
-from .style import COLOURS, best_first, legend, look, new_figure, style
+from .style import COLOURS, legend, look, new_figure, style
 
 _VERDICTS = {
     "resolved": {"facecolor": COLOURS[0], "edgecolor": COLOURS[0]},
