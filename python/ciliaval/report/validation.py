@@ -6,7 +6,7 @@ from __future__ import annotations
 from .. import plot
 from ..plot.validation import describe, measurands
 from ..results import Result, Validation, ValidationPoint, ValidationSeries
-from ..units import number, percent, quantity, shown
+from ..units import in_words, number, percent, quantity, shown
 from .blocks import Block, Details, Heading, Images, Items, Table, image
 
 
@@ -45,8 +45,8 @@ def _findings(validation: Validation) -> list[str]:
             least = max(p.least or 0.0 for p in known)
             worst = max(p.bound or 0.0 for p in known)
             found.append(
-                f"{name}: the model's error is seen at {len(known)} of {series.assessed} values, at one of them it is "
-                f"above {quantity(least, series.unit, 2)}, at all below {quantity(worst, series.unit, 3)}.{_over(series)}"
+                f"{name}: the model's error is seen at {len(known)} of {series.assessed} values. There it is below "
+                f"{quantity(worst, series.unit, 3)}, and where it shows most above {quantity(least, series.unit, 2)}.{_over(series)}"
             )
         else:
             worst = max((p.bound or 0.0 for p in series.points), default=0.0)
@@ -58,8 +58,11 @@ def _findings(validation: Validation) -> list[str]:
 
 def _over(series: ValidationSeries) -> str:
     """How the verdicts hang on u_D, which may be assumed."""
-    others = [f"{of['bounded']} (u_D {number(of['factor'])} times)" for of in series.bounded_with_u_D if of["factor"] != 1]
-    return f" Seen with another uncertainty of the measured values: {', '.join(others)}." if others else ""
+    others = [of for of in series.bounded_with_u_D if of["factor"] != 1]
+    if not others:
+        return ""
+    factors, counts = (in_words(number(of[key]) for of in others) for key in ("factor", "bounded"))
+    return f" With a u_D {factors} times as large it would be seen at {counts} values."
 
 
 def _domain(validation: Validation) -> str:
