@@ -22,7 +22,6 @@ compare/output: problem compare/results meshes analytic/rod/field_models.h analy
 compare/regression: $shared
 compare/convergence: $shared compare/regression
 compare/budget: $shared
-compare/sensing: $shared
 compare/study: $shared compare/budget
 compare/validation: $shared compare/study
 compare/app: .

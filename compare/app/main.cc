@@ -159,8 +159,8 @@ ExitCode execute(int argc, char** argv) {
   for (const auto add :
        {commands::add_new, commands::add_draw, commands::add_run, commands::add_validate,
         commands::add_mesh, commands::add_check, commands::add_converge, commands::add_budget,
-        commands::add_sense, commands::add_study, commands::add_claims, commands::add_report,
-        commands::add_list, commands::add_schema, commands::add_help})
+        commands::add_sense, commands::add_calibrate, commands::add_study, commands::add_claims,
+        commands::add_report, commands::add_list, commands::add_schema, commands::add_help})
     add(line);
   check_words(app, std::span(argv, static_cast<std::size_t>(argc)));
   try {

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr double time_limit = 600;  // s; a report of many cases takes ten
 constexpr const char* needs =
     "; it needs the Python package `ciliaval` and, on Debian, python3-numpy, python3-scipy, "
-    "python3-matplotlib and python3-jinja2 (docs/guide/python.md)";
+    "python3-pandas, python3-matplotlib and python3-jinja2 (docs/guide/python.md)";
 
 /// Where the package lies beside this program: in a build tree, in an installation, or around it,
 /// as pip installs it. Empty if it is none of these.
@@ -119,6 +119,21 @@ void become_python_module(const std::string& module, const std::vector<std::stri
   execvp(pointers.front(), pointers.data());
   throw FileError(fmt::format("cannot start Python `{}` ({}){}", words.front(),
                               std::generic_category().message(errno), needs));
+}
+
+void become_python_command(const std::string& module, const CLI::App& command,
+                           const std::string& words, const std::vector<std::string>& files) {
+  std::vector<std::string> arguments{"--command=" + words};
+  if (!shows_progress()) arguments.emplace_back("--quiet");
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0 || option->get_positional()) continue;
+    const bool is_flag = option->get_items_expected_max() == 0;
+    for (const std::string& value : option->results())
+      arguments.push_back(option->get_name() + (is_flag ? "" : "=" + value));
+  }
+  arguments.emplace_back("--");
+  arguments.insert(arguments.end(), files.begin(), files.end());
+  become_python_module(module, arguments);
 }
 
 void draw_figure(const fs::path& results, const fs::path& figure) {

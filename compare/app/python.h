@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <CLI/App.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -26,6 +27,12 @@ ModuleEnd run_python_module(const std::string& module,
 /// FileError if there is no Python; without the package, or what it needs, it ends with that code.
 [[noreturn]] void become_python_module(const std::string& module,
                                        const std::vector<std::string>& arguments);
+
+/// The same with the options of a command that the user has given, whether to show progress, the
+/// command's words for the provenance, and files.
+[[noreturn]] void become_python_command(const std::string& module, const CLI::App& command,
+                                        const std::string& words,
+                                        const std::vector<std::string>& files);
 
 /// Draws the main figure of a JSON file of results: SVG, PDF or PNG, by the name of `figure`. A
 /// study has a figure for each output: `figure` is a folder. Throws FileError.

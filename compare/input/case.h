@@ -22,6 +22,15 @@
 namespace ciliaval::compare::input {
 
 /// A validation case, as a case file states it (docs/guide/cases.md), in SI units.
+/// How a sensor's chip sits: what `ciliaval sense` makes of its readings.
+struct Chip {
+  std::vector<std::string> axes;        ///< of the case, along its x, y, z: "+y"; empty: its own
+  Vector3 rotation = Vector3::Zero();   ///< of those about the case's x, then y, then z, rad
+  double gain = 1;                      ///< what it reads over what there is
+  std::vector<std::string> components;  ///< "x", "z": those that it reads; empty: all
+  bool operator==(const Chip&) const = default;
+};
+
 struct Case {
   std::string name;   ///< a plain file name: the results go to DIR/name
   std::string title;  ///< for people
@@ -36,6 +45,7 @@ struct Case {
   std::vector<Vector3> sensors;                ///< m
   std::vector<std::string>
       sensor_names;                    ///< of the sensors by [[sensor]]; empty: they are numbered
+  std::vector<Chip> chips;             ///< of the sensors
   std::vector<std::string> mechanics;  ///< ids of mechanics models, in the order asked for
   std::vector<std::string> fields;     ///< ids of field models
   std::vector<external::ExternalModel> external;  ///< what other programs and test benches gave

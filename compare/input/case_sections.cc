@@ -5,6 +5,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <numbers>
 #include <utility>
 
 #include "compare/input/described.h"
@@ -87,6 +89,33 @@ void read_cross_section(Section& cilium, Cilium& result) {
                                          format_quantity(result.diameter, quantity::length)));
 }
 
+/// `axes`, `rotation` and `components` of a chip.
+Chip read_chip(Section& table) {
+  Faults& faults = table.faults();
+  Chip chip;
+  if (const toml::node* node = table.find(keys().sensor_axes.name)) {
+    chip.axes = read_ids(*node, keys().sensor_axes.name, axis_names(), faults);
+    std::string letters;
+    for (const std::string& axis : chip.axes) letters += axis.back();
+    std::ranges::sort(letters);
+    if (letters != "xyz")
+      faults.add(place(*node),
+                 "'axes' has where the chip's own x, y and z point in the case, such as [\"+y\", "
+                 "\"-x\", \"+z\"]: each of x, y, z once");
+  }
+  if (const toml::node* node = table.find(keys().sensor_rotation.name))
+    if (const auto value = read_value(*node, keys().sensor_rotation, faults))
+      chip.rotation = std::get<Vector3>(*value);
+  table.read(keys().sensor_gain.name, keys().sensor_gain.quantity, keys().sensor_gain.range,
+             chip.gain);
+  if (const toml::node* node = table.find(keys().sensor_components.name)) {
+    chip.components = read_ids(*node, keys().sensor_components.name, component_names(), faults);
+    if (chip.components.empty())
+      faults.add(place(*node), "'components' is empty: name one of x, y, z or more");
+  }
+  return chip;
+}
+
 /// [[sensor]]: the sensors by name.
 void read_named_sensors(Section& root, Case& c) {
   root.tables("sensor", 1, most_sensors, [&](Section& table) {
@@ -111,6 +140,7 @@ void read_named_sensors(Section& root, Case& c) {
       point = read_point(*node, keys().sensor_position, faults);
     c.sensor_names.push_back(std::move(name));
     c.sensors.push_back(point.value_or(Vector3::Zero()));
+    c.chips.push_back(read_chip(table));
   });
 }
 
@@ -147,6 +177,16 @@ std::optional<Vector3> read_point(const toml::node& node, const description::Key
   return right ? std::optional<Vector3>(point) : std::nullopt;
 }
 
+std::span<const std::string_view> axis_names() {
+  static constexpr std::array<std::string_view, 6> names{"+x", "-x", "+y", "-y", "+z", "-z"};
+  return names;
+}
+
+std::span<const std::string_view> component_names() {
+  static constexpr std::array<std::string_view, 3> names{"x", "y", "z"};
+  return names;
+}
+
 const Keys& keys() {
   using description::text_key;
   static const Keys all = [] {
@@ -171,6 +211,29 @@ const Keys& keys() {
         "`fields` are asked for.";
     k.sensor_position.initial = Vector3(Vector3::Zero());
     k.sensor_position.fallback = "none";
+    k.sensor_axes = text_key(
+        "axes",
+        "Of `ciliaval sense`: where the chip's own x, y and z, in which it is read, point in the "
+        "case.",
+        "as the case's", R"(["+y", "-x", "+z"])");
+    k.sensor_rotation = text_key(
+        "rotation",
+        "Of `ciliaval sense`: the turn of these axes about the case's z, or about its x, then its "
+        "y, then its z.",
+        "0 deg", R"(["0 deg", "1 deg", "30 deg"])");
+    k.sensor_rotation.initial = Vector3(Vector3::Zero());
+    k.sensor_rotation.may_be_axial = true;
+    k.sensor_rotation.quantity = quantity::angle;
+    k.sensor_rotation.range = {-2 * std::numbers::pi, 2 * std::numbers::pi, false, unit_slip};
+    k.sensor_gain =
+        text_key("gain", "Of `ciliaval sense`: what the chip reads over the field that there is.",
+                 "1", "1.02");
+    k.sensor_gain.initial = 1.0;
+    k.sensor_gain.quantity = quantity::number;
+    k.sensor_gain.range = {0.01, 100, false, "a gain beyond is taken for a slip"};
+    k.sensor_components =
+        text_key("components", "Of `ciliaval sense`: which of its own x, y, z the chip reads.",
+                 "all", R"(["x", "z"])");
     k.load_type = text_key("type", "What the load is and does as the cilium bends.");
     k.mechanics = text_key("mechanics", "The mechanics models to run, at least one.");
     k.fields = text_key(
@@ -261,6 +324,7 @@ void read_sensor(Section& root, Case& c) {
       c.sensors.push_back(*p);
     }
   }
+  c.chips.assign(c.sensors.size(), read_chip(table));
   table.finish();
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,10 @@ struct Keys {
   description::Key title;
   description::Key sensor_name;
   description::Key sensor_position;
+  description::Key sensor_axes;
+  description::Key sensor_rotation;
+  description::Key sensor_gain;
+  description::Key sensor_components;
   description::Key load_type;
   description::Key mechanics;
   description::Key fields;
@@ -27,6 +32,10 @@ struct Keys {
   description::Key centrelines;
 };
 const Keys& keys();
+
+/// The words of `axes` and `components`.
+std::span<const std::string_view> axis_names();
+std::span<const std::string_view> component_names();
 
 /// Each function reads one table of a case file into the case and adds a fault for everything in it
 /// that is wrong by itself; what contradicts another table is check_together()'s.

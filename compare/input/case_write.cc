@@ -61,6 +61,22 @@ std::string cilium(const Case& c) {
   return text;
 }
 
+std::string texts(const std::vector<std::string>& all) {
+  return all.empty() ? "[]" : fmt::format("[\"{}\"]", fmt::join(all, "\", \""));
+}
+
+std::string chip(const Case& c, std::size_t sensor) {
+  if (sensor >= c.chips.size()) return {};
+  const Chip& chip = c.chips[sensor];
+  std::string text;
+  if (!chip.axes.empty()) text += fmt::format("axes = {}\n", texts(chip.axes));
+  if (!chip.rotation.isZero(0))
+    text += fmt::format("rotation = {}\n", to_toml(keys().sensor_rotation, chip.rotation));
+  if (chip.gain != 1) text += fmt::format("gain = {}\n", format_number(chip.gain));
+  if (!chip.components.empty()) text += fmt::format("components = {}\n", texts(chip.components));
+  return text;
+}
+
 std::string sensor(const Case& c) {
   if (c.sensors.empty()) return {};
   std::vector<std::string> points;
@@ -71,12 +87,12 @@ std::string sensor(const Case& c) {
   if (named) {
     std::string text;
     for (std::size_t s = 0; s < points.size(); ++s)
-      text += fmt::format("\n[[sensor]]\nname = {}\nposition = {}\n", toml_text(sensor_name(c, s)),
-                          points[s]);
+      text += fmt::format("\n[[sensor]]\nname = {}\nposition = {}\n{}",
+                          toml_text(sensor_name(c, s)), points[s], chip(c, s));
     return text;
   }
-  return fmt::format("\n[sensor]\nposition = {}\n",
-                     points.size() == 1 ? points.front() : list(points));
+  return fmt::format("\n[sensor]\nposition = {}\n{}",
+                     points.size() == 1 ? points.front() : list(points), chip(c, 0));
 }
 
 std::string readings(const external::ReadingOptions& options) {
@@ -99,11 +115,8 @@ std::string external(const external::ExternalModel& model) {
 }
 
 std::string models(const Case& c, const Models& known) {
-  const auto ids = [](const std::vector<std::string>& names) {
-    return names.empty() ? "[]" : fmt::format("[\"{}\"]", fmt::join(names, "\", \""));
-  };
   std::string text =
-      fmt::format("\n[models]\nmechanics = {}\nfields = {}\n", ids(c.mechanics), ids(c.fields));
+      fmt::format("\n[models]\nmechanics = {}\nfields = {}\n", texts(c.mechanics), texts(c.fields));
   known.for_each([&](const auto& entry) {
     if (!entry.options.empty()) text += fmt::format("\n[models.{}]\n", entry.id);
     text += lines(entry.options, c.options);

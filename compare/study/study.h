@@ -63,7 +63,7 @@ struct Tolerance {
 };
 
 /// Part of a standard deviation by which a number is moved for the differences of fourth order of
-/// compare/study/summary/report.h, once and twice, to both sides.
+/// python/ciliaval/design/tolerances.py, once and twice, to both sides.
 inline constexpr double tolerance_step = 0.25;
 
 /// A limit that a design must keep.

@@ -45,9 +45,9 @@ with tempfile.TemporaryDirectory() as folder:
     np.savetxt(log, rows, delimiter=",", header="time [s], Bx [uT], By [uT], Bz [uT]", comments="", fmt="%.3f")
     found = cv.sense(file, log, models="beam/volume", noise="1 uT", unloaded="0 s..1.9 s")
 
-samples = [s for s in found["samples"] if s["status"] == "found"]
-print(f"{len(samples)} of {len(found['samples'])} samples have a load")
-print(f"largest: {1e3 * max(s['magnitude'] for s in samples):.3f} mN, true: {1e3 * forces.max():.3f} mN")
+loads = found[found["status"] == "found"]
+print(f"{len(loads)} of {len(found)} samples have a load")
+print(f"largest: {1e3 * loads['magnitude'].max():.3f} mN, true: {1e3 * forces.max():.3f} mN")
 figure = cv.plot.readings(found)
 figure.axes[0].plot(rows[::5, 0], 1e3 * forces[::5], "ko", markersize=5, markerfacecolor="none")
 figure.savefig("readings.png", dpi=100)

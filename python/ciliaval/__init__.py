@@ -16,14 +16,15 @@ _HOMES = {
         "._core",
     ),
     **dict.fromkeys(["Case", "bend"], ".model"),
-    **dict.fromkeys(["budget", "converge", "run", "sense", "study"], ".program"),
+    **dict.fromkeys(["budget", "converge", "run", "study"], ".program"),
+    "sense": ".sensing",
     **dict.fromkeys(["load", "load_study"], ".results"),
 }
 
 __all__ = ["Error", "FileError", "InputError", "SolverError", *sorted(_HOMES)]
 
 
-_MODULES = ["magpylib", "paper", "plot", "program", "report", "results"]
+_MODULES = ["magpylib", "paper", "plot", "program", "report", "results", "sensing"]
 
 
 def __getattr__(name: str):

@@ -6,13 +6,18 @@ main() is what the program starts for them, with the module and its arguments (c
 
 from __future__ import annotations
 
+import argparse
 import importlib
+import json
+import math
 import os
 import shutil
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
 
 from .errors import FileError, InputError
 
@@ -53,6 +58,61 @@ class Progress:
         if self._shown:
             sys.stderr.write("\r\033[K")
             self._shown = False
+
+
+def terminal_width() -> int:
+    """Columns of the terminal that stdout is; 0: it is none."""
+    return shutil.get_terminal_size().columns if sys.stdout and sys.stdout.isatty() else 0
+
+
+def json_text(value: Any) -> str:
+    """As the program writes JSON: null for a number that is not finite."""
+    return json.dumps(_finite(value), indent=1, ensure_ascii=False) + "\n"
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(v) for key, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(v) for v in value]
+    return value
+
+
+class Outputs:
+    """What a command writes beside its tables, if it is named: --json, --csv, --plot.
+
+    Raises InputError before anything runs if one of them is one of the inputs or another output,
+    FileError if it cannot be written.
+    """
+
+    def __init__(self, options: argparse.Namespace, inputs: Sequence[Path | str | None]):
+        from . import _core
+
+        self.json, self.csv, self.plot = options.json, options.csv, options.plot
+        _core.check_outputs([self.json, self.csv, self.plot], [str(file) for file in inputs if file is not None])
+
+    @staticmethod
+    def declare(parser: argparse.ArgumentParser) -> None:
+        for name in ("json", "csv", "plot"):
+            parser.add_argument(f"--{name}", help="file to write")
+
+    def write(self, to_json: Callable[[], dict[str, Any]], to_csv: Callable[[], str] | None = None) -> None:
+        """Writes those that are named, after the table: a full disk must not cost that."""
+        from . import _core
+
+        if self.json:
+            _core.write_file(self.json, json_text(to_json()))
+        if self.csv and to_csv:
+            _core.write_file(self.csv, to_csv())
+        if self.plot:
+            from .plot.__main__ import main_figure, save
+            from .results import Document
+
+            figure = main_figure(Document("sense", _finite(to_json())))
+            if figure is not None:
+                save(figure, Path(self.plot))
 
 
 def write_out(text: str) -> None:

@@ -89,31 +89,6 @@ def budget(case: str | Path, *, without: Sequence[str] = ()) -> Any:
     return _json("budget", case, without=names)
 
 
-def sense(
-    case: str | Path,
-    readings: str | Path | None = None,
-    *,
-    models: str | None = None,
-    noise: str | None = None,
-    unloaded: str | None = None,
-    background: str | Path | None = None,
-    map: str | None = None,
-    unit: str | None = None,
-    scale: str | None = None,
-    largest: str | None = None,
-) -> Any:
-    """`ciliaval sense`: loads from a file of readings; without it the test bench that `case` is.
-
-    The options are the program's (docs/guide/sensing.md), quantities with their units: noise="0.4 uT".
-    Returns the Document of its JSON. Raises InputError, FileError, SolverError.
-    """
-    files = [case] if readings is None else [case, readings]
-    return _json(
-        "sense", *files, models=models, noise=noise, unloaded=unloaded, background=background, map=map,
-        unit=unit, scale=scale, largest=largest,
-    )  # fmt: skip
-
-
 def study(
     file: str | Path, folder: str | Path | None = None, client: Any = None, *, fresh: bool = False
 ) -> Any:

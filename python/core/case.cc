@@ -3,19 +3,25 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "compare/input/case.h"
+#include "compare/input/units.h"
 #include "compare/models/errors.h"
+#include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
+#include "compare/output/output_file.h"
 #include "compare/output/provenance.h"
 #include "compare/output/results.h"
+#include "compare/output/text_table.h"
 #include "compare/study/case_number.h"
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
@@ -96,6 +102,25 @@ input::Case of_objects(const py::object& cilium, const py::object& loads, const 
       input::read_case(to_toml(problem, models::known()), "the objects", models::known()));
 }
 
+/// What [readings] states: of each key the text and where it stands.
+py::dict reading_options(const input::Case& problem) {
+  py::dict options;
+  for (const input::external::ReadingKey& key : input::external::reading_keys())
+    if (const auto& option = problem.readings.*key.option; option.given())
+      options[py::str(std::string(key.name))] = py::make_tuple(option.text, option.where);
+  return options;
+}
+
+/// A text such as "0.4 uT" in the SI unit that is expected.
+double parsed(const Text& value, const Text& unit) {
+  const std::string expected = text(unit, "unit");
+  for (const Quantity& of :
+       {quantity::length, quantity::force, quantity::force_per_length, quantity::angle,
+        quantity::time, quantity::flux_density, quantity::pressure, quantity::magnetization})
+    if (of.unit == expected) return input::parse_quantity(text(value, "text"), of);
+  throw InputError("there is no quantity in `" + expected + "`");
+}
+
 /// The case with other numbers, by the paths that studies have for them.
 input::Case changed(const input::Case& problem, const py::dict& values) {
   const std::vector<study::CaseNumber> numbers = study::case_numbers(problem);
@@ -139,6 +164,17 @@ void bind_case(py::module_& module) {
                   py::arg("sensors"), py::arg("mechanics"), py::arg("fields"), py::arg("name"),
                   py::arg("title"))
       .def("changed", &changed, py::arg("values"))
+      .def("numbers",
+           [](const input::Case& problem) {
+             py::dict numbers;
+             for (const study::CaseNumber& number : study::case_numbers(problem)) {
+               const description::Value value = number.get(problem);
+               if (const auto* real = std::get_if<double>(&value))
+                 numbers[py::str(number.path)] =
+                     py::make_tuple(*real, std::string(number.quantity.unit));
+             }
+             return numbers;
+           })
       .def_readonly("name", &input::Case::name)
       .def_readonly("title", &input::Case::title)
       .def_readonly("cilium", &input::Case::cilium)
@@ -157,6 +193,38 @@ void bind_case(py::module_& module) {
           [](input::Case& problem, const py::object& ids) {
             problem.fields = list_by<std::string>(ids, "fields", "models", text);
           })
+      .def_property_readonly("files",
+                             [](const input::Case& problem) {
+                               std::vector<std::string> files;
+                               for (const auto& file : models::named_files(problem))
+                                 files.push_back(file.string());
+                               return files;
+                             })
+      .def_property_readonly("readings", &reading_options)
+      .def_property_readonly("chips",
+                             [](const input::Case& problem) {
+                               py::list chips;
+                               for (const input::Chip& chip : problem.chips)
+                                 chips.append(py::make_tuple(chip.axes, array(chip.rotation),
+                                                             chip.gain, chip.components));
+                               return chips;
+                             })
+      .def(
+          "stated",
+          [](const input::Case& problem, const Text& key) {
+            return input::stated_values(problem, text(key, "key"));
+          },
+          py::arg("key"))
+      .def(
+          "user_meshes",
+          [](const input::Case& problem, const Text& model) {
+            const auto& entry = models::entry_of(models::mechanics_models(), text(model, "model"));
+            std::vector<std::string> keys;
+            for (const auto& [key, mesh] : input::user_meshes({{entry}, {}}, problem.options))
+              keys.emplace_back(key);
+            return keys;
+          },
+          py::arg("model"))
       .def("toml", [](const input::Case& problem) { return to_toml(problem, models::known()); })
       .def(py::pickle(
           [](const input::Case& problem) {
@@ -172,6 +240,27 @@ void bind_case(py::module_& module) {
       .def(
           "text", [](const CaseRun& run, const Text& name) { return run.text(text(name, "name")); },
           py::arg("name"));
+  module.def(
+      "text_table",
+      [](const output::TextRows& rows, const std::string& alignment, std::size_t width) {
+        output::set_line_width(width);
+        return output::text_table(rows, alignment);
+      },
+      py::arg("rows"), py::arg("alignment"), py::arg("width"));
+  using File = std::optional<std::filesystem::path>;
+  module.def(
+      "check_outputs",
+      [](const std::array<std::optional<std::string>, 3>& outputs,
+         const std::vector<std::string>& inputs) {
+        const auto file = [&](std::size_t i) { return outputs[i] ? File(*outputs[i]) : File(); };
+        output::check_outputs({file(0), file(1), file(2)}, {inputs.begin(), inputs.end()});
+      },
+      py::arg("outputs"), py::arg("inputs"));
+  module.def(
+      "write_file",
+      [](const std::string& file, const std::string& text) { output::write_file(file, text); },
+      py::arg("file"), py::arg("text"));
+  module.def("quantity", &parsed, py::arg("text"), py::arg("unit"));
   module.def(
       "provenance",
       [](const Text& command) {

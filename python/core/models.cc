@@ -69,6 +69,14 @@ MechanicsResult step_of(const MechanicsResult& result, std::size_t i) {
   return one;
 }
 
+std::vector<BentShape> shapes_of(input::Case problem, models::MechanicsRun run) {
+  const std::size_t count = run.result.steps.size();
+  const auto bent = std::make_shared<const BentPath>(BentPath{std::move(problem), std::move(run)});
+  std::vector<BentShape> shapes;
+  for (std::size_t i = 0; i < count; ++i) shapes.push_back({bent, i});
+  return shapes;
+}
+
 std::vector<BentShape> bend(const py::object& rod, const py::object& loads, const Text& model_name,
                             const py::object& callback, const py::kwargs& options) {
   const auto& cilium = one<Cilium>(rod, "cilium");
@@ -86,11 +94,61 @@ std::vector<BentShape> bend(const py::object& rod, const py::object& loads, cons
     const py::gil_scoped_release released;
     result = models::Evaluator(entry, problem, models::field_models()).solve(cilium, path, told);
   }
-  const auto bent =
-      std::make_shared<const BentPath>(BentPath{std::move(problem), {model, std::move(result)}});
-  std::vector<BentShape> shapes;
-  for (std::size_t i = 0; i < path.size(); ++i) shapes.push_back({bent, i});
-  return shapes;
+  return shapes_of(std::move(problem), {model, std::move(result)});
+}
+
+/// The case's cilium under loads of its kind, with the case's options of the model.
+std::vector<BentShape> bend_case(const input::Case& of, const py::object& loads,
+                                 const Text& model_name, const py::object& callback) {
+  const auto path = list_of<Load>(loads, "load");
+  const std::string model = text(model_name, "model");
+  const input::MechanicsEntry& entry = models::entry_of(models::mechanics_models(), model);
+  MechanicsResult result;
+  const Call call;
+  {
+    const Progress told = progress(callback);
+    const py::gil_scoped_release released;
+    result = models::Evaluator(entry, of, models::field_models()).solve(of.cilium, path, told);
+  }
+  return shapes_of(of, {model, std::move(result)});
+}
+
+/// B at points of each shape, with the field model's options of the shapes' problem: (n, m, 3), T.
+py::object fields_of_shapes(const py::object& shape_list, const Array& where,
+                            const Text& model_name) {
+  const auto shapes = list_of<BentShape>(shape_list, "shapes");
+  const std::vector<Vector3> at = points(where);
+  const input::FieldEntry& entry =
+      models::entry_of(models::field_models(), text(model_name, "model"));
+  std::vector<double> B(3 * shapes.size() * at.size());
+  const Call call;
+  {
+    const py::gil_scoped_release released;
+    const auto one = [&](std::size_t i) {
+      const BentShape& shape = shapes[i];
+      const auto source = entry.make(shape.problem().options);
+      const Field field = source->field(shape.problem().cilium, shape.deformation(), at);
+      for (std::size_t p = 0; p < at.size(); ++p)
+        std::ranges::copy(field.B.at(p), B.begin() + 3 * static_cast<long>(i * at.size() + p));
+    };
+    if (entry.is_collective)
+      for (std::size_t i = 0; i < shapes.size(); ++i) one(i);
+    else
+      tbb::parallel_for(std::size_t{0}, shapes.size(), one);
+  }
+  return array(std::move(B),
+               {static_cast<py::ssize_t>(shapes.size()), static_cast<py::ssize_t>(at.size()), 3});
+}
+
+/// The straight cilium that a shape was bent from.
+BentShape straight(const BentShape& shape) {
+  MechanicsResult result;
+  result.undeformed = shape.path->run.result.undeformed;
+  MechanicsStep& step = result.steps.emplace_back();
+  step.load = shape.step().load;
+  step.status = Status::converged;
+  step.deformation = result.undeformed;
+  return shapes_of(shape.problem(), {shape.model(), std::move(result)}).front();
 }
 
 /// Components at each point, (n, 3); NaN where there is none.
@@ -352,6 +410,13 @@ void bind_models(py::module_& module) {
           "Largest load that an equilibrium bears (a contact's force, N, a "
           "probe's displacement, m); None: not known.")
       .def_property_readonly(
+          "slip_off_uncertainty", [](const BentShape& s) { return s.step().slip_off_uncertainty; },
+          "Estimate of the numerical error of slip_off; None: not known.")
+      .def_property_readonly(
+          "has_shape", [](const BentShape& s) { return s.step().deformation.has_value(); },
+          "Whether there is an equilibrium to be asked for.")
+      .def_property_readonly("straight", &straight, "The straight cilium that it was bent from.")
+      .def_property_readonly(
           "unstable_modes", [](const BentShape& s) { return s.step().unstable_modes; },
           "Ways in which the energy decreases, 0: stable; None: not known.")
       .def_property_readonly(
@@ -431,6 +496,19 @@ void bind_models(py::module_& module) {
 
   module.def("bend_path", &bend, py::arg("cilium"), py::arg("loads"), py::arg("model"),
              py::arg("progress"));
+  module.def(
+      "has_body",
+      [](const Text& mechanics, const Text& field) {
+        return std::pair(
+            models::entry_of(models::mechanics_models(), text(mechanics, "mechanics")).has_body,
+            models::entry_of(models::field_models(), text(field, "field")).has_body);
+      },
+      py::arg("mechanics"), py::arg("field"),
+      "Whether the mechanics model gives the body of a solid, and whether the field model needs "
+      "it.");
+  module.def("bend_case", &bend_case, py::arg("case"), py::arg("loads"), py::arg("model"),
+             py::arg("progress"));
+  module.def("fields", &fields_of_shapes, py::arg("shapes"), py::arg("points"), py::arg("model"));
   module.def(
       "bend_batch", &batch, py::arg("cilia"), py::arg("loads"), py::arg("points") = py::none(),
       py::arg("model") = models::mechanics_models().front().id, py::arg("field") = field_model,

@@ -115,6 +115,21 @@ std::string representation(const Load& load) {
   return fmt::format("Load('{}'{}){}", load.type().name, parameters, around);
 }
 
+Load changed(Load load, const py::kwargs& values) {
+  for (const auto& [key, value] : values) {
+    const auto name = key.cast<std::string>();
+    const auto& parameters = load.type().parameters;
+    const auto found = std::ranges::find(parameters, name, &LoadParameter::name);
+    if (name == "magnitude")
+      load = with_magnitude(load, value.cast<double>());
+    else if (found == parameters.end())
+      throw InputError(fmt::format("a {} has no `{}`", load.type().name, name));
+    else
+      load.set_value(static_cast<std::size_t>(found - parameters.begin()), value.cast<double>());
+  }
+  return load;
+}
+
 std::string representation(const Segment& segment) {
   const Vector3 M = magnetization(segment);
   return fmt::format(
@@ -267,6 +282,15 @@ void bind_problem(py::module_& module) {
                                      of.values()[i];
                                return result;
                              })
+      .def_property_readonly(
+          "magnitude", [](const Load& of) { return magnitude(of); },
+          "What a load path varies: a contact's force, a flow's force per length, a probe's "
+          "displacement.")
+      .def_property_readonly(
+          "unit", [](const Load& of) { return std::string(magnitude_unit(of)); }, "Of magnitude.")
+      .def("changed", &changed,
+           "The same load with other values of parameters, by name; `magnitude` is its own name of "
+           "what\na path varies.")
       .def_property_readonly("environment", &Load::environment,
                              "What surrounds the cilium under this load, besides it.")
       .def(pickled<Load>())

@@ -18,7 +18,7 @@ run(${WORK}/build/consumer)
 run(${WORK}/prefix/bin/ciliaval list)
 # The paper's models alone, where there is no deal.II, VTK or any other library of the rest.
 set(hidden)
-foreach(package deal.II VTK tomlplusplus CLI11 fmt nlohmann_json NLopt SQLite3)
+foreach(package deal.II VTK tomlplusplus CLI11 fmt nlohmann_json SQLite3)
   list(APPEND hidden -D CMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 run(${CMAKE_COMMAND} -S ${SOURCE}/analytic -B ${WORK}/analytic -G Ninja -D CMAKE_BUILD_TYPE=${CONFIG}

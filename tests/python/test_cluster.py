@@ -235,10 +235,12 @@ class Study(ClusterTest):
             before, _ = self.counts(diaries)
             with contextlib.closing(StudyStore(StudyFile(str(file)), str(folder))) as store:
                 missing = sum(map(len, store.missing()))
-            self.assertTrue(12 <= missing <= 16, missing)
+            self.assertTrue(0 < missing < 18, missing)
             document = cv.study(file, folder, client)
             begun, _ = self.counts(diaries)
-        self.assertEqual(len(begun - before), missing)
+        # What a worker was in the middle of when the client was killed may go on, and is then taken as it is.
+        again = len(begun - before)
+        self.assertTrue(missing - 2 <= again <= missing, (again, missing))
         self.assertEqual(len(document["points"]), 6)
         self.assertEqual(files(folder / "mine"), self.alone(STUDY))
 

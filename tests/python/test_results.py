@@ -155,23 +155,8 @@ class Commands(unittest.TestCase):
             self.assertEqual(budget.kind, "budget")
             self.assertTrue(budget["rows"])
             self.assertEqual(cv.converge(case).kind, "converge")
-            readings = Path(folder) / "readings.csv"
-            readings.write_text(
-                "sample, Bx [uT], By [uT], Bz [uT]\n"
-                "unloaded, 67.6, -97.5, 2204.9\nfirst, 140.3, -50.7, 2208.6\n"
-            )
             with self.assertRaisesRegex(cv.InputError, "3 levels of refinement or more, not 2"):
                 cv.converge(case, levels=2)
-            sensed = cv.sense(case, readings, models="elastica/line", noise="2 uT")
-            self.assertEqual(sensed["models"], "elastica/line")
-            with self.assertRaisesRegex(cv.InputError, "--noise"):
-                cv.sense(case, readings, noise="2 T")
-            # Nothing to be told is a result, not an error: exit code 5.
-            (Path(folder) / "rest.csv").write_text("sample, dBx [uT], dBy [uT], dBz [uT]\na, 9e5, 9e5, 9e5\n")
-            self.assertEqual(len(cv.sense(case, Path(folder) / "rest.csv")["samples"]), 1)
-            sensed = cv.sense(case, readings)
-            self.assertEqual(sensed.kind, "sense")
-            self.assertEqual(len(sensed["samples"]), 1)
 
     def test_run_a_study(self):
         with tempfile.TemporaryDirectory() as folder:

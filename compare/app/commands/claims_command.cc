@@ -2,15 +2,14 @@
 #include "compare/app/case_files.h"
 #include "compare/app/commands/commands.h"
 #include "compare/app/python.h"
-#include "compare/app/terminal.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
 
 struct ClaimsOptions {
-  bool quick = false;  ///< without the 3D solid
   Outputs outputs;
+  CLI::App* command = nullptr;
 };
 
 ExitCode execute_claims(const ClaimsOptions& options, const std::string& words) {
@@ -22,12 +21,7 @@ ExitCode execute_claims(const ClaimsOptions& options, const std::string& words) 
                      "/fig3d.toml does not exist");
   for (const auto* inputs : {&shipped.files, &shipped.studies, &shipped.benches})
     options.outputs.check(*inputs);
-  std::vector<std::string> arguments{"--command=" + words};
-  if (options.quick) arguments.emplace_back("--quick");
-  if (!shows_progress()) arguments.emplace_back("--quiet");
-  if (options.outputs.json) arguments.push_back("--json=" + options.outputs.json->string());
-  arguments.insert(arguments.end(), {"--", folder.string()});
-  become_python_module("ciliaval.paper", arguments);
+  become_python_command("ciliaval.paper", *options.command, words, {folder.string()});
 }
 
 }  // namespace
@@ -40,8 +34,9 @@ void add_claims(CommandLine& line) {
       "reproduced, depends on what the paper does not state (and where it holds), or not\n"
       "checkable and why (docs/evidence/paper.md).",
       options, execute_claims);
-  claims->add_flag("--quick", options->quick,
-                   "Without the 3D solid, which takes some minutes the first time");
+  options->command = claims;
+  claims->add_flag_callback(
+      "--quick", [] {}, "Without the 3D solid, which takes some minutes the first time");
   options->outputs.declare(claims, "the ledger");
 }
 

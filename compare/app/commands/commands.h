@@ -94,6 +94,7 @@ void add_check(CommandLine& line);
 void add_converge(CommandLine& line);
 void add_budget(CommandLine& line);
 void add_sense(CommandLine& line);
+void add_calibrate(CommandLine& line);
 void add_study(CommandLine& line);
 void add_claims(CommandLine& line);
 void add_report(CommandLine& line);

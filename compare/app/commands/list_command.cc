@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 #include <vector>
 
@@ -7,7 +8,6 @@
 #include "compare/app/commands/commands.h"
 #include "compare/app/terminal.h"
 #include "compare/models/registry.h"
-#include "compare/sensing/bench.h"
 #include "compare/study/reader/study_reader.h"
 #include "problem/error.h"
 #include "problem/load.h"
@@ -22,9 +22,10 @@ struct ListOptions {};
 std::string title_of(const fs::path& file) {
   try {
     if (is_study_file(file)) return study::reader::read_study(file).title;
-    if (is_bench_file(file)) return sensing::read_bench(file).title;
+    if (is_bench_file(file))
+      return toml::parse_file(file.string())["bench"]["title"].value_or(std::string());
     return input::read_case(file, models::known()).title;
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     return "(cannot be read: see `ciliaval validate`)";
   }
 }

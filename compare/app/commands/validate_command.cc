@@ -5,9 +5,9 @@
 
 #include "compare/app/case_files.h"
 #include "compare/app/commands/commands.h"
+#include "compare/app/python.h"
 #include "compare/app/terminal.h"
 #include "compare/models/preview.h"
-#include "compare/sensing/bench.h"
 #include "compare/study/reader/study_reader.h"
 
 namespace ciliaval::compare::app::commands {
@@ -21,12 +21,10 @@ struct ValidateOptions {
 
 ExitCode validate(const ValidateOptions& options, const std::string&) {
   std::vector<fs::path> files;
+  std::vector<std::string> benches{"--validate", "--"};
   for (const fs::path& file : options.files) {
     if (is_bench_file(file)) {
-      const sensing::Bench bench = sensing::read_bench(file);
-      print(fmt::format("{}: the test bench is valid: {} loads at {} azimuths, {} draws\n",
-                        file.string(), bench.problem.load_path.size(), bench.azimuths,
-                        bench.draws));
+      benches.push_back(file.string());
       continue;
     }
     if (!is_study_file(file)) {
@@ -52,6 +50,7 @@ ExitCode validate(const ValidateOptions& options, const std::string&) {
     for (const std::string& text : preview.signal) print("  " + text + "\n");
     for (const std::string& text : preview.warnings) print("  warning: " + text + "\n");
   }
+  if (benches.size() > 2) become_python_module("ciliaval.sensing", benches);
   return ExitCode::pass;
 }
 

@@ -149,6 +149,12 @@ std::vector<Key> all_keys(const Models& models) {
   add_table(all, "signal", description::fields<sweep::SignalOptions>());
   all.push_back(of_key("sensor", keys().sensor_name));
   all.push_back(of_key("sensor", keys().sensor_position));
+  all.push_back(choice({axis_names().begin(), axis_names().end()},
+                       of_key("sensor", keys().sensor_axes), Kind::choices));
+  all.push_back(of_key("sensor", keys().sensor_rotation));
+  all.push_back(of_key("sensor", keys().sensor_gain));
+  all.push_back(choice({component_names().begin(), component_names().end()},
+                       of_key("sensor", keys().sensor_components), Kind::choices));
   for (const external::ReadingKey& key : external::reading_keys())
     all.push_back(of_key("readings", key));
   add_models(models, all);

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..model import Case, bend, toml_of
-from ..program import sense
+from ..sensing.bench import bench_json, read_bench, run_bench
 from .cases import RODS, Pair, Setting, at_rest, dB, name_of, solved
 from .claim import Claim, Unstated, in_range, scanned
 
@@ -161,6 +161,7 @@ def _simulated(bench: dict[str, Any], case: dict[str, Any], setting: Setting) ->
             (Path(folder) / "case.toml").write_text(toml_of(case), encoding="utf-8")
             file = Path(folder) / "bench.sense.toml"
             file.write_text(text, encoding="utf-8")
-            return sense(file)
+            bench_of_file = read_bench(file)
+            return bench_json(bench_of_file, run_bench(bench_of_file), {})
 
     return solved(whole, setting, simulate, text)

@@ -4,16 +4,16 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..model import Case
-from ..program import sense
+from ..sensing.levels import LevelCurve, sense_surface
+from ..sensing.loads import readings_of_arrays
+from ..sensing.response import Pair as SensedBy
 from .cases import Pair, Setting, name_of, run
 from .claim import Claim, Unstated, in_range, scanned
 from .textures import told_apart
@@ -236,22 +236,18 @@ def heights(sweeps: Sweeps) -> Claim:
         f"Steps between levels found from dB of {name_of(truth)} by `ciliaval sense`, over the plateaus' height; held to 10 %. "
         "On the flanks the height is not known. Levels are found if the model gives all three components within 1 uT.",
     )
-    rows = ["dBx [uT],dBy [uT],dBz [uT]"]
-    rows += [",".join(f"{1e6 * component:.9g}" for component in change) for change in sweeps(truth).dB]
-    with tempfile.TemporaryDirectory() as folder:
-        case = Path(folder) / "case.toml"
-        case.write_text(sweeps.case.toml(), encoding="utf-8")
-        readings = Path(folder) / "readings.csv"
-        readings.write_text("\n".join(rows) + "\n", encoding="utf-8")
-        for pair in _PAIRS:
-            name = f"read by {name_of(pair)}"
-            levels = sense(case, readings, models=name_of(pair), noise="1 uT")["levels"]
-            if len(levels) < 2:  # its shapes are too far off for any level to give these readings
-                claim.findings.append(in_range(f"{name}: levels", len(levels), "", 2))
-                continue
-            found = np.array([level["interference"] for level in levels])
-            off = np.array([level["interval"] for level in levels])
-            of_steps = 100 * np.abs(np.diff(found)) / sweeps.plateau
-            uncertainty = float(100 * np.max(off[1:] + off[:-1]) / sweeps.plateau)
-            claim.findings.append(in_range(f"{name}: steps", of_steps, "%", 90, 110, uncertainty))
+    readings = readings_of_arrays(sweeps(truth).dB, 1, None, None)
+    largest = max(4 * load.magnitude for load in sweeps.case.loads)
+    for pair in _PAIRS:
+        name, models = f"read by {name_of(pair)}", SensedBy.of(name_of(pair))
+        curve = LevelCurve(sweeps.case, models, largest)
+        levels = sense_surface(sweeps.case, readings, models, 1e-6, curve).levels
+        if len(levels) < 2:  # its shapes are too far off for any level to give these readings
+            claim.findings.append(in_range(f"{name}: levels", len(levels), "", 2))
+            continue
+        found = np.array([level.interference for level in levels])
+        off = np.array([level.interval for level in levels])
+        of_steps = 100 * np.abs(np.diff(found)) / sweeps.plateau
+        uncertainty = float(100 * np.max(off[1:] + off[:-1]) / sweeps.plateau)
+        claim.findings.append(in_range(f"{name}: steps", of_steps, "%", 90, 110, uncertainty))
     return claim

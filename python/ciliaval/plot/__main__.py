@@ -46,6 +46,14 @@ def save(figure: Figure, file: Path) -> None:
         figure.savefig(scratch, format=kind, dpi=200, metadata=date)
 
 
+def save_study(study: Document, folder: Path) -> None:
+    """A figure of each output that any point has, as SVG. Raises FileError."""
+    for output in study["outputs"] if study["parameters"] else []:
+        name = output["id"]
+        if any(p.get(name) is not None for q in study["points"] for p in q["pairs"].values()):
+            save(plot.curves(study, name), folder / f"{name}.svg")
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python3 -m ciliaval.plot", description=__doc__)
     parser.add_argument("file", type=Path, help="result file (JSON)")
@@ -57,10 +65,7 @@ def main() -> int:
             return 0
         data = read(options.file)
         if isinstance(data, Document) and data.kind == "study":
-            for output in data["outputs"] if data["parameters"] else []:
-                name = output["id"]
-                if any(p.get(name) is not None for q in data["points"] for p in q["pairs"].values()):
-                    save(plot.curves(data, name), options.figure / f"{name}.svg")
+            save_study(data, options.figure)
             return 0
         figure = main_figure(data)
         if figure is None:

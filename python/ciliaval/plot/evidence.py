@@ -163,11 +163,13 @@ def bench(data: dict[str, Any]) -> Figure:
         return figure
 
 
-def readings(data: dict[str, Any]) -> Figure:
+def readings(data: Any) -> Figure:
     """Load and direction found from readings, over time or over the samples, with their 95 %
-    bands; crosses: no load was found."""
-    samples = data["samples"]
-    unit = shown(data["unit"])
+    bands; crosses: no load was found. data: what cv.sense() gives, or a Document of `ciliaval sense`."""
+    is_frame = hasattr(data, "attrs")
+    about = data.attrs if is_frame else data
+    samples = data.to_dict("records") if is_frame else data["samples"]
+    unit = shown(about["unit"])
     times = [s.get("time") for s in samples]
     timed = all(isinstance(t, (int, float)) for t in times)
     x = np.array(times if timed else range(len(samples)), dtype=float)
@@ -183,7 +185,7 @@ def readings(data: dict[str, Any]) -> Figure:
             u = np.array([_number(s[f"{key}_interval"]) for s in samples]) / size
             if key == "azimuth":  # its band would fill the whole circle where there is no load
                 y = np.where(u < 180, y, np.nan)
-            looks = {"color": look(data["models"])["color"], "markersize": 3}
+            looks = {"color": look(about["models"])["color"], "markersize": 3}
             axes.plot(x, y, ".-" if len(x) < 200 else "-", linewidth=1, label="found", **looks)
             axes.fill_between(x, y - u, y + u, color=looks["color"], alpha=0.2, linewidth=0,
                               label="95 %")

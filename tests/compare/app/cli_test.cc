@@ -476,7 +476,7 @@ TEST(CommandLine, AMistypedCommandIsNamedWithTheValidOnes) {
   EXPECT_THAT(
       outcome.err,
       HasSubstr(
-          "run, validate, mesh, check, converge, budget, sense, study, claims, report, list"));
+          "run, validate, mesh, check, converge, budget, sense, calibrate, study, claims, report, list"));
 }
 
 TEST(CommandLine, AMessageWithAPlaceStartsWithIt) {

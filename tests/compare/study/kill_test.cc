@@ -172,11 +172,11 @@ TEST(KilledStudySlow, EndsWithTheSameFilesToTheLastByte) {
 
 // CSV and JSON.
 TEST(KilledOptimisation, EndsWithTheSameFilesToTheLastByte) {
-  kill_and_compare(3, write_optimisation, 2, 2000);
+  kill_and_compare(3, write_optimisation, 2, 800);
 }
 
 TEST(KilledOptimisationSlow, EndsWithTheSameFilesToTheLastByte) {
-  kill_and_compare(60, write_optimisation, 2, 2000);
+  kill_and_compare(60, write_optimisation, 2, 800);
 }
 
 TEST(KilledStudy, TwoAtOnceInOneFolderAreRefused) {

@@ -62,27 +62,6 @@ TEST(StudyCommand, ItsNumbersAreThoseOfRun) {
   }
 }
 
-TEST(StudyCommand, ASecondCallSolvesNothingAndSaysTheSame) {
-  const TemporaryFolder folder;
-  test::write_study_case(folder.path());
-  test::write_study(folder.path(), study_text(line, modulus_range));
-  const Outcome first = run_program(folder.path(), "study varied.study.toml");
-  ASSERT_EQ(first.code, 0) << first.err;
-  const fs::path out = folder.path() / "results/varied";
-  const std::string store = read_text(out / "points.sqlite");
-  const std::string json = read_text(out / "study.json");
-  const Outcome second = run_program(folder.path(), "study varied.study.toml");
-  EXPECT_EQ(second.code, 0);
-  EXPECT_EQ(second.out, first.out);
-  EXPECT_THAT(second.err, HasSubstr("5 of 5 solutions are there already"));
-  EXPECT_EQ(read_text(out / "points.sqlite"), store);
-  EXPECT_EQ(read_text(out / "study.json"), json);
-  const Outcome fresh = run_program(folder.path(), "study varied.study.toml --fresh --quiet");
-  EXPECT_EQ(fresh.code, 0);
-  EXPECT_EQ(fresh.err, "");
-  EXPECT_EQ(read_text(out / "study.json"), json);
-}
-
 // The first file that a program opens gets the number of a closed standard stream.
 TEST(StudyCommand, AClosedStdoutDoesNotBecomeTheStore) {
   const TemporaryFolder folder;
@@ -172,72 +151,6 @@ TEST(StudyCommand, APointThatSlipsOffIsAResultAndOneThatFailsIsRecorded) {
   EXPECT_THAT(study.out, HasSubstr("elastica/line: slipped_off at 1 of 3 points"));
 }
 
-TEST(StudyCommand, TolerancesAloneAreAStudy) {
-  const TemporaryFolder folder;
-  test::write_study_case(folder.path());
-  test::write_study(folder.path(), study_text(line, "[tolerances]\nload.force = \"1 %\"\n"));
-  const Outcome study = run_program(folder.path(), "study varied.study.toml");
-  EXPECT_EQ(study.code, 0) << study.err;
-  EXPECT_THAT(study.out, HasSubstr("all together"));
-  EXPECT_FALSE(fs::exists(folder.path() / "results/varied/study.csv"));
-  EXPECT_THAT(read_text(folder.path() / "results/varied/tolerances.csv"),
-              HasSubstr("\nelastica/line,dB_x,T,load.force,N,0.001,1e-05,"));
-  const auto json = nlohmann::json::parse(read_text(folder.path() / "results/varied/study.json"));
-  EXPECT_GT(json["tolerances"]["pairs"]["elastica/line"]["dB_x"]["deviation"].get<double>(), 0);
-}
-
-// Oracle: `ciliaval study` of the design that was found, as a sweep of one point.
-TEST(StudyCommand, AnOptimumIsTheSweepsPointOfItsDesign) {
-  const TemporaryFolder folder;
-  test::write_study_case(folder.path());
-  const std::string header =
-      "pairs = [\"elastica/volume\", \"beam/line\"]\n"
-      "outputs = [\"dB_norm\", \"range\"]\n";
-  const auto search = [&](const std::string& range) {
-    test::write_study(
-        folder.path(),
-        study_text(header, "[optimise]\nmaximise = \"dB_norm\"\nat_least.range = \"" + range +
-                               "\"\nglobal_evaluations = 0\nstarts = 1\n[[parameter]]\n"
-                               "path = \"cilium.diameter\"\nfrom = \"1 mm\"\nto = "
-                               "\"5 mm\"\n"));
-    return run_program(folder.path(), "study varied.study.toml --fresh --quiet");
-  };
-  const Outcome study = search("2 mN");
-  ASSERT_EQ(study.code, 0) << study.err;
-  EXPECT_EQ(study.err, "");
-  const fs::path out = folder.path() / "results/varied";
-  EXPECT_TRUE(fs::exists(out / "optimum.csv"));
-  EXPECT_FALSE(fs::exists(out / "study.csv"));
-  const Outcome again = run_program(folder.path(), "study varied.study.toml");
-  EXPECT_EQ(again.out, study.out);
-  EXPECT_THAT(again.err, HasSubstr("evaluations are there already"));
-  EXPECT_THAT(run_program(folder.path(), "validate varied.study.toml").out,
-              HasSubstr("is valid: an optimum over 1 numbers, 2 pairs"));
-  const auto design = nlohmann::json::parse(read_text(out / "study.json"))["optimum"]["designs"][1];
-  const double diameter = design["parameters"]["cilium.diameter"];
-  test::write_study(folder.path(),
-                    study_text(header, "[[parameter]]\npath = \"cilium.diameter\"\nvalues = [\"" +
-                                           nlohmann::json(diameter).dump() + " m\"]\n"));
-  ASSERT_EQ(run_program(folder.path(), "study varied.study.toml --fresh").code, 0);
-  EXPECT_EQ(nlohmann::json::parse(read_text(out / "study.json"))["points"][0]["pairs"],
-            design["pairs"]);
-  const Outcome none = search("1 N");
-  EXPECT_EQ(none.code, 5) << none.err;
-  EXPECT_THAT(none.out, HasSubstr("No design was found"));
-}
-
-TEST(StudyCommand, EveryPointFailedIsExitCode3) {
-  const TemporaryFolder folder;
-  test::write_study_case(folder.path(), "\"2 mN\"",
-                         "mechanics = [\"beam\"]\n[models.beam]\nmax_iterations = "
-                         "2\nmax_cutbacks = 0\n");
-  test::write_study(folder.path(), study_text("pairs = [\"beam/line\"]\n", modulus_range));
-  const Outcome study = run_program(folder.path(), "study varied.study.toml");
-  EXPECT_EQ(study.code, 3);
-  EXPECT_THAT(study.out, HasSubstr("beam/line: failed at 5 of 5 points"));
-  EXPECT_TRUE(fs::exists(folder.path() / "results/varied/study.csv"));
-}
-
 TEST(StudyCommand, WhatCannotBeDoneHasItsExitCodeAndMessage) {
   const TemporaryFolder folder;
   test::write_study_case(folder.path());
@@ -254,8 +167,7 @@ TEST(StudyCommand, WhatCannotBeDoneHasItsExitCodeAndMessage) {
   fails("run varied.study.toml", 2, "`ciliaval study` runs it");
   fails("study varied.study.toml -o one.toml", 4, "one.toml");
   fails("study varied.study.toml --json none/x.json", 4, "none/x.json");
-  fails("study varied.study.toml -o plotless", 0, "without its figures", "CILIAVAL_PYTHON=none ");
-  EXPECT_TRUE(fs::exists(folder.path() / "plotless/varied/study.csv"));
+  fails("study varied.study.toml", 4, "cannot start Python `none`", "CILIAVAL_PYTHON=none ");
   fails("study varied.study.toml --json /dev/full", 4, "/dev/full");
   EXPECT_THAT(read_text(folder.path() / "out.txt"), HasSubstr("Results: results/varied"));
   const std::string full = "cd '" + folder.path().string() +

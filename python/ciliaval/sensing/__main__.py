@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""python3 -m ciliaval.sensing CASE [READINGS]: what `ciliaval sense` runs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from .. import _core
+from ..command import PASS, SOLVER, UNDECIDED, Outputs, Progress, run_command, terminal_width, write_out
+from ..errors import InputError
+from ..model import Case
+from .readings import Readings, read_readings
+from .response import Pair, require_load_to_sense
+from .inversion import Chips
+from .loads import case_of, largest_load, noise_of, options_of, sense_readings
+
+_OF_FILES = ("map", "unit", "scale", "unloaded", "average", "temperature")
+_NOT_OF_BENCHES = ("background", "models", "noise", "largest", "csv", *_OF_FILES, "skip")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python3 -m ciliaval.sensing", description=__doc__)
+    parser.add_argument("files", type=Path, nargs="+", help="case or bench; readings")
+    parser.add_argument("--fit", help="calibrate: numbers of the case, with commas between")
+    parser.add_argument("-o", "--output", help="calibrate: the case to write")
+    parser.add_argument("--validate", action="store_true", help="only check the benches that the files are")
+    parser.add_argument("--background", type=Path)
+    for name in (*_OF_FILES, "models", "noise", "largest"):
+        parser.add_argument(f"--{name}")
+    parser.add_argument("--skip", action="store_true")
+    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+    parser.add_argument("--command", default="python3 -m ciliaval.sensing", help="for the provenance")
+    Outputs.declare(parser)
+    options = parser.parse_args()
+    if options.validate:
+        return _validate(options.files)
+    options.case, options.readings, *more = [*options.files, None][:2] + options.files[2:]
+    if more:
+        parser.error(f"a case and a file of readings, not {more[0]} too")
+    command = options.command.encode("utf-8", "backslashreplace").decode("utf-8")
+    progress = Progress(options.quiet)
+    provenance = json.loads(_core.provenance(command))
+    if options.case.name.endswith(".sense.toml"):
+        return _simulate(options, provenance, progress)
+    if options.readings is None:
+        raise InputError(
+            f"there is no file of readings after {options.case}; a test bench to be simulated is called NAME.sense.toml"
+        )
+    case = case_of(options.case)
+    inputs = [options.case, *case._core.files, options.readings, options.background]
+    if options.fit:
+        return _calibrate(case, options, inputs, provenance, progress)
+    outputs = Outputs(options, inputs)
+    of = _surface if case.loads[0].type == "sweep" else _loads
+    result, text, code = of(case, options, progress)
+    progress.clear()
+    write_out(text)
+    outputs.write(lambda: result.json(provenance), result.csv)
+    return code
+
+
+def _validate(files: list[Path]) -> int:
+    from .bench import read_bench
+
+    for file in files:
+        bench = read_bench(file)
+        loads = len(bench.case.loads)
+        write_out(
+            f"{file}: the test bench is valid: {loads} loads at {bench.azimuths} azimuths, {bench.draws} draws"
+        )
+    return PASS
+
+
+def _read(case: Case, options: argparse.Namespace) -> Readings:
+    given = {name: getattr(options, name) for name in _OF_FILES}
+    reads = Chips.of(case).reads
+    return read_readings(
+        options.readings, case.sensor_names, options_of(case, given, options.skip), options.background, reads
+    )
+
+
+def _loads(case: Case, options: argparse.Namespace, progress: Progress) -> tuple[Any, str, int]:
+    """The load and its direction, with intervals, from each reading of the case's sensors."""
+    require_load_to_sense(case)
+    pair, noise = Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+    largest = largest_load(case, options.largest)
+    read = _read(case, options)  # before the models run, which may take a minute
+    result = sense_readings(case, read, pair, noise, largest, progress)
+    status = result.loads.status
+    if (status == "failed").any():
+        code = SOLVER
+    else:
+        code = PASS if ((status == "found") | (status == "nothing")).any() else UNDECIDED
+    return result, result.text(terminal_width()), code
+
+
+def _calibrate(
+    case: Case, options: argparse.Namespace, inputs: list[Any], provenance: dict[str, Any], progress: Progress
+) -> int:
+    """Numbers of the case from readings at its loads."""
+    from .calibration import calibrate_readings
+
+    options.csv = options.output  # checked as an output
+    outputs = Outputs(options, inputs)
+    pair, noise = Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+    fit = [name.strip() for name in options.fit.split(",")]
+    result = calibrate_readings(case, _read(case, options), fit, pair, noise, progress)
+    progress.clear()
+    write_out(result.text(terminal_width()))
+    outputs.write(lambda: result.json(provenance), result.case.toml)
+    return PASS
+
+
+def _surface(case: Case, options: argparse.Namespace, progress: Progress) -> tuple[Any, str, int]:
+    """The surface's levels from the readings of a sweep."""
+    from .levels import LevelCurve, sense_surface
+
+    pair, noise = Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+    read = _read(case, options)
+    if options.largest:
+        largest = _core.quantity(options.largest, "m")
+    else:
+        largest = max(0.0, *(4 * load.magnitude for load in case.loads))
+    if not 0 < largest < case.cilium.length:
+        raise InputError("--largest: the largest interference lies between 0 and the length of the cilium")
+    if not read.measured_offset:
+        raise InputError(f"{options.readings}: the levels of a surface need dBx, dBy, dBz, or unloaded rows")
+    curve = LevelCurve(case, pair, largest, progress)
+    result = sense_surface(case, read, pair, noise, curve)
+    lines = [*read.remarks]
+    if curve.limit:
+        lines.append(
+            f"Interferences are looked for up to {1e3 * curve.largest:.4g} mm, not {1e3 * largest:.4g} mm: {curve.limit}"
+        )
+    text = "\n".join([*lines, result.text(terminal_width())])
+    return result, text, PASS if result.levels else UNDECIDED
+
+
+def _simulate(options: argparse.Namespace, provenance: dict[str, Any], progress: Callable[[str], None]) -> int:
+    """The test bench."""
+    from .bench import bench_json, bench_text, read_bench, run_bench
+
+    if options.readings is not None:
+        raise InputError(
+            f"{options.case} is a test bench, which makes its own readings: leave {options.readings} out"
+        )
+    for name in _NOT_OF_BENCHES:
+        if getattr(options, name):
+            raise InputError(
+                f"--{name}: a test bench states its models and errors in its file and has no table: leave it out"
+            )
+    bench = read_bench(options.case)
+    outputs = Outputs(options, [options.case, bench.case.file, *bench.case._core.files])
+    result = run_bench(bench, progress)
+    if isinstance(progress, Progress):
+        progress.clear()
+    write_out(bench_text(bench, result, terminal_width()))
+    outputs.write(lambda: bench_json(bench, result, provenance))
+    return PASS
+
+
+if __name__ == "__main__":
+    sys.exit(run_command(main))

@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Numbers of a case from readings at known loads: docs/guide/calibration.md."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize, special
+
+from .. import _core
+from ..errors import InputError, SolverError
+from ..model import Case
+from ..units import shown
+from .inversion import TWO_SIDED_95, UNLIKELY, Chips
+from .loads import case_of, noise_of, options_of, readings_of_arrays
+from .readings import Readings, read_readings
+from .response import Pair, Progress
+
+_TOGETHER = 0.99  # correlation from which two numbers are named
+_SINGULAR = 1e-10  # of the eigenvalues of the normal matrix with a unit diagonal: nothing is known beyond rounding
+_PLACE, _ANGLE, _PART = 1e-4, math.radians(1), 0.1  # m, rad, of a number: steps of the fit
+
+# What a sensor has: the words after its name, their members, units and steps.
+_OF_SENSOR = {
+    "position": ([f"position.{axis}" for axis in "xyz"], "m", _PLACE),
+    "rotation": (["rotation.z"], "rad", _ANGLE),
+    "orientation": ([f"rotation.{axis}" for axis in "xyz"], "rad", _ANGLE),
+    "gain": (["gain"], "", _PART),
+    "scale": (["gain"], "", _PART),
+}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that is fitted. path: of the case; of a sensor its member, with the sensor's number."""
+
+    path: str
+    name: str
+    unit: str
+    start: float
+    step: float
+    sensor: int | None = None
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What readings at known loads say of a case's numbers.
+
+    values, deviations: (k,), found, and standard deviations by the noise; infinite where the readings do
+    not tell. correlation: (k, k). chi_squared, freedom, misfit_probability: of the fit. together: groups of
+    numbers that the readings cannot tell apart. case: the calibrated one. residuals: (n, sensors, 3), T,
+    read less computed, in the chips' directions.
+    """
+
+    parameters: list[Parameter]
+    values: np.ndarray
+    deviations: np.ndarray
+    correlation: np.ndarray
+    chi_squared: float
+    freedom: int
+    together: list[list[str]]
+    case: Case
+    pair: Pair
+    noise: float
+    residuals: np.ndarray
+    remarks: list[str]
+
+    @property
+    def misfit_probability(self) -> float:
+        """Of a larger chi squared by noise alone."""
+        return float(special.chdtrc(self.freedom, self.chi_squared)) if self.freedom > 0 else 1.0
+
+    def text(self, width: int) -> str:
+        """Tables for people."""
+        rows = [["", "start", "found", "+-", "unit"]]
+        for p, value, deviation in zip(self.parameters, self.values, self.deviations):
+            unit, size = shown(p.unit)
+            known = math.isfinite(deviation)
+            spread = f"{TWO_SIDED_95 * deviation / size:.2g}" if known else "not known"
+            rows.append([p.name, f"{p.start / size:.5g}", f"{value / size:.6g}", spread, unit])
+        rms = float(np.sqrt((self.residuals**2).mean()))
+        text = (
+            f"{self.case.name}: {len(self.parameters)} numbers from {len(self.residuals)} readings at known loads, by "
+            f"{self.pair}, noise {1e6 * self.noise:.3g} uT\n"
+        )
+        text += "".join(f"{remark}\n" for remark in self.remarks) + _core.text_table(rows, "<>>><", width)
+        text += (
+            "Intervals of 95 %, of the noise alone.\n"
+            f"chi^2 {self.chi_squared:.4g} with {self.freedom} degrees of freedom, residuals {1e6 * rms:.3g} uT rms"
+        )
+        if self.misfit_probability < UNLIKELY:
+            text += (
+                ": noise alone does so once in a thousand times. The model, what is not fitted, a known load or --noise is "
+                "wrong, and the intervals are too small"
+            )
+        text += ".\n"
+        named = {(p.name, q.name): self.correlation[i, j] for i, p in enumerate(self.parameters)
+                 for j, q in enumerate(self.parameters) if j > i}  # fmt: skip
+        close = [f"{a} and {b} ({r:+.3f})" for (a, b), r in named.items() if _TOGETHER < abs(r) < 1 - 1e-9]
+        if close:
+            text += f"Known together better than apart (correlation): {', '.join(close)}.\n"
+        for group in self.together:
+            text += (
+                f"The readings cannot tell apart: {', '.join(group)}. Fit one of them less, or read at other loads, "
+                "heights or sensors.\n"
+            )
+        return text.rstrip("\n")
+
+    def json(self, provenance: Mapping[str, Any]) -> dict[str, Any]:
+        """docs/guide/calibration.md; SI units."""
+        return {
+            "schema": 1,
+            "calibration": self.case.name,
+            "provenance": provenance,
+            "models": str(self.pair),
+            "noise": self.noise,
+            "parameters": [
+                {"path": p.path, "sensor": p.sensor, "unit": p.unit, "start": p.start, "value": value,
+                 "deviation": deviation}
+                for p, value, deviation in zip(self.parameters, self.values.tolist(), self.deviations.tolist())
+            ],
+            "correlation": self.correlation.tolist(),
+            "chi_squared": self.chi_squared,
+            "freedom": self.freedom,
+            "misfit_probability": self.misfit_probability,
+            "together": self.together,
+            "remarks": self.remarks,
+            "residuals": self.residuals.tolist(),
+        }  # fmt: skip
+
+
+def calibrate(
+    case: Case | str | Path,
+    readings: npt.ArrayLike | str | Path,
+    fit: Sequence[str],
+    *,
+    models: str = "elastica/volume",
+    noise: float | str = 1e-6,
+    unloaded: Any = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> Calibration:
+    """Fits numbers of a case to readings at its loads, which are known: one reading, or sample of averaged ones,
+    for each load step, in their order.
+
+    fit: "base.young_modulus", any number by its path in studies or the end of it; "sensor.position" (three
+    numbers), "sensor.rotation" (about z), "sensor.orientation" (about x, y, z), "sensor.gain" or "scale"; with
+    several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, unloaded, options: as of
+    sense(). Weighted least squares (scipy.optimize.least_squares) of dB; the offset's noise, which all
+    readings share, is in the weights. Deviations are (J^T V^-1 J)^-1 by the noise alone.
+
+    Raises InputError, SolverError.
+
+    >>> import ciliaval as cv
+    >>> from ciliaval.sensing import calibrate
+    >>> case = cv.Case("cases/paper/fig3d.toml")
+    >>> soft = case.changed({"cilium.segment.base.young_modulus": 0.09e6})
+    >>> dB = soft.run().dB("elastica/volume")  # readings of a softer one
+    >>> found = calibrate(case, dB, ["base.young_modulus"], noise=1e-6)
+    >>> round(float(found.values[0]))
+    90000
+    """
+    case = case_of(case)
+    if isinstance(readings, (str, Path)):
+        skip = bool(options.pop("skip", False))
+        given = options | {"unloaded": unloaded}
+        reads = Chips.of(case).reads
+        read = read_readings(Path(readings), case.sensor_names, options_of(case, given, skip), None, reads)
+    elif options:
+        raise InputError(f"{', '.join(options)}: of a file of readings alone")
+    else:
+        read = readings_of_arrays(readings, len(case.sensors), unloaded, None, Chips.of(case))
+    return calibrate_readings(case, read, fit, Pair.of(models), noise_of(noise), progress)
+
+
+def calibrate_readings(
+    case: Case, read: Readings, fit: Sequence[str], pair: Pair, noise: float, progress: Progress | None = None
+) -> Calibration:
+    """See calibrate()."""
+    if not read.measured_offset:
+        raise InputError("a calibration needs dB, or unloaded rows: the model's own B is what is to be found")
+    if len(read.change) != len(case.loads):
+        raise InputError(
+            f"there are {len(read.change)} readings and {len(case.loads)} load steps in the case: it lists the known loads, "
+            "one for each reading (or sample), in their order"
+        )
+    parameters = [p for name in fit for p in parameters_of(case, name)]
+    names = [p.name for p in parameters]
+    if not parameters or len(set(names)) < len(names):
+        raise InputError(f"fit names no number, or one twice: {', '.join(names) or 'none'}")
+    fitting = _Fitting(case, read, parameters, pair, noise, progress)
+    start = fitting.residual(np.zeros(len(parameters)))
+    freedom = int(Chips.of(case).reads.sum()) * len(read.change) - len(parameters)
+    if freedom < 0:
+        raise InputError(f"{len(parameters)} numbers cannot be found from {freedom + len(parameters)} components of dB")
+    if not np.isfinite(start).all():
+        raise SolverError(f"the case as it stands has no shape under all loads: {fitting.failure}")
+    found = optimize.least_squares(fitting.residual, np.zeros(len(parameters)), jac=fitting.jacobian, method="lm", xtol=1e-10, ftol=1e-12)
+    if not found.success or not np.isfinite(found.fun).all():
+        raise SolverError(f"the fit did not converge: {fitting.failure or found.message}")
+    deviations, correlation, together = _known(found.jac, names)
+    values = fitting.values(found.x)
+    return Calibration(
+        parameters, values, deviations * [p.step for p in parameters], correlation, float(2 * found.cost), freedom, together,
+        fitting.case(values), pair, noise, fitting.read - fitting.computed(values), read.remarks,
+    )  # fmt: skip
+
+
+def _known(J: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray, list[list[str]]]:
+    """Deviations and correlations by the normal matrix J^T J, and groups of numbers that it cannot tell apart."""
+    size = np.linalg.norm(J, axis=0)
+    free = size > 1e-12 * max(size.max(), 1e-300)  # the others change nothing at all
+    unit = np.where(free, size, 1)
+    values, vectors = np.linalg.eigh((J / unit).T @ (J / unit))
+    weak = values < _SINGULAR
+    inverse = (vectors[:, ~weak] / values[~weak]) @ vectors[:, ~weak].T
+    unknown = (np.abs(vectors[:, weak]) > 0.1).any(axis=1)
+    deviations = np.where(unknown, np.inf, np.sqrt(np.diag(inverse)) / unit)
+    spread = np.sqrt(np.maximum(np.diag(inverse), 1e-300))
+    correlation = inverse / np.outer(spread, spread)
+    correlation[unknown] = correlation[:, unknown] = 0
+    np.fill_diagonal(correlation, 1)
+    together = [[name for name, c in zip(names, vector) if abs(c) > 0.1] for vector in vectors[:, weak].T]
+    return deviations, correlation, together
+
+
+def parameters_of(case: Case, name: str) -> list[Parameter]:
+    """The numbers that a word of `fit` names. Raises InputError with what there is."""
+    owner, _, what = name.rpartition(".") if name not in _OF_SENSOR else ("sensor", "", name)
+    numbers = case._core.numbers()
+    sensors = case.sensor_names
+    members = _OF_SENSOR.get(what)
+    if what in tuple("xyz") and owner.rpartition(".")[2] in ("position", "orientation", "rotation"):
+        owner, _, kind = owner.rpartition(".")
+        member = f"{'position' if kind == 'position' else 'rotation'}.{what}"
+        members = ([member], "m" if kind == "position" else "rad", _PLACE if kind == "position" else _ANGLE)
+    if members and (owner == "sensor" or owner in sensors):
+        paths, unit, step = members
+        chosen = range(len(sensors)) if owner == "sensor" else [sensors.index(owner)]
+        if sensors[0] == "0" and not paths[0].startswith("position"):
+            chosen = [0]  # a list of places has one chip for all
+        return [
+            Parameter(path, f"{'sensor' if len(sensors) == 1 else sensors[s]}.{path}", unit, _of_sensor(case, s, path), step, s)
+            for s in chosen
+            for path in paths
+        ]
+    ends = [path for path in numbers if path == name or path.endswith(f".{name}")]
+    if len(ends) != 1:
+        near = difflib.get_close_matches(name, [p.removeprefix("cilium.segment.") for p in numbers], 1, 0.5)
+        meant = f"; did you mean `{near[0]}`?" if near else ""
+        what = f"is one of {', '.join(ends)}: say which" if ends else f"is no number of the case{meant}"
+        raise InputError(f"fit: `{name}` {what} (sensors have {', '.join(f'sensor.{k}' for k in _OF_SENSOR)})")
+    value, unit = numbers[ends[0]]
+    short = ends[0].removeprefix("cilium.segment.")
+    return [Parameter(ends[0], short, unit, value, _PART * abs(value) or _PART)]
+
+
+def _of_sensor(case: Case, sensor: int, member: str) -> float:
+    kind, _, axis = member.partition(".")
+    if kind == "position":
+        return float(case.sensors[sensor]["xyz".index(axis)])
+    _, rotation, gain, _ = case._core.chips[sensor]
+    return float(gain) if kind == "gain" else float(rotation["xyz".index(axis)])
+
+
+class _Fitting:
+    """Computed less read dB as a function of the numbers, (value - start)/step each."""
+
+    def __init__(
+        self, case: Case, read: Readings, parameters: Sequence[Parameter], pair: Pair, noise: float, progress: Progress | None
+    ):
+        self._case, self._parameters, self._pair, self._progress = case, parameters, pair, progress
+        self._reads = Chips.of(case).reads
+        self.read = np.where(self._reads, read.change, 0.0)
+        self.failure = ""
+        self._evaluations = 0
+        # V = sigma^2 (diag(1/rows) + v 1 1^T), v of the offset; V^-1/2 = (I - c u u^T) D^-1/2 with u = D^-1/2 1 sqrt(v).
+        self._own = np.sqrt(read.rows) / noise
+        u = np.sqrt(read.rows * read.offset_variance)
+        squared = float(u @ u)
+        self._shared = u, (1 - 1 / math.sqrt(1 + squared)) / squared if squared else 0.0
+
+    def values(self, x: np.ndarray) -> np.ndarray:
+        return np.array([p.start + p.step * value for p, value in zip(self._parameters, x)])
+
+    def case(self, values: np.ndarray) -> Case:
+        """The case with these numbers. Raises InputError where one is out of its range."""
+        of_case = {p.path: float(v) for p, v in zip(self._parameters, values) if p.sensor is None}
+        changed = self._case.changed(of_case) if of_case else self._case
+        of_sensor = [(p, float(v)) for p, v in zip(self._parameters, values) if p.sensor is not None]
+        if not of_sensor:
+            return changed
+        tables = tomllib.loads(changed.toml())
+        named = isinstance(tables["sensor"], list)
+        places, chips = changed.sensors.copy(), [[list(chip[1]), chip[2]] for chip in changed._core.chips]
+        for p, value in of_sensor:
+            kind, _, axis = p.path.partition(".")
+            if kind == "position":
+                places[p.sensor, "xyz".index(axis)] = value
+            elif kind == "gain":
+                chips[p.sensor][1] = value
+            else:
+                chips[p.sensor][0]["xyz".index(axis)] = value
+        texts = [[f"{c!r} m" for c in place] for place in places.tolist()]
+        for s in range(len(places) if named else 1):
+            table = tables["sensor"][s] if named else tables["sensor"]
+            table["position"] = texts[s] if named or len(texts) == 1 else texts
+            if any(p.path.startswith("rotation") for p, _ in of_sensor):
+                table["rotation"] = [f"{float(angle)!r} rad" for angle in chips[s][0]]
+            if any(p.path == "gain" for p, _ in of_sensor):
+                table["gain"] = chips[s][1]
+        return Case.from_dict(tables, str(changed.file or changed.name))
+
+    def computed(self, values: np.ndarray) -> np.ndarray:
+        """dB in the chips' directions, (n, s, 3), T; NaN where there is no shape."""
+        self._evaluations += 1
+        if self._progress:
+            self._progress(f"calibrate: evaluation {self._evaluations}")
+        try:
+            case = self.case(values)
+            shapes = _core.bend_case(case._core, case.loads, self._pair.mechanics, None)
+            missing = next((shape for shape in shapes if not shape.has_shape), None)
+            if missing is not None:
+                raise SolverError(f"{self._pair.mechanics}: {missing.message}")
+            B = _core.fields([shapes[0].straight, *shapes], case.sensors, self._pair.field)
+        except (InputError, SolverError) as error:
+            self.failure = str(error)
+            return np.full(self.read.shape, np.nan)
+        chips = Chips.of(case)
+        return chips.own(B[1:] - B[0]) * chips.gain[:, None]
+
+    def residual(self, x: np.ndarray) -> np.ndarray:
+        return self._whitened(self.computed(self.values(x)) - self.read)
+
+    def jacobian(self, x: np.ndarray) -> np.ndarray:
+        """By central differences of 1e-3 steps."""
+        columns = []
+        for i in range(len(x)):
+            h = np.zeros(len(x))
+            h[i] = 1e-3
+            columns.append((self.residual(x + h) - self.residual(x - h)) / 2e-3)
+        return np.stack(columns, axis=1)
+
+    def _whitened(self, off: np.ndarray) -> np.ndarray:
+        u, c = self._shared
+        own = off.reshape(len(off), -1) * self._own[:, None]
+        return (own - c * np.outer(u, u @ own))[:, self._reads.ravel()].ravel()

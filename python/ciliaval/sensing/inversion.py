@@ -1,0 +1,337 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The load of each reading by least squares, with what the noise makes of it: docs/guide/sensing.md."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import special
+
+from ..errors import InputError
+from ..model import Case
+from .response import Response
+
+TWO_SIDED_95 = float(special.ndtri(0.975))
+UNLIKELY = 1e-3
+"""Probability below which a reading is no matter of chance."""
+_COMPONENTS = 2  # of a load
+_MOST_STEPS = 200
+_CHUNK = 10_000  # readings at once: what they need stays in the cache
+
+STATUSES = ("found", "nothing", "beyond range", "misfit", "failed")
+
+
+@dataclass(frozen=True)
+class SensedLoads:
+    """The loads found from n readings.
+
+    load: (n, 2), magnitude times direction. covariance: (n, 2, 2) of it, (J^T V^-1 J)^-1, by the noise.
+    chi_squared: (n,), (dB - reading)^T V^-1 (dB - reading), whose degrees of freedom are the components that are
+    read less 2.
+    misfit_probability: of a larger one by noise alone. nothing_probability: of a larger
+    chi_squared(0) - chi_squared by noise alone, without a load. is_beyond: the load is larger than the
+    largest computed. converged: (n,).
+    """
+
+    load: np.ndarray
+    covariance: np.ndarray
+    chi_squared: np.ndarray
+    misfit_probability: np.ndarray
+    nothing_probability: np.ndarray
+    is_beyond: np.ndarray
+    converged: np.ndarray
+
+    @property
+    def magnitude(self) -> np.ndarray:
+        return np.hypot(*self.load.T)
+
+    @property
+    def azimuth(self) -> np.ndarray:
+        """rad, (-pi, pi]."""
+        return np.arctan2(self.load[:, 1], self.load[:, 0])
+
+    @property
+    def is_nothing(self) -> np.ndarray:
+        """No load is seen: the region of 95 % of the load holds zero. The decrease of chi squared from
+        no load to the load found has as many degrees of freedom as the load has components; beyond 5.99
+        with two. (1.96 standard deviations of one component are passed by noise in 15 % of the readings.)"""
+        return ~(self.nothing_probability < 0.05)
+
+    @property
+    def magnitude_interval(self) -> np.ndarray:
+        """Half-widths of the intervals that hold the magnitude with 95 %, to first order: 1.96 standard
+        deviations along the load; where none is seen they hold zero too."""
+        magnitude = self.magnitude
+        along = self.load / np.where(magnitude > 0, magnitude, 1)[:, None]
+        along[magnitude == 0] = [1, 0]
+        width = TWO_SIDED_95 * np.sqrt(np.einsum("ni,nij,nj->n", along, self.covariance, along))
+        return np.where(self.is_nothing, np.maximum(width, magnitude), width)
+
+    @property
+    def azimuth_interval(self) -> np.ndarray:
+        """Half-widths of the same of the azimuth, rad; pi: not known.
+
+        A direction is in the interval if a load along it is within chi squared of 3.84 of the one
+        found. Where the covariance is a circle of radius sigma these are the directions within
+        asin(1.96 sigma/|p|); by p = L y with L L^T the covariance any other is one.
+        """
+        result = np.full(len(self.load), np.pi)
+        seen = ~self.is_nothing & np.isfinite(self.covariance).all(axis=(1, 2))
+        if not seen.any():
+            return result
+        L = np.linalg.cholesky(self.covariance[seen])
+        y = np.linalg.solve(L, self.load[seen][..., None])[..., 0]
+        half = np.arcsin(np.minimum(1, TWO_SIDED_95 / np.hypot(*y.T)))
+        azimuth, ends = self.azimuth[seen], []
+        for sign in (-1, 1):
+            cos, sin = np.cos(half), sign * np.sin(half)
+            turned = np.stack([cos * y[:, 0] - sin * y[:, 1], sin * y[:, 0] + cos * y[:, 1]], axis=-1)
+            end = np.einsum("nij,nj->ni", L, turned)
+            ends.append(np.abs(wrapped(np.arctan2(end[:, 1], end[:, 0]) - azimuth)))
+        result[seen] = np.maximum(*ends)
+        return result
+
+    @property
+    def status(self) -> np.ndarray:
+        """Of each: "found", "nothing" (is_nothing), "misfit" (no load explains the reading: noise alone
+        does so once in a thousand times), "beyond range", "failed" (the least squares did not converge)."""
+        conditions = [~self.converged, self.is_beyond, self.misfit_probability < UNLIKELY, self.is_nothing]
+        return np.select(conditions, ["failed", "beyond range", "misfit", "nothing"], "found")
+
+
+@dataclass(frozen=True)
+class Chips:
+    """How the sensors' chips sit: axes (s, 3, 3), whose columns are where the chip's own x, y, z point in the case;
+    reads (s, 3), which of them it reads. gain (s,): what it reads over what there is."""
+
+    axes: np.ndarray
+    reads: np.ndarray
+    gain: np.ndarray
+
+    @staticmethod
+    def of(case: Case) -> Chips:
+        """Of the case's sensors (docs/guide/sensing.md, The chip)."""
+        axes, reads, gains = [], [], []
+        for names, rotation, gain, components in case._core.chips:
+            own = [float(f"{name[0]}1") * np.eye(3)["xyz".index(name[1])] for name in names or ("+x", "+y", "+z")]
+            axes.append(turned_about(rotation) @ np.stack(own, axis=1))
+            reads.append([not components or c in components for c in "xyz"])
+            gains.append(gain)
+        return Chips(np.array(axes), np.array(reads), np.array(gains))
+
+    def in_case(self, B: np.ndarray) -> np.ndarray:
+        """Of the chips' own components (…, s, 3) those in the case's directions; what a chip does not read is 0."""
+        own = np.where(self.reads, B, 0.0) / self.gain[:, None]
+        return np.einsum("sij,...sj->...si", self.axes, own)
+
+    def own(self, B: np.ndarray) -> np.ndarray:
+        """The other way round, 0 for what a chip does not read."""
+        return np.where(self.reads, np.einsum("sij,...si->...sj", self.axes, B), 0.0)
+
+
+def turned_about(angles: npt.ArrayLike) -> np.ndarray:
+    """The rotation about x, then y, then z, by three angles, rad: R = R_z R_y R_x."""
+    (a, b, c), (sa, sb, sc) = np.cos(angles), np.sin(angles)
+    x = np.array([[1, 0, 0], [0, a, -sa], [0, sa, a]])
+    y = np.array([[b, 0, sb], [0, 1, 0], [-sb, 0, b]])
+    z = np.array([[c, -sc, 0], [sc, c, 0], [0, 0, 1]])
+    return z @ y @ x
+
+
+def wrapped(angle: np.ndarray) -> np.ndarray:
+    """Angles within (-pi, pi]."""
+    return -(np.remainder(-np.asarray(angle) + np.pi, 2 * np.pi) - np.pi)
+
+
+def invert(
+    response: Response,
+    change: npt.ArrayLike,
+    noise: npt.ArrayLike,
+    variance: npt.ArrayLike = 1.0,
+    common: np.ndarray | None = None,
+    chips: Chips | None = None,
+) -> SensedLoads:
+    """The loads whose dB is nearest to readings: the least squares weighted by the noise, by the method of
+    Levenberg and Marquardt with the response's own derivatives, from the nearest of a grid of 129 loads
+    over the whole range. All readings take their steps together: a call of scipy.optimize for each
+    costs a hundred times as much, and gives the same (tests/python/test_sensing.py).
+
+    change: dB, (n, s, 3), T. noise: standard deviation of a component of a single reading, T, a number or
+    (3,). variance: of dB over noise^2, (n,): 1/m + 1/k of means of m loaded and k unloaded readings.
+    common: (n, s, s), the covariance of the sensors by an error that they share, over noise^2. chips: which of
+    the components count; None: all.
+
+    Raises InputError if a number is not finite, the noise not positive, or a shape is another.
+
+    >>> import ciliaval as cv, numpy as np
+    >>> from ciliaval.sensing import Response, invert, shapes_within
+    >>> case = cv.Case("cases/paper/fig3e.toml")
+    >>> response = Response(case, "volume", shapes_within(case, "elastica", 2e-3), case.sensors)
+    >>> bool(np.allclose(invert(response, response.change([[1e-3, 5e-4]]), 1e-6).load, [[1e-3, 5e-4]]))
+    True
+    """
+    change = np.asarray(change, dtype=float)
+    noise = np.broadcast_to(np.asarray(noise, dtype=float), 3)
+    if change.ndim != 3 or change.shape[1:] != (response.sensors, 3):
+        raise InputError(f"readings have the shape (n, {response.sensors}, 3), not {change.shape}")
+    if not np.isfinite(change).all():
+        raise InputError("a reading is not finite")
+    if not (np.isfinite(noise).all() and (noise > 0).all()):
+        raise InputError("the noise of a reading must be finite and positive")
+    if chips is not None and chips.reads.sum() < _COMPONENTS:
+        raise InputError("a load has two components: one that a sensor reads does not tell them")
+    variance = np.broadcast_to(np.asarray(variance, dtype=float), len(change))
+    parts = [_nothing_read()] if not len(change) else []
+    for start in range(0, len(change), _CHUNK):
+        rows = slice(start, start + _CHUNK)
+        whitened = _Whitening(noise, variance[rows], None if common is None else common[rows], chips)
+        parts.append(_invert(response, change[rows], whitened))
+    return SensedLoads(*(np.concatenate(arrays) for arrays in zip(*parts)))
+
+
+def _nothing_read() -> tuple[np.ndarray, ...]:
+    none = np.zeros(0)
+    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, none.astype(bool), none.astype(bool)
+
+
+class _Whitening:
+    """V^-1/2 of readings: values times it have the covariance 1."""
+
+    def __init__(self, noise: np.ndarray, variance: np.ndarray, common: np.ndarray | None, chips: Chips | None):
+        self._weights = 1 / noise
+        self.chips = chips
+        self._scale = 1 / np.sqrt(variance)
+        self._factor = None
+        if common is not None:
+            sensors = common.shape[-1]
+            self._factor = np.linalg.inv(np.linalg.cholesky(common + variance[:, None, None] * np.eye(sensors)))
+
+    def rows(self, chosen: np.ndarray) -> _Whitening:
+        part = object.__new__(_Whitening)
+        part._weights, part._scale, part.chips = self._weights, self._scale[chosen], self.chips
+        part._factor = None if self._factor is None else self._factor[chosen]
+        return part
+
+    def _weighted(self, values: np.ndarray) -> np.ndarray:
+        return (values if self.chips is None else self.chips.own(values)) * self._weights
+
+    def __call__(self, values: np.ndarray) -> np.ndarray:
+        """values: (n, …, s, 3), of each reading, with any axes between."""
+        weighted = self._weighted(values)
+        if self._factor is None:
+            return weighted * self._scale.reshape(-1, *[1] * (values.ndim - 1))
+        return np.einsum("nst,n...tc->n...sc", self._factor, weighted)
+
+    def squares(self, known: np.ndarray, read: np.ndarray) -> np.ndarray:
+        """|V^-1/2 (known - read)|^2 of each reading (n, s, 3) and known value (l, s, 3), less a number of
+        each reading: (n, l)."""
+        known, read = self._weighted(known), self._weighted(read)
+        if self._factor is None:
+            own = np.einsum("lsc,lsc->l", known, known)
+        else:
+            metric = np.einsum("nrs,nrt->nst", self._factor, self._factor)
+            products = np.einsum("lsc,ltc->lst", known, known)
+            own = metric.reshape(len(read), -1) @ products.reshape(len(known), -1).T
+            read = np.einsum("nst,ntc->nsc", metric, read)
+        return own - 2 * read.reshape(len(read), -1) @ known.reshape(len(known), -1).T
+
+
+def _invert(response: Response, change: np.ndarray, whitened: _Whitening) -> tuple[np.ndarray, ...]:
+    n, largest = len(change), response.largest
+    x = _starts(response, change, whitened) / largest
+    converged = np.zeros(n, dtype=bool)
+    damping = np.full(n, 1e-3)
+    r, J = _misfit(response, x, change, whitened)
+    cost = np.einsum("nk,nk->n", r, r)
+    active = np.arange(n)
+    for _ in range(_MOST_STEPS):
+        if not len(active):
+            break
+        A = np.einsum("nki,nkj->nij", J[active], J[active])
+        g = np.einsum("nki,nk->ni", J[active], r[active])
+        step = -_solved(A, g, damping[active])
+        tried = x[active] + step
+        r_new, J_new = _misfit(response, tried, change[active], whitened.rows(active))
+        new = np.einsum("nk,nk->n", r_new, r_new)
+        better = new <= cost[active]
+        size = np.hypot(*step.T)
+        # As small as the step is the error that is left; rounding of the cost leaves no smaller one.
+        done = size <= 1e-12 * (np.hypot(*x[active].T) + 1e-3)
+        done |= np.abs(cost[active] - new) <= 1e-15 * cost[active] + 1e-24
+        done |= ~better & (size <= 1e-9)
+        taken = active[better]
+        x[taken], r[taken], J[taken], cost[taken] = tried[better], r_new[better], J_new[better], new[better]
+        damping[active] = np.where(better, damping[active] / 10, damping[active] * 10)
+        converged[active[done]] = True
+        active = active[~done]
+    freedom = (3 * response.sensors if whitened.chips is None else int(whitened.chips.reads.sum())) - _COMPONENTS
+    load = x * largest
+    J = J / largest
+    covariance = np.linalg.inv(np.einsum("nki,nkj->nij", J, J))
+    without = np.einsum("nk,nk->n", *[whitened(change).reshape(n, -1)] * 2)
+    return (
+        load,
+        covariance,
+        cost,
+        special.chdtrc(freedom, cost) if freedom > 0 else np.ones(n),
+        special.chdtrc(_COMPONENTS, np.maximum(0, without - cost)),
+        np.hypot(*load.T) > largest * (1 + 1e-9),
+        converged & np.isfinite(load).all(axis=1),
+    )
+
+
+def _misfit(
+    response: Response, x: np.ndarray, change: np.ndarray, whitened: _Whitening
+) -> tuple[np.ndarray, np.ndarray]:
+    """V^-1/2 (dB(p) - reading), (n, 3 s), and its derivative by x, p over the largest load, (n, 3 s, 2)."""
+    dB, derivative = response.change_and_derivative(response.largest * x)
+    J = whitened(response.largest * np.moveaxis(derivative, -1, 1))
+    return whitened(dB - change).reshape(len(x), -1), np.moveaxis(J, 1, -1).reshape(len(x), -1, 2)
+
+
+def _solved(A: np.ndarray, g: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """(A + damping diag A)^-1 g of each reading."""
+    a, d = A[:, 0, 0] * (1 + damping), A[:, 1, 1] * (1 + damping)
+    b = A[:, 0, 1]
+    determinant = a * d - b * b
+    return np.stack([d * g[:, 0] - b * g[:, 1], a * g[:, 1] - b * g[:, 0]], axis=-1) / determinant[:, None]
+
+
+def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> np.ndarray:
+    """Loads over the whole range, the zero load first, (n, 2)."""
+    size = largest * np.arange(1, magnitudes + 1) / magnitudes
+    angle = 2 * np.pi * np.arange(azimuths) / azimuths
+    directions = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    return np.concatenate([np.zeros((1, 2)), (size[:, None, None] * directions).reshape(-1, 2)])
+
+
+def _starts(response: Response, change: np.ndarray, whitened: _Whitening) -> np.ndarray:
+    """Of each reading the nearest of the loads over the range."""
+    loads = loads_over(response.largest)
+    known = response.change(loads)
+    return loads[whitened.squares(known, change).argmin(axis=1)]
+
+
+class LinearFit:
+    """The paper's way (section 3.5): dB linear in the load, dB = A p, with A the least-squares fit to the
+    response over the whole range; then p = A^+ dB. misfit: root mean square of |dB - A p| over that of
+    |dB|. r_squared: (3,), of each component of dB over those loads, all sensors together."""
+
+    def __init__(self, response: Response, noise: npt.ArrayLike):
+        loads = loads_over(response.largest)
+        change = response.change(loads)
+        flat = change.reshape(len(loads), -1)
+        A, *_ = np.linalg.lstsq(loads, flat, rcond=None)  # (2, 3 s)
+        rest = flat - loads @ A
+        self.misfit = float(np.sqrt((rest**2).sum() / (flat**2).sum()))
+        total = ((flat - flat.mean(axis=0)) ** 2).reshape(change.shape).sum(axis=(0, 1))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            self.r_squared = 1 - (rest**2).reshape(change.shape).sum(axis=(0, 1)) / total
+        weights = np.tile(1 / np.broadcast_to(np.asarray(noise, dtype=float), 3), response.sensors)
+        self._inverse = np.linalg.pinv(weights[:, None] * A.T) * weights
+
+    def __call__(self, change: np.ndarray) -> np.ndarray:
+        """p, (n, 2), of dB, (n, s, 3)."""
+        return change.reshape(len(change), -1) @ self._inverse.T

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""From what the sensors read while a cilium is drawn over a surface back to the surface."""
+
+from __future__ import annotations
+
+import io
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import special
+
+from .. import _core
+from ..errors import InputError, SolverError
+from ..model import Case
+from .inversion import TWO_SIDED_95, UNLIKELY, Chips
+from .readings import Readings
+from .response import Pair, Progress
+
+_POINTS = 241  # of the curve
+_TRAVEL = 0.02  # of a step, in lengths of the cilium: enough that it slides on
+_FEWEST = 5  # readings of a level
+_CHUNK = 2_000  # readings at once
+
+LEVEL, OFF_CURVE, AMBIGUOUS, BEYOND = "level", "off the curve", "ambiguous", "beyond range"
+
+
+class LevelCurve:
+    """dB of all sensors under a level surface that slides over the tip, over the interference.
+
+    Follows the case's cilium under a flat surface with the case's friction, pressed from nothing to
+    `largest` (m) in small steps, while it slides. interference: (k,), m. change: (k, 3 s), T. limit: why
+    the curve ends below the largest interference asked for; empty: it does not. Raises InputError if
+    the models do not take the case, SolverError where they fail.
+    """
+
+    def __init__(self, sweep: Case, pair: Pair, largest: float, progress: Progress | None = None):
+        tables = tomllib.loads(sweep.toml())
+        tables["surface"] = {"profile": "flat", "friction": tables["surface"]["friction"]}
+        for key in ("signal", "measurement", "external"):  # of the case's own path
+            tables.pop(key, None)
+        flat = Case.from_dict(tables, sweep.name)
+        part = np.arange(_POINTS) / (_POINTS - 1)
+        # Finer where the cilium is nearly straight: dB grows there with the root of the interference.
+        sizes = largest * np.maximum(part**2, 1e-4)
+        step = _TRAVEL * flat.cilium.length
+        loads = [
+            flat.loads[0].changed(interference=size, travel=i * step) for i, size in enumerate(sizes.tolist())
+        ]
+        shapes = _core.bend_case(flat._core, loads, pair.mechanics, progress)
+        count = next((i for i, shape in enumerate(shapes) if shape.status != "converged"), len(shapes))
+        self.limit = ""
+        if count < len(shapes):
+            self.limit = (
+                f"{pair.mechanics}: no shape under an interference of {sizes[count]:g} m: {shapes[count].message}"
+            )
+        if count < 2:
+            raise SolverError(self.limit)
+        kept = [i for i in range(count) if i + 1 == count or sizes[i + 1] > sizes[i]]  # it begins at rest
+        B = _core.fields([shapes[0].straight, *(shapes[i] for i in kept)], sweep.sensors, pair.field)
+        self.interference = sizes[kept]
+        # In the chips' own directions, in which the readings are.
+        self.change = Chips.of(sweep).own(B[1:] - B[0]).reshape(len(kept), -1)
+
+    @property
+    def largest(self) -> float:
+        return float(self.interference[-1])
+
+    def nearest(self, change: np.ndarray) -> dict[str, np.ndarray]:
+        """Of each reading (n, 3 s) the nearest point of the curve: its interference, m; the distance, T;
+        slope |d dB/d delta|, T/m; is_end: it lies beyond the largest interference; other: the distance of
+        the nearest point at another interference, where it has a minimum too, or infinity. (n,) each."""
+        chunks = [self._nearest(change[i : i + _CHUNK]) for i in range(0, max(len(change), 1), _CHUNK)]
+        return {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
+
+    def _nearest(self, change: np.ndarray) -> dict[str, np.ndarray]:
+        start, along = self.change[:-1], np.diff(self.change, axis=0)
+        length = np.einsum("kc,kc->k", along, along)
+        rest = change[:, None, :] - start
+        t = np.einsum("nkc,kc->nk", rest, along) / length
+        inside = np.clip(t, 0, 1)
+        distance = np.linalg.norm(rest - inside[..., None] * along, axis=2)
+        row, best = np.arange(len(change)), distance.argmin(axis=1)
+        width = np.diff(self.interference)
+        piece = np.arange(len(start))
+        elsewhere = (t == inside) & (np.abs(piece - best[:, None]) > 1)
+        return {
+            "interference": self.interference[best] + inside[row, best] * width[best],
+            "distance": distance[row, best],
+            "slope": np.sqrt(length[best]) / width[best],
+            "is_end": (best == len(start) - 1) & (t[row, best] > 1),
+            "other": np.where(elsewhere, distance, math.inf).min(axis=1),
+        }
+
+
+@dataclass(frozen=True)
+class Level:
+    """Successive readings of one level: rows from 0; the mean of three quarters of them, m, and the
+    half-width of its 95 %."""
+
+    first: int
+    last: int
+    interference: float
+    interval: float
+
+
+@dataclass(frozen=True)
+class SensedSurface:
+    """The readings one by one, and the levels among them: five or more in a row whose interferences
+    differ by no more than their noise. The interval of a level's mean: the readings' own noise averages
+    out, that of offset and background, which they have in common, does not."""
+
+    case: str
+    pair: Pair
+    noise: float  # T
+    status: np.ndarray  # (n,) of LEVEL, OFF_CURVE, AMBIGUOUS, BEYOND
+    interference: np.ndarray  # (n,), m
+    interval: np.ndarray  # (n,), half-widths of 95 % by the noise, m
+    levels: list[Level]
+
+    def text(self, width: int) -> str:
+        """A table of the levels for people, with the steps between them and what is not known there."""
+        text = f"{self.case}: levels of the surface by {self.pair}, noise {1e6 * self.noise:g} uT\n"
+        rows = [["rows", "", "interference", "+- (mm)", "height (mm)", "step (mm)"]]
+        heights = [level.interference - self.levels[0].interference for level in self.levels]
+        for k, (level, height) in enumerate(zip(self.levels, heights)):
+            step = f"{1e3 * (height - heights[k - 1]):+.4f}" if k else ""
+            rows.append(
+                [str(level.first + 1), f"- {level.last + 1}", f"{1e3 * level.interference:.4f}",
+                 f"{1e3 * level.interval:.4f}", f"{1e3 * height:.4f}", step]
+            )  # fmt: skip
+        count = {status: int((self.status == status).sum()) for status in (OFF_CURVE, AMBIGUOUS, BEYOND)}
+        known = sum(level.last - level.first + 1 for level in self.levels)
+        return (
+            text
+            + _core.text_table(rows, "><>", width)
+            + f"{known} of {len(self.status)} readings belong to levels. Of the others the height is not known: there "
+            "the field\nis not that of a level surface (a flank, a tip that sticks or turns back), or it changes.\n"
+            f"{count[OFF_CURVE]} readings are off the curve of level surfaces, {count[AMBIGUOUS]} ambiguous, "
+            f"{count[BEYOND]} beyond its range."
+        )
+
+    def json(self, provenance: Mapping[str, Any]) -> dict[str, Any]:
+        """SI; height over the first level, towards the cilium."""
+        readings = zip(self.status.tolist(), self.interference.tolist(), self.interval.tolist())
+        return {
+            "schema": 1,
+            "case": self.case,
+            "provenance": provenance,
+            "models": str(self.pair),
+            "noise": self.noise,
+            "readings": [dict(zip(("status", "interference", "interval"), values)) for values in readings],
+            "levels": [
+                vars(level) | {"height": level.interference - self.levels[0].interference} for level in self.levels
+            ],
+        }
+
+    def csv(self) -> str:
+        """A line for each reading, units in the header."""
+        text = io.StringIO("row,status,interference [m],interval [m]\n")
+        text.seek(0, io.SEEK_END)
+        for i, values in enumerate(zip(self.status, self.interference.tolist(), self.interval.tolist())):
+            text.write(f"{i + 1},{values[0]},{values[1]!r},{values[2]!r}\n")
+        return text.getvalue()
+
+
+def sense_surface(
+    sweep: Case, readings: Readings, pair: Pair, noise: float, curve: LevelCurve
+) -> SensedSurface:
+    """The levels of the surface from readings in the order of the sweep. Raises InputError if they are
+    no changes."""
+    if not readings.measured_offset:
+        raise InputError("the levels of a surface need dBx, dBy, dBz, or unloaded rows")
+    reads = Chips.of(sweep).reads
+    change = np.where(reads, readings.change, 0.0).reshape(len(readings.change), -1)
+    common = noise * np.sqrt(readings.common_variance())
+    sigma = np.hypot(common, noise / np.sqrt(readings.rows))
+    place = curve.nearest(change)
+    far = sigma * math.sqrt(special.chdtri(int(reads.sum()) - 1, UNLIKELY))
+    status = np.select(
+        [place["is_end"], place["distance"] > far, place["other"] <= far], [BEYOND, OFF_CURVE, AMBIGUOUS], LEVEL
+    )
+    interval = TWO_SIDED_95 * sigma / place["slope"]
+    shared = TWO_SIDED_95 * common / place["slope"]
+    levels = _levels(status, place["interference"], interval, shared)
+    return SensedSurface(sweep.name, pair, noise, status, place["interference"], interval, levels)
+
+
+def _levels(status: np.ndarray, height: np.ndarray, interval: np.ndarray, shared: np.ndarray) -> list[Level]:
+    sums = np.concatenate([[0.0], np.cumsum(height)])
+
+    def inner(first: int, last: int) -> slice:
+        """All but an eighth at each end, where a flank begins within the noise."""
+        margin = (last - first + 1) // 8
+        return slice(first + margin, last - margin + 1)
+
+    def mean(rows: slice) -> float:
+        return float((sums[rows.stop] - sums[rows.start]) / (rows.stop - rows.start))
+
+    def level_of(first: int, last: int) -> Level:
+        rows = inner(first, last)
+        own = float((interval[rows] ** 2 - shared[rows] ** 2).max())
+        common = float((shared[rows] ** 2).max())
+        return Level(first, last, mean(rows), math.sqrt(own / (rows.stop - rows.start) + common))
+
+    def ends(first: int, i: int) -> bool:
+        """A level goes on while a reading is not farther from the mean so far than two may be by noise."""
+        if status[i] != LEVEL:
+            return True
+        if i == first:
+            return False
+        return bool(abs(height[i] - mean(inner(first, i - 1))) > 2 * max(interval[i], interval[first]))
+
+    levels, first = [], 0
+    for i in range(len(status) + 1):
+        if i < len(status) and not ends(first, i):
+            continue
+        if i - first >= _FEWEST:
+            levels.append(level_of(first, i - 1))
+        first = i if i < len(status) and status[i] == LEVEL else i + 1
+    return levels

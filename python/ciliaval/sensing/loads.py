@@ -1,0 +1,408 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Loads from readings, and what is said of them: docs/guide/sensing.md."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy import special
+
+from .. import _core
+from ..errors import InputError
+from ..model import Case
+from ..units import shown
+from .inversion import STATUSES, UNLIKELY, Chips, SensedLoads, invert
+from .readings import Option, ReadingOptions, Readings, read_readings
+from .response import Pair, Progress, Response, Shapes, require_load_to_sense, shapes_within
+
+BEYOND_THE_LARGEST = 1.25
+"""The range of loads that is looked for, over the case's largest."""
+_LEAST_NOISE = 1e-15  # T, less than any magnetometer's
+_SHOWN = 20  # samples of a longer table on the terminal
+_EARTH = 150e-6  # T: the earth's field and a sensor's offset, about, which a reading may be off
+
+
+@dataclass(frozen=True)
+class FlowLaw:
+    """How a flow's force per height q becomes a velocity, v = sqrt(2 q/(rho d C_d)) (paper, Eq. 10-11).
+
+    density rho, kg/m^3; drag_coefficient C_d; diameter d, m.
+    """
+
+    density: float
+    drag_coefficient: float
+    diameter: float
+
+    @staticmethod
+    def of(case: Case) -> FlowLaw | None:
+        """The law of a case whose flow is given by its velocity."""
+        if not case._core.stated("velocity"):
+            return None
+        return FlowLaw(
+            case._core.stated("density")[0], case._core.stated("drag_coefficient")[0], case.cilium.diameter
+        )
+
+    def velocity(self, q: npt.ArrayLike) -> np.ndarray:
+        """m/s of N/m; 0 for a q below 0."""
+        return np.sqrt(2 * np.maximum(0, q) / (self.density * self.diameter * self.drag_coefficient))
+
+
+@dataclass(frozen=True)
+class Sensing:
+    """A case's readings and the loads found from them, by one pair of models."""
+
+    case: str
+    pair: Pair
+    noise: float  # T
+    unit: str  # of the load's magnitude
+    response: Response
+    readings: Readings
+    loads: SensedLoads
+    flow: FlowLaw | None
+    remarks: list[str] = field(default_factory=list)
+
+    def velocities(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of q, and at the ends of its interval, m/s, each (n,)."""
+        q, width = self.loads.magnitude, self.loads.magnitude_interval
+        assert self.flow is not None
+        return self.flow.velocity(q), self.flow.velocity(q - width), self.flow.velocity(q + width)
+
+    def columns(self) -> dict[str, tuple[str, Any]]:
+        """Of each column of a table its unit and values, (n,)."""
+        found = self.loads
+        table: dict[str, tuple[str, Any]] = {
+            "sample": ("", self.readings.names),
+            "status": ("", found.status),
+            "load_x": (self.unit, found.load[:, 0]),
+            "load_y": (self.unit, found.load[:, 1]),
+            "magnitude": (self.unit, found.magnitude),
+            "magnitude_interval": (self.unit, found.magnitude_interval),
+            "azimuth": ("rad", found.azimuth),
+            "azimuth_interval": ("rad", found.azimuth_interval),
+            "chi_squared": ("", found.chi_squared),
+            "misfit_probability": ("", found.misfit_probability),
+            "nothing_probability": ("", found.nothing_probability),
+        }
+        if self.flow:
+            names = ("velocity", "velocity_low", "velocity_high")
+            table |= {name: ("m/s", values) for name, values in zip(names, self.velocities())}
+        if self.readings.time is not None:
+            table["time"] = ("s", self.readings.time)
+        return table
+
+    def frame(self) -> Any:
+        """pandas.DataFrame of a row for each reading, SI units; attrs: case, models, noise, unit, largest,
+        remarks."""
+        import pandas
+
+        frame = pandas.DataFrame({name: values for name, (_, values) in self.columns().items()})
+        frame.attrs = {
+            "case": self.case, "models": str(self.pair), "noise": self.noise, "unit": self.unit,
+            "largest": self.response.largest, "remarks": self.remarks,
+        }  # fmt: skip
+        return frame
+
+    def csv(self) -> str:
+        """A line for each sample, units in the header."""
+        import pandas
+
+        columns = {f"{name} [{unit}]" if unit else name: v for name, (unit, v) in self.columns().items()}
+        return pandas.DataFrame(columns).to_csv(index=False)
+
+    def json(self, provenance: Mapping[str, Any]) -> dict[str, Any]:
+        """docs/guide/sensing.md; angles in rad, half-widths of 95 %."""
+        found = self.loads
+        each: dict[str, Sequence[Any]] = {"sample": self.readings.names, "rows": self.readings.rows.tolist()}
+        if self.readings.time is not None:
+            each["time"] = self.readings.time.tolist()
+        for name in ("status", "load", "magnitude", "magnitude_interval", "azimuth", "azimuth_interval",
+                     "covariance", "chi_squared", "misfit_probability", "nothing_probability"):  # fmt: skip
+            each[name] = getattr(found, name).tolist()
+        if self.flow:
+            v, low, high = self.velocities()
+            each |= {"velocity": v.tolist(), "velocity_interval": np.stack([low, high], axis=-1).tolist()}
+        return {
+            "schema": 1,
+            "case": self.case,
+            "provenance": provenance,
+            "models": str(self.pair),
+            "noise": [self.noise] * 3,
+            "unit": self.unit,
+            "largest": self.response.largest,
+            "interpolation_error": self.response.interpolation_error,
+            "offset": "measured" if self.readings.measured_offset else "of the model",
+            "remarks": self.remarks,
+            "samples": [dict(zip(each, values)) for values in zip(*each.values())],
+        }
+
+    def text(self, width: int) -> str:
+        """A table for people; of many samples the first and the last ones, and how many there are of each
+        status."""
+        unit, size = shown(self.unit)
+        r = self.response
+        text = (
+            f"{self.case}: loads up to {r.largest / size:.4g} {unit} from readings, by {self.pair}; noise "
+            f"{self.noise * 1e6:.3g} uT; response interpolated to {r.interpolation_error / r.largest_change:.1g} "
+            f"of the largest |dB|, {r.largest_change * 1e6:.4g} uT\n"
+        )
+        text += "".join(f"{remark}\n" for remark in self.remarks)
+        if not self.readings.measured_offset:
+            text += (
+                "There is no reading of the unloaded cilium: the model's own B is taken off instead, and the earth's "
+                "field and the sensor's offset are read as load.\n"
+            )
+        columns = {name: np.asarray(values) for name, (_, values) in self.columns().items()}
+        n = len(columns["sample"])
+        ends = np.arange(n) if n <= _SHOWN + 1 else np.r_[: _SHOWN // 2, n - _SHOWN // 2 : n]
+        heads = ["sample", f"load ({unit})", "+-", "azimuth", "+- deg"]
+        rows = [heads + (["v (m/s)", "from", "to"] if self.flow else []) + ["status"]]
+        for i in ends:
+            c = {name: values[i] for name, values in columns.items()}
+            known = c["azimuth_interval"] < math.pi
+            row = [c["sample"], f"{c['magnitude'] / size:.5g}", f"{c['magnitude_interval'] / size:.2g}"]
+            row += [f"{math.degrees(c[k]):.2f}" if known else "" for k in ("azimuth", "azimuth_interval")]
+            if not known:
+                row[3] = "-"
+            if self.flow:
+                row += [f"{c[k]:.4f}" for k in ("velocity", "velocity_low", "velocity_high")]
+            rows.append([*map(str, row), c["status"]])
+            if n > len(ends) and len(rows) == 1 + _SHOWN // 2:
+                rows.append(["…"])
+        text += _core.text_table(rows, "<>>>>>>><" if self.flow else "<>>>><", width)
+        if n > len(ends):
+            counts = [(status, int((columns["status"] == status).sum())) for status in STATUSES]
+            of_each = ", ".join(f"{count} {status}" for status, count in counts if count)
+            text += f"{n} samples: {of_each}. --csv and --json have them all; --average takes means.\n"
+        return text + "Intervals of 95 %, of the noise of reading, offset and background alone."
+
+
+def sense_readings(
+    case: Case, readings: Readings, pair: Pair, noise: float, largest: float, progress: Progress | None = None
+) -> Sensing:
+    """The load of each reading of the case's sensors: see sense(). Raises InputError, SolverError."""
+    require_load_to_sense(case)
+    shapes = shapes_within(case, pair.mechanics, largest, progress)
+    response = Response(case, pair.field, shapes, case.sensors)
+    chips = Chips.of(case)
+    change = chips.in_case(readings.change)
+    if not readings.measured_offset:
+        change = change - response.undeformed
+    loads = invert(response, change, noise, readings.variance(), readings.background, chips)
+    unit = case.loads[0].unit
+    remarks = [*readings.remarks]
+    remarks += _range_remark(shapes, largest, unit)
+    remarks += _scatter_remark(readings, noise)
+    remarks += _axes_remark(readings, response, chips)
+    return Sensing(case.name, pair, noise, unit, response, readings, loads, FlowLaw.of(case), remarks)
+
+
+def _range_remark(shapes: Shapes, asked: float, unit: str) -> list[str]:
+    if not shapes.limit:
+        return []
+    name, size = shown(unit)
+    return [
+        f"Loads are looked for up to {shapes.largest / size:.4g} {name}, not {asked / size:.4g} {name}: {shapes.limit}"
+    ]
+
+
+def _scatter_remark(readings: Readings, noise: float) -> list[str]:
+    """A doubt about rows that should read the same and differ by more than the noise; none if noise
+    alone does so once in a thousand times."""
+    freedom = readings.freedom
+    if not freedom or special.chdtrc(freedom, readings.squares / noise**2) >= UNLIKELY:
+        return []
+    deviation = math.sqrt(readings.squares / freedom)
+    return [
+        f"Rows that are averaged differ by {deviation * 1e6:.3g} uT (standard deviation), more than the noise of "
+        f"{noise * 1e6:.3g} uT: state --noise as the sensor has it, and see that they are of one load."
+    ]
+
+
+def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[str]:
+    """A doubt about the sensor's axes where its unloaded reading is not the model's by more than the
+    earth's field and an offset make, and is with other axes."""
+    if readings.unloaded is None or not chips.reads.all():
+        return []
+    remarks = []
+    for i, (read, known) in enumerate(zip(chips.in_case(readings.unloaded), response.undeformed)):
+        off = np.abs(read - known).max()
+        if off <= max(_EARTH, 0.2 * float(np.abs(known).max())):
+            continue
+        best, axes = min(
+            (float(np.abs(np.array(signs) * read[list(order)] - known).max()), (order, signs))
+            for order in itertools.permutations(range(3))
+            for signs in itertools.product((1, -1), repeat=3)
+        )
+        text = (
+            f"Unloaded, sensor {i} reads ({', '.join(f'{1e6 * v:.4g}' for v in read)}) uT where the model has "
+            f"({', '.join(f'{1e6 * v:.4g}' for v in known)}) uT"
+        )
+        if best < 0.3 * off:
+            turned = ", ".join(f'"{"+" if s > 0 else "-"}{"xyz"[o]}"' for o, s in zip(*axes))
+            text += f": they would agree if the case's x, y, z were the sensor's [{turned}]"
+        remarks.append(f"{text}. Is the sensor turned, or its unit, place or magnet another?")
+    return remarks
+
+
+def noise_of(value: float | str, where: str = "noise") -> float:
+    """The standard deviation of a component, T, of a number or a text. Raises InputError."""
+    noise = _core.quantity(value, "T") if isinstance(value, str) else float(value)
+    if not _LEAST_NOISE <= noise <= 1:
+        raise InputError(f"{where}: the noise of a reading lies between 1 fT and 1 T, not `{value}`")
+    return noise
+
+
+def largest_load(case: Case, largest: float | str | None = None) -> float:
+    """The largest load to look for: as stated, or 1.25 times the case's largest. Raises InputError."""
+    if largest is not None:
+        return _core.quantity(largest, case.loads[0].unit) if isinstance(largest, str) else float(largest)
+    of_case = max(load.magnitude for load in case.loads)
+    if not of_case > 0:
+        raise InputError("the case has no load but zero: say --largest")
+    return BEYOND_THE_LARGEST * of_case
+
+
+def case_of(case: Case | str | Path) -> Case:
+    """A case with sensors. Raises InputError."""
+    made = case if isinstance(case, Case) else Case(case)
+    if not len(made.sensors):
+        raise InputError(f"{made.file or made.name}: the case has no sensor")
+    return made
+
+
+def options_of(case: Case, given: Mapping[str, str | None], skip: bool = False) -> ReadingOptions:
+    """How a file is read: what is given goes before what the case states in [readings]."""
+    stated = {name: Option(*option) for name, option in case._core.readings.items()}
+    stated |= {name: Option(text, f"--{name}") for name, text in given.items() if text}
+    return ReadingOptions(**stated, skip=skip)
+
+
+def sense(
+    case: Case | str | Path,
+    readings: npt.ArrayLike | str | Path,
+    *,
+    models: str = "elastica/volume",
+    noise: float | str = 1e-6,
+    unloaded: Any = None,
+    background: npt.ArrayLike | str | Path | None = None,
+    largest: float | str | None = None,
+    map: str | None = None,
+    unit: str | None = None,
+    scale: str | None = None,
+    average: str | None = None,
+    temperature: str | None = None,
+    skip: bool = False,
+    progress: Progress | None = None,
+) -> Any:
+    """The load of each reading: a pandas.DataFrame with a row for each, SI units, whose columns are sample,
+    status, load_x, load_y, magnitude, magnitude_interval, azimuth, azimuth_interval, chi_squared,
+    misfit_probability, nothing_probability, of a flow velocity, velocity_low, velocity_high, and time
+    where it is known. Intervals of 95 %, by the noise.
+
+    case: a Case or its file; its sensors, its kind of load. readings: B, (n, 3) of one sensor or
+    (n, sensors, 3), T; or a logger's file, to which map, unit, scale, average, temperature and skip belong
+    (docs/guide/sensing.md). noise: standard deviation of a component, T, or "0.4 uT". unloaded: which of
+    the readings are of the straight cilium, a slice or indices, which are averaged and left out of the
+    frame; "model" takes the model's own B; None: the readings are changes dB. Of a file as --unloaded.
+    background: the ambient field that goes with each reading, as large as these, each with the noise of
+    a reading; or one field for all, which drops out of dB. Of a file the background's file. models: the
+    pair that is inverted. largest: the largest load to look for.
+
+    Raises InputError, FileError, SolverError.
+
+    >>> import ciliaval as cv, numpy as np
+    >>> case = cv.Case("cases/paper/fig5.toml")
+    >>> rng = np.random.default_rng(1)
+    >>> B = np.zeros((30, 3)) + [9e-5, 1e-6, -2e-5] + rng.normal(0, 4e-7, (30, 3))
+    >>> B[:20] = rng.normal(0, 4e-7, (20, 3))  # unloaded
+    >>> frame = cv.sense(case, B, noise=4e-7, unloaded=slice(0, 20))
+    >>> len(frame), list(frame.columns[:4])
+    (10, ['sample', 'status', 'load_x', 'load_y'])
+    """
+    case = case_of(case)
+    if isinstance(readings, (str, Path)):
+        given = {
+            "map": map, "unit": unit, "scale": scale, "average": average, "temperature": temperature,
+            "unloaded": unloaded,
+        }  # fmt: skip
+        file = None if background is None else Path(background)  # type: ignore[arg-type]
+        read = read_readings(
+            Path(readings), case.sensor_names, options_of(case, given, skip), file, Chips.of(case).reads
+        )
+    else:
+        read = readings_of_arrays(readings, len(case.sensors), unloaded, background, Chips.of(case))
+    asked = largest_load(case, largest)
+    return sense_readings(case, read, Pair.of(models), noise_of(noise), asked, progress).frame()
+
+
+def readings_of_arrays(
+    B: npt.ArrayLike, sensors: int, unloaded: Any, background: Any, chips: Chips | None = None
+) -> Readings:
+    """Readings from arrays: see sense(). Raises InputError."""
+    B = _by_sensor(B, sensors, "the readings", chips)
+    n = len(B)
+    is_change = unloaded is None
+    is_unloaded = np.zeros(n, dtype=bool)
+    if not is_change and not (isinstance(unloaded, str) and unloaded == "model"):
+        try:
+            is_unloaded[unloaded] = True
+        except (IndexError, TypeError, ValueError) as error:
+            raise InputError(f"`unloaded` is a slice, indices of the readings, \"model\" or None: {error}") from error
+        if not is_unloaded.any():
+            raise InputError("`unloaded` names no reading")
+        if is_unloaded.all():
+            raise InputError("there is no reading but of the unloaded cilium")
+    variance = 1.0  # over that of a reading
+    taken = np.zeros_like(B)
+    if background is not None and is_change:
+        raise InputError("changes dB have no background any more: leave the background out, or say `unloaded`")
+    if background is not None:
+        taken = np.asarray(background, dtype=float)
+        if taken.shape != (3,):
+            taken = _by_sensor(taken, sensors, "the background", chips)
+            if len(taken) != n:
+                raise InputError(f"there are {n} readings and {len(taken)} of the background")
+            variance = 2.0
+    rest = B - taken
+    offset = rest[is_unloaded].mean(axis=0) if is_unloaded.any() else np.zeros((sensors, 3))
+    scatter = rest[is_unloaded] - offset
+    count = int(is_unloaded.sum())
+    loaded = np.flatnonzero(~is_unloaded)
+    return Readings(
+        names=[str(i) for i in loaded],
+        change=rest[loaded] - offset,
+        rows=np.ones(len(loaded), dtype=int),
+        time=None,
+        # What the own backgrounds of sample and unloaded rows add, independent of the other sensors.
+        background=None if variance == 1 else np.tile(np.eye(sensors) * (1 + (1 / count if count else 0)), (len(loaded), 1, 1)),
+        measured_offset=is_change or count > 0,
+        offset_variance=1 / count if count else 0.0,
+        squares=float((scatter**2).sum() / variance),
+        freedom=3 * sensors * max(count - 1, 0),
+        unloaded=B[is_unloaded].mean(axis=0) if count else None,
+        remarks=[f"{len(loaded)} readings" + (f"; {count} unloaded" if count else "")],
+    )
+
+
+def _by_sensor(values: npt.ArrayLike, sensors: int, what: str, chips: Chips | None) -> np.ndarray:
+    try:
+        array = np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{what} are numbers in T: {error}") from error
+    if array.ndim == 2 and sensors == 1:
+        array = array[:, None, :]
+    if array.ndim != 3 or array.shape[1:] != (sensors, 3):
+        wanted = "(n, 3)" if sensors == 1 else f"(n, {sensors}, 3)"
+        raise InputError(f"{what} have the shape {wanted}, T, not {array.shape}")
+    if chips is not None:  # what a chip does not read does not matter
+        array = np.where(chips.reads, array, 0.0)
+    if not np.isfinite(array).all():
+        raise InputError(f"{what} have a number that is not finite in row {np.argwhere(~np.isfinite(array))[0][0]}")
+    return array

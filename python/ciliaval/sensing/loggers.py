@@ -1,0 +1,578 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Files as loggers, spreadsheets and serial monitors write them: docs/guide/sensing.md, Files of loggers."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import compress
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .._core import quantity
+from ..errors import InputError
+from .columns import (
+    Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, units_in,
+    without_brackets,
+)  # fmt: skip
+from .header import (
+    SEPARATORS, Header, MapEntry, choose_columns, find_factors, find_header, is_comment, map_entries, sensor_index,
+    sensor_list,
+)  # fmt: skip
+from .times import bytes_of, calendar_in_ns, numbers_in_ns, time_form
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+MOST_ROWS = 1_000_000
+_LARGEST_FIELD = 100  # T: more than any magnet makes
+_SINCE_1970 = 10**17  # ns: of no record from its beginning
+_REPEATED = (
+    "the header is repeated: the file holds two records, of which each has its own unloaded reading; make two files "
+    "of it"
+)
+_NOTHING = ["", "nan", "NaN", "NAN", "NA", "N/A", "null", "None"]
+
+
+@dataclass
+class Table:
+    """The readings that a logger wrote; n rows, with k sensors side by side (1 where there is a row for each).
+
+    B: (n, k, 3), or dB if is_change, T. counts: the same as the file has it. number: (n,), of the row below the
+    header from 1, those that were left out counted. line: (n,), in the file. sample: (n,), in `names`. sensor:
+    (n,), azimuth: (n,), rad, temperature: (n,), K or deg C, time: (n,), s, from the first row on if the file has dates or seconds since
+    1970; None: the file has none. timeless: why there is no time. resolution: how well a double holds
+    the times as the file states them, s (0.24 us of seconds since 1970): programs that write them
+    have held them so. remark: what was read and what was not.
+    """
+
+    is_change: bool
+    is_wide: bool
+    is_lsb: bool
+    B: np.ndarray
+    counts: np.ndarray
+    number: np.ndarray
+    line: np.ndarray
+    sample: np.ndarray | None = None
+    names: Sequence[str] = ()
+    sensor: np.ndarray | None = None
+    azimuth: np.ndarray | None = None
+    temperature: np.ndarray | None = None
+    time: np.ndarray | None = None
+    timeless: str = ""
+    resolution: float = 0.0
+    remark: str = ""
+
+
+def read_table(
+    data: bytes,
+    sensors: Sequence[str],
+    faults: Faults,
+    map: Option = Option(),
+    unit: Option = Option(),
+    scale: Option = Option(),
+    skip: bool = False,
+    has_temperature: bool = False,
+    reads: np.ndarray | None = None,
+) -> Table | None:
+    """Reads a file as loggers write it; None if it has faults, which are added with their places.
+
+    UTF-8 with or without a byte order mark, or Latin-1; LF or CRLF. Columns between commas, semicolons,
+    tabs, | or blanks; numbers with a decimal point, or with a comma where that separates no columns. Lines
+    of text, a header (columns_of()), perhaps a row of units, rows; comments begin with #, % or //, also that
+    which is the header. B or dB of one sensor, of several side by side, or in a row for each. `skip` leaves
+    rows without B out. has_temperature: a column with it is needed. reads: (sensors, 3), which components the file
+    must have; the others are 0. Raises InputError if an option has a fault.
+    """
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        faults.add("the file is in UTF-16: save it as UTF-8")
+        return None
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    text = text.replace("\r\n", "\n").replace("\r", " " if "\n" in text else "\n").replace("\u2212", "-")
+    entries = map_entries(map, sensors)
+    header = find_header(text, sensors, entries, faults)
+    if header is None:
+        return None
+    header.reads = np.ones((len(sensors), 3), dtype=bool) if reads is None else reads
+    header.needs = ("temperature",) if has_temperature else ()
+    return _Reader(text, header, sensors, faults, skip).read(entries, map.where, unit, scale)
+
+
+class _Reader:
+    """Reads the rows below a header. The numbers are read all at once; only rows in which something is wrong are
+    looked at one by one, for the place and the reason."""
+
+    def __init__(self, text: str, header: Header, sensors: Sequence[str], faults: Faults, skip: bool):
+        self.header, self.sensors, self.faults, self.skip = header, sensors, faults, skip
+        self.first_line = text.count("\n", 0, header.end) + 1
+        body = text[header.end :]
+        self.lines = self.plain = body.split("\n")
+        if '"' in body:  # the cells without their quotes, separators within them replaced
+            at = re.escape(header.separator)
+            if header.separator != " ":
+                body = re.sub(rf'(?<![^\n{at}])"([^"\n{at}]*)"(?![^\n{at}])', r"\1", body)
+            self.plain = [self._unquoted(line) if '"' in line else line for line in body.split("\n")]
+        self.left_out: set[int] = set()  # lines
+        self.decimal: tuple[str, int] | None = None  # the mark, and its first line
+        self.assumed: dict[int, str] = {}  # by column, what is not stated of its time
+        self.asked = False  # whether --skip was named
+
+    def _unquoted(self, line: str) -> str:
+        separator = self.header.separator
+        within, empty = ("[ \t]", "\x1f") if separator == " " else (re.escape(separator), "")
+        return separator.join(re.sub(within, "\x1f", cell.text) or empty for cell in cells_of(line, separator))
+
+    def read(self, entries: Sequence[MapEntry], where: str, unit: Option, scale: Option) -> Table | None:
+        header, faults = self.header, self.faults
+        index, widths, trailing = self._rows()
+        first = cells_of(self.lines[index[0]], header.separator) if len(index) else []
+        if header.separator == " " and len(first) == len(header.columns) + 1:
+            # A date and a time of day below one name.
+            at = next((i for i, cell in enumerate(first) if time_form(cell.text) == "day"), len(first))
+            header.columns.insert(min(at + 1, len(header.columns)), Column("", ""))
+            header.width += 1
+        if header.columns[-1].header == "Comment" and len(first) == len(header.columns) - 1:
+            header.columns.pop()  # LabVIEW's rows have the cell only where there is a comment
+        choose_columns(header, self.sensors, entries, where, faults)
+        if len(faults):
+            return None
+        unit_row: list[Cell] = []
+        if self._is_unit_row(first):
+            unit_row, unit_line = first, self.first_line + int(index[0])
+            index, widths, trailing = index[1:], widths[1:], trailing[1:]
+            for i, column in enumerate(header.columns):
+                if column.kind in ("time", "azimuth") and i < len(first) and first[i].text and column.unit is None:
+                    header.columns[i] = replace(column, unit=without_brackets(first[i].text))
+        if not len(index):
+            last = self.first_line - 1 + len(self.lines) - (not self.lines[-1])
+            faults.add("there are no rows below the header", last)
+            return None
+        if len(index) > MOST_ROWS:
+            faults.add(f"there are more than {MOST_ROWS} rows", self.first_line + int(index[MOST_ROWS]))
+            return None
+        frame, rows = self._frame(index, widths, trailing)
+        before = len(faults)
+        unit_column = self._unit_column(frame)
+        self.has_unit_column = bool(unit_column[1])
+        line = unit_line if unit_row else 0
+        factors, self.units = find_factors(header, unit_row, line, unit_column, unit, scale, faults)
+        angle = self._angle_unit()
+        sensor = header.one("sensor")
+        if sensor is not None and header.is_wide:
+            faults.add(
+                "the columns are of several sensors already: the column 'sensor' is too much",
+                header.line, header.columns[sensor].place,
+            )  # fmt: skip
+        return None if len(faults) > before else self._table(frame, rows, index, np.array(factors), angle)
+
+    def _rows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of the lines of rows: which they are, how many cells they have, and how many empty ones at their end
+        beyond the header's. Takes the units of comments above the first row."""
+        header = self.header
+        buffer = np.frombuffer(("\n".join(self.plain) + "\n").encode(), np.uint8)
+        ends = np.flatnonzero(buffer == ord("\n"))
+        begins = np.concatenate([[0], ends[:-1] + 1])
+        while (blank := (buffer[begins] == ord(" ")) | (buffer[begins] == ord("\t"))).any():
+            begins[blank] += 1
+        if header.separator == " ":
+            is_blank = np.isin(buffer, list(b" \t\n"))
+            marks = np.flatnonzero(~is_blank & np.concatenate([[True], is_blank[:-1]])) + 1
+        else:
+            marks = np.flatnonzero(buffer == ord(header.separator))
+        widths = np.diff(np.searchsorted(marks, ends, side="right"), prepend=0) + (header.separator != " ")
+        is_row = buffer[begins] != ord("\n")
+        for i in np.flatnonzero(is_row & np.isin(buffer[begins], list(b"#%/-=|+:"))):
+            is_row[i] = not is_comment(self.lines[i])
+        index = np.flatnonzero(is_row)
+        names = [column.header for column in header.columns]
+        for i in np.flatnonzero(~is_row & (buffer[begins] != ord("\n"))):
+            line = self.lines[i]
+            if not len(index) or i < index[0]:
+                header.units = units_in(line) | header.units
+            if [cell.text for cell in cells_of(line.lstrip("#%/ \t"), header.separator)] == names and len(names) > 2:
+                self._without_B(_REPEATED, int(i))
+        trailing = np.zeros(len(ends), dtype=int)
+        for extra in range(1, header.width - len(header.columns) + 1):
+            empty = buffer[np.maximum(ends[:, None] - np.arange(1, extra + 1), 0)] == ord(header.separator)
+            trailing[empty.all(axis=1)] = extra
+        return index, widths[index], trailing[index]
+
+    def _is_unit_row(self, cells: Sequence[Cell]) -> bool:
+        texts = [cells[i].text if i < len(cells) else "?" for i, _, _ in self.header.fields]
+        return any(texts) and all(not t or (number_in(t) is None and is_unit(without_brackets(t))) for t in texts)
+
+    def _frame(self, index: np.ndarray, widths: np.ndarray, trailing: np.ndarray) -> tuple[DataFrame, np.ndarray]:
+        """The rows that have as many cells as the header: numbers as such, where all are, the others as texts."""
+        import pandas as pd  # it takes half a second
+
+        header = self.header
+        width = len(header.columns)
+        good = (widths == width) | ((widths > width) & (widths <= width + trailing))
+        for j in np.flatnonzero(~good):
+            good[j] = self._has_width(int(index[j]), bool(j == len(index) - 1))
+            if len(self.faults) >= Faults.most:
+                break
+        rows = np.flatnonzero(good)
+        numbers = {i for i, _, _ in header.fields} | set(self._others())
+        kept = list(compress(self.plain, np.bincount(index[good], minlength=len(self.plain))))
+        kinds = [column.kind for column in header.columns]
+        texts = [i for i, kind in enumerate(kinds) if kind in ("time", "sample", "sensor", "unit")]
+        # What follows a time without a role may be the time of day.
+        texts += [i for i, kind in enumerate(kinds) if i > 0 and kind == "" and kinds[i - 1] == "time"]
+        text = "\n".join(kept).replace("\0", "?")
+        mark = self._decimal_mark()[0] if header.separator != "," and "," in text else "."
+        form = {"sep": header.separator, "skipinitialspace": True}
+        if header.separator == " ":
+            form = {"delim_whitespace": True}
+        frame = pd.read_csv(
+            io.StringIO(text), header=None, names=range(int(widths[good].max(initial=width))), index_col=False,
+            usecols=sorted(numbers | set(texts)), dtype={i: str for i in texts}, decimal=mark,
+            quoting=3, float_precision="round_trip", low_memory=False, keep_default_na=False, na_filter=True,
+            na_values={i: _NOTHING for i in numbers}, skip_blank_lines=False, **form,
+        ) if len(kept) else pd.DataFrame({i: [] for i in sorted(numbers | set(texts))})  # fmt: skip
+        for i in numbers:
+            if frame[i].dtype.kind not in "iuf":
+                frame[i] = [self._float(cell, mark) for cell in frame[i]]
+        return frame, rows
+
+    @staticmethod
+    def _float(cell: object, mark: str) -> float:
+        """The number of a cell; NaN if it is none, or has the other decimal mark: it is looked at later."""
+        if not isinstance(cell, str):
+            return np.nan
+        cell = cell.strip(" \t")
+        value = number_in(cell)
+        return np.nan if value is None or (".", ",")[mark == "."] in cell else value
+
+    def _has_width(self, i: int, is_last: bool) -> bool:
+        """Whether the cells beyond the header's are empty. A row with too few or too many is a fault."""
+        header = self.header
+        cells = cells_of(self.lines[i], header.separator)
+        width = len(header.columns)
+        if len(cells) >= width and not any(cell.text for cell in cells[width:]):
+            return True
+        why = ": are there commas in the numbers?" if len(cells) > width else ""
+        for other in ";\t,":
+            if not why and other != header.separator and other in self.lines[i]:
+                why = f": the header is separated by {SEPARATORS[header.separator]}, this row by {SEPARATORS[other]}?"
+        if not why and is_last:
+            why = ": the last row is cut off; delete it"
+        place = cells[min(len(cells) - 1, width)].column
+        self._without_B(f"the row has {len(cells)} cells and the header {width}{why}", i, place)
+        return False
+
+    def _without_B(self, what: str, i: int, place: int = 1) -> None:
+        """A fault of a row that has no B, which --skip leaves out."""
+        line = self.first_line + i
+        if self.skip:
+            self.left_out.add(line)
+            return
+        hint = "" if self.asked or what.endswith("?") else " (--skip leaves rows without B out)"
+        self.asked = self.asked or bool(hint)
+        self.faults.add(what + hint, line, place)
+
+    def _unit_column(self, frame: DataFrame) -> tuple[str, str]:
+        """Name and unit of a column `units` whose cells are all the same unit of a flux density."""
+        i = self.header.one("unit")
+        if i is None or not len(frame):
+            return "", ""
+        units = [text for text in frame[i].str.strip(" \t").unique() if text]
+        if not units or not all(is_unit(text) for text in units):
+            return "", ""
+        if len(units) > 1:
+            column = self.header.columns[i]
+            self.faults.add(
+                f"the column {in_quotes(column.header)} has several units: {', '.join(units[:3])}",
+                self.header.line, column.place,
+            )  # fmt: skip
+        return self.header.columns[i].header, units[0]
+
+    def _others(self) -> dict[int, str]:
+        """The columns of numbers beside B, and what they are."""
+        kinds = ("azimuth", *self.header.needs)
+        return {i: kind for kind in kinds if (i := self.header.one(kind)) is not None}
+
+    def _angle_unit(self) -> float:
+        i = self.header.one("azimuth")
+        if i is None:
+            return 1.0
+        column = self.header.columns[i]
+        try:
+            if column.unit is not None:
+                return quantity(f"1 {column.unit}", "rad")
+            what = "the column 'azimuth' needs the unit of an angle: write \"azimuth [deg]\""
+        except InputError as fault:
+            what = f"the column 'azimuth': {fault}"
+        self.faults.add(what, self.header.line, column.place)
+        return 1.0
+
+    def _table(
+        self, frame: DataFrame, rows: np.ndarray, index: np.ndarray, factors: np.ndarray, angle: float
+    ) -> Table | None:
+        header, faults = self.header, self.faults
+        fields = [i for i, _, _ in header.fields]
+        of = {kind: header.one(kind) for kind in ("sample", "sensor")}
+        numbers = frame[fields].to_numpy(dtype=float)
+        B = numbers * factors
+        wrong = ~np.isfinite(B).all(axis=1) | (np.abs(B) > _LARGEST_FIELD).any(axis=1)
+        sensor = sample = None
+        names: list[str] = []
+        others = {kind: frame[i].to_numpy(dtype=float) for i, kind in self._others().items()}
+        for values in others.values():
+            wrong |= ~np.isfinite(values)
+        if of["sensor"] is not None:
+            codes, known = frame[of["sensor"]].factorize()
+            found = [sensor_index(name.strip(" \t"), self.sensors) for name in known]
+            sensor = np.array([-1 if s is None else s for s in found])[codes]
+            wrong |= sensor < 0
+        keep = np.ones(len(frame), dtype=bool)
+        for j in np.flatnonzero(wrong):
+            keep[j] = self._examine(int(index[rows[j]]), factors)
+            if len(faults) >= Faults.most:
+                break
+        frame, rows, B, numbers = frame[keep], rows[keep], B[keep], numbers[keep]
+        if not len(frame):
+            if not len(faults):
+                faults.add("there are no rows with B below the header", self.first_line)
+            return None
+        if of["sample"] is not None:
+            codes, known = frame[of["sample"]].factorize()
+            texts = [name.replace("\x1f", header.separator).strip(" \t") for name in known]
+            number = {text: i for i, text in enumerate(dict.fromkeys(texts))}
+            names, sample = list(number), np.array([number[text] for text in texts])[codes]
+        k = len(self.sensors) if header.is_wide else 1
+        order = [3 * (s if header.is_wide else 0) + axis for _, s, axis in header.fields]
+        whole = np.zeros((2, len(B), 3 * k))
+        whole[0][:, order], whole[1][:, order] = B, numbers
+        table = Table(
+            header.is_change, header.is_wide, any(flux_density_unit(u) is None for u in self.units),
+            whole[0].reshape(-1, k, 3), whole[1].reshape(-1, k, 3), rows + 1,
+            self.first_line + index[rows], sample, names, None if sensor is None else sensor[keep],
+        )  # fmt: skip
+        if "azimuth" in others:
+            table.azimuth = angle * others["azimuth"][keep]
+        if "temperature" in others:
+            table.temperature = others["temperature"][keep]
+        used = self._read_time(frame, table)
+        if len(faults):
+            return None
+        table.remark = self._remark(len(frame), used)
+        return table
+
+    def _examine(self, i: int, factors: np.ndarray) -> bool:
+        """Adds what is wrong with a row that has as many cells as the header. Returns whether it is a row."""
+        header, before = self.header, len(self.faults)
+        line = self.first_line + i
+        cells = cells_of(self.lines[i], header.separator)
+        if len(cells) < len(header.columns):  # a quote that does not end
+            return self._has_width(i, is_last=False)
+        if [cell.text for cell in cells[: len(header.columns)]] == [column.header for column in header.columns]:
+            self._without_B(_REPEATED, i)
+            return False
+        values = [self._number(i, cells[field]) for field, _, _ in header.fields]
+        if None in values and self.skip:
+            return False
+        at = header.one("sensor")
+        if at is not None and sensor_index(cells[at].text, self.sensors) is None:
+            what = f"the sensor {in_quotes(cells[at].text)} is none of the case's, {sensor_list(self.sensors)}"
+            self.faults.add(what, line, cells[at].column)
+        for at in self._others():
+            self._number(i, cells[at], is_B=False)
+        if len(self.faults) == before:
+            largest = max(abs(v * f) for v, f in zip(values, factors))
+            if largest > _LARGEST_FIELD:
+                self.faults.add(
+                    f"a field of {largest:.3g} T was read; fields up to {_LARGEST_FIELD} T are taken: is the unit in "
+                    "the header right?",
+                    line,
+                )
+        return True
+
+    def _number(self, i: int, cell: Cell, is_B: bool = True) -> float | None:
+        """The number of a cell; None and a fault if there is none."""
+        comma = "," in cell.text
+        value = number_in(cell.text)
+        fault = ""
+        if not cell.text:
+            fault = "the cell is empty"
+        elif (comma and self.header.separator == ",") or value is None:
+            more = ": write a decimal point, and nothing between thousands" if comma else ""
+            fault = f"{in_quotes(cell.text)} is not a number{more}"
+        elif not np.isfinite(value):
+            fault = f"{in_quotes(cell.text)} is not a finite number"
+        elif comma or "." in cell.text:
+            mark, first = self._decimal_mark()
+            if mark == ("," if comma else "."):
+                return value
+            self.faults.add(
+                f"{in_quotes(cell.text)} has a decimal {'comma' if comma else 'point'}, line {first} the other: write "
+                "the same in all numbers",
+                self.first_line + i, cell.column,
+            )  # fmt: skip
+            return None
+        if not fault:
+            return value
+        if is_B and not comma:
+            self._without_B(fault, i, cell.column)
+        else:
+            self.faults.add(fault, self.first_line + i, cell.column)
+        return None
+
+    def _decimal_mark(self) -> tuple[str, int]:
+        """The first decimal mark of the numbers, and its line."""
+        if self.decimal is None:
+            for i, line in enumerate(self.lines):
+                cells = cells_of(line, self.header.separator)
+                for field, _, _ in self.header.fields:
+                    mark = [c for c in (cells[field].text if field < len(cells) else "") if c in ".,"]
+                    if mark and number_in(cells[field].text) is not None:
+                        self.decimal = mark[0], self.first_line + i
+                        return self.decimal
+            self.decimal = ".", self.first_line
+        return self.decimal
+
+    # --- Times ---
+
+    def _read_time(self, frame: DataFrame, table: Table) -> list[int]:
+        """Reads the time of the rows, if there is one. Returns its columns."""
+        columns, unit = self._choose_time(frame, table)
+        if not columns:
+            return []
+        parts = [bytes_of(frame[i]) for i in columns]
+        form = time_form(frame[columns[0]].iloc[0].strip(" \t"))
+        if len(columns) == 2 and form == "number":  # seconds and nanoseconds
+            (seconds, wrong), (more, wrong_more) = numbers_in_ns(parts[0], 1e9), numbers_in_ns(parts[1], 1.0)
+            ns, wrong = seconds + more, wrong | wrong_more
+        elif form == "number":
+            ns, wrong = numbers_in_ns(parts[0], 1e9 * quantity(f"1 {unit}", "s") if unit else 1.0)
+        else:
+            if len(parts) == 2:
+                parts = [np.char.add(np.char.add(np.char.strip(parts[0]), b" "), parts[1])]
+            forms, ns = calendar_in_ns(parts[0])
+            wrong = forms != (2 if form == "clock" else 1)
+        for j in np.flatnonzero(wrong)[: Faults.most]:
+            self._add_time_fault(table, j, columns[0], "{} is no time as in the rows above")
+        self._require_order(table, ns, wrong, columns[0])
+        if form == "number" and not unit:
+            return columns
+        origin = ns[0] if form != "number" or ns[0] > _SINCE_1970 else 0
+        table.time = (ns - origin) / 1e9
+        if origin and form != "clock":
+            of = 1e9 * quantity(f"1 {unit}", "s") if form == "number" and len(columns) == 1 else 1e9
+            table.resolution = float(np.spacing(float(origin) / of)) * of / 1e9
+        return columns
+
+    def _choose_time(self, frame: DataFrame, table: Table) -> tuple[list[int], str | None]:
+        """The column of the time, or two: a date and a time of day, or seconds and nanoseconds; and its unit. The
+        first row tells its form; of several columns the first one that can be read is taken."""
+        header = self.header
+        found = [i for i, column in enumerate(header.columns) if column.kind == "time"]
+        if not found:
+            table.timeless = "there is no column 'time'"
+            return [], None
+        first = {i: frame[i].iloc[0].strip(" \t") for i in frame if isinstance(frame[i].iloc[0], str)}
+        forms = {i: time_form(text) for i, text in first.items()}
+        clocks = [i for i in [*found, *(i + 1 for i in found)] if forms.get(i) == "clock"]
+        names = [column.name.lower() for column in header.columns]
+        choices: list[tuple[int, list[int], str | None]] = []  # rank, columns, unit
+        for i in found:
+            stem, is_ns = re.subn(r"(nanosec(ond)?s?|nsecs?)$", "", names[i])
+            seconds = [j for j in found if re.fullmatch(re.escape(stem) + r"(sec(ond)?s?|s)", names[j])]
+            if forms[i] == "number" and is_ns and seconds and forms[seconds[0]] == "number":
+                choices.append((0, [seconds[0], i], "s"))
+            elif forms[i] == "day" and clocks:
+                choices.append((0, [i, clocks[0]], None))
+            elif forms[i] in ("date", "clock") or (forms[i] == "day" and len(found) == 1):
+                choices.append((1, [i], None))
+            elif forms[i] == "number" and (unit := self._time_unit(i, first[i])) and is_unit(unit, "time"):
+                choices.append((1, [i], unit))
+        if choices:
+            _, columns, unit = min(choices, key=lambda choice: choice[0])
+            return columns, unit
+        at = next((i for i in found if forms[i] != "day"), found[0])
+        column = header.columns[at]
+        name = in_quotes(column.header)
+        if forms[at] is None:
+            table.timeless = (
+                f"{in_quotes(first[at])} in the column {name} is no time: write ISO 8601, hh:mm:ss or a number"
+            )
+            return [], None
+        unit = "us" if re.fullmatch(r"\d{6,}", first[at]) else "s"
+        advice = f'write "{column.name} [{unit}]" into the header, or --map "time={column.name} [{unit}]"'
+        try:
+            table.timeless = f"the column {name} has no unit: {advice}"
+            if column.unit is not None:
+                quantity(f"1 {column.unit}", "s")
+        except InputError as fault:
+            table.timeless = f"the column {name}: {fault}; {advice}"
+        return [at], None
+
+    def _time_unit(self, i: int, text: str) -> str | None:
+        """The unit of a column of numbers: as stated, or where it is clear without."""
+        column = self.header.columns[i]
+        if column.unit is not None or not text.isdigit():
+            return column.unit
+        since_1970 = {10: "s", 13: "ms", 16: "us", 19: "ns"}.get(len(text))
+        if since_1970 and (len(text) == 19 or re.search("unix|epoch|posix", column.name.lower())):
+            self.assumed[i] = f"{in_quotes(column.header)} in {since_1970} since 1970"
+            return since_1970
+        if column.name == "timestamp" and self.header.is_px4:
+            self.assumed[i] = f"{in_quotes(column.header)} in us, as PX4 has it"
+            return "us"
+        return None
+
+    def _add_time_fault(self, table: Table, j: int, column: int, what: str) -> None:
+        line = int(table.line[j])
+        cell = (cells_of(self.lines[line - self.first_line], self.header.separator) + [Cell("", 1)] * column)[column]
+        self.faults.add(what.format(in_quotes(cell.text)), line, cell.column)
+
+    def _require_order(self, table: Table, ns: np.ndarray, wrong: np.ndarray, column: int) -> None:
+        """Adds a fault for each time of a sensor that goes back within a sample."""
+        right = np.flatnonzero(~wrong)
+        sensor = np.zeros(len(ns), dtype=int) if table.sensor is None else table.sensor
+        right = right[np.argsort(sensor[right], kind="stable")]
+        same = sensor[right[1:]] == sensor[right[:-1]]
+        if table.sample is not None:
+            same &= table.sample[right[1:]] == table.sample[right[:-1]]
+        if not (same & (np.diff(ns[right]) < 0)).any():
+            return
+        latest = None
+        for j, goes_on in zip(right, np.concatenate([[False], same])):
+            if goes_on and ns[j] < latest:
+                what = "the time goes back at {}: sort the rows, or make a file of each record"
+                self._add_time_fault(table, j, column, what)
+                if len(self.faults) >= Faults.most:
+                    return
+            else:
+                latest = ns[j]
+
+    def _remark(self, count: int, times: Sequence[int]) -> str:
+        header = self.header
+        used = {i for i, _, _ in header.fields} | set(times)
+        read = []
+        for (i, _, _), unit in zip(header.fields, self.units):
+            column = header.columns[i]
+            read.append(in_quotes(column.header) + ("" if column.unit == unit else f" in {unit}"))
+        more = f" and {len(read) - 6} more columns" if len(read) > 6 else ""
+        text = f"{count} rows, {'dB' if header.is_change else 'B'} from {', '.join(read[:6])}{more}"
+        if header.is_ros and set(self.units) == {"T"}:
+            text += ", the unit of ROS's message sensor_msgs/MagneticField"
+        text += "".join(f"; time from {self.assumed[i]}" for i in times if i in self.assumed)
+        kinds = ("sample", "sensor", "azimuth", *header.needs) + ("unit",) * self.has_unit_column
+        used |= {i for i, column in enumerate(header.columns) if column.kind in kinds}
+        ignored = [in_quotes(c.header) for i, c in enumerate(header.columns) if i not in used and c.header]
+        if ignored:
+            text += f"; columns not read: {', '.join(ignored)}"
+        if header.skipped:
+            text += f"; {header.skipped} lines above the header not read"
+        if self.left_out:
+            lines = ", ".join(str(line) for line in sorted(self.left_out)[:10])
+            n, more = len(self.left_out), f" and {len(self.left_out) - 10} more" if len(self.left_out) > 10 else ""
+            text += f"; {n} row{'s' * (n > 1)} without B left out: line{'s' * (n > 1)} {lines}{more}"
+        return text
