@@ -167,7 +167,7 @@ std::vector<MechanicsStep> solve_path(const Cilium& cilium, const LoadPath& path
       if (has_environment(load)) {
         environment::solve_step(cilium, options.tolerance, step);
         if (step.status == Status::slipped_off) say_slipped_off(step);
-      } else if (contact_height(load)) {
+      } else if (contact_height(load) && (options.slip_off || load.is<ProbeLoad>())) {
         const SlipOff limit = slip_off(cilium, load, options, corrections);
         step.slip_off_force = limit.force;
         step.slip_off_displacement = limit.displacement;

@@ -19,6 +19,7 @@ struct ElasticaOptions {
   /// shears and extends as well, and its error is the corrections' uncertainty, too …
   joints::Correction joints = joints::Correction::none;
   bool error_estimate = true;  ///< … by a companion, which takes the same work again
+  bool slip_off = true;        ///< whether a contact's largest force is looked for under each load
 };
 
 /// The paper's bending model (Eq. 1–4): inextensible, shear-rigid elastica under horizontal loads,

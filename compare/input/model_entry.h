@@ -107,6 +107,8 @@ struct Entry {
   std::function<std::vector<BudgetStage>(const ModelOptions&)> budget_stages{};
   /// Sets the options by which it takes least time: closed forms, no estimate of its error.
   std::function<void(ModelOptions&)> hasten{};
+  /// Sets the options by which it does not look for the largest load where the load is borne.
+  std::function<void(ModelOptions&)> skip_range{};
   /// The mesh on which it solves a case, or that of another refinement. Throws InputError.
   std::function<meshes::PlainMesh(const Case&, std::optional<unsigned int> refinement)> mesh{};
   /// Options that the model's checkpoint does not depend on; none: it keeps no checkpoint, because

@@ -5,6 +5,7 @@ SI units throughout: m, N, Pa, A/m, T, rad. docs/guide/python.md.
 """
 
 import importlib
+from typing import Any
 
 from .errors import Error, FileError, InputError, SolverError
 
@@ -27,7 +28,7 @@ __all__ = ["Error", "FileError", "InputError", "SolverError", *sorted(_HOMES)]
 _MODULES = ["magpylib", "paper", "plot", "program", "report", "results", "sensing"]
 
 
-def __getattr__(name: str):
+def __getattr__(name: str) -> Any:
     if name in _MODULES:
         return importlib.import_module("." + name, __name__)
     if name not in _HOMES:

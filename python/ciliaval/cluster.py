@@ -24,6 +24,8 @@ from .errors import Error, InputError, SolverError
 from .files import text_of
 
 Task = tuple[int, str]  # point, mechanics model
+Files = tuple[tuple[str, bytes], ...]
+Fingerprint = tuple[tuple[str, str], ...]
 
 # Of rods, whose solution takes a millisecond: what a worker that dies may lose.
 _LARGEST_BATCH = 64
@@ -125,7 +127,7 @@ def _checked(reply: Any, batch: list[Task]) -> dict[Task, str]:
     point, mechanics = batch[0]
     try:
         solved = {(int(task[0]), str(task[1])): solution for task, solution in reply}
-        is_whole = len(reply) == len(batch) and solved.keys() == set(map(tuple, batch))
+        is_whole = len(reply) == len(batch) and solved.keys() == {(task[0], task[1]) for task in batch}
     except (TypeError, ValueError, IndexError):
         solved, is_whole = {}, False
     if not is_whole or not all(isinstance(solution, str) for solution in solved.values()):
@@ -151,7 +153,7 @@ def _key(study: StudyFile, batch: list[Task]) -> str:
     return f"{study.name}.{mechanics}.{point}-{os.urandom(8).hex()}"
 
 
-def _packed(files: Iterable[str]) -> tuple[tuple[str, bytes], ...]:
+def _packed(files: Iterable[str]) -> Files:
     """The files by their names below the folder that all of them lie in; the first one is the study."""
     paths = [os.path.abspath(file) for file in files]
     root = os.path.commonpath([os.path.dirname(path) for path in paths])
@@ -161,7 +163,7 @@ def _packed(files: Iterable[str]) -> tuple[tuple[str, bytes], ...]:
 # In a worker.
 
 
-def _solve(files: tuple, expected: tuple, tasks: list[Task]) -> list[tuple[Task, str]]:
+def _solve(files: Files, expected: Fingerprint, tasks: list[Task]) -> list[tuple[Task, str]]:
     """Each task with its solution. One batch at a time, whatever the number of the worker's threads: it takes all cores."""
     # Below srun Open MPI would take each worker for a rank of one program, and end it.
     os.environ.pop("SLURM_NODELIST", None)
@@ -171,7 +173,7 @@ def _solve(files: tuple, expected: tuple, tasks: list[Task]) -> list[tuple[Task,
 
 
 @functools.lru_cache(maxsize=1)
-def _opened(files: tuple, expected: tuple) -> tuple[StudyFile, tempfile.TemporaryDirectory]:
+def _opened(files: Files, expected: Fingerprint) -> tuple[StudyFile, tempfile.TemporaryDirectory[str]]:
     """The study read from copies of its files, which stay as long as it does."""
     from distributed import get_worker
 

@@ -67,7 +67,17 @@ def terminal_width() -> int:
 
 def json_text(value: Any) -> str:
     """As the program writes JSON: null for a number that is not finite."""
-    return json.dumps(_finite(value), indent=1, ensure_ascii=False) + "\n"
+    value = _finite(value)
+    if not isinstance(value, dict):
+        return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
+    # Of a long list each entry is a line: indented, a hundred thousand samples take seconds.
+    parts = []
+    for key, entry in value.items():
+        is_rows = isinstance(entry, list) and bool(entry) and isinstance(entry[0], dict)
+        lines = ",\n  ".join(json.dumps(row, ensure_ascii=False) for row in entry) if is_rows else ""
+        text = f"[\n  {lines}\n ]" if is_rows else json.dumps(entry, indent=1, ensure_ascii=False).replace("\n", "\n ")
+        parts.append(f" {json.dumps(key)}: {text}")
+    return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
 def _finite(value: Any) -> Any:
@@ -91,7 +101,8 @@ class Outputs:
         from . import _core
 
         self.json, self.csv, self.plot = options.json, options.csv, options.plot
-        _core.check_outputs([self.json, self.csv, self.plot], [str(file) for file in inputs if file is not None])
+        named = [None if file is None else os.fsencode(file) for file in (self.json, self.csv, self.plot)]
+        _core.check_outputs(named, [os.fsencode(file) for file in inputs if file is not None])
 
     @staticmethod
     def declare(parser: argparse.ArgumentParser) -> None:
@@ -103,9 +114,9 @@ class Outputs:
         from . import _core
 
         if self.json:
-            _core.write_file(self.json, json_text(to_json()))
+            _core.write_file(os.fsencode(self.json), json_text(to_json()))
         if self.csv and to_csv:
-            _core.write_file(self.csv, to_csv())
+            _core.write_file(os.fsencode(self.csv), to_csv())
         if self.plot:
             from .plot.__main__ import main_figure, save
             from .results import Document
@@ -120,6 +131,8 @@ def write_out(text: str) -> None:
     if sys.stdout is None:
         raise FileError("standard output is closed")
     try:
+        if hasattr(sys.stdout, "reconfigure"):  # a terminal that has not all characters
+            sys.stdout.reconfigure(errors="backslashreplace")
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
     except OSError as error:

@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from .arrays import Array
 from .errors import FileError
 
 if TYPE_CHECKING:
@@ -72,12 +73,12 @@ def vtk_file(result: Result, model: str, step: int) -> Path:
     )
 
 
-def _decoder(root: ElementTree.Element) -> Callable[[ElementTree.Element], np.ndarray]:
+def _decoder(root: ElementTree.Element) -> Callable[[ElementTree.Element], Array]:
     """What makes the array of a <DataArray> of a file that VTK has written: appended, in base64,
     compressed in blocks. meshio cannot read the texts that are among them."""
     text = (root.findtext("AppendedData") or "").strip()[1:]
 
-    def array(element: ElementTree.Element) -> np.ndarray:
+    def array(element: ElementTree.Element) -> Array:
         rest = text[int(element.attrib["offset"]) :]
         blocks = int(np.frombuffer(b64decode(rest[:8]), "<u4", 1)[0])
         start = _base64_length(4 * (3 + blocks))

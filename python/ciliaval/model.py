@@ -6,18 +6,47 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
 from . import _core
 from ._core import Cilium, Environment, Load, Shape
+from .arrays import Array
 from .errors import InputError
 from .results import Result, from_run
 
 Progress = Callable[[str], None]
 
 
+@overload
+def bend(
+    cilium: Cilium,
+    load: Load | None = None,
+    model: str = "elastica",
+    progress: Progress | None = None,
+    environment: Environment | None = None,
+    **options: Any,
+) -> Shape: ...
+@overload
+def bend(
+    cilium: Cilium,
+    load: Sequence[Load],
+    model: str = "elastica",
+    progress: Progress | None = None,
+    environment: Environment | Sequence[Environment] | None = None,
+    **options: Any,
+) -> list[Shape]: ...
+@overload
+def bend(
+    cilium: Cilium,
+    load: Load | None = None,
+    model: str = "elastica",
+    progress: Progress | None = None,
+    *,
+    environment: Sequence[Environment],
+    **options: Any,
+) -> list[Shape]: ...
 def bend(
     cilium: Cilium,
     load: Load | Sequence[Load] | None = None,
@@ -45,11 +74,10 @@ def bend(
     >>> shape.dB([-1e-4, 2e-4, -1.55e-3])  # at a sensor, T  # doctest: +SKIP
     """
     is_one = load is None or isinstance(load, Load)
-    path = [] if load is None else [load] if is_one else load
+    path: Sequence[Load] = [] if load is None else [load] if isinstance(load, Load) else load
     if environment is not None or load is None:
-        is_same = environment is None or isinstance(environment, Environment)
-        around = [] if environment is None else [environment] if is_same else environment
-        is_one = is_one and is_same
+        around = [] if environment is None else [environment] if isinstance(environment, Environment) else environment
+        is_one = is_one and around is not environment
         path = _core.surrounded(path, around)
     shapes = _core.bend_path(cilium, path, model, progress, **options)
     return shapes[0] if is_one else shapes
@@ -146,7 +174,7 @@ class Case:
         return self._core.loads
 
     @property
-    def sensors(self):
+    def sensors(self) -> Array:
         """Positions of the sensors, (n, 3), m."""
         return self._core.sensors
 
@@ -161,7 +189,7 @@ class Case:
         return self._core.mechanics
 
     @mechanics.setter
-    def mechanics(self, models: Sequence[str]) -> None:
+    def mechanics(self, models: list[str]) -> None:
         self._core.mechanics = models
 
     @property
@@ -170,7 +198,7 @@ class Case:
         return self._core.fields
 
     @fields.setter
-    def fields(self, models: Sequence[str]) -> None:
+    def fields(self, models: list[str]) -> None:
         self._core.fields = models
 
     def toml(self) -> str:

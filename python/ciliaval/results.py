@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from .arrays import Array
 from .errors import FileError, InputError
 from .files import DAMAGE, content, text_of, within
 
@@ -151,7 +152,7 @@ class Result:
         self._run = run  # of Case.run(), in place of a folder
         self.validation: Validation | None = _validation(summary.get("validation"))
 
-    def load(self, parameter: str) -> np.ndarray:
+    def load(self, parameter: str) -> Array:
         """A parameter of the load at each step, (steps,): load("force"), N. Raises InputError for one
         that it does not have."""
         known = [name for name, value in self.loads[0].items() if not isinstance(value, str)]
@@ -189,7 +190,7 @@ class Result:
             raise FileError(f"{self.name}: there is no {name} beside its summary.json")
         return content(within(self.folder, name)).decode("utf-8", errors="replace")
 
-    def uniform_field(self) -> np.ndarray:
+    def uniform_field(self) -> Array:
         """The field around the cilium at each step, (steps, 3), T: not a part of B."""
         return np.array([around.get("uniform_field", [0.0] * 3) for around in self.environments])
 
@@ -197,23 +198,23 @@ class Result:
         """ "converged", "slipped_off", "pulled_in" or "failed" at each step."""
         return [str(self._of(step, model).get("status", "failed")) for step in self.steps]
 
-    def tip(self, model: str) -> np.ndarray:
+    def tip(self, model: str) -> Array:
         """(steps, 3), m."""
         return self._mechanics(model, "tip", 3)
 
-    def tip_uncertainty(self, model: str) -> np.ndarray:
+    def tip_uncertainty(self, model: str) -> Array:
         """Estimated numerical error of the tip's position, (steps,), m."""
         return self._mechanics(model, "tip_uncertainty")
 
-    def tip_angle(self, model: str) -> np.ndarray:
+    def tip_angle(self, model: str) -> Array:
         """(steps,), rad."""
         return self._mechanics(model, "tip_angle")
 
-    def applied_force(self, model: str) -> np.ndarray:
+    def applied_force(self, model: str) -> Array:
         """(steps,), N."""
         return self._mechanics(model, "applied_force")
 
-    def contact(self, model: str, quantity: str = "normal_force") -> np.ndarray:
+    def contact(self, model: str, quantity: str = "normal_force") -> Array:
         """A number of a sweep's contact at each sample, (steps,), SI: normal_force, friction_force,
         elastic_energy, …; NaN where the cilium touches nothing."""
         known = {k for s in self.steps for k, v in self._of(s, model).get("contact", {}).items() if _is_number(v)}
@@ -221,15 +222,15 @@ class Result:
             raise InputError(f"{model}'s contact has no number {quantity!r}, but {', '.join(sorted(known)) or 'none'}")
         return _numbers([self._of(s, model).get("contact", {}).get(quantity) for s in self.steps])
 
-    def B(self, pair: str) -> np.ndarray:
+    def B(self, pair: str) -> Array:
         """Flux density by a pair of models, "beam/volume", (steps, sensors, 3), T."""
         return self._field(pair, "B")
 
-    def dB(self, pair: str) -> np.ndarray:
+    def dB(self, pair: str) -> Array:
         """B - B(straight cilium), (steps, sensors, 3), T."""
         return self._field(pair, "dB")
 
-    def dB_uncertainty(self, pair: str) -> np.ndarray:
+    def dB_uncertainty(self, pair: str) -> Array:
         """The field model's numerical error of dB, (steps, sensors, 3), T."""
         return self._field(pair, "dB_uncertainty")
 
@@ -257,7 +258,7 @@ class Result:
             what["verdict"] = what["verdict"].replace("_", " ")
         return _chosen(self.comparisons, Comparison, what, valid)
 
-    def centreline(self, model: str, step: int) -> dict[str, np.ndarray]:
+    def centreline(self, model: str, step: int) -> dict[str, Array]:
         """S, x, y, z (m), theta (rad) and kappa (1/m) along a deformed centreline."""
         name = self._of(self.steps[step], model).get("centreline")
         if name is None:
@@ -280,15 +281,16 @@ class Result:
     def _of(self, step: dict[str, Any], model: str) -> dict[str, Any]:
         if model not in self.models:
             raise InputError(f"{self.name} has no model '{model}', but {', '.join(self.models)}")
-        return step["mechanics"].get(model, {})
+        found: dict[str, Any] = step["mechanics"].get(model, {})
+        return found
 
-    def _mechanics(self, model: str, quantity: str, size: int | None = None) -> np.ndarray:
+    def _mechanics(self, model: str, quantity: str, size: int | None = None) -> Array:
         found = [self._of(step, model).get(quantity) for step in self.steps]
         if size is not None:
             found = [[None] * size if values is None else values for values in found]
         return _numbers(found, size)
 
-    def _field(self, pair: str, quantity: str) -> np.ndarray:
+    def _field(self, pair: str, quantity: str) -> Array:
         if pair not in self.pairs:
             raise InputError(f"{self.name} has no pair '{pair}', but {', '.join(self.pairs) or 'none'}")
         none = [None, None, None]
@@ -321,7 +323,7 @@ class Texts:
         return self._texts[name]
 
 
-class Document(dict):
+class Document(dict[str, Any]):
     """A result file of another command, as its JSON: a dict. `kind` is "study", "budget",
     "converge", "sense", "claims" or "check"."""
 
@@ -402,7 +404,7 @@ def _result(data: dict[str, Any], file: Path) -> Result:
         raise FileError(f"{file}: is damaged: {error!r}") from error
 
 
-def read_table(file: str | Path) -> dict[str, np.ndarray]:
+def read_table(file: str | Path) -> dict[str, Array]:
     """The columns of one of the program's CSV files; text columns are arrays of str. Raises
     FileError."""
     try:
@@ -412,7 +414,7 @@ def read_table(file: str | Path) -> dict[str, np.ndarray]:
     return table_of(text, str(file))
 
 
-def table_of(text: str, file: str) -> dict[str, np.ndarray]:
+def table_of(text: str, file: str) -> dict[str, Array]:
     """The columns of a CSV text; errors name the file. Raises FileError."""
     try:
         lines = text.splitlines(keepends=True)
@@ -464,8 +466,8 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
-def _numbers(values: list[Any], size: int | None = None) -> np.ndarray:
+def _numbers(values: list[Any], size: int | None = None) -> Array:
     """With NaN for None."""
     array = np.array(values, dtype=object)
-    array = np.where(np.equal(array, None), np.nan, array).astype(float)
+    array = np.where(np.equal(array, np.array(None)), np.nan, array).astype(float)
     return array.reshape(-1, size) if size else array

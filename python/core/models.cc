@@ -245,6 +245,7 @@ struct Design {
   double applied_force = nan;
   double slip_off = nan;
   std::vector<Vector3> B;
+  std::vector<Vector3> dB;
   std::string message;
 };
 
@@ -264,15 +265,35 @@ Design solve(const MechanicsModel& mechanics, const FieldModel& field, const Cil
     design.tip = tip.position;
     design.tip_angle = tip.theta();
     design.applied_force = step.applied_force;
-    if (!where.empty()) design.B = field.field(cilium, *step.deformation, where).B;
+    if (where.empty()) return design;
+    design.B = field.field(cilium, *step.deformation, where).B;
+    const std::vector<Vector3> straight = field.field(cilium, result.undeformed, where).B;
+    for (std::size_t p = 0; p < where.size(); ++p) design.dB.push_back(design.B[p] - straight[p]);
   } catch (const Error& error) {
     design.message = error.what();
   }
   return design;
 }
 
+/// Points for all designs, (m, 3), or for each of them, (n, m, 3).
+std::vector<std::vector<Vector3>> points_of_designs(const Array& where, std::size_t designs) {
+  if (where.is_none()) return {{}};
+  const py::object array = py::module_::import("numpy").attr("asarray")(where);
+  if (array.attr("ndim").cast<int>() != 3) return {points(where)};
+  std::vector<std::vector<Vector3>> all;
+  for (const py::handle each : array)
+    all.push_back(points(py::reinterpret_borrow<py::object>(each)));
+  if (all.size() != designs)
+    throw InputError(
+        fmt::format("there are {} designs and points for {}: give (m, 3) for all or "
+                    "(n, m, 3), m for each",
+                    designs, all.size()));
+  return all;
+}
+
 py::dict batch(const py::object& cilium_list, const py::object& load_list, const Array& where,
-               const Text& model_name, const Text& field_name, const py::kwargs& chosen) {
+               const Text& model_name, const Text& field_name, bool with_slip_off,
+               const py::kwargs& chosen) {
   const auto cilia = list_of<Cilium>(cilium_list, "cilia");
   const auto loads = list_of<Load>(load_list, "loads");
   const std::string model = text(model_name, "model");
@@ -282,19 +303,24 @@ py::dict batch(const py::object& cilium_list, const py::object& load_list, const
   const input::MechanicsEntry& mechanics = models::entry_of(models::mechanics_models(), model);
   const input::FieldEntry& field =
       models::entry_of(models::field_models(), text(field_name, "field"));
-  const std::vector<Vector3> at = where.is_none() ? std::vector<Vector3>{} : points(where);
+  const std::vector<std::vector<Vector3>> of_designs = points_of_designs(where, cilia.size());
+  const std::vector<Vector3>& at = of_designs.front();
+  const auto points_at = [&](std::size_t i) -> const std::vector<Vector3>& {
+    return of_designs[of_designs.size() == 1 ? 0 : i];
+  };
   std::vector<Design> designs(cilia.size());
   input::Case problem;
   problem.sensors = at;
   set_options(model, mechanics.options, chosen, problem.options);
   if (mechanics.hasten) mechanics.hasten(problem.options);
+  if (mechanics.skip_range && !with_slip_off) mechanics.skip_range(problem.options);
   const Call call;
   {
     const py::gil_scoped_release released;
     const models::Evaluator solver(mechanics, problem, models::field_models());
     const auto source = field.make(problem.options);
     const auto one = [&](std::size_t i) {
-      designs[i] = solve(solver, *source, cilia[i], loads[i], at);
+      designs[i] = solve(solver, *source, cilia[i], loads[i], points_at(i));
     };
     if (mechanics.is_collective || (!at.empty() && field.is_collective))
       for (std::size_t i = 0; i < designs.size(); ++i) one(i);
@@ -309,6 +335,7 @@ py::dict batch(const py::object& cilium_list, const py::object& load_list, const
   };
   std::vector<Vector3> tips;
   std::vector<double> B;
+  std::vector<double> dB;
   py::list converged;
   py::list messages;
   for (const Design& design : designs) {
@@ -316,7 +343,10 @@ py::dict batch(const py::object& cilium_list, const py::object& load_list, const
     converged.append(design.converged);
     messages.append(design.message);
     for (std::size_t p = 0; p < at.size(); ++p)
-      for (int c = 0; c < 3; ++c) B.push_back(design.B.empty() ? nan : design.B[p][c]);
+      for (int c = 0; c < 3; ++c) {
+        B.push_back(design.B.empty() ? nan : design.B[p][c]);
+        dB.push_back(design.dB.empty() ? nan : design.dB[p][c]);
+      }
   }
   py::dict result;
   result["converged"] =
@@ -325,8 +355,10 @@ py::dict batch(const py::object& cilium_list, const py::object& load_list, const
   result["tip_angle"] = numbers(&Design::tip_angle);
   result["applied_force"] = numbers(&Design::applied_force);
   result["slip_off"] = numbers(&Design::slip_off);
-  if (!where.is_none())
+  if (!where.is_none()) {
     result["B"] = array(std::move(B), {n, static_cast<py::ssize_t>(at.size()), 3});
+    result["dB"] = array(std::move(dB), {n, static_cast<py::ssize_t>(at.size()), 3});
+  }
   result["message"] = messages;
   return result;
 }
@@ -512,12 +544,23 @@ void bind_models(py::module_& module) {
   module.def(
       "bend_batch", &batch, py::arg("cilia"), py::arg("loads"), py::arg("points") = py::none(),
       py::arg("model") = models::mechanics_models().front().id, py::arg("field") = field_model,
-      "Many designs at once, on all cores: a list of cilia and one load for each, points (m, 3)\n"
-      "at which B is asked for (None: nowhere), and options of the mechanics model, such as\n"
-      "joints='corrected'. Returns a dict of arrays: converged\n"
-      "(n,), tip (n, 3), tip_angle (n,), applied_force (n,), slip_off (n,), B (n, m, 3), with\n"
-      "NaN where there is none, and a list message. One design's failure does not stop the\n"
-      "others.");
+      py::arg("slip_off") = true,
+      "Many designs at once, on all cores: a list of cilia and one load for each, points at which\n"
+      "B is asked for, m, (m, 3) for all, (n, m, 3) for each (None: nowhere), and options of the\n"
+      "mechanics model, such as joints='corrected'. Returns a dict of arrays, SI units: converged\n"
+      "(n,), tip (n, 3), tip_angle (n,), applied_force (n,), slip_off (n,), B and\n"
+      "dB = B - B(straight), (n, m, 3), with NaN where a design has no equilibrium, and a list\n"
+      "message. slip_off, the largest contact force or probe's displacement, is NaN for loads "
+      "that\n"
+      "cannot slip off and for models that do not know it; slip_off=False does not look for it\n"
+      "(NaN), which takes the elastica less than half the time. One design's failure does not "
+      "stop\n"
+      "the others. Raises InputError.\n\n"
+      ">>> import ciliaval as cv\n"
+      ">>> rod = cv.Cilium(3e-3, [cv.Segment(20e-3, 1e6, magnetization=75e3)])\n"
+      ">>> loads = [cv.Load('contact', force=f, height=16e-3) for f in (1e-3, 2e-3)]\n"
+      ">>> cv.bend_batch([rod] * 2, loads, [[0, 0, -2e-3]])['dB'].shape\n"
+      "(2, 1, 3)\n");
   module.def(
       "models",
       [] {

@@ -51,7 +51,7 @@ class Calibration(unittest.TestCase):
         chips = Chips.of(other)
         shapes = cv.bend(other.cilium, other.loads, "beam")
         dB = np.stack([shape.dB(other.sensors, "line") for shape in shapes])
-        read = (chips.own(dB) * chips.gain[:, None])[:, 0]
+        read = chips.own(dB)[:, 0]
         names = ["sensor.position", "sensor.orientation"]
         true = [-0.03e-3, 0.15e-3, -1.6e-3, *np.radians([1, -2, 3])]
         found = self.fit(read / 1.02, names)
@@ -65,6 +65,7 @@ class Calibration(unittest.TestCase):
     def test_names_what_the_readings_do_not_tell_apart(self):
         found = self.fit(self.made(), ["base.young_modulus", "magnet.magnetization", "scale"])
         self.assertEqual([sorted(group) for group in found.together], [["magnet.magnetization", "sensor.gain"]])
+        self.assertEqual(found.freedom, 9 - 2)  # their combination is one number
         self.assertTrue(np.isfinite(found.deviations[0]) and np.isinf(found.deviations[1:]).all())
         self.assertIn("cannot tell apart: magnet.magnetization, sensor.gain", found.text(80))
         nothing = self.fit(self.made(), ["base.young_modulus", "elastica.tolerance"])
@@ -94,7 +95,7 @@ class Calibration(unittest.TestCase):
         for read, names, what in (
             (dB[:2], ["base.young_modulus"], "2 readings and 3 load steps"), (dB, [], "no number"),
             (dB, ["base.young_modulos"], "did you mean `base.young_modulus`"), (dB, ["young_modulus"], "say which"),
-            (dB, ["base.young_modulus"] * 2, "twice"), (dB, ["sensor.colour"], "no number"),
+            (dB, ["base.young_modulus"] * 2, "twice"), (dB, ["load.force"], "not the same in all load steps"), (dB, ["sensor.colour"], "no number"),
             (dB, [f"sensor.{n}" for n in ("position", "orientation", "gain")] + ["base.length", "magnet.length", "diameter"],
              "10 numbers cannot be found from 9"),
         ):  # fmt: skip

@@ -370,9 +370,26 @@ class Batch(unittest.TestCase):
             if batch["converged"][i]:
                 np.testing.assert_array_equal(batch["tip"][i], shape.tip)
                 np.testing.assert_array_equal(batch["B"][i], shape.B(SENSOR))
+                np.testing.assert_array_equal(batch["dB"][i], shape.dB(SENSOR))
             else:
                 self.assertTrue(np.isnan(batch["tip"][i]).all())
                 self.assertEqual(batch["slip_off"][i], shape.slip_off)
+
+    def test_leaves_the_slip_off_out(self):
+        """Every other number is the same, also of designs that slip off."""
+        generator = np.random.default_rng(2)
+        cilia = [paper_cilium(length) for length in generator.uniform(1e-3, 6e-3, 60)]
+        loads = [contact(force) for force in generator.uniform(0.1e-3, 20e-3, 60)]
+        points = generator.uniform(-3e-3, -1e-3, (60, 2, 3))
+        whole, quick = (cv.bend_batch(cilia, loads, points, slip_off=of) for of in (True, False))
+        self.assertTrue(np.isfinite(whole["slip_off"]).all() and np.isnan(quick["slip_off"]).all())
+        self.assertTrue(0 < quick["converged"].sum() < 60)
+        for key in ("converged", "tip", "tip_angle", "applied_force", "B", "dB"):
+            np.testing.assert_array_equal(whole[key], quick[key])
+        one = cv.bend_batch(cilia[7:8], loads[7:8], points[7])
+        np.testing.assert_array_equal(one["dB"][0], whole["dB"][7])
+        with self.assertRaisesRegex(cv.InputError, "60 designs and points for 2"):
+            cv.bend_batch(cilia, loads, points[:2])
 
     def test_takes_options_of_the_model(self):
         cilium, load = paper_cilium(3e-3), contact(2e-3)

@@ -250,9 +250,38 @@ class AChip(unittest.TestCase):
         sense = {"unloaded": slice(0, 5), "noise": 0.5e-6}
         case = cv.Case.from_text(CASE)
         self.assertFalse(any("axes" in r or "turned" in r for r in cv.sense(case, B, **sense).attrs["remarks"]))
-        remark = cv.sense(case, B * [1, 1, -1], **sense).attrs["remarks"][-1]
-        self.assertIn('["+x", "+y", "-z"]', remark)
-        self.assertIn("turned", remark)
+        x, y, z = B.T
+        for own, axes in (([x, y, -z], '["+x", "+y", "-z"]'), ([z, x, y], '["+z", "+x", "+y"]')):
+            read = np.stack(own, axis=-1)
+            with self.subTest(axes):
+                remark = cv.sense(case, read, **sense).attrs["remarks"][-1]
+                self.assertIn(f"axes = {axes}", remark)
+                right = cv.Case.from_text(CASE.replace('"-1.55 mm"]', f'"-1.55 mm"]\naxes = {axes}'))
+                frame = cv.sense(right, read, **sense)
+                np.testing.assert_allclose(frame[["load_x", "load_y"]].to_numpy()[0], polar(2e-3, 1.0), atol=1e-9)
+
+    def test_a_gain_scales_the_field_and_not_the_noise(self):
+        p, rng = polar(np.full(2000, 1e-3), np.linspace(-3, 3, 2000)), np.random.default_rng(11)
+        for gain in (0.1, 1.0, 10.0):
+            case = cv.Case.from_text(CASE.replace('"-1.55 mm"]', f'"-1.55 mm"]\ngain = {gain}'))
+            read = gain * paper_response().change(p)[:, 0] + 0.5e-6 * rng.standard_normal((2000, 3))
+            frame = cv.sense(case, read, noise=0.5e-6)
+            held = np.abs(frame["magnitude"] - 1e-3) <= frame["magnitude_interval"]
+            self.assertAlmostEqual(held.mean(), 0.95, delta=0.02)
+            self.assertAlmostEqual(frame["chi_squared"].mean(), 1, delta=0.15)
+
+    def test_two_components_without_a_side_are_ambiguous(self):
+        """A chip with x and z in the plane y = 0 cannot tell +y from -y."""
+        keys = 'components = ["x", "z"]'
+        text = CASE.replace('["-0.1 mm", "0.2 mm", "-1.55 mm"]', f'["-0.5 mm", "0 mm", "-1.55 mm"]\n{keys}')
+        change = paper_response(4e-3, [[-0.5e-3, 0, -1.55e-3]]).change(polar(np.array([2e-3, 3e-3]), np.array([0.6, -2.0])))
+        frame = cv.sense(cv.Case.from_text(text), change[:, 0], noise=0.5e-6)
+        self.assertEqual(frame["status"].tolist(), ["ambiguous"] * 2)
+        np.testing.assert_allclose(np.abs(frame["azimuth"]), [0.6, 2.0], atol=1e-5)
+        on_axis = CASE.replace('["-0.1 mm", "0.2 mm", "-1.55 mm"]', f'["0 mm", "0 mm", "-1.55 mm"]\n{keys}')
+        noise = 0.5e-6 * np.random.default_rng(1).standard_normal((200, 3))
+        unloaded = cv.sense(cv.Case.from_text(on_axis), noise, noise=0.5e-6)
+        self.assertEqual((unloaded["status"] == "failed").sum(), 0)
 
 
 class OfAFile(unittest.TestCase):

@@ -118,6 +118,7 @@ input::MechanicsEntry elastica() {
                  .set = set(&ElasticaOptions::joints, joints::Correction::none)}};
           },
       .hasten = set(&ElasticaOptions::error_estimate, false),
+      .skip_range = set(&ElasticaOptions::slip_off, false),
   };
 }
 

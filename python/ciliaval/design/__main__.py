@@ -48,7 +48,9 @@ def _execute(study: StudyFile, store: StudyStore, options: argparse.Namespace, p
     folder = options.output / study.name
     width = terminal_width()
     provenance = json.loads(_core.provenance(printable(options.command)))
-    points: Points = [] if study.optimises else results_of(store.run(progress))
+    points: Points = []
+    if not study.optimises:
+        points = results_of(store.run(progress))
     words = text(study, points, width)
     document = study_json(study, points, provenance)
     code = SOLVER if points and all(_all_failed(pairs) for pairs in points) else PASS

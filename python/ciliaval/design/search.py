@@ -8,7 +8,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 from scipy import optimize
+
+from ..arrays import Array
 
 FEASIBILITY = 1e-8  # a constraint may be missed by so much: the searches approach it from outside
 STATIONARY = 1e-3  # a residual below: from one side of the box to the other the gain would change by less
@@ -112,7 +115,7 @@ class _Objective:
         self.best: tuple[float, ...] | None = None  # feasible, with the largest gain since restart()
         self.nearest: tuple[float, ...] = ()
 
-    def clipped(self, u: Sequence[float]) -> tuple[float, ...]:
+    def clipped(self, u: npt.ArrayLike) -> tuple[float, ...]:
         return tuple(np.clip(u, 0.0, 1.0).tolist())
 
     def at(self, *points: tuple[float, ...]) -> list[Trial]:
@@ -121,11 +124,11 @@ class _Objective:
             self._trials.update(zip(unknown, self._function(unknown)))
         return [self._trials[u] for u in points]
 
-    def values(self, *points: tuple[float, ...]) -> np.ndarray:
+    def values(self, *points: tuple[float, ...]) -> Array:
         """The gain and the constraints, (m, 1 + c)."""
         return np.array([(t.gain, *t.constraints) for t in self.at(*points)])
 
-    def derivative(self, u: tuple[float, ...]) -> np.ndarray:
+    def derivative(self, u: tuple[float, ...]) -> Array:
         """d/du of the gain (row 0) and the constraints, (1 + c, n), by differences of second order
         within the box."""
         moved: list[tuple[float, ...]] = []
@@ -138,12 +141,12 @@ class _Objective:
             side * (4 * first - second - 3 * middle) if side else first - second
             for side, first, second in zip(sides, values[::2], values[1::2])
         ]
-        return np.stack(columns, axis=1) / (2 * _STEP)
+        return np.asarray(np.stack(columns, axis=1) / (2 * _STEP))
 
     def restart(self) -> None:
         self.best = None
 
-    def prefer(self, x: np.ndarray) -> None:
+    def prefer(self, x: Array) -> None:
         """Takes the end of a search for the best, unless it is worse by more than a missed constraint may
         be worth: a point on the way may miss one by more."""
         u = self.clipped(x)
@@ -155,16 +158,16 @@ class _Objective:
     def best_gain(self) -> float:
         return self.at(self.best)[0].gain if self.best else -np.inf
 
-    def asked(self, x: np.ndarray) -> np.ndarray:
+    def asked(self, x: Array) -> Array:
         """The values at points that a search asks for, (n,) or the columns of (n, m), which it remembers."""
-        points = [self.clipped(u) for u in (x.T if x.ndim == 2 else [x])]
+        points = [self.clipped(u) for u in (x.T if x.ndim == 2 else x[None])]
         values = self.values(*points)
         for u, trial in zip(points, self.at(*points)):
             if not self.nearest or trial.violation < self.at(self.nearest)[0].violation:
                 self.nearest = u
             if trial.is_defined and trial.violation <= FEASIBILITY and trial.gain > self.best_gain:
                 self.best = u
-        return values.T if x.ndim == 2 else values[0]
+        return values.T if x.ndim == 2 else np.asarray(values[0])
 
 
 def _search_globally(objective: _Objective, start: tuple[float, ...], evaluations: int) -> tuple[float, ...]:

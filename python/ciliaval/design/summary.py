@@ -31,7 +31,7 @@ class Result(NamedTuple):
 Points = Sequence[Sequence[Result]]  # of each point, in the order of the pairs
 
 
-def results_of(points: Iterable[Iterable[tuple]]) -> list[list[Result]]:
+def results_of(points: Iterable[Iterable[tuple[Any, ...]]]) -> list[list[Result]]:
     """What StudyStore returns."""
     return [[Result(*pair) for pair in pairs] for pairs in points]
 
@@ -43,7 +43,7 @@ def printable(text: str, allowed: str = "\n\t") -> str:
     """A text for a terminal, a table or a file: control characters, which a terminal would obey, and
     bytes of a file's name that are no UTF-8 as \\x1B."""
 
-    def shown(found: re.Match) -> str:
+    def shown(found: re.Match[str]) -> str:
         return "".join(f"\\x{byte:02X}" for byte in found[0].encode("utf-8", "surrogateescape"))
 
     return re.sub(rf"[^\x20-\x7e\xa0-\ud7ff\ue000-\U0010ffff{allowed}]", shown, text)
@@ -108,7 +108,7 @@ def text(study: StudyFile, points: Points, width: int = 0) -> str:
     if len(shown) < count:
         lines += f"{count} points, {len(shown)} of them below, {count - len(shown)} left out; all are in study.csv\n"
     for p, pair in enumerate(study.pairs):
-        rows = [[heading(of) for of in (*study.parameters, *study.outputs)]]
+        rows = [[*map(heading, study.parameters), *map(heading, study.outputs)]]
         for point in shown:
             values = zip(study.parameters, study.values_at(point))
             row = [f"{value / parameter.shown_size:.5g}" for parameter, value in values]

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from .. import _core
+from ..arrays import Array
 from ..errors import FileError, SolverError
 from ..files import content, replacing
 from .._core import Cilium, Load, bend_batch
@@ -23,7 +22,7 @@ from ..model import Case, Progress
 from ..results import Result, from_summary
 
 Pair = tuple[str, str]  # mechanics model, field model
-Vectors = np.ndarray  # (loads, 3), T
+Vectors = Array  # (loads, 3), T
 
 # The paper's two models of the field on its model of the mechanics, and better mechanics.
 RODS: tuple[Pair, ...] = (("elastica", "line"), ("elastica", "volume"), ("beam", "volume"))
@@ -77,7 +76,7 @@ def solved(case: Case, setting: Setting, compute: Callable[[], Any], also: str =
     return json.loads(_kept(case, lambda: json.dumps(compute()), f"{compute.__qualname__} {also}"))
 
 
-def dB(cilia: Sequence[Cilium], loads: Sequence[Load], sensor: np.ndarray, pair: Pair) -> Vectors:
+def dB(cilia: Sequence[Cilium], loads: Sequence[Load], sensor: Array, pair: Pair) -> Vectors:
     """The change of the field at the sensor, (3,) m, of each cilium under its load, (n, 3), T; NaN
     where it does not bear it."""
     mechanics, field = pair

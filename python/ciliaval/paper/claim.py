@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
+
 Interval = tuple[float, float]
 
 REPRODUCED = "reproduced"
@@ -77,9 +79,9 @@ class Unstated:
     path: str = ""
     is_logarithmic: bool = False
 
-    def values(self, count: int) -> np.ndarray:
+    def values(self, count: int) -> Array:
         """`count` values of the range, evenly spaced, with the one that is used."""
-        space = np.geomspace if self.is_logarithmic else np.linspace
+        space: Any = np.geomspace if self.is_logarithmic else np.linspace
         return np.union1d(space(self.low, self.high, count), [self.used])
 
 

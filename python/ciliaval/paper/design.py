@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from .._core import Cilium
+from ..arrays import Array
 from ..model import Case, bend
 from .cases import RODS, Pair, Setting, dB, name_of, solved
 from .claim import Claim, Finding, Interval, Scan, Unstated, in_range, scanned
@@ -20,14 +22,14 @@ _BASE = "cilium.segment.base.young_modulus"
 _MAGNET = "cilium.segment.magnet.young_modulus"
 _PROPORTION = "cilium.segment.magnet.proportion"
 
-Signal = Callable[[np.ndarray], np.ndarray]  # of dB, (n, 3), T
+Signal = Callable[[Array], Array]  # of dB, (n, 3), T
 
 
-def _magnitude(change: np.ndarray) -> np.ndarray:
-    return np.linalg.norm(change, axis=1)
+def _magnitude(change: Array) -> Array:
+    return np.asarray(np.linalg.norm(change, axis=1))
 
 
-def _x(change: np.ndarray) -> np.ndarray:
+def _x(change: Array) -> Array:
     return change[:, 0]
 
 
@@ -42,11 +44,11 @@ def design_claims(setting: Setting) -> list[Claim]:
     ]
 
 
-def _designs(case: Case, path: str, values: Sequence[float]) -> list[Cilium]:
+def _designs(case: Case, path: str, values: Iterable[float]) -> list[Cilium]:
     return [case.changed({path: float(x)}).cilium for x in values]
 
 
-def _curve(case: Case, path: str, values: Sequence[float], pair: Pair) -> np.ndarray:
+def _curve(case: Case, path: str, values: Iterable[float], pair: Pair) -> Array:
     """dB at 1 mN over a number of the case, (n, 3), T; NaN where it does not bear that."""
     cilia = _designs(case, path, values)
     return dB(cilia, [case.loads[0]] * len(cilia), case.sensors[0], pair)
@@ -61,7 +63,7 @@ def _trend(
     unstated: the lower end, in a unit of `size`; its range begins where the study's would be asked
     for at most, its `used` is the study's own.
     """
-    space = np.geomspace if unstated.is_logarithmic else np.linspace
+    space: Any = np.geomspace if unstated.is_logarithmic else np.linspace
     values = np.union1d(space(unstated.low, unstated.high, 2 * _COUNT), [unstated.used])
     for pair in RODS:
         found = 1e6 * signal(_curve(case, path, values * size, pair))
@@ -72,8 +74,8 @@ def _trend(
         name = name_of(pair)
         holds = bool(first < len(values) - 1 and values[first] <= unstated.used)
         # From the study's first value that the cilium bears: thinner ones have no signal at all.
-        ends = sorted([float(borne[0]), float(borne[-1])])
-        claim.findings.append(Finding(f"{name}: dB at the ends", *ends, "uT", holds))
+        low, high = sorted([float(borne[0]), float(borne[-1])])
+        claim.findings.append(Finding(f"{name}: dB at the ends", low, high, "uT", holds))
         intervals: tuple[Interval, ...] = ()
         if first < len(values) - 1:
             intervals = ((float(values[first]), unstated.high),)
@@ -145,7 +147,7 @@ def aspect_ratio(case: Case) -> Claim:
 def _peak(case: Case, pair: Pair) -> float:
     """L2/L0 of the largest |dB|: the best of a grid, then by Brent's method beside it."""
 
-    def signal(values: Sequence[float]) -> np.ndarray:
+    def signal(values: Iterable[float]) -> Array:
         return np.nan_to_num(_magnitude(_curve(case, _PROPORTION, values, pair)))
 
     grid = np.linspace(0.05, 0.99, 48)
@@ -233,7 +235,7 @@ def mechanisms(case: Case) -> list[Claim]:
     return [compliance, distance]
 
 
-def _of_solid(case: Case, proportions: np.ndarray, setting: Setting) -> np.ndarray:
+def _of_solid(case: Case, proportions: Array, setting: Setting) -> Array:
     """|dB| by solid/mesh at 1 mN, T."""
     found = []
     for x in proportions:

@@ -8,7 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .._core import Load
+from .._core import Load, Shape
+from ..arrays import Array
 from ..model import Case, bend
 from ..results import Result
 from .claim import Claim, Scan, Unstated, in_range, scanned
@@ -18,15 +19,15 @@ _RRMSE = (
 )
 _AZIMUTHS = 12  # the test bench turns in steps of 30 degrees (3.1)
 
-Fields = tuple[np.ndarray, np.ndarray]  # of line and volume, (loads, 3), T
-Figure = Callable[[np.ndarray, np.ndarray], np.ndarray]
+Fields = tuple[Array, Array]  # of line and volume, (loads, 3), T
+Figure = Callable[[Array, Array], Array]
 
 
-def _across(B: np.ndarray) -> np.ndarray:
+def _across(B: Array) -> Array:
     return np.hypot(B[..., 0], B[..., 1])
 
 
-def _up(B: np.ndarray) -> np.ndarray:
+def _up(B: Array) -> Array:
     return B[..., 2]
 
 
@@ -60,7 +61,7 @@ def _scans(case: Case, margin: Callable[[Fields], float], change: bool, what: st
     """Of both rods over both numbers; the rods bend once for each height."""
     found = []
     for mechanics in ("elastica", "beam"):
-        bent: dict[float, list] = {}
+        bent: dict[float, list[Shape]] = {}
 
         def fields(z: float, h: float) -> Fields:
             if h not in bent:
@@ -71,10 +72,11 @@ def _scans(case: Case, margin: Callable[[Fields], float], change: bool, what: st
             if not bent[h]:
                 return np.full((1, 3), np.nan), np.full((1, 3), np.nan)
             point = [case.sensors[0] * [1, 1, 0] + [0, 0, z]]
-            return tuple(
+            line, volume = (
                 np.array([(s.dB if change else s.B)(point, model, **options)[0] for s in bent[h]])
-                for model, options in (("line", {}), ("volume", {"slices": "stacked"}))
+                for model, options in (("line", dict[str, str]()), ("volume", {"slices": "stacked"}))
             )
+            return line, volume
 
         z, h = float(case.sensors[0, 2]), case.loads[0].parameters["height"]
         by_z, by_h = _numbers(case)
@@ -87,12 +89,12 @@ def _scans(case: Case, margin: Callable[[Fields], float], change: bool, what: st
 def fig3d(case: Case, result: Result) -> list[Claim]:
     """The difference of `volume` (Eq. 8-9, the multi-dipole model) and `line` on each deformation."""
 
-    def stronger(part: Callable) -> Figure:
-        return lambda line, volume: 100 * (part(volume) / part(line) - 1)
+    def stronger(part: Callable[[Array], Array]) -> Figure:
+        return lambda line, volume: np.asarray(100 * (part(volume) / part(line) - 1))
 
-    def rrmse(part: Callable) -> Figure:
-        return lambda line, volume: 100 * np.sqrt(
-            np.sum((part(volume) - part(line)) ** 2) / np.sum(part(volume) ** 2)
+    def rrmse(part: Callable[[Array], Array]) -> Figure:
+        return lambda line, volume: np.asarray(
+            100 * np.sqrt(np.sum((part(volume) - part(line)) ** 2) / np.sum(part(volume) ** 2))
         )
 
     near_ten = (
@@ -133,7 +135,7 @@ def fig3d(case: Case, result: Result) -> list[Claim]:
 
 def _with_uncertainty(
     result: Result, model: str, change: bool, figure: Figure
-) -> tuple[np.ndarray, np.ndarray, float]:
+) -> tuple[Array, Array, float]:
     """Both fields at the first sensor, (loads, 3), T, and how far the figure of any load may be off.
 
     The deformation's error moves each field in a direction that is not known: by as much as the
@@ -171,9 +173,9 @@ def sensitivity(case: Case) -> Claim:
         "How much steeper the horizontal |dB| of the multi-dipole model rises from load to load.",
     )
 
-    def steeper(fields: Fields) -> np.ndarray:
+    def steeper(fields: Fields) -> Array:
         line, volume = (np.diff(_across(B), axis=0, prepend=0) for B in fields)
-        return 100 * (volume / line - 1)
+        return np.asarray(100 * (volume / line - 1))
 
     for mechanics in ("elastica", "beam"):
         shapes = bend(case.cilium, case.loads, mechanics)
@@ -195,8 +197,9 @@ def correlation(case: Case) -> Claim:
         differ_by="the readings",
     )
 
-    def r2(line: np.ndarray, volume: np.ndarray) -> np.ndarray:
-        return 1 - np.sum((line - volume) ** 2, axis=0) / np.sum((volume - volume.mean(axis=0)) ** 2, axis=0)
+    def r2(line: Array, volume: Array) -> Array:
+        found: Array = 1 - np.sum((line - volume) ** 2, axis=0) / np.sum((volume - volume.mean(axis=0)) ** 2, axis=0)
+        return found
 
     def turned(load: Load) -> list[Load]:
         return [Load(load.type, **{**load.parameters, "azimuth": 2 * math.pi * k / _AZIMUTHS}) for k in range(_AZIMUTHS)]
@@ -215,12 +218,12 @@ def correlation(case: Case) -> Claim:
     return claim
 
 
-def single_dipoles(n: int) -> int:
+def single_dipoles(n: float) -> float:
     """Dipoles of Eq. 6-7: one for each of n elements of the axis."""
     return n
 
 
-def multi_dipoles(n: int) -> int:
+def multi_dipoles(n: float) -> float:
     """Dipoles of Eq. 8-9: n slices, each of n radii and n angles."""
     return n * n * n
 

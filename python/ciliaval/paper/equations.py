@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .._core import Shape
+from ..arrays import Array
 
 _MU_0 = 1.25663706212e-6  # vacuum permeability, T m/A (CODATA 2018)
 _ANGLES = 24
@@ -20,13 +21,13 @@ class PrintedFields:
     are meant, Eq. 5 with dS = dz/cos(theta), and to the letter. To the letter Eq. 6 has 1/cos(theta)
     once in x and twice in y and z, Eq. 8 twice in all: one is that of dS, the other too many."""
 
-    line: np.ndarray
-    line_printed: np.ndarray
-    volume: np.ndarray
-    volume_printed: np.ndarray
+    line: Array
+    line_printed: Array
+    volume: Array
+    volume_printed: Array
 
 
-def printed_fields(shape: Shape, point: np.ndarray) -> PrintedFields:
+def printed_fields(shape: Shape, point: Array) -> PrintedFields:
     """Both integrals for a round rod at a point outside of it, by Gauss-Legendre quadrature along
     the axis and the radius and equal angles around it. point: (3,), m."""
     radius = shape.cilium.diameter / 2
@@ -34,7 +35,7 @@ def printed_fields(shape: Shape, point: np.ndarray) -> PrintedFields:
     across = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
     side = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
     up = np.array([0.0, 0.0, 1.0])
-    nodes, weights = np.polynomial.legendre.leggauss(15)
+    nodes, weights = np.polynomial.legendre.leggauss(15)  # type: ignore[no-untyped-call]
 
     S, dS, moment = [], [], []  # of the slices
     begin = 0.0
@@ -69,8 +70,8 @@ def printed_fields(shape: Shape, point: np.ndarray) -> PrintedFields:
     return PrintedFields(line, x_once.sum(axis=0), volume, volume_printed)
 
 
-def _dipole(moment: np.ndarray, a: np.ndarray) -> np.ndarray:
+def _dipole(moment: Array, a: Array) -> Array:
     """Eq. 5: B of moments (n, 3), A m², at the distances a (n, 3), m; T."""
     distance = np.linalg.norm(a, axis=1)[:, None]
     along = (moment * a).sum(axis=1)[:, None]
-    return _MU_0 / (4 * np.pi) * (3 * along * a / distance**5 - moment / distance**3)
+    return np.asarray(_MU_0 / (4 * np.pi) * (3 * along * a / distance**5 - moment / distance**3))

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..model import Case, bend, toml_of
 from ..sensing.bench import bench_json, read_bench, run_bench
 from .cases import RODS, Pair, Setting, at_rest, dB, name_of, solved
@@ -28,10 +29,10 @@ def flow_claims(setting: Setting) -> list[Claim]:
     return [largest_force(case), drag(case), linear_response(case, setting), direction(setting)]
 
 
-def _speeds(case: Case) -> np.ndarray:
+def _speeds(case: Case) -> Array:
     """The case's velocities, m/s, by Eq. 11 with the paper's 1000 kg/m^3 and C_d = 1."""
     q = np.array([load.parameters["force_per_height"] for load in case.loads])
-    return np.sqrt(2 * q / (1000 * case.cilium.diameter))
+    return np.asarray(np.sqrt(2 * q / (1000 * case.cilium.diameter)))
 
 
 def largest_force(case: Case) -> Claim:
@@ -164,4 +165,5 @@ def _simulated(bench: dict[str, Any], case: dict[str, Any], setting: Setting) ->
             bench_of_file = read_bench(file)
             return bench_json(bench_of_file, run_bench(bench_of_file), {})
 
-    return solved(whole, setting, simulate, text)
+    found: dict[str, Any] = solved(whole, setting, simulate, text)
+    return found

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..model import Case
 from ..sensing.levels import LevelCurve, sense_surface
 from ..sensing.loads import readings_of_arrays
@@ -42,9 +43,9 @@ class Sweep:
     """At each sample dB of the first sensor, (samples, 3), T, its magnitude, and how high the touching
     point stands on the profile, in plateaus."""
 
-    dB: np.ndarray
-    change: np.ndarray
-    height: np.ndarray
+    dB: Array
+    change: Array
+    height: Array
 
 
 class Sweeps:
@@ -188,7 +189,7 @@ def steps(sweeps: Sweeps) -> list[Claim]:
     return [rise, abrupt, spike]
 
 
-def _stretches(marks: np.ndarray) -> list[tuple[int, int]]:
+def _stretches(marks: Array) -> list[tuple[int, int]]:
     """First sample of each stretch that is marked, and the one behind its last."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], marks.astype(int), [0]])))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2])]

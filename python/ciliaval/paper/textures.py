@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array
 from ..sensing import record
 from .cases import Pair, Setting, name_of, run
 from .claim import Claim, Unstated, in_range, scanned
@@ -43,7 +44,7 @@ class Piece:
         self.seed = seed
         self.dB = result.dB(name_of(_PAIR))[:, 0]
 
-    def features(self, noise: float) -> np.ndarray:
+    def features(self, noise: float) -> Array:
         """What a classifier sees of the filtered record with this noise, T: the logarithms of its root
         mean square and of how often it changes its sign."""
         filtered = record(
@@ -53,7 +54,7 @@ class Piece:
         return np.log([np.sqrt(np.mean(np.sum(filtered**2, axis=1))), 1 + crossings])
 
 
-def confusion(features: np.ndarray) -> np.ndarray:
+def confusion(features: Array) -> Array:
     """How often a piece of each texture (row) is found as each (column), by the nearest mean of the
     others, each feature over its scatter within a texture. features: (textures, pieces, n)."""
     textures, pieces, _ = features.shape
@@ -73,7 +74,7 @@ def told_apart(setting: Setting) -> Claim:
     claim = Claim("3.6, Fig. 6d", "four textures are told apart after a fourth-order high-pass filter")
     records = [[Piece(setting, t, seed) for seed in range(1, _PIECES + 1)] for t in _TEXTURES]
 
-    def found(noise: float) -> np.ndarray:
+    def found(noise: float) -> Array:
         return confusion(np.array([[piece.features(noise) for piece in of] for of in records]))
 
     at_used = found(1e-6 * _NOISE)

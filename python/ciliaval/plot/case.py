@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from ..arrays import Array
 from ..results import Result
 from ..units import number, shown
 from .style import best_first, dashes, legend, look, new_figure, not_finer_than, style
@@ -38,7 +41,7 @@ def shapes(result: Result, step: int | None = None) -> Figure:
                 label = "_"
         best = best_first(result.models)[0]
         if len(drawn) > 1:
-            labelled: list[np.ndarray] = []
+            labelled: list[Array] = []
             for i in drawn:
                 tip = result.tip(best)[i]
                 at = 1e3 * np.array([np.hypot(tip[0], tip[1]), tip[2]])
@@ -110,7 +113,7 @@ def sweep(result: Result) -> Figure:
     """Normal and friction force and the tip's position over the travel; where a model jumps is
     shaded in its colour."""
     travel = 1e3 * result.load("travel")
-    rows = [
+    rows: list[tuple[str, Callable[[str], Array]]] = [
         ("N in mN", lambda m: 1e3 * result.contact(m)),
         ("T in mN", lambda m: 1e3 * result.contact(m, "friction_force")),
         ("tip x in mm", lambda m: 1e3 * result.tip(m)[:, 0]),
@@ -173,7 +176,7 @@ def pairs(result: Result, quantity_name: str = "centreline", step: int = -1) -> 
         return figure
 
 
-def abscissa(result: Result) -> tuple[np.ndarray, str]:
+def abscissa(result: Result) -> tuple[Array, str]:
     """What changes along the path, in the unit of its label, and the label: the load's parameter, or
     the uniform field under one load."""
     from .._core import load_types
@@ -201,7 +204,7 @@ def _is_path_of_fields(result: Result) -> bool:
     return same_load and bool((fields != fields[0]).any())
 
 
-def _along_strongest(fields: np.ndarray) -> tuple[np.ndarray, str]:
+def _along_strongest(fields: Array) -> tuple[Array, str]:
     """Fields along the direction of the strongest, mT; of others the number of the step."""
     strongest = fields[np.argmax(np.linalg.norm(fields, axis=1))]
     along = fields @ strongest / np.linalg.norm(strongest)
@@ -214,7 +217,7 @@ def _along_strongest(fields: np.ndarray) -> tuple[np.ndarray, str]:
 def _begins_straight(result: Result) -> bool:
     """Whether nothing bends the cilium where the axis is zero."""
     if result.loads[0]["type"] == "sweep" or not any(result.environments):
-        return result.loads[0]["type"] != "sweep"
+        return bool(result.loads[0]["type"] != "sweep")
     has_weight = any(any(around.get("gravity", [])) for around in result.environments)
     if result.loads[0]["type"] != "environment":
         return False
@@ -229,7 +232,7 @@ def _evenly(count: int) -> list[int]:
     return [i * count // number_of - 1 for i in range(1, number_of + 1)]
 
 
-def _shade_jumps(axes: Axes, result: Result, x: np.ndarray, colour: str, model: str = "") -> None:
+def _shade_jumps(axes: Axes, result: Result, x: Array, colour: str, model: str = "") -> None:
     for i, step in enumerate(result.steps):
         of = step["mechanics"]
         if i > 0 and any(m.get("jump") for name, m in of.items() if model in ("", name)):

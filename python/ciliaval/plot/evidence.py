@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..arrays import Array
 from ..units import number, shown
 from .style import COLOURS, legend, look, new_figure, style
 
@@ -95,7 +96,7 @@ def convergence(data: dict[str, Any], model: str | None = None) -> Figure | None
         return figure
 
 
-def _curves(study: dict[str, Any]) -> list[tuple[str, dict[str, Any], np.ndarray, np.ndarray]]:
+def _curves(study: dict[str, Any]) -> list[tuple[str, dict[str, Any], Array, Array]]:
     """Name, quantity, sizes and relative errors of what is drawn."""
     quantities = study["quantities"] or []
     last = max((q["step"] for q in quantities if q["step"] is not None), default=0)

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
+from ..arrays import Array
 from ..results import Result
 from ..units import number, quantity
 from .style import SEGMENTS, best_first, style
@@ -28,11 +29,10 @@ def setup(case: Result | Any) -> Figure:
     from .._core import CaseFile
 
     result = case if isinstance(case, Result) else None
-    if result is not None:
-        case = CaseFile.from_text(result.case_text, "case.toml")
-    cilium, load = case.cilium, case.loads[-1]
-    sensors = np.asarray(case.sensors).reshape(-1, 3)
-    names = case.sensor_names
+    of: Any = case if result is None else CaseFile.from_text(result.case_text, "case.toml")
+    cilium, load = of.cilium, of.loads[-1]
+    sensors = np.asarray(of.sensors).reshape(-1, 3)
+    names = of.sensor_names
     azimuth = load.parameters.get("azimuth", 0.0)
     with style():
         figure = Figure(figsize=(6.4, 3.5), layout="constrained")
@@ -48,7 +48,7 @@ def setup(case: Result | Any) -> Figure:
 
 
 def _draw_side(
-    axes: Axes, cilium: Any, load: Any, sensors: np.ndarray, names: list[str], azimuth: float
+    axes: Axes, cilium: Any, load: Any, sensors: Array, names: list[str], azimuth: float
 ) -> None:
     d, length = 1e3 * cilium.extent(azimuth), 1e3 * cilium.length
     z = 0.0
@@ -127,7 +127,7 @@ def _draw_load(axes: Axes, cilium: Any, load: Any, d: float) -> None:
                   color=_LOAD, fontsize=7.5)
 
 
-def _draw_environment(axes: Axes, load: Any, along: np.ndarray, length: float) -> None:
+def _draw_environment(axes: Axes, load: Any, along: Array, length: float) -> None:
     """Gravity and uniform field by their directions in the plane of the load."""
     around = load.environment
     rows = [
@@ -167,14 +167,14 @@ def _draw_bent(axes: Axes, result: Result, azimuth: float) -> None:
 
 
 def _draw_above(
-    axes: Axes, cilium: Any, load: Any, sensors: np.ndarray, names: list[str], azimuth: float
+    axes: Axes, cilium: Any, load: Any, sensors: Array, names: list[str], azimuth: float
 ) -> None:
     look = {"facecolor": SEGMENTS[0], "edgecolor": "0.3", "linewidth": 0.8}
     if cilium.sides:
         width, height = 1e3 * np.array(cilium.sides)
         d = max(width, height)
-        at = {"angle": np.degrees(cilium.orientation), "rotation_point": "center"}
-        axes.add_patch(Rectangle((-width / 2, -height / 2), width, height, **at, **look))
+        turn = {"angle": np.degrees(cilium.orientation), "rotation_point": "center"}
+        axes.add_patch(Rectangle((-width / 2, -height / 2), width, height, **turn, **look))
     else:
         d = 1e3 * cilium.diameter
         axes.add_patch(Circle((0, 0), d / 2, **look))

@@ -37,7 +37,7 @@ def unit_of(parameter: dict[str, Any]) -> Unit:
 
 def label_of(parameter: dict[str, Any]) -> str:
     unit = unit_of(parameter).name
-    return f"{parameter['name']} in {unit}" if unit else parameter["name"]
+    return f"{parameter['name']} in {unit}" if unit else str(parameter["name"])
 
 
 @dataclass
@@ -78,10 +78,10 @@ def curves(study: dict[str, Any], output: str) -> Figure:
         names = best_first(study["pairs"])
         for pair in names:
             for n, family in enumerate(some):
-                points = sorted(family.points, key=lambda p: p["parameters"][x["path"]])
+                points = sorted(family.points, key=lambda p: float(p["parameters"][x["path"]]))
                 at = np.array([p["parameters"][x["path"]] for p in points]) / size
                 values = np.array([_value(p["pairs"][pair].get(output)) for p in points])
-                looks = {**look(pair), "linestyle": dashes(pair, names)}
+                looks: dict[str, Any] = {**look(pair), "linestyle": dashes(pair, names)}
                 label = pair
                 if len(some) > 1:  # a shade for each family, the line tells the field model
                     looks["alpha"] = 1 - 0.75 * n / len(some)
@@ -90,8 +90,7 @@ def curves(study: dict[str, Any], output: str) -> Figure:
                 if len(points) > 25:
                     looks["marker"] = ""
                 axes.plot(at, values / unit.size, label=label, markersize=3, linewidth=1.2, **looks)
-                lost = [p["pairs"][pair]["status"] != "converged" for p in points]
-                lost = np.array(lost) & np.isnan(values)
+                lost = np.array([p["pairs"][pair]["status"] != "converged" for p in points]) & np.isnan(values)
                 foot = {"transform": axes.get_xaxis_transform(), "clip_on": False}
                 if lost.any():
                     axes.plot(at[lost], 0 * at[lost], "x", color=looks["color"], ms=4, **foot)
@@ -111,7 +110,7 @@ def tornado(study: dict[str, Any], pair: str, output: str) -> Figure:
     tolerances = study["tolerances"]
     entry = tolerances["pairs"][pair][output]
     unit = shown(next(o["unit"] for o in study["outputs"] if o["id"] == output))
-    bars = [
+    bars: list[tuple[str, float]] = [
         (n["path"], slope * n["deviation"] / unit.size)
         for n, slope in zip(tolerances["numbers"], entry["slopes"])
         if slope is not None
@@ -130,7 +129,7 @@ def tornado(study: dict[str, Any], pair: str, output: str) -> Figure:
                           va="center", fontsize=7)
         axes.set_yticks(range(len(names)), [name.removeprefix("cilium.") for name in names])
         axes.tick_params(axis="y", labelsize=7.5, length=0)
-        reach = 1.25 * max(map(abs, sizes))
+        reach = 1.25 * max(abs(size) for size in sizes)
         axes.set_xlim(-reach, reach)
         axes.set_xlabel(f"change of {symbol(output)} in {unit.name}, {pair}")
         return figure
@@ -175,7 +174,7 @@ def largest(study: dict[str, Any], output: str) -> Iterable[str]:
         known = [p for p in study["points"] if p["pairs"][pair].get(output) is not None]
         if not known:
             continue
-        best = max(known, key=lambda p: abs(p["pairs"][pair][output]))
+        best = max(known, key=lambda p: float(abs(p["pairs"][pair][output])))
         at = []
         for p in study["parameters"]:
             value = number(best["parameters"][p["path"]], unit_of(p).size)

@@ -34,7 +34,8 @@ _STYLE = {
 
 def style() -> AbstractContextManager[None]:
     """The settings of matplotlib in which a figure is made."""
-    return matplotlib.rc_context(_STYLE)
+    settings: AbstractContextManager[None] = matplotlib.rc_context(_STYLE)
+    return settings
 
 
 @cache

@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..arrays import Array
 from ..results import Result, ValidationSeries
 from ..units import number, shown
 from .case import abscissa
@@ -69,7 +73,9 @@ def validation(result: Result, which: int = 0) -> Figure:
         return figure
 
 
-def _curve(axes, series: ValidationSeries, load, size: float, label: str, looks: dict) -> None:
+def _curve(
+    axes: Axes, series: ValidationSeries, load: Array, size: float, label: str, looks: dict[str, Any]
+) -> None:
     """The model's values in the order of the load, with the band of its uncertainties."""
     x = load[[p.step for p in series.points]]
     y, u_num, u_input = _columns(series, "simulated", "u_num", "u_input")
@@ -80,6 +86,6 @@ def _curve(axes, series: ValidationSeries, load, size: float, label: str, looks:
         axes.fill_between(x, y - 2 * u, y + 2 * u, color=looks["color"], alpha=0.2, linewidth=0)
 
 
-def _columns(series: ValidationSeries, *names: str) -> list[np.ndarray]:
+def _columns(series: ValidationSeries, *names: str) -> list[Array]:
     """Numbers of the points, NaN for None."""
     return [np.array([getattr(p, name) for p in series.points], dtype=float) for name in names]

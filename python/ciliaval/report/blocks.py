@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import base64
 import io
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Union
+from typing import Any, Union
 
 from matplotlib.figure import Figure as Drawing
 
@@ -46,7 +46,7 @@ class Table:
 
     caption: str
     head: list[str]
-    rows: list[list[Union[str, Cell]]] = field(default_factory=list)
+    rows: list[Sequence[Union[str, Cell]]] = field(default_factory=list)
 
 
 @dataclass
@@ -81,7 +81,7 @@ class Details:
     """Blocks that open on a click."""
 
     title: str
-    blocks: list["Block"]
+    blocks: Sequence["Block"]
 
 
 @dataclass
@@ -103,7 +103,7 @@ class View:
 
     title: str
     caption: str
-    data: dict
+    data: dict[str, Any]
 
 
 Block = Union[Text, Items, Table, Images, Opening, Details, Code, Heading, View, "Fault"]
@@ -147,7 +147,7 @@ def guarded(what: str, make: Callable[[], list[Block]]) -> list[Block]:
         return [Fault(f"{what}: cannot be shown: {text_of(error)}")]
 
 
-def faults(blocks: list[Block]) -> Iterator[str]:
+def faults(blocks: Sequence[Block]) -> Iterator[str]:
     """What of these blocks is missing, and why."""
     for block in blocks:
         if isinstance(block, Fault):

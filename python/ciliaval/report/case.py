@@ -96,7 +96,7 @@ def _figures(result: Result) -> list[Image]:
             title = {"centreline": "Differences of shapes", "dB": "Differences of signals"}[name]
             caption = f"{text}, load step {step + 1}; the reference leaves out less, it is not the truth. "
             caption += "Grey: below the numerical error, or that is not known."
-            drawn.append(image(title, caption, lambda: plot.pairs(result, name, step)))
+            drawn.append(image(title, caption, lambda: plot.pairs(result, name, step or 0)))
     return drawn
 
 

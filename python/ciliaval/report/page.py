@@ -6,7 +6,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Union
@@ -75,15 +75,15 @@ def results_page(folder: Path, made_by: str) -> Page:
             damaged.append(str(error))
     order = list(_PARTS)
     found.sort(key=lambda entry: order.index(_kind(entry[1])))
-    sections, shown, rows = [], [], []
+    sections, shown = [], []
+    rows: list[Sequence[str | Cell]] = []
     for n, (file, data) in enumerate(found):
         name = re.sub(r"[^a-z0-9]+", "-", str(file.relative_to(folder)).lower())
         try:
             section = Section(f"part-{n}-{name}", _title(data), _blocks(data, file))
             if isinstance(data, Result):
                 steps, models, *values = case_row(data)
-                row = [Cell(data.name, link=section.id), steps, Cell(models, "text"), *values]
-                rows.append(row)
+                rows.append([Cell(data.name, link=section.id), steps, Cell(models, "text"), *values])
         except FileError as error:
             damaged.append(str(error))
             continue
@@ -156,7 +156,7 @@ def _json_files(folder: Path) -> Iterator[Path]:
             yield path
 
 
-def _overview(rows: list[list[str | Cell]]) -> Section:
+def _overview(rows: list[Sequence[str | Cell]]) -> Section:
     head = ["case", "load steps", "bending", "tip moves aside", "|ΔB| at the first sensor"]
     text = "The cases; tip and |ΔB| at the last step by the model that leaves out least"
     return Section("overview", "What was run", [Table(text, head, rows)])

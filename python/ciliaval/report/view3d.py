@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ..arrays import Array
 from ..files import content
 from ..plot.style import SEGMENTS, best_first
 from ..results import Result
@@ -117,7 +118,7 @@ def _picture(grid: dict[str, Any], load: dict[str, Any]) -> dict[str, Any]:
             if abs(d) > 1e-9
         ]
         ends.append(sign * min(reach))
-    along = np.linspace(*ends, _PIXELS)
+    along = np.linspace(ends[0], ends[1], _PIXELS)
     z = np.linspace(low[2], high[2], _PIXELS)
     points = np.stack(np.broadcast_arrays(c * along[None, :], s * along[None, :], z[:, None]), -1)
     norm = np.linalg.norm(field, axis=3)
@@ -125,7 +126,7 @@ def _picture(grid: dict[str, Any], load: dict[str, Any]) -> dict[str, Any]:
     return {"values": values, "window": [float(v) for v in (*ends, low[2], high[2])]}
 
 
-def _trilinear(values: np.ndarray, at: np.ndarray) -> np.ndarray:
+def _trilinear(values: Array, at: Array) -> Array:
     """values[z, y, x] at positions (…, 3) in cells."""
     most = np.array(values.shape[::-1]) - 2
     cell = np.clip(np.floor(at).astype(int), 0, most)

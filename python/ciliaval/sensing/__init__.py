@@ -5,6 +5,7 @@ docs/guide/sensing.md, docs/theory/signal.md.
 """
 
 import importlib
+from typing import Any
 
 # Name -> the module that has it, imported when it is first asked for: a command waits for what it needs alone.
 _HOMES = {
@@ -20,7 +21,7 @@ _HOMES = {
 __all__ = list(_HOMES)
 
 
-def __getattr__(name: str):
+def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'ciliaval.sensing' has no attribute {name!r}")
     value = getattr(importlib.import_module("." + _HOMES[name], __name__), name)

@@ -53,14 +53,14 @@ def main() -> int:
         )
     case = case_of(options.case)
     inputs = [options.case, *case._core.files, options.readings, options.background]
-    if options.fit:
+    if options.fit is not None:
         return _calibrate(case, options, inputs, provenance, progress)
     outputs = Outputs(options, inputs)
     of = _surface if case.loads[0].type == "sweep" else _loads
     result, text, code = of(case, options, progress)
     progress.clear()
     write_out(text)
-    outputs.write(lambda: result.json(provenance), result.csv)
+    outputs.write(lambda: dict(result.json(provenance)), result.csv)
     return code
 
 

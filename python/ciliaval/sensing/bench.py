@@ -15,11 +15,12 @@ import numpy as np
 from scipy import special
 
 from .. import _core
+from ..arrays import Array
 from ..errors import InputError, SolverError
 from ..files import content
 from ..model import Case
 from ..units import shown
-from .inversion import LinearFit, invert, wrapped
+from .inversion import Chips, LinearFit, invert, wrapped
 from .response import Pair, Progress, Response, require_load_to_sense, shapes_up_to, shapes_within
 from .loads import BEYOND_THE_LARGEST, FlowLaw
 
@@ -48,7 +49,7 @@ class Bench:
     quantum: float = 0.0  # one digit of the sensor, T; 0: none
     sensor_position: float = 0.0  # standard deviation of each of its coordinates, m
     stage_azimuth: float = 0.0  # of the angle between stage and load, rad
-    ambient: np.ndarray = field(default_factory=lambda: np.zeros(3))  # the earth's field at the azimuth 0, T
+    ambient: Array = field(default_factory=lambda: np.zeros(3))  # the earth's field at the azimuth 0, T
 
 
 def read_bench(file: Path) -> Bench:
@@ -86,8 +87,8 @@ def read_bench(file: Path) -> Bench:
         if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
             faults.append(f"[bench] {key}: a whole number from {least} to {most}, not {value!r}")
         values[key] = value
-    for key, (unit, most) in _ERRORS.items():
-        values[key] = _quantity(errors.get(key, f"0 {unit}"), unit, 0.0, most, f"[errors] {key}", faults)
+    for key, (unit, largest) in _ERRORS.items():
+        values[key] = _quantity(errors.get(key, f"0 {unit}"), unit, 0.0, largest, f"[errors] {key}", faults)
     ambient = errors.get("ambient", ["0 T"] * 3)
     if not isinstance(ambient, list) or len(ambient) != 3:
         faults.append('[errors] ambient: it has three components, such as ["20 uT", "0 uT", "-43 uT"]')
@@ -132,6 +133,8 @@ def _case(bench: Mapping[str, Any], file: Path, faults: list[str]) -> Case | Non
         if case.loads[0].type == "sweep":
             raise InputError("it is a sweep, and a bench has loads with a magnitude")
         require_load_to_sense(case)
+        if not Chips.of(case).is_plain:
+            raise InputError("a bench reads along the case's axes: leave axes, rotation, gain and components out")
         if min(load.magnitude for load in case.loads) <= 0:
             raise InputError("the case has a load that is zero")
     except InputError as error:
@@ -171,18 +174,18 @@ class BenchResult:
 
     rows: list[tuple[str, BenchErrors, BenchErrors]]
     by_magnitude: list[BenchErrors]
-    truth: np.ndarray
-    found: np.ndarray
+    truth: Array
+    found: Array
     fit: LinearFit
     roundness: list[float]
 
 
 @dataclass(frozen=True)
 class _Readings:
-    magnitude: np.ndarray  # (n,) index in the load path
-    draw: np.ndarray  # (n,)
-    truth: np.ndarray  # (n, 2)
-    change: np.ndarray  # (n, s, 3): dB from the readings, without offsets
+    magnitude: Array  # (n,) index in the load path
+    draw: Array  # (n,)
+    truth: Array  # (n, 2)
+    change: Array  # (n, s, 3): dB from the readings, without offsets
 
 
 class Simulation:
@@ -211,7 +214,7 @@ class Simulation:
         """The sizes of the errors of one simulation: those of the bench, or zero where they are left out."""
         bench, everything = self.bench, source == "all"
         ambient = everything or source == "ambient field"
-        sizes = {
+        sizes: dict[str, Any] = {
             "noise": bench.noise if everything or source == "noise" else 0.0,
             "background_noise": bench.noise if ambient else 0.0,
             "quantum": bench.quantum if everything or source == "digits" else 0.0,
@@ -245,7 +248,7 @@ class Simulation:
             np.concatenate(parts),
         )
 
-    def _draw(self, errors: Mapping[str, Any], draw: int) -> np.ndarray:
+    def _draw(self, errors: Mapping[str, Any], draw: int) -> Array:
         """dB of one draw's sensors, (azimuths x loads, s, 3), T."""
         bench, case = self.bench, self.bench.case
         # The same random numbers in every simulation, whatever the size of its errors.
@@ -258,9 +261,9 @@ class Simulation:
             pair = bench.truth if errors["models"] else bench.models
             truth = Response(case, pair.field, shapes, sensors)
 
-        def read(B: np.ndarray, noise: float) -> np.ndarray:
+        def read(B: Array, noise: float) -> Array:
             B = B + noise * random.standard_normal(B.shape)
-            return np.round(B / errors["quantum"]) * errors["quantum"] if errors["quantum"] > 0 else B
+            return np.asarray(np.round(B / errors["quantum"]) * errors["quantum"] if errors["quantum"] > 0 else B)
 
         angle = 2 * np.pi * np.arange(bench.azimuths) / bench.azimuths
         cos, sin = np.cos(angle), np.sin(angle)
@@ -273,7 +276,7 @@ class Simulation:
         loads = self.magnitudes[None, :, None] * np.stack([np.cos(at), np.sin(at)], axis=-1)[:, None, :]
         change = truth.change(loads.reshape(-1, 2)).reshape(bench.azimuths, -1, truth.sensors, 3)
         B = read(ambient[:, None] + truth.undeformed + change, errors["noise"])
-        return (B - background[:, None] - offset).reshape(-1, truth.sensors, 3)
+        return np.asarray((B - background[:, None] - offset).reshape(-1, truth.sensors, 3))
 
 
 def run_bench(bench: Bench, progress: Progress | None = None) -> BenchResult:
@@ -300,12 +303,12 @@ def run_bench(bench: Bench, progress: Progress | None = None) -> BenchResult:
     return BenchResult(rows, by_magnitude, read.truth[first], sensed.load[first], simulation.fit, roundness)
 
 
-def _errors(read: _Readings, found: np.ndarray, flow: FlowLaw | None) -> BenchErrors:
+def _errors(read: _Readings, found: Array, flow: FlowLaw | None) -> BenchErrors:
     size, true = np.hypot(*found.T), np.hypot(*read.truth.T)
     speed = flow.velocity(size) - flow.velocity(true) if flow else np.zeros(len(size))
     angle = wrapped(np.arctan2(found[:, 1], found[:, 0]) - np.arctan2(read.truth[:, 1], read.truth[:, 0]))
 
-    def rms(values: np.ndarray) -> float:
+    def rms(values: Array) -> float:
         return float(np.sqrt((values**2).mean()))
 
     draws = int(read.draw.max()) + 1

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from scipy import optimize, special
 
 from .. import _core
+from ..arrays import Array
 from ..errors import InputError, SolverError
 from ..model import Case
 from ..units import shown
@@ -40,7 +41,8 @@ _OF_SENSOR = {
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that is fitted. path: of the case; of a sensor its member, with the sensor's number."""
+    """A number that is fitted. path: of the case; of a sensor its member, with the sensor's number. is_ratio: it keeps
+    its sign, and is fitted as start exp(x step/start)."""
 
     path: str
     name: str
@@ -48,6 +50,18 @@ class Parameter:
     start: float
     step: float
     sensor: int | None = None
+
+    @property
+    def is_ratio(self) -> bool:
+        return self.start > 0 and (self.sensor is None or self.path == "gain")
+
+    def value(self, x: float) -> float:
+        """At so many steps from the start."""
+        return self.start * math.exp(self.step / self.start * x) if self.is_ratio else self.start + self.step * x
+
+    def slope(self, value: float) -> float:
+        """Of the value by x."""
+        return self.step * value / self.start if self.is_ratio else self.step
 
 
 @dataclass(frozen=True)
@@ -61,16 +75,16 @@ class Calibration:
     """
 
     parameters: list[Parameter]
-    values: np.ndarray
-    deviations: np.ndarray
-    correlation: np.ndarray
+    values: Array
+    deviations: Array
+    correlation: Array
     chi_squared: float
     freedom: int
     together: list[list[str]]
     case: Case
     pair: Pair
     noise: float
-    residuals: np.ndarray
+    residuals: Array
     remarks: list[str]
 
     @property
@@ -163,7 +177,7 @@ def calibrate(
     >>> from ciliaval.sensing import calibrate
     >>> case = cv.Case("cases/paper/fig3d.toml")
     >>> soft = case.changed({"cilium.segment.base.young_modulus": 0.09e6})
-    >>> dB = soft.run().dB("elastica/volume")  # readings of a softer one
+    >>> dB = [shape.dB(case.sensors)[0] for shape in cv.bend(soft.cilium, soft.loads)]  # readings of a softer one
     >>> found = calibrate(case, dB, ["base.young_modulus"], noise=1e-6)
     >>> round(float(found.values[0]))
     90000
@@ -198,23 +212,26 @@ def calibrate_readings(
         raise InputError(f"fit names no number, or one twice: {', '.join(names) or 'none'}")
     fitting = _Fitting(case, read, parameters, pair, noise, progress)
     start = fitting.residual(np.zeros(len(parameters)))
-    freedom = int(Chips.of(case).reads.sum()) * len(read.change) - len(parameters)
-    if freedom < 0:
-        raise InputError(f"{len(parameters)} numbers cannot be found from {freedom + len(parameters)} components of dB")
+    data = int(Chips.of(case).reads.sum()) * len(read.change)
+    if data < len(parameters):
+        raise InputError(f"{len(parameters)} numbers cannot be found from {data} components of dB")
     if not np.isfinite(start).all():
         raise SolverError(f"the case as it stands has no shape under all loads: {fitting.failure}")
-    found = optimize.least_squares(fitting.residual, np.zeros(len(parameters)), jac=fitting.jacobian, method="lm", xtol=1e-10, ftol=1e-12)
+    found = optimize.least_squares(
+        fitting.residual, np.zeros(len(parameters)), jac=fitting.jacobian, method="lm", xtol=1e-12, ftol=1e-14
+    )
     if not found.success or not np.isfinite(found.fun).all():
         raise SolverError(f"the fit did not converge: {fitting.failure or found.message}")
     deviations, correlation, together = _known(found.jac, names)
     values = fitting.values(found.x)
     return Calibration(
-        parameters, values, deviations * [p.step for p in parameters], correlation, float(2 * found.cost), freedom, together,
+        parameters, values, deviations * [p.slope(v) for p, v in zip(parameters, values)], correlation, float(2 * found.cost),
+        data - len(parameters) + len(together), together,
         fitting.case(values), pair, noise, fitting.read - fitting.computed(values), read.remarks,
     )  # fmt: skip
 
 
-def _known(J: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray, list[list[str]]]:
+def _known(J: Array, names: Sequence[str]) -> tuple[Array, Array, list[list[str]]]:
     """Deviations and correlations by the normal matrix J^T J, and groups of numbers that it cannot tell apart."""
     size = np.linalg.norm(J, axis=0)
     free = size > 1e-12 * max(size.max(), 1e-300)  # the others change nothing at all
@@ -259,6 +276,9 @@ def parameters_of(case: Case, name: str) -> list[Parameter]:
         what = f"is one of {', '.join(ends)}: say which" if ends else f"is no number of the case{meant}"
         raise InputError(f"fit: `{name}` {what} (sensors have {', '.join(f'sensor.{k}' for k in _OF_SENSOR)})")
     value, unit = numbers[ends[0]]
+    key = ends[0].removeprefix("load.")
+    if key != ends[0] and len({load.parameters.get(key) for load in case.loads}) > 1:
+        raise InputError(f"fit: `{name}` is not the same in all load steps, and one number is fitted for all")
     short = ends[0].removeprefix("cilium.segment.")
     return [Parameter(ends[0], short, unit, value, _PART * abs(value) or _PART)]
 
@@ -272,7 +292,7 @@ def _of_sensor(case: Case, sensor: int, member: str) -> float:
 
 
 class _Fitting:
-    """Computed less read dB as a function of the numbers, (value - start)/step each."""
+    """Computed less read dB as a function of the numbers, in steps from their starts."""
 
     def __init__(
         self, case: Case, read: Readings, parameters: Sequence[Parameter], pair: Pair, noise: float, progress: Progress | None
@@ -288,10 +308,10 @@ class _Fitting:
         squared = float(u @ u)
         self._shared = u, (1 - 1 / math.sqrt(1 + squared)) / squared if squared else 0.0
 
-    def values(self, x: np.ndarray) -> np.ndarray:
-        return np.array([p.start + p.step * value for p, value in zip(self._parameters, x)])
+    def values(self, x: Array) -> Array:
+        return np.array([p.value(float(value)) for p, value in zip(self._parameters, x)])
 
-    def case(self, values: np.ndarray) -> Case:
+    def case(self, values: Array) -> Case:
         """The case with these numbers. Raises InputError where one is out of its range."""
         of_case = {p.path: float(v) for p, v in zip(self._parameters, values) if p.sensor is None}
         changed = self._case.changed(of_case) if of_case else self._case
@@ -300,8 +320,10 @@ class _Fitting:
             return changed
         tables = tomllib.loads(changed.toml())
         named = isinstance(tables["sensor"], list)
-        places, chips = changed.sensors.copy(), [[list(chip[1]), chip[2]] for chip in changed._core.chips]
+        places = changed.sensors.copy()
+        chips: list[list[Any]] = [[list(chip[1]), chip[2]] for chip in changed._core.chips]
         for p, value in of_sensor:
+            assert p.sensor is not None
             kind, _, axis = p.path.partition(".")
             if kind == "position":
                 places[p.sensor, "xyz".index(axis)] = value
@@ -319,7 +341,7 @@ class _Fitting:
                 table["gain"] = chips[s][1]
         return Case.from_dict(tables, str(changed.file or changed.name))
 
-    def computed(self, values: np.ndarray) -> np.ndarray:
+    def computed(self, values: Array) -> Array:
         """dB in the chips' directions, (n, s, 3), T; NaN where there is no shape."""
         self._evaluations += 1
         if self._progress:
@@ -335,12 +357,12 @@ class _Fitting:
             self.failure = str(error)
             return np.full(self.read.shape, np.nan)
         chips = Chips.of(case)
-        return chips.own(B[1:] - B[0]) * chips.gain[:, None]
+        return np.asarray(chips.own(B[1:] - B[0]))
 
-    def residual(self, x: np.ndarray) -> np.ndarray:
+    def residual(self, x: Array) -> Array:
         return self._whitened(self.computed(self.values(x)) - self.read)
 
-    def jacobian(self, x: np.ndarray) -> np.ndarray:
+    def jacobian(self, x: Array) -> Array:
         """By central differences of 1e-3 steps."""
         columns = []
         for i in range(len(x)):
@@ -349,7 +371,7 @@ class _Fitting:
             columns.append((self.residual(x + h) - self.residual(x - h)) / 2e-3)
         return np.stack(columns, axis=1)
 
-    def _whitened(self, off: np.ndarray) -> np.ndarray:
+    def _whitened(self, off: Array) -> Array:
         u, c = self._shared
         own = off.reshape(len(off), -1) * self._own[:, None]
-        return (own - c * np.outer(u, u @ own))[:, self._reads.ravel()].ravel()
+        return np.asarray((own - c * np.outer(u, u @ own))[:, self._reads.ravel()].ravel())

@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from .._core import quantity
 from ..errors import InputError
@@ -113,8 +114,12 @@ def in_quotes(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    """The text without the control characters that a terminal would obey."""
-    return re.sub(r"[\x00-\x1f\x7f-\x9f]", lambda m: "".join(f"\\x{b:02X}" for b in m[0].encode()), text)
+    """The text without the control characters that a terminal would obey, and bytes that are no UTF-8 as \\xFF."""
+    return re.sub(
+        r"[\x00-\x1f\x7f-\x9f\ud800-\udfff]",
+        lambda m: "".join(f"\\x{b:02X}" for b in m[0].encode("utf-8", "surrogateescape")),
+        text,
+    )
 
 
 def cells_of(line: str, separator: str = ",") -> list[Cell]:
@@ -122,7 +127,7 @@ def cells_of(line: str, separator: str = ",") -> list[Cell]:
     one = rf'((?:"(?:[^"]|"")*"?|[^"{separator}])*)(?:[{separator}]|$)'
     if separator == " ":
         one = r'((?:"(?:[^"]|"")*"?|[^" \t])+)'
-    cells = []
+    cells: list[Cell] = []
     for found in re.finditer(one, line):
         if separator != " " and cells and found.start() == len(line) and line[-1] != separator:
             break  # the empty match after the last cell
@@ -141,8 +146,10 @@ def number_in(text: str) -> float | None:
 def split_unit(header: str) -> tuple[str, str | None]:
     """ "x [mm]" or "x (mm)" taken apart. Digits in brackets are no unit."""
     found = re.fullmatch(r"(.*?)[ \t]*(?:\[([^\[\]]*)\]|\(([^()]*)\))", header)
-    unit = found and (found[2] if found[2] is not None else found[3]).strip(" \t")
-    return (header, None) if found is None or unit.isdigit() else (found[1].strip(" \t"), unit)
+    if found is None:
+        return header, None
+    unit = (found[2] if found[2] is not None else found[3]).strip(" \t")
+    return (header, None) if unit.isdigit() else (found[1].strip(" \t"), unit)
 
 
 def units_in(comment: str) -> dict[str, str]:
@@ -215,7 +222,7 @@ def _time_unit(name: str) -> tuple[bool, str | None]:
     return is_time, _UNIT_OF_WORD[units[-1]] if is_time and units else None
 
 
-def _role(name: str, sensors: Sequence[str]) -> dict[str, object]:
+def _role(name: str, sensors: Sequence[str]) -> dict[str, Any]:
     """What a name without a unit says of its column: fields of Column; {} if nothing."""
     for sensor in sensors:
         filler = "[ \t_.:/-]+" if len(sensor) < 2 else "[ \t_.:/-]*"
@@ -243,7 +250,7 @@ def _role(name: str, sensors: Sequence[str]) -> dict[str, object]:
     return {}
 
 
-def _field_role(letters: str) -> dict[str, object]:
+def _field_role(letters: str) -> dict[str, Any]:
     found = _FIELD.fullmatch(letters)
     if found is None or (found["before"] and found["after"]):
         return {}
@@ -287,7 +294,7 @@ def columns_of(cells: Sequence[Cell], sensors: Sequence[str]) -> list[Column]:
     for i, cell in enumerate(cells):
         if (found := _INDEX.search(cell.text)) and not columns[i].kind:
             around = cell.text[: found.start()], cell.text[found.end() :]
-            families.setdefault(around, {})[int(found[found.lastindex])] = i
+            families.setdefault(around, {})[int(found[found.lastindex or 0])] = i
     for (before, after), members in families.items():
         plain = column_of(Cell(before + after, 1), sensors)
         for number, i in members.items():

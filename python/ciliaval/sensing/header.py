@@ -10,9 +10,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import InputError
 from .columns import (
-    MOST_CELLS, Cell, Column, Faults, Option, cells_of, column_of, columns_of, flux_density_unit, in_quotes, lsb_scale,
+    MOST_CELLS, Cell, Column, Faults, Option, cells_of, column_of, columns_of, flux_density_unit, in_quotes, is_unit,
+    lsb_scale,
     number_in, split_unit, units_in, without_brackets,
 )  # fmt: skip
 from .times import time_form
@@ -45,7 +47,7 @@ class Header:
     fields: list[tuple[int, int, int]] = field(default_factory=list)
     is_change: bool = False
     is_wide: bool = False
-    reads: np.ndarray = field(default_factory=lambda: np.ones((1, 3), dtype=bool))
+    reads: Array = field(default_factory=lambda: np.ones((1, 3), dtype=bool))
     needs: tuple[str, ...] = ()
 
     def one(self, kind: str) -> int | None:
@@ -118,6 +120,10 @@ def choose_columns(
     for kind in header.needs:
         if header.one(kind) is None:
             faults.add(f"there is no column '{kind}' (columns: {header.names()})", header.line)
+        for column in header.columns:
+            if column.kind == kind and column.unit is not None and not is_unit(column.unit, kind):
+                what = f"the column {in_quotes(column.header)} is in {column.unit}: write it in K or degC"
+                faults.add(what, header.line, column.place)
     _choose_fields(header, sensors, faults)
 
 
@@ -272,14 +278,16 @@ def find_factors(
                         *other[2:],
                     )
                     break
-            if factor is None and scales is None:
+            if factor is not None:
+                factors[-1] = factor
+            elif scales is None:
                 faults.add(
                     f"the column {in_quotes(column.header)} is in {in_quotes(first)}: state the flux density of one, "
                     'from the sensor\'s data sheet: --scale "0.15 uT" or --scale "6842 LSB/G"',
                     line, place,
                 )  # fmt: skip
             else:
-                factors[-1] = scales[axis] if factor is None else factor
+                factors[-1] = scales[axis]
         except InputError as fault:
             faults.add(f"the column '{column.name}': {fault}", line, place)
     if without:
@@ -321,6 +329,8 @@ def find_header(text: str, sensors: Sequence[str], entries: Sequence[MapEntry], 
             units = stated | units
             continue
         header = _header_in(line, number, text, end, sensors, entries)
+        if header and labview and (stated_unit := re.search(r"^Y_Unit_Label[\t,;]+([^\t,;\n]+)", text, re.MULTILINE)):
+            units = {column.name: stated_unit[1] for column in header.columns if column.is_field} | units
         if header is None and _is_row(line, in_comment):
             header = in_comment or _by_numbers(line, entries)
             if header is None:

@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from scipy import special
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model import Case
 from .response import Response
@@ -20,7 +24,7 @@ _COMPONENTS = 2  # of a load
 _MOST_STEPS = 200
 _CHUNK = 10_000  # readings at once: what they need stays in the cache
 
-STATUSES = ("found", "nothing", "beyond range", "misfit", "failed")
+STATUSES = ("found", "nothing", "ambiguous", "beyond range", "misfit", "failed")
 
 
 @dataclass(frozen=True)
@@ -32,45 +36,49 @@ class SensedLoads:
     read less 2.
     misfit_probability: of a larger one by noise alone. nothing_probability: of a larger
     chi_squared(0) - chi_squared by noise alone, without a load. is_beyond: the load is larger than the
-    largest computed. converged: (n,).
+    largest computed. is_ambiguous: another load explains the reading as well, within chi squared of 3.84; it is
+    looked for where a chip does not read all components. converged: (n,).
     """
 
-    load: np.ndarray
-    covariance: np.ndarray
-    chi_squared: np.ndarray
-    misfit_probability: np.ndarray
-    nothing_probability: np.ndarray
-    is_beyond: np.ndarray
-    converged: np.ndarray
+    load: Array
+    covariance: Array
+    chi_squared: Array
+    misfit_probability: Array
+    nothing_probability: Array
+    is_beyond: Array
+    converged: Array
+    is_ambiguous: Array
 
     @property
-    def magnitude(self) -> np.ndarray:
-        return np.hypot(*self.load.T)
+    def magnitude(self) -> Array:
+        return np.asarray(np.hypot(*self.load.T))
 
     @property
-    def azimuth(self) -> np.ndarray:
+    def azimuth(self) -> Array:
         """rad, (-pi, pi]."""
         return np.arctan2(self.load[:, 1], self.load[:, 0])
 
     @property
-    def is_nothing(self) -> np.ndarray:
+    def is_nothing(self) -> Array:
         """No load is seen: the region of 95 % of the load holds zero. The decrease of chi squared from
         no load to the load found has as many degrees of freedom as the load has components; beyond 5.99
         with two. (1.96 standard deviations of one component are passed by noise in 15 % of the readings.)"""
         return ~(self.nothing_probability < 0.05)
 
     @property
-    def magnitude_interval(self) -> np.ndarray:
+    def magnitude_interval(self) -> Array:
         """Half-widths of the intervals that hold the magnitude with 95 %, to first order: 1.96 standard
         deviations along the load; where none is seen they hold zero too."""
         magnitude = self.magnitude
         along = self.load / np.where(magnitude > 0, magnitude, 1)[:, None]
         along[magnitude == 0] = [1, 0]
-        width = TWO_SIDED_95 * np.sqrt(np.einsum("ni,nij,nj->n", along, self.covariance, along))
+        with np.errstate(invalid="ignore"):
+            width = TWO_SIDED_95 * np.sqrt(np.einsum("ni,nij,nj->n", along, self.covariance, along))
+        width = np.where(np.isfinite(self.covariance).all(axis=(1, 2)), width, np.inf)
         return np.where(self.is_nothing, np.maximum(width, magnitude), width)
 
     @property
-    def azimuth_interval(self) -> np.ndarray:
+    def azimuth_interval(self) -> Array:
         """Half-widths of the same of the azimuth, rad; pi: not known.
 
         A direction is in the interval if a load along it is within chi squared of 3.84 of the one
@@ -94,11 +102,13 @@ class SensedLoads:
         return result
 
     @property
-    def status(self) -> np.ndarray:
-        """Of each: "found", "nothing" (is_nothing), "misfit" (no load explains the reading: noise alone
+    def status(self) -> Array:
+        """Of each: "found", "nothing" (is_nothing), "ambiguous", "misfit" (no load explains the reading: noise alone
         does so once in a thousand times), "beyond range", "failed" (the least squares did not converge)."""
-        conditions = [~self.converged, self.is_beyond, self.misfit_probability < UNLIKELY, self.is_nothing]
-        return np.select(conditions, ["failed", "beyond range", "misfit", "nothing"], "found")
+        conditions = [
+            ~self.converged, self.is_beyond, self.misfit_probability < UNLIKELY, self.is_nothing, self.is_ambiguous,
+        ]  # fmt: skip
+        return np.select(conditions, ["failed", "beyond range", "misfit", "nothing", "ambiguous"], "found")
 
 
 @dataclass(frozen=True)
@@ -106,9 +116,9 @@ class Chips:
     """How the sensors' chips sit: axes (s, 3, 3), whose columns are where the chip's own x, y, z point in the case;
     reads (s, 3), which of them it reads. gain (s,): what it reads over what there is."""
 
-    axes: np.ndarray
-    reads: np.ndarray
-    gain: np.ndarray
+    axes: Array
+    reads: Array
+    gain: Array
 
     @staticmethod
     def of(case: Case) -> Chips:
@@ -121,26 +131,32 @@ class Chips:
             gains.append(gain)
         return Chips(np.array(axes), np.array(reads), np.array(gains))
 
-    def in_case(self, B: np.ndarray) -> np.ndarray:
+    def in_case(self, B: Array) -> Array:
         """Of the chips' own components (…, s, 3) those in the case's directions; what a chip does not read is 0."""
         own = np.where(self.reads, B, 0.0) / self.gain[:, None]
-        return np.einsum("sij,...sj->...si", self.axes, own)
+        return np.asarray(np.einsum("sij,...sj->...si", self.axes, own))
 
-    def own(self, B: np.ndarray) -> np.ndarray:
+    @property
+    def is_plain(self) -> bool:
+        """Whether they read all components in the case's directions, as they are."""
+        return bool(self.reads.all() and (self.axes == np.eye(3)).all() and (self.gain == 1).all())
+
+    def own(self, B: Array) -> Array:
         """The other way round, 0 for what a chip does not read."""
-        return np.where(self.reads, np.einsum("sij,...si->...sj", self.axes, B), 0.0)
+        own = np.einsum("sij,...si->...sj", self.axes, B) * self.gain[:, None]
+        return np.where(self.reads, own, 0.0)
 
 
-def turned_about(angles: npt.ArrayLike) -> np.ndarray:
+def turned_about(angles: npt.ArrayLike) -> Array:
     """The rotation about x, then y, then z, by three angles, rad: R = R_z R_y R_x."""
     (a, b, c), (sa, sb, sc) = np.cos(angles), np.sin(angles)
     x = np.array([[1, 0, 0], [0, a, -sa], [0, sa, a]])
     y = np.array([[b, 0, sb], [0, 1, 0], [-sb, 0, b]])
     z = np.array([[c, -sc, 0], [sc, c, 0], [0, 0, 1]])
-    return z @ y @ x
+    return np.asarray(z @ y @ x)
 
 
-def wrapped(angle: np.ndarray) -> np.ndarray:
+def wrapped(angle: Array) -> Array:
     """Angles within (-pi, pi]."""
     return -(np.remainder(-np.asarray(angle) + np.pi, 2 * np.pi) - np.pi)
 
@@ -150,7 +166,7 @@ def invert(
     change: npt.ArrayLike,
     noise: npt.ArrayLike,
     variance: npt.ArrayLike = 1.0,
-    common: np.ndarray | None = None,
+    common: Array | None = None,
     chips: Chips | None = None,
 ) -> SensedLoads:
     """The loads whose dB is nearest to readings: the least squares weighted by the noise, by the method of
@@ -167,7 +183,7 @@ def invert(
 
     >>> import ciliaval as cv, numpy as np
     >>> from ciliaval.sensing import Response, invert, shapes_within
-    >>> case = cv.Case("cases/paper/fig3e.toml")
+    >>> case = cv.Case("cases/paper/fig3d.toml")
     >>> response = Response(case, "volume", shapes_within(case, "elastica", 2e-3), case.sensors)
     >>> bool(np.allclose(invert(response, response.change([[1e-3, 5e-4]]), 1e-6).load, [[1e-3, 5e-4]]))
     True
@@ -182,65 +198,90 @@ def invert(
         raise InputError("the noise of a reading must be finite and positive")
     if chips is not None and chips.reads.sum() < _COMPONENTS:
         raise InputError("a load has two components: one that a sensor reads does not tell them")
-    variance = np.broadcast_to(np.asarray(variance, dtype=float), len(change))
-    parts = [_nothing_read()] if not len(change) else []
-    for start in range(0, len(change), _CHUNK):
+    dB, sigma, over = change, noise, np.broadcast_to(np.asarray(variance, dtype=float), len(change))
+
+    def part(start: int) -> tuple[Array, ...]:
         rows = slice(start, start + _CHUNK)
-        whitened = _Whitening(noise, variance[rows], None if common is None else common[rows], chips)
-        parts.append(_invert(response, change[rows], whitened))
+        whitened = _Whitening(sigma, over[rows], None if common is None else common[rows], chips)
+        return _both(response, dB[rows], whitened)
+
+    with ThreadPoolExecutor(os.cpu_count()) as threads:  # NumPy lets them run side by side
+        parts = [_nothing_read(), *threads.map(part, range(0, len(change), _CHUNK))]
     return SensedLoads(*(np.concatenate(arrays) for arrays in zip(*parts)))
 
 
-def _nothing_read() -> tuple[np.ndarray, ...]:
+def _nothing_read() -> tuple[Array, ...]:
     none = np.zeros(0)
-    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, none.astype(bool), none.astype(bool)
+    no = none.astype(bool)
+    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, no, no, no
 
 
 class _Whitening:
     """V^-1/2 of readings: values times it have the covariance 1."""
 
-    def __init__(self, noise: np.ndarray, variance: np.ndarray, common: np.ndarray | None, chips: Chips | None):
+    def __init__(self, noise: Array, variance: Array, common: Array | None, chips: Chips | None):
         self._weights = 1 / noise
-        self.chips = chips
+        self.chips = None if chips is None or chips.is_plain else chips
         self._scale = 1 / np.sqrt(variance)
         self._factor = None
         if common is not None:
-            sensors = common.shape[-1]
-            self._factor = np.linalg.inv(np.linalg.cholesky(common + variance[:, None, None] * np.eye(sensors)))
+            V = common + variance[:, None, None] * np.eye(common.shape[-1])
+            if self.chips is not None and not self.chips.reads.all():
+                # Of each component over the sensors that read it; a number of the others is 0 whatever it is divided by.
+                reads = self.chips.reads.T
+                V = np.where(reads[:, :, None] & reads[:, None, :], V[:, None], np.eye(common.shape[-1]))
+            else:
+                V = V[:, None]
+            self._factor = np.linalg.inv(np.linalg.cholesky(V))  # (n, 3 or 1, s, s)
 
-    def rows(self, chosen: np.ndarray) -> _Whitening:
+    def rows(self, chosen: Array) -> _Whitening:
         part = object.__new__(_Whitening)
         part._weights, part._scale, part.chips = self._weights, self._scale[chosen], self.chips
         part._factor = None if self._factor is None else self._factor[chosen]
         return part
 
-    def _weighted(self, values: np.ndarray) -> np.ndarray:
-        return (values if self.chips is None else self.chips.own(values)) * self._weights
+    def _weighted(self, values: Array) -> Array:
+        return np.asarray((values if self.chips is None else self.chips.own(values)) * self._weights)
 
-    def __call__(self, values: np.ndarray) -> np.ndarray:
+    def __call__(self, values: Array) -> Array:
         """values: (n, …, s, 3), of each reading, with any axes between."""
         weighted = self._weighted(values)
         if self._factor is None:
-            return weighted * self._scale.reshape(-1, *[1] * (values.ndim - 1))
-        return np.einsum("nst,n...tc->n...sc", self._factor, weighted)
+            return np.asarray(weighted * self._scale.reshape(-1, *[1] * (values.ndim - 1)))
+        factor = np.broadcast_to(self._factor, (len(self._factor), 3, *self._factor.shape[2:]))
+        return np.asarray(np.einsum("ncst,n...tc->n...sc", factor, weighted))
 
-    def squares(self, known: np.ndarray, read: np.ndarray) -> np.ndarray:
+    def squares(self, known: Array, read: Array) -> Array:
         """|V^-1/2 (known - read)|^2 of each reading (n, s, 3) and known value (l, s, 3), less a number of
         each reading: (n, l)."""
         known, read = self._weighted(known), self._weighted(read)
         if self._factor is None:
             own = np.einsum("lsc,lsc->l", known, known)
         else:
-            metric = np.einsum("nrs,nrt->nst", self._factor, self._factor)
-            products = np.einsum("lsc,ltc->lst", known, known)
+            factor = np.broadcast_to(self._factor, (len(read), 3, *self._factor.shape[2:]))
+            metric = np.einsum("ncrs,ncrt->ncst", factor, factor)
+            products = np.einsum("lsc,ltc->lcst", known, known)
             own = metric.reshape(len(read), -1) @ products.reshape(len(known), -1).T
-            read = np.einsum("nst,ntc->nsc", metric, read)
-        return own - 2 * read.reshape(len(read), -1) @ known.reshape(len(known), -1).T
+            read = np.einsum("ncst,ntc->nsc", metric, read)
+        return np.asarray(own - 2 * read.reshape(len(read), -1) @ known.reshape(len(known), -1).T)
 
 
-def _invert(response: Response, change: np.ndarray, whitened: _Whitening) -> tuple[np.ndarray, ...]:
+def _both(response: Response, change: Array, whitened: _Whitening) -> tuple[Array, ...]:
+    """_invert(), and whether another load explains the reading as well; the better one is the first."""
+    first = _invert(response, change, whitened, _starts(response, change, whitened))
+    if whitened.chips is None or whitened.chips.reads.all():
+        return *first, np.zeros(len(change), dtype=bool)
+    second = _invert(response, change, whitened, _starts(response, change, whitened, first[0]))
+    better = second[6] & (second[2] < first[2])
+    best = [np.where(better.reshape(-1, *[1] * (a.ndim - 1)), b, a) for a, b in zip(first, second)]
+    apart = np.hypot(*(first[0] - second[0]).T) > 1e-3 * np.hypot(*best[0].T)
+    also = second[6] & first[6] & (np.abs(second[2] - first[2]) <= TWO_SIDED_95**2) & apart
+    return *best, also
+
+
+def _invert(response: Response, change: Array, whitened: _Whitening, starts: Array) -> tuple[Array, ...]:
     n, largest = len(change), response.largest
-    x = _starts(response, change, whitened) / largest
+    x = starts / largest
     converged = np.zeros(n, dtype=bool)
     damping = np.full(n, 1e-3)
     r, J = _misfit(response, x, change, whitened)
@@ -258,8 +299,8 @@ def _invert(response: Response, change: np.ndarray, whitened: _Whitening) -> tup
         better = new <= cost[active]
         size = np.hypot(*step.T)
         # As small as the step is the error that is left; rounding of the cost leaves no smaller one.
-        done = size <= 1e-12 * (np.hypot(*x[active].T) + 1e-3)
-        done |= np.abs(cost[active] - new) <= 1e-15 * cost[active] + 1e-24
+        done = size <= 1e-10 * (np.hypot(*x[active].T) + 1e-3)
+        done |= np.abs(cost[active] - new) <= 1e-11 * cost[active] + 1e-24
         done |= ~better & (size <= 1e-9)
         taken = active[better]
         x[taken], r[taken], J[taken], cost[taken] = tried[better], r_new[better], J_new[better], new[better]
@@ -269,7 +310,7 @@ def _invert(response: Response, change: np.ndarray, whitened: _Whitening) -> tup
     freedom = (3 * response.sensors if whitened.chips is None else int(whitened.chips.reads.sum())) - _COMPONENTS
     load = x * largest
     J = J / largest
-    covariance = np.linalg.inv(np.einsum("nki,nkj->nij", J, J))
+    covariance = _inverse(np.einsum("nki,nkj->nij", J, J))
     without = np.einsum("nk,nk->n", *[whitened(change).reshape(n, -1)] * 2)
     return (
         load,
@@ -282,24 +323,34 @@ def _invert(response: Response, change: np.ndarray, whitened: _Whitening) -> tup
     )
 
 
+def _inverse(A: Array) -> Array:
+    """Of symmetric matrices (n, 2, 2); infinite where they are singular."""
+    a, b, d = A[:, 0, 0], A[:, 0, 1], A[:, 1, 1]
+    determinant = a * d - b * b
+    regular = determinant > 1e-12 * (a + d) ** 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = np.stack([d, -b, -b, a], axis=-1).reshape(-1, 2, 2) / determinant[:, None, None]
+    return np.where(regular[:, None, None], inverse, np.inf)
+
+
 def _misfit(
-    response: Response, x: np.ndarray, change: np.ndarray, whitened: _Whitening
-) -> tuple[np.ndarray, np.ndarray]:
+    response: Response, x: Array, change: Array, whitened: _Whitening
+) -> tuple[Array, Array]:
     """V^-1/2 (dB(p) - reading), (n, 3 s), and its derivative by x, p over the largest load, (n, 3 s, 2)."""
     dB, derivative = response.change_and_derivative(response.largest * x)
     J = whitened(response.largest * np.moveaxis(derivative, -1, 1))
     return whitened(dB - change).reshape(len(x), -1), np.moveaxis(J, 1, -1).reshape(len(x), -1, 2)
 
 
-def _solved(A: np.ndarray, g: np.ndarray, damping: np.ndarray) -> np.ndarray:
+def _solved(A: Array, g: Array, damping: Array) -> Array:
     """(A + damping diag A)^-1 g of each reading."""
     a, d = A[:, 0, 0] * (1 + damping), A[:, 1, 1] * (1 + damping)
     b = A[:, 0, 1]
     determinant = a * d - b * b
-    return np.stack([d * g[:, 0] - b * g[:, 1], a * g[:, 1] - b * g[:, 0]], axis=-1) / determinant[:, None]
+    return np.asarray(np.stack([d * g[:, 0] - b * g[:, 1], a * g[:, 1] - b * g[:, 0]], axis=-1) / determinant[:, None])
 
 
-def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> np.ndarray:
+def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> Array:
     """Loads over the whole range, the zero load first, (n, 2)."""
     size = largest * np.arange(1, magnitudes + 1) / magnitudes
     angle = 2 * np.pi * np.arange(azimuths) / azimuths
@@ -307,11 +358,15 @@ def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> np.nd
     return np.concatenate([np.zeros((1, 2)), (size[:, None, None] * directions).reshape(-1, 2)])
 
 
-def _starts(response: Response, change: np.ndarray, whitened: _Whitening) -> np.ndarray:
-    """Of each reading the nearest of the loads over the range."""
+def _starts(response: Response, change: Array, whitened: _Whitening, avoided: Array | None = None) -> Array:
+    """Of each reading the nearest of the loads over the range; of those that point elsewhere than `avoided` does, by
+    more than 30 degrees."""
     loads = loads_over(response.largest)
-    known = response.change(loads)
-    return loads[whitened.squares(known, change).argmin(axis=1)]
+    squares = whitened.squares(response.change(loads), change)
+    if avoided is not None:
+        size = np.hypot(*avoided.T)[:, None] * np.hypot(*loads.T)
+        squares = np.where(avoided @ loads.T > math.cos(math.radians(30)) * size - 1e-300, np.inf, squares)
+    return np.asarray(loads[squares.argmin(axis=1)])
 
 
 class LinearFit:
@@ -332,6 +387,6 @@ class LinearFit:
         weights = np.tile(1 / np.broadcast_to(np.asarray(noise, dtype=float), 3), response.sensors)
         self._inverse = np.linalg.pinv(weights[:, None] * A.T) * weights
 
-    def __call__(self, change: np.ndarray) -> np.ndarray:
+    def __call__(self, change: Array) -> Array:
         """p, (n, 2), of dB, (n, s, 3)."""
         return change.reshape(len(change), -1) @ self._inverse.T

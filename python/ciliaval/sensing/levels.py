@@ -14,6 +14,7 @@ import numpy as np
 from scipy import special
 
 from .. import _core
+from ..arrays import Array
 from ..errors import InputError, SolverError
 from ..model import Case
 from .inversion import TWO_SIDED_95, UNLIKELY, Chips
@@ -69,14 +70,14 @@ class LevelCurve:
     def largest(self) -> float:
         return float(self.interference[-1])
 
-    def nearest(self, change: np.ndarray) -> dict[str, np.ndarray]:
+    def nearest(self, change: Array) -> dict[str, Array]:
         """Of each reading (n, 3 s) the nearest point of the curve: its interference, m; the distance, T;
         slope |d dB/d delta|, T/m; is_end: it lies beyond the largest interference; other: the distance of
         the nearest point at another interference, where it has a minimum too, or infinity. (n,) each."""
         chunks = [self._nearest(change[i : i + _CHUNK]) for i in range(0, max(len(change), 1), _CHUNK)]
         return {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
 
-    def _nearest(self, change: np.ndarray) -> dict[str, np.ndarray]:
+    def _nearest(self, change: Array) -> dict[str, Array]:
         start, along = self.change[:-1], np.diff(self.change, axis=0)
         length = np.einsum("kc,kc->k", along, along)
         rest = change[:, None, :] - start
@@ -116,9 +117,9 @@ class SensedSurface:
     case: str
     pair: Pair
     noise: float  # T
-    status: np.ndarray  # (n,) of LEVEL, OFF_CURVE, AMBIGUOUS, BEYOND
-    interference: np.ndarray  # (n,), m
-    interval: np.ndarray  # (n,), half-widths of 95 % by the noise, m
+    status: Array  # (n,) of LEVEL, OFF_CURVE, AMBIGUOUS, BEYOND
+    interference: Array  # (n,), m
+    interval: Array  # (n,), half-widths of 95 % by the noise, m
     levels: list[Level]
 
     def text(self, width: int) -> str:
@@ -189,7 +190,7 @@ def sense_surface(
     return SensedSurface(sweep.name, pair, noise, status, place["interference"], interval, levels)
 
 
-def _levels(status: np.ndarray, height: np.ndarray, interval: np.ndarray, shared: np.ndarray) -> list[Level]:
+def _levels(status: Array, height: Array, interval: Array, shared: Array) -> list[Level]:
     sums = np.concatenate([[0.0], np.cumsum(height)])
 
     def inner(first: int, last: int) -> slice:

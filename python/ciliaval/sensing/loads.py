@@ -15,6 +15,7 @@ import numpy.typing as npt
 from scipy import special
 
 from .. import _core
+from ..arrays import Array
 from ..errors import InputError
 from ..model import Case
 from ..units import shown
@@ -49,9 +50,10 @@ class FlowLaw:
             case._core.stated("density")[0], case._core.stated("drag_coefficient")[0], case.cilium.diameter
         )
 
-    def velocity(self, q: npt.ArrayLike) -> np.ndarray:
+    def velocity(self, q: npt.ArrayLike) -> Array:
         """m/s of N/m; 0 for a q below 0."""
-        return np.sqrt(2 * np.maximum(0, q) / (self.density * self.diameter * self.drag_coefficient))
+        v: Array = np.sqrt(2 * np.maximum(0, q) / (self.density * self.diameter * self.drag_coefficient))
+        return v
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ class Sensing:
     flow: FlowLaw | None
     remarks: list[str] = field(default_factory=list)
 
-    def velocities(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def velocities(self) -> tuple[Array, Array, Array]:
         """Of q, and at the ends of its interval, m/s, each (n,)."""
         q, width = self.loads.magnitude, self.loads.magnitude_interval
         assert self.flow is not None
@@ -114,7 +116,7 @@ class Sensing:
         import pandas
 
         columns = {f"{name} [{unit}]" if unit else name: v for name, (unit, v) in self.columns().items()}
-        return pandas.DataFrame(columns).to_csv(index=False)
+        return str(pandas.DataFrame(columns).to_csv(index=False))
 
     def json(self, provenance: Mapping[str, Any]) -> dict[str, Any]:
         """docs/guide/sensing.md; angles in rad, half-widths of 95 %."""
@@ -244,9 +246,10 @@ def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[s
             f"Unloaded, sensor {i} reads ({', '.join(f'{1e6 * v:.4g}' for v in read)}) uT where the model has "
             f"({', '.join(f'{1e6 * v:.4g}' for v in known)}) uT"
         )
-        if best < 0.3 * off:
-            turned = ", ".join(f'"{"+" if s > 0 else "-"}{"xyz"[o]}"' for o, s in zip(*axes))
-            text += f": they would agree if the case's x, y, z were the sensor's [{turned}]"
+        if best < 0.3 * off and (chips.axes[i] == np.eye(3)).all():
+            own = sorted(zip(*axes, "xyz"))  # of the chip's x, y, z: sign and direction in the case
+            turned = ", ".join(f'"{"+" if sign > 0 else "-"}{axis}"' for _, sign, axis in own)
+            text += f": they would agree with axes = [{turned}]"
         remarks.append(f"{text}. Is the sensor turned, or its unit, place or magnet another?")
     return remarks
 
@@ -337,6 +340,9 @@ def sense(
             Path(readings), case.sensor_names, options_of(case, given, skip), file, Chips.of(case).reads
         )
     else:
+        named = {"map": map, "unit": unit, "scale": scale, "average": average, "temperature": temperature, "skip": skip}
+        if extra := [key for key, value in named.items() if value]:
+            raise InputError(f"{', '.join(extra)}: of a file of readings alone; arrays are in T")
         read = readings_of_arrays(readings, len(case.sensors), unloaded, background, Chips.of(case))
     asked = largest_load(case, largest)
     return sense_readings(case, read, Pair.of(models), noise_of(noise), asked, progress).frame()
@@ -385,13 +391,13 @@ def readings_of_arrays(
         measured_offset=is_change or count > 0,
         offset_variance=1 / count if count else 0.0,
         squares=float((scatter**2).sum() / variance),
-        freedom=3 * sensors * max(count - 1, 0),
+        freedom=(3 * sensors if chips is None else int(chips.reads.sum())) * max(count - 1, 0),
         unloaded=B[is_unloaded].mean(axis=0) if count else None,
         remarks=[f"{len(loaded)} readings" + (f"; {count} unloaded" if count else "")],
     )
 
 
-def _by_sensor(values: npt.ArrayLike, sensors: int, what: str, chips: Chips | None) -> np.ndarray:
+def _by_sensor(values: npt.ArrayLike, sensors: int, what: str, chips: Chips | None) -> Array:
     try:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
@@ -405,4 +411,6 @@ def _by_sensor(values: npt.ArrayLike, sensors: int, what: str, chips: Chips | No
         array = np.where(chips.reads, array, 0.0)
     if not np.isfinite(array).all():
         raise InputError(f"{what} have a number that is not finite in row {np.argwhere(~np.isfinite(array))[0][0]}")
+    if (np.abs(array) > 100).any():
+        raise InputError(f"{what} have {np.abs(array).max():g} T, which no magnet makes: are they in T?")
     return array

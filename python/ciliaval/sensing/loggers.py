@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .._core import quantity
+from ..arrays import Array
 from ..errors import InputError
 from .columns import (
     Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, units_in,
@@ -52,16 +53,16 @@ class Table:
     is_change: bool
     is_wide: bool
     is_lsb: bool
-    B: np.ndarray
-    counts: np.ndarray
-    number: np.ndarray
-    line: np.ndarray
-    sample: np.ndarray | None = None
+    B: Array
+    counts: Array
+    number: Array
+    line: Array
+    sample: Array | None = None
     names: Sequence[str] = ()
-    sensor: np.ndarray | None = None
-    azimuth: np.ndarray | None = None
-    temperature: np.ndarray | None = None
-    time: np.ndarray | None = None
+    sensor: Array | None = None
+    azimuth: Array | None = None
+    temperature: Array | None = None
+    time: Array | None = None
     timeless: str = ""
     resolution: float = 0.0
     remark: str = ""
@@ -76,7 +77,7 @@ def read_table(
     scale: Option = Option(),
     skip: bool = False,
     has_temperature: bool = False,
-    reads: np.ndarray | None = None,
+    reads: Array | None = None,
 ) -> Table | None:
     """Reads a file as loggers write it; None if it has faults, which are added with their places.
 
@@ -171,7 +172,7 @@ class _Reader:
             )  # fmt: skip
         return None if len(faults) > before else self._table(frame, rows, index, np.array(factors), angle)
 
-    def _rows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _rows(self) -> tuple[Array, Array, Array]:
         """Of the lines of rows: which they are, how many cells they have, and how many empty ones at their end
         beyond the header's. Takes the units of comments above the first row."""
         header = self.header
@@ -207,7 +208,7 @@ class _Reader:
         texts = [cells[i].text if i < len(cells) else "?" for i, _, _ in self.header.fields]
         return any(texts) and all(not t or (number_in(t) is None and is_unit(without_brackets(t))) for t in texts)
 
-    def _frame(self, index: np.ndarray, widths: np.ndarray, trailing: np.ndarray) -> tuple[DataFrame, np.ndarray]:
+    def _frame(self, index: Array, widths: Array, trailing: Array) -> tuple[DataFrame, Array]:
         """The rows that have as many cells as the header: numbers as such, where all are, the others as texts."""
         import pandas as pd  # it takes half a second
 
@@ -226,6 +227,7 @@ class _Reader:
         # What follows a time without a role may be the time of day.
         texts += [i for i, kind in enumerate(kinds) if i > 0 and kind == "" and kinds[i - 1] == "time"]
         text = "\n".join(kept).replace("\0", "?")
+        self._refuse_thousands()
         mark = self._decimal_mark()[0] if header.separator != "," and "," in text else "."
         form = {"sep": header.separator, "skipinitialspace": True}
         if header.separator == " ":
@@ -313,7 +315,7 @@ class _Reader:
         return 1.0
 
     def _table(
-        self, frame: DataFrame, rows: np.ndarray, index: np.ndarray, factors: np.ndarray, angle: float
+        self, frame: DataFrame, rows: Array, index: Array, factors: Array, angle: float
     ) -> Table | None:
         header, faults = self.header, self.faults
         fields = [i for i, _, _ in header.fields]
@@ -365,7 +367,7 @@ class _Reader:
         table.remark = self._remark(len(frame), used)
         return table
 
-    def _examine(self, i: int, factors: np.ndarray) -> bool:
+    def _examine(self, i: int, factors: Array) -> bool:
         """Adds what is wrong with a row that has as many cells as the header. Returns whether it is a row."""
         header, before = self.header, len(self.faults)
         line = self.first_line + i
@@ -424,10 +426,35 @@ class _Reader:
             self.faults.add(fault, self.first_line + i, cell.column)
         return None
 
+    def _refuse_thousands(self) -> None:
+        """Adds a fault where numbers look like "7,640" beside "122": marks between thousands, read as decimals, would
+        make them a thousand times too small."""
+        first, has_plain = None, False
+        for i, line in enumerate(self.lines[:2000]):
+            cells = cells_of(line, self.header.separator)
+            for cell in (cells[field] for field, _, _ in self.header.fields if field < len(cells)):
+                if number_in(cell.text) is None:
+                    continue
+                if re.fullmatch(r"[+-]?\d{1,3}", cell.text):
+                    has_plain |= cell.text.strip("+-0") != ""
+                elif re.fullmatch(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", cell.text):
+                    first = first or (cell, self.first_line + i)
+                else:
+                    return
+        if first and has_plain:
+            cell, line_of = first
+            self.faults.add(
+                f"{in_quotes(cell.text)} is not a number: does it have a mark between thousands, as the others without one "
+                "suggest? Write a decimal point, and nothing between thousands",
+                line_of, cell.column,
+            )  # fmt: skip
+
     def _decimal_mark(self) -> tuple[str, int]:
         """The first decimal mark of the numbers, and its line."""
         if self.decimal is None:
             for i, line in enumerate(self.lines):
+                if "," not in line and "." not in line:
+                    continue
                 cells = cells_of(line, self.header.separator)
                 for field, _, _ in self.header.fields:
                     mark = [c for c in (cells[field].text if field < len(cells) else "") if c in ".,"]
@@ -532,7 +559,7 @@ class _Reader:
         cell = (cells_of(self.lines[line - self.first_line], self.header.separator) + [Cell("", 1)] * column)[column]
         self.faults.add(what.format(in_quotes(cell.text)), line, cell.column)
 
-    def _require_order(self, table: Table, ns: np.ndarray, wrong: np.ndarray, column: int) -> None:
+    def _require_order(self, table: Table, ns: Array, wrong: Array, column: int) -> None:
         """Adds a fault for each time of a sensor that goes back within a sample."""
         right = np.flatnonzero(~wrong)
         sensor = np.zeros(len(ns), dtype=int) if table.sensor is None else table.sensor

@@ -13,6 +13,7 @@ import numpy as np
 from scipy import sparse
 
 from .._core import quantity
+from ..arrays import Array
 from ..errors import FileError, InputError
 from ..files import content
 from .columns import Faults, Option, in_quotes, printable
@@ -53,22 +54,22 @@ class Readings:
     """
 
     names: list[str]
-    change: np.ndarray
-    rows: np.ndarray
-    time: np.ndarray | None = None
-    background: np.ndarray | None = None
+    change: Array
+    rows: Array
+    time: Array | None = None
+    background: Array | None = None
     measured_offset: bool = False
     offset_variance: float = 0.0
     squares: float = 0.0
     freedom: int = 0
-    unloaded: np.ndarray | None = None
+    unloaded: Array | None = None
     remarks: list[str] = field(default_factory=list)
 
-    def variance(self) -> np.ndarray:
+    def variance(self) -> Array:
         """Of dB by the noise of reading, over sigma^2, (n,): 1/m + 1/n with m rows and n unloaded ones."""
         return 1 / self.rows + self.offset_variance
 
-    def common_variance(self) -> np.ndarray:
+    def common_variance(self) -> Array:
         """The variance over sigma^2 that dB of a sample has in common with that of the others, (n,): of the offset and
         the background; of several sensors the largest in any combination of them."""
         common = np.full(len(self.rows), self.offset_variance)
@@ -84,7 +85,7 @@ class Background:
     does not tell apart share the means. Raises InputError.
     """
 
-    def __init__(self, data: bytes, file: object, sensors: Sequence[str], reads: np.ndarray | None = None):
+    def __init__(self, data: bytes, file: object, sensors: Sequence[str], reads: Array | None = None):
         faults = Faults()
         table = read_table(data, sensors, faults, reads=reads)
         if table is not None and table.azimuth is None:
@@ -92,11 +93,12 @@ class Background:
         if table is not None and table.is_change:
             faults.add("the background is B: name its columns Bx, By, Bz")
         faults.require_none(file)
+        assert table is not None and table.azimuth is not None
         for_all = not table.is_wide and table.sensor is None
-        self._azimuths: list[np.ndarray] = []  # of each sensor's means, rising, in [0, 2 pi)
-        self._B: list[np.ndarray] = []
+        self._azimuths: list[Array] = []  # of each sensor's means, rising, in [0, 2 pi)
+        self._B: list[Array] = []
         self._first: list[int] = []  # number of each sensor's first mean
-        rows = []
+        rows: list[Array] = []
         for s, sensor in enumerate(sensors):
             if s and for_all:
                 self._azimuths.append(self._azimuths[0])
@@ -120,7 +122,7 @@ class Background:
             rows.append(count)
         self.rows = np.concatenate(rows)
 
-    def parts(self, azimuth: np.ndarray, sensor: int) -> tuple[np.ndarray, np.ndarray] | None:
+    def parts(self, azimuth: Array, sensor: int) -> tuple[Array, Array]:
         """The two means at azimuths (n,), rad, and their weights, (n, 2): a row's own, else by linear interpolation
         between the neighbours on the circle; NaN if there are but rows of another azimuth."""
         known = self._azimuths[sensor]
@@ -135,10 +137,10 @@ class Background:
         t = np.where(apart[0] <= _SAME_AZIMUTH, 0, t)
         return np.stack([last, following], axis=1) + self._first[sensor], np.stack([1 - t, t], axis=1)
 
-    def at(self, azimuth: np.ndarray, sensor: int) -> np.ndarray:
+    def at(self, azimuth: Array, sensor: int) -> Array:
         """The field at azimuths (n,), rad, (n, 3), T."""
         means, weights = self.parts(azimuth, sensor)
-        return np.einsum("ni,nij->nj", weights, self._B[sensor][means - self._first[sensor]])
+        return np.asarray(np.einsum("ni,nij->nj", weights, self._B[sensor][means - self._first[sensor]]))
 
 
 @dataclass(frozen=True)
@@ -188,7 +190,7 @@ def read_readings(
     sensors: Sequence[str],
     options: ReadingOptions = ReadingOptions(),
     background: Path | None = None,
-    reads: np.ndarray | None = None,
+    reads: Array | None = None,
 ) -> Readings:
     """Reads readings from a file as loggers write it (loggers.py) for a case with these sensors.
 
@@ -216,10 +218,11 @@ def read_readings(
         _bytes_of(file), sensors, faults, options.map, options.unit, options.scale, options.skip, coefficient != 0, reads
     )
     faults.require_none(file)
+    assert table is not None
     for fault in _unsuitable(table, sensors, part, options, ambient is not None):
         faults.add(fault)
         faults.require_none(file)
-    grouped = _Grouped(table, sensors, part, window, ambient, faults, file)
+    grouped = _Grouped(table, sensors, part, window, ambient, faults, file, reads)
     if coefficient:
         grouped.to_one_temperature(coefficient, options.temperature.where)
     return grouped.readings(options.unloaded)
@@ -253,7 +256,7 @@ def _window(option: Option) -> float:
 
 def _coefficient(option: Option) -> float:
     """alpha, 1/K, of "-0.1 %/K"; 0 if it is not given. Raises InputError."""
-    found = re.fullmatch(r"\s*([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(%|ppm|1)?\s*/\s*(?:K|degC|°C)\s*", option.text)
+    found = re.fullmatch(r"\s*([-+]?\d*\.?\d+(?:e[-+]?\d+)?)\s*(%|ppm|1)?\s*/\s*(?:K|degC|°C)\s*", option.text)
     if option.text and not found:
         raise InputError(f'{option.where}: {in_quotes(option.text)} is no coefficient, such as "-0.1 %/K" or "-1000 ppm/K"')
     scale = {"%": 1e-2, "ppm": 1e-6}
@@ -292,8 +295,9 @@ class _Grouped:
 
     def __init__(
         self, table: Table, sensors: Sequence[str], part: _Part, window: float, ambient: Background | None,
-        faults: Faults, file: Path,
+        faults: Faults, file: Path, reads: Array | None,
     ):  # fmt: skip
+        self.reads = np.ones((len(sensors), 3), dtype=bool) if reads is None else reads
         self.table, self.sensors, self.part, self.ambient = table, sensors, part, ambient
         self.faults, self.file, self.window = faults, file, window
         self.named = np.zeros(len(table.B), dtype=bool)
@@ -302,6 +306,7 @@ class _Grouped:
         self.unloaded = self.named.copy()
         if part.kind in ("rows", "time"):
             values = table.number if part.kind == "rows" else table.time
+            assert values is not None
             slack = table.resolution if part.kind == "time" else 0  # a row at a boundary belongs to the part
             self.unloaded |= (values >= part.first - slack) & (values <= part.last + slack)
         self.loaded = np.flatnonzero(~self.unloaded)
@@ -317,6 +322,7 @@ class _Grouped:
         if self.table.is_change or not self.unloaded.any():
             self.faults.add(f"{where} needs unloaded rows, against whose temperature the others are corrected")
             self.faults.require_none(self.file)
+        assert temperature is not None
         growth = 1 + alpha * (temperature - temperature[self.unloaded].mean())
         if (growth <= 0.5).any():
             line = int(self.table.line[np.argmin(growth)])
@@ -325,7 +331,7 @@ class _Grouped:
         self.table.B = self.table.B / growth[:, None, None]
         self.table.remark += f"; B at {temperature[self.unloaded].mean():.4g} degrees"
 
-    def _keys(self) -> tuple[np.ndarray, np.ndarray]:
+    def _keys(self) -> tuple[Array, Array]:
         """Of the loaded rows: number of the sample, in the order of the file, and of its window."""
         table, loaded = self.table, self.loaded
         window_of = np.zeros(len(loaded), dtype=int)
@@ -333,19 +339,22 @@ class _Grouped:
             key = _in_order(table.sample[loaded])
         elif self.window:
             key = window_of
-        elif table.sensor is not None:
+        elif table.sensor is not None and table.time is not None:
             key = _in_order(table.time[loaded])
         else:
             key = np.arange(len(loaded))
         if self.window and len(loaded):
+            assert table.time is not None
             time = table.time[loaded]
-            begin = time[np.unique(key, return_index=True)[1]][key]
+            begin = np.full(int(key.max()) + 1, np.inf)
+            np.minimum.at(begin, key, time)
+            begin = begin[key]
             slack = table.resolution + 1e-12 * np.abs(time).max()
             window_of = np.floor((time - begin + slack) / self.window).astype(np.int64)
             key = _in_order(key * (window_of.max() + 1) + window_of)
         return key, window_of
 
-    def _names(self, window_of: np.ndarray | None) -> list[str]:
+    def _names(self, window_of: Array | None) -> list[str]:
         table = self.table
         times = []
         if table.time is not None:
@@ -399,7 +408,7 @@ class _Grouped:
             measured_offset=table.is_change or any_unloaded,
             offset_variance=1 / rows[0] if any_unloaded else 0.0,
             squares=squares,
-            freedom=int(3 * (count - 1)[count > 0].sum()),
+            freedom=int((np.maximum(count - 1, 0) * self.reads.sum(axis=1)).sum()),
             unloaded=as_read.reshape(n, k, 3)[0] if any_unloaded else None,
             remarks=self._remarks(int(rows[0]) if any_unloaded else 0),
         )
@@ -416,7 +425,7 @@ class _Grouped:
             faults.add(f"there are rows of the sample `unloaded`: leave {option.where} out", line)
         elif not any_unloaded and part.kind in ("rows", "time"):
             has = f"the rows 1..{table.number[-1]}"
-            if part.kind == "time":
+            if part.kind == "time" and table.time is not None:
                 has = f"the times {table.time[0]:g} s..{table.time[-1]:g} s"
             faults.add(f'no row lies in "{option.text}" of {option.where}: the file has {has}')
         elif len(self.first) and not any_unloaded and not table.is_change and not part.kind:
@@ -429,10 +438,11 @@ class _Grouped:
             faults.add("there is no reading but of the unloaded cilium")
 
     def _less_background(
-        self, B: np.ndarray, row: np.ndarray, sensor: np.ndarray
-    ) -> tuple[np.ndarray, sparse.csr_matrix]:
+        self, B: Array, row: Array, sensor: Array
+    ) -> tuple[Array, sparse.csr_matrix]:
         """B less the background, and the weights with which its means were taken off, (entries, means)."""
         table, ambient = self.table, self.ambient
+        assert ambient is not None and table.azimuth is not None
         means, weights = np.zeros((len(B), 2), dtype=int), np.zeros((len(B), 2))
         B = B.copy()
         for s in range(len(self.sensors)):
@@ -447,7 +457,7 @@ class _Grouped:
         entries = np.repeat(np.arange(len(B)), 2)
         return B, sparse.csr_matrix((weights.ravel(), (entries, means.ravel())), (len(B), len(ambient.rows)))
 
-    def _weighted_squares(self, rest: np.ndarray, at: np.ndarray, weights: sparse.csr_matrix) -> float:
+    def _weighted_squares(self, rest: Array, at: Array, weights: sparse.csr_matrix) -> float:
         """The squares of rows about their mean, weighted by V^-1; over sigma^2 it is chi^2 of 3 (rows - 1) degrees of
         freedom.
 
@@ -459,21 +469,23 @@ class _Grouped:
         for rows in np.split(order, 1 + np.flatnonzero(np.diff(at[order]))):
             x = rest[rows]
             # Rows of one azimuth have the background's error in common: it is gone with their mean.
-            if len(rows) == 1 or (W := weights[rows].toarray()).ptp(axis=0).max() == 0:
+            if len(rows) == 1 or np.ptp(W := weights[rows].toarray(), axis=0).max() == 0:
                 total += float((x**2).sum())
                 continue
+            assert self.ambient is not None
             inner = np.diag(self.ambient.rows.astype(float)) + W.T @ W
 
-            def weighted(y: np.ndarray) -> np.ndarray:
-                return y - W @ np.linalg.solve(inner, W.T @ y)
+            def weighted(y: Array) -> Array:
+                return np.asarray(y - W @ np.linalg.solve(inner, W.T @ y))
 
             of_ones = weighted(np.ones(len(x)))
             total += float((x * weighted(x)).sum() - ((of_ones @ x) ** 2).sum() / of_ones.sum())
         return total
 
-    def _covariance(self, at: np.ndarray, weights: sparse.csr_matrix, per: np.ndarray, n: int, k: int) -> np.ndarray:
+    def _covariance(self, at: Array, weights: sparse.csr_matrix, per: Array, n: int, k: int) -> Array:
         """The covariance of the sensors' dB by the background's noise, over sigma^2, (samples, k, k): A D A^T, A the
         weights of its means in dB, D = diag(1/rows)."""
+        assert self.ambient is not None
         pick = sparse.csr_matrix((1 / per[at], (at, np.arange(len(at)))), (n * k, len(at)))
         scaled = (pick @ weights @ sparse.diags(1 / np.sqrt(self.ambient.rows))).tocsr()
         A = [scaled[s::k] for s in range(k)]
@@ -493,14 +505,16 @@ class _Grouped:
         return [printable(f"{self.file.name}: {text}.") for text in (remark, *silent_doubts(self.table, self.sensors))]
 
 
-def _in_order(keys: np.ndarray) -> np.ndarray:
+def _in_order(keys: Array) -> Array:
     """The number of each key, by the order in which they first appear."""
     _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
     return np.argsort(np.argsort(first))[inverse]
 
 
-def _means(values: np.ndarray, at: np.ndarray, count: np.ndarray) -> np.ndarray:
-    return np.stack([np.bincount(at, component, len(count)) for component in values.T], axis=1) / count[:, None]
+def _means(values: Array, at: Array, count: Array) -> Array:
+    return np.asarray(
+        np.stack([np.bincount(at, component, len(count)) for component in values.T], axis=1) / count[:, None]
+    )
 
 
 def silent_doubts(table: Table, sensors: Sequence[str]) -> list[str]:
@@ -526,7 +540,7 @@ def silent_doubts(table: Table, sensors: Sequence[str]) -> list[str]:
     return doubts
 
 
-def _frozen(counts: np.ndarray) -> tuple[int, int] | None:
+def _frozen(counts: Array) -> tuple[int, int] | None:
     """First and last row of the longest run of equal rows (n, 3), if noise of several counts makes none as long in a
     million files.
 
@@ -554,11 +568,11 @@ def _frozen(counts: np.ndarray) -> tuple[int, int] | None:
     return first, first + length - 1
 
 
-def _is_wrapped(counts: np.ndarray, is_lsb: bool) -> np.ndarray:
+def _is_wrapped(counts: Array, is_lsb: bool) -> Array:
     """Whether components (n, 3) hold whole numbers near 0 and near 65535, and none between or below."""
     near = 1 << (14 if is_lsb else 11)
     if (counts < 0).any() or (counts > 65535).any():
         return np.zeros(3, dtype=bool)
     is_low, is_high = counts < near, counts > 65535 - near
     whole = (counts == np.round(counts)).all(axis=0)
-    return whole & (is_low | is_high).all(axis=0) & is_low.any(axis=0) & is_high.any(axis=0)
+    return np.asarray(whole & (is_low | is_high).all(axis=0) & is_low.any(axis=0) & is_high.any(axis=0))

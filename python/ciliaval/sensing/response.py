@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from ..arrays import Array
 from ..errors import InputError, SolverError
 from ..model import Case
 
@@ -57,8 +58,8 @@ class Shapes:
 
     nodes: list[Any]  # at the Chebyshev-Lobatto magnitudes but 0
     checks: list[Any]  # between some of them
-    node_magnitudes: np.ndarray  # as the load's type has them: N, N/m, m
-    check_magnitudes: np.ndarray
+    node_magnitudes: Array  # as the load's type has them: N, N/m, m
+    check_magnitudes: Array
     limit: str  # why they end below the largest load asked for; empty: they do not
 
     @property
@@ -136,7 +137,7 @@ def _range_below(missing: Any, last: float) -> float:
     if missing.slip_off is not None and missing.slip_off > last:
         known = missing.slip_off * (1 - 1e-6) - (missing.slip_off_uncertainty or 0.0)
         if last < known < load:
-            return known
+            return float(known)
     return last or load
 
 
@@ -195,7 +196,7 @@ class Response:
     def sensors(self) -> int:
         return len(self._beta)
 
-    def _tabulate(self, change: np.ndarray) -> None:
+    def _tabulate(self, change: Array) -> None:
         """change: (k, s, n angles, 3) at the magnitudes but 0. Keeps z of Re sum_m z_m exp(i m beta) and
         its derivative by the magnitude, each (k + 1, s, 3, modes)."""
         count = change.shape[2]
@@ -216,23 +217,23 @@ class Response:
         self._modes = values.shape[-1]
         self._table = np.stack([values, slopes], axis=1)  # (k, 2, s, 3, modes)
 
-    def _weights(self, magnitude: np.ndarray) -> np.ndarray:
+    def _weights(self, magnitude: Array) -> Array:
         """Of the nodes' values in those at the magnitudes, (n, k)."""
         apart = magnitude[:, None] - self._nodes
         hit = apart == 0
         weights = self._signs / np.where(hit, 1.0, apart)
         rows = hit.any(axis=1)
         weights[rows] = hit[rows]
-        return weights / weights.sum(axis=1, keepdims=True)
+        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
-    def _error(self, exact: np.ndarray, magnitude: float, beta: np.ndarray) -> float:
+    def _error(self, exact: Array, magnitude: float, beta: Array) -> float:
         """The largest error at angles, exact: (s, n, 3)."""
         z = np.tensordot(self._weights(np.array([magnitude]))[0], self._table[:, 0], axes=1)
         waves = np.exp(1j * np.outer(beta, np.arange(self._modes)))
         b = np.einsum("scm,nm->snc", z, waves).real
         return float(np.linalg.norm(b - exact, axis=-1).max())
 
-    def _evaluate(self, magnitude: np.ndarray, azimuth: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _evaluate(self, magnitude: Array, azimuth: Array) -> tuple[Array, Array, Array]:
         """b, its derivatives by the magnitude and by beta, each (n, s, 3), in the load's own frame."""
         n, s = len(magnitude), self.sensors
         table = self._table.reshape(len(self._nodes), -1)
@@ -244,15 +245,15 @@ class Response:
         by_angle = -np.einsum("nscm,nsm->nsc", z[:, 0], waves * np.arange(self._modes)).imag
         return b, by_force, by_angle
 
-    def change(self, p: npt.ArrayLike) -> np.ndarray:
+    def change(self, p: npt.ArrayLike) -> Array:
         """dB of all sensors under loads p, (n, 2): (n, s, 3), T. Beyond `largest` it goes on linearly."""
         return self.change_and_derivative(p)[0]
 
-    def derivative(self, p: npt.ArrayLike) -> np.ndarray:
+    def derivative(self, p: npt.ArrayLike) -> Array:
         """d dB/dp, (n, s, 3, 2); beyond `largest` without the mixed derivative."""
         return self.change_and_derivative(p)[1]
 
-    def change_and_derivative(self, p: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    def change_and_derivative(self, p: npt.ArrayLike) -> tuple[Array, Array]:
         """change() and derivative() of the same loads."""
         p = np.asarray(p, dtype=float).reshape(-1, 2)
         magnitude, azimuth = np.hypot(*p.T), np.arctan2(p[:, 1], p[:, 0])
@@ -277,15 +278,15 @@ class Response:
         return change, derivative
 
 
-def _turned(vectors: np.ndarray, cos: np.ndarray, sin: np.ndarray) -> np.ndarray:
+def _turned(vectors: Array, cos: Array, sin: Array) -> Array:
     """(n, s, 3) turned about z by angles (n, 1)."""
     x, y, z = np.moveaxis(vectors, -1, 0)
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
 def _changes(
-    shapes: Sequence[Any], sensors: np.ndarray, angles: int, first: float, field: str
-) -> tuple[np.ndarray, np.ndarray]:
+    shapes: Sequence[Any], sensors: Array, angles: int, first: float, field: str
+) -> tuple[Array, Array]:
     """dB of all shapes but the first, the straight one, on the circles of the sensors, (k, s, angles, 3);
     and B of the straight one at the sensors, (s, 3)."""
     beta = first + 2 * np.pi * np.arange(angles) / angles

@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
+from ..arrays import Array
 from ..errors import Error, FileError, InputError
 from ..files import content, replacing
 from ..results import read_table
@@ -35,9 +36,9 @@ class Record:
     time: (n,), s. raw: with the noise, (n, 3), T. filtered: (n, 3), T; raw without a filter.
     """
 
-    time: np.ndarray
-    raw: np.ndarray
-    filtered: np.ndarray
+    time: Array
+    raw: Array
+    filtered: Array
 
 
 def record(
@@ -94,7 +95,7 @@ def record(
 
 def highpass(
     series: npt.ArrayLike, sampling_rate: float, cutoff: float, order: int = 4, phase: str = "causal"
-) -> np.ndarray:
+) -> Array:
     """The columns of a series, (n, …), after a Butterworth high-pass filter: see record().
 
     |H(f)| = 1/sqrt(1 + (tan(pi f_c/f_s)/tan(pi f/f_s))^(2 order)), by the bilinear transform. Raises
@@ -112,16 +113,16 @@ def highpass(
     sections = signal.butter(order, cutoff, "highpass", fs=sampling_rate, output="sos")
     if phase == "causal":
         # As if the first sample had always been there: taking it off loses no digits to an offset.
-        return signal.sosfilt(sections, series - series[0], axis=0)
+        return np.asarray(signal.sosfilt(sections, series - series[0], axis=0))
     least = 3 * (order + 1)  # of the reflection at each end
     if len(series) <= least:
         raise InputError(
             f"a filter of order {order} without a shift of phase needs more than {least} samples; there are {len(series)}"
         )
-    return signal.sosfiltfilt(sections, series, axis=0)
+    return np.asarray(signal.sosfiltfilt(sections, series, axis=0))
 
 
-def _require_valid(times: np.ndarray, B: np.ndarray, sampling_rate: float, noise: float) -> None:
+def _require_valid(times: Array, B: Array, sampling_rate: float, noise: float) -> None:
     if times.ndim != 1 or B.shape != (len(times), 3) or len(times) < 2:
         raise InputError(
             f"a record needs two times or more, each with its field: the times have the shape {times.shape}, the fields {B.shape}"
@@ -145,13 +146,12 @@ def signal_csv(folder: Path) -> str:
     InputError."""
     try:
         options = tomllib.loads(content(folder / "case.toml").decode("utf-8"))["signal"]
-        rate, noise, cutoff = (
-            float(options[key].split()[0]) if key in options else None for key in ("sampling_rate", "noise", "cutoff")
-        )
+        rate = float(options["sampling_rate"].split()[0])
+        noise, cutoff = (float(options[key].split()[0]) if key in options else None for key in ("noise", "cutoff"))
     except (ValueError, KeyError) as error:
         raise FileError(f"{folder / 'case.toml'}: has no [signal]: {error}") from error
     sweep = read_table(folder / "sweep.csv")
-    columns: dict[str, np.ndarray] = {}
+    columns: dict[str, Array] = {}
     count: dict[str, int] = {}  # sensors of each pair
     for name in sweep:
         found = re.fullmatch(r"(.+/.+)\.dB(.*)_x", name)

@@ -8,7 +8,9 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
+from ..arrays import Array
 from .columns import number_in
 
 if TYPE_CHECKING:
@@ -24,9 +26,9 @@ _SHAPE[ord("0") : ord("9") + 1] = ord("0")
 _IN_NUMBER = np.isin(np.arange(256), list(b"\0+-.0123456789eE"))
 
 
-def bytes_of(column: Series) -> np.ndarray:
+def bytes_of(column: Series) -> npt.NDArray[np.bytes_]:
     try:
-        return column.to_numpy().astype("S")
+        return np.asarray(column.to_numpy().astype("S"))
     except UnicodeEncodeError:
         return np.array([text.encode("ascii", "replace") for text in column])
 
@@ -41,7 +43,7 @@ def time_form(text: str) -> str | None:
     return (None, "day" if b":" not in cells[0] else "date", "clock")[form]
 
 
-def numbers_in_ns(cells: np.ndarray, unit: float) -> tuple[np.ndarray, np.ndarray]:
+def numbers_in_ns(cells: Array, unit: float) -> tuple[Array, Array]:
     """Numbers (n texts) of a unit (ns) in whole ns, and which are none. Long doubles hold ns since 1970 exactly."""
     cells = np.char.strip(cells)
     raw = cells.view(np.uint8).reshape(len(cells), -1).copy()
@@ -61,7 +63,7 @@ def numbers_in_ns(cells: np.ndarray, unit: float) -> tuple[np.ndarray, np.ndarra
     return np.where(wrong, 0, ns).astype(np.int64), wrong
 
 
-def calendar_in_ns(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def calendar_in_ns(cells: Array) -> tuple[Array, Array]:
     """ISO 8601 and hh:mm:ss (n texts): 1 of a date, 2 of a time of day, 0 of neither; and whole ns since 1970 or
     midnight.
 
@@ -81,7 +83,8 @@ def calendar_in_ns(cells: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             continue
         lead = len(form) - len(form.lstrip(b" \t"))
 
-        def digits(name: str, most: int = 9) -> np.ndarray:
+        def digits(name: str, most: int = 9) -> Array:
+            assert found is not None
             begin, end = found.span(name)
             end = min(end, begin + most)
             values = raw[here, lead + begin : lead + end].astype(np.int64) - ord("0")
