@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -100,7 +101,9 @@ ModuleEnd run_python_module(const std::string& module, const std::vector<fs::pat
 
 void become_python_module(const std::string& module, const std::vector<std::string>& arguments) {
   const std::string script = fmt::format(
-      "import sys\n"
+      "import signal, sys\n"
+      "signal.signal(signal.SIGINT, signal.SIG_DFL)\n"
+      "signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])\n"
       "try:\n"
       "    from ciliaval.command import main\n"
       "    sys.exit(main())\n"
@@ -116,7 +119,14 @@ void become_python_module(const std::string& module, const std::vector<std::stri
   if (const std::string path = python_path(); !path.empty()) setenv("PYTHONPATH", path.c_str(), 1);
   std::error_code error;
   setenv("CILIAVAL_PROGRAM", fs::read_symlink("/proc/self/exe", error).c_str(), 1);
+  // Ctrl-C while Python starts waits until it ends the process as it should.
+  sigset_t interrupt;
+  sigset_t before;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &interrupt, &before);
   execvp(pointers.front(), pointers.data());
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   throw FileError(fmt::format("cannot start Python `{}` ({}){}", words.front(),
                               std::generic_category().message(errno), needs));
 }

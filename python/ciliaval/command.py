@@ -11,6 +11,7 @@ import importlib
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import sys
@@ -88,6 +89,16 @@ def _finite(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_finite(v) for v in value]
     return value
+
+
+def printable(text: str, allowed: str = "") -> str:
+    """A text for a terminal, a table or a file: control characters, which a terminal would obey, and
+    bytes of a file's name that are no UTF-8 as \\x1B."""
+
+    def shown(found: re.Match[str]) -> str:
+        return "".join(f"\\x{byte:02X}" for byte in found[0].encode("utf-8", "surrogateescape"))
+
+    return re.sub(rf"[^\x20-\x7e\xa0-\ud7ff\ue000-\U0010ffff{allowed}]", shown, text)
 
 
 class Outputs:

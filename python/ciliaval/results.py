@@ -325,7 +325,7 @@ class Texts:
 
 class Document(dict[str, Any]):
     """A result file of another command, as its JSON: a dict. `kind` is "study", "budget",
-    "converge", "sense", "claims" or "check"."""
+    "converge", "sense", "calibrate", "claims" or "check"."""
 
     def __init__(self, kind: str, data: dict[str, Any], file: Path | None = None):
         super().__init__(data)
@@ -342,6 +342,7 @@ _KINDS = {
     "by_magnitude": "sense",  # a test bench
     "samples": "sense",  # readings
     "levels": "sense",  # of a surface
+    "residuals": "calibrate",
     "claims": "claims",
     "passed": "check",
 }

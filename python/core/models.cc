@@ -285,9 +285,9 @@ std::vector<std::vector<Vector3>> points_of_designs(const Array& where, std::siz
     all.push_back(points(py::reinterpret_borrow<py::object>(each)));
   if (all.size() != designs)
     throw InputError(
-        fmt::format("there are {} designs and points for {}: give (m, 3) for all or "
+        fmt::format("`points` are those of {} designs, and there are {}: give (m, 3) for all or "
                     "(n, m, 3), m for each",
-                    designs, all.size()));
+                    all.size(), designs));
   return all;
 }
 

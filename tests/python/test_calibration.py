@@ -14,6 +14,7 @@ from scipy import stats
 
 import ciliaval as cv
 from ciliaval import program, sensing
+from ciliaval.report.page import results_page
 from ciliaval.sensing.inversion import Chips
 from sensing_cases import CASE
 
@@ -116,6 +117,11 @@ class Calibration(unittest.TestCase):
             self.assertIn("0.085", out)
             self.assertAlmostEqual(json.loads(found.read_text())["parameters"][0]["value"], 0.085e6, delta=0.1)
             self.assertAlmostEqual(cv.Case(made).cilium.segments[0].young_modulus, 0.085e6, delta=0.1)
+            page = results_page(Path(folder), "a test").html
+            self.assertIn("Calibration of one", page)
+            self.assertIn("0.085", page)
+            with self.assertRaisesRegex(cv.InputError, "fit"):
+                program.call("calibrate", case, log, "--fit", "")
             with self.assertRaisesRegex(cv.InputError, "one.toml"):  # it would be overwritten
                 program.call(*words, "-o", case)
 

@@ -388,7 +388,7 @@ class Batch(unittest.TestCase):
             np.testing.assert_array_equal(whole[key], quick[key])
         one = cv.bend_batch(cilia[7:8], loads[7:8], points[7])
         np.testing.assert_array_equal(one["dB"][0], whole["dB"][7])
-        with self.assertRaisesRegex(cv.InputError, "60 designs and points for 2"):
+        with self.assertRaisesRegex(cv.InputError, "those of 2 designs, and there are 60"):
             cv.bend_batch(cilia, loads, points[:2])
 
     def test_takes_options_of_the_model(self):

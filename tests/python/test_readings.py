@@ -36,6 +36,28 @@ class Samples(Files):
         self.assertClose(math.sqrt(read.squares / read.freedom), math.sqrt(2 / 9) * 1e-6, 1e-20)
         self.assertClose(read.unloaded, [[0, 0, 0]], 0)
 
+    def test_windows_of_a_sample_do_not_reach_into_the_one_before(self):
+        """Sensor 1 begins before sensor 0, whose row is the sample's first."""
+        text = "sample,time [s],sensor," + COMMAS
+        text += "unloaded,0,0,0,0,0\nunloaded,0,1,0,0,0\na,10,0,1,0,0\na,9.9,1,1,0,0\nb,20,0,5,0,0\nb,19.995,1,5,0,0\n"
+        read = self.read(text, ["0", "1"], average="1 s")
+        self.assertEqual(read.names, ["a", "b"])
+        self.assertClose(read.change[:, :, 0], [[1e-6, 1e-6], [5e-6, 5e-6]], 1e-20)
+
+    def test_a_column_sensor_without_a_time(self):
+        text = "sensor," + COMMAS + "0,0,0,0\n0,1,2,3\n0,4,5,6\n"
+        self.assertEqual(self.read(text, unloaded="rows 1..1").names, ["2", "3"])
+
+    def test_marks_between_thousands_are_refused(self):
+        for text, given in (
+            ("X\tY\tZ\n122\t-22\t7,640\n110\t-20\t7,641\n", {"unit": "LSB", "scale": "0.15 uT"}),
+            ("X;Y;Z\n12.345;0;3\n11.000;1;5\n", {"unit": "nT"}),
+        ):
+            self.refused("mark between thousands", text, unloaded="rows 1..1", **given)
+        self.assertClose(
+            self.read("X;Y;Z\n0;0;0\n1,234;2,5;3\n", unit="uT", unloaded="rows 1..1").change[0, 0], [1.234e-6, 2.5e-6, 3e-6], 1e-20
+        )
+
     def test_are_named_by_their_time_or_their_row(self):
         self.assertEqual(self.read(HEADER + "0,0,0,0\n0.05,1,2,3\n", unloaded="rows 1..1").names, ["0.05 s"])
         self.assertEqual(self.read("x,y,z\n0,0,0\n1,2,3\n", unit="uT", unloaded="rows 1..1").names, ["2"])

@@ -268,6 +268,15 @@ class Command(unittest.TestCase):
         self.assertIn("500 samples: ", self.out)
         self.assertEqual(len(self.found()["samples"]), 500)
 
+    def test_names_and_terminals_of_other_encodings(self):
+        self.write("change.csv", self.changes())
+        name = os.fsdecode(b"k\xff.json")
+        self.ciliaval("sense", "one.toml", "change.csv", "--models", "beam/line", "--json", name)
+        self.expect_the_forces(name)
+        (self.folder / os.fsdecode(b"log\xff.csv")).write_text(self.changes())
+        self.ciliaval("sense", "one.toml", os.fsdecode(b"log\xff.csv"), "--models", "beam/line")
+        self.assertIn("log\\xFF.csv: 3 rows", self.out)
+
     def test_benches_are_read_and_their_faults_said(self):
         good = (
             '[bench]\ncase = "one.toml"\nmodels = "beam/line"\nazimuths = 4\ndraws = 2\n[errors]\nnoise = "0.5 uT"\n'

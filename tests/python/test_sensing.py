@@ -251,11 +251,14 @@ class AChip(unittest.TestCase):
         case = cv.Case.from_text(CASE)
         self.assertFalse(any("axes" in r or "turned" in r for r in cv.sense(case, B, **sense).attrs["remarks"]))
         x, y, z = B.T
-        for own, axes in (([x, y, -z], '["+x", "+y", "-z"]'), ([z, x, y], '["+z", "+x", "+y"]')):
+        for own, axes, said in (
+            ([x, y, -z], '["+x", "+y", "-z"]', "own z seems to point along the case's -z"),
+            ([z, x, y], '["+z", "+x", "+y"]', "own x seems to point along the case's +z"),
+        ):
             read = np.stack(own, axis=-1)
             with self.subTest(axes):
                 remark = cv.sense(case, read, **sense).attrs["remarks"][-1]
-                self.assertIn(f"axes = {axes}", remark)
+                self.assertIn(said, remark)
                 right = cv.Case.from_text(CASE.replace('"-1.55 mm"]', f'"-1.55 mm"]\naxes = {axes}'))
                 frame = cv.sense(right, read, **sense)
                 np.testing.assert_allclose(frame[["load_x", "load_y"]].to_numpy()[0], polar(2e-3, 1.0), atol=1e-9)
@@ -309,11 +312,13 @@ class OfAFile(unittest.TestCase):
         raw = self.sense(read, head)
         self.assertGreater(np.abs(raw[["load_x", "load_y"]].to_numpy() - self.p).max(), 1e-5)
         for more, what in (
-            ({"temperature": "0.1 %"}, "no coefficient"), ({"temperature": "50 %/K"}, "10 %/K"),
+            ({"temperature": "0.1 %"}, "no coefficient"), ({"temperature": "50 %/K"}, "10 %/K"), ({"temperature": "1.2.3 %/K"}, "no coefficient"),
             ({"temperature": "1 mm/K"}, "no coefficient"),
         ):  # fmt: skip
             with self.subTest(what), self.assertRaisesRegex(cv.InputError, what):
                 self.sense(read, head, **more)
+        with self.assertRaisesRegex(cv.InputError, "write it in K or degC"):
+            self.sense(read, head.replace("°C", "°F"), temperature="-0.1 %/K")
         with self.assertRaisesRegex(cv.InputError, "there is no column 'temperature'"):
             self.sense(self.B, "Bx [T],By [T],Bz [T]", temperature="-0.1 %/K")
         read[5, 0] = np.nan
@@ -369,6 +374,7 @@ class Arrays(unittest.TestCase):
             (good, {"unloaded": "first"}, "slice"), (good, {"background": good}, "no background"),
             (good, {"unloaded": [0], "background": good[:2]}, "5 readings and 2"), (good, {"noise": "1 mm"}, "flux"),
             (good, {"noise": 0}, "1 fT and 1 T"), (good, {"largest": "3 mm"}, "force"), (good, {"models": "elastic/volume"}, "elastic"),
+            (good, {"unit": "uT"}, "arrays are in T"), (good + 200, {}, "are they in T"),
         ):  # fmt: skip
             with self.subTest(what), self.assertRaisesRegex((cv.InputError, cv.FileError), what):
                 cv.sense(case, B, **more)

@@ -13,9 +13,11 @@ from typing import Any
 
 from .. import _core
 from .._core import StudyFile, StudyStore
-from ..command import PASS, SOLVER, UNDECIDED, Progress, json_text, run_command, terminal_width, write_out
+from ..command import (
+    PASS, SOLVER, UNDECIDED, Progress, json_text, printable, run_command, terminal_width, write_out,
+)  # fmt: skip
 from ..files import text_of
-from .summary import Points, printable, results_of, study_csv, study_json, text
+from .summary import Points, results_of, study_csv, study_json, text
 from .tolerances import tolerance_csv, tolerance_json, tolerance_text
 
 
@@ -73,7 +75,7 @@ def _execute(study: StudyFile, store: StudyStore, options: argparse.Namespace, p
     progress.clear()
     text_of_json = json_text(document)
     _write(folder / "study.json", text_of_json)
-    write_out(printable(f"{words}\nResults: {folder}"))
+    write_out(printable(f"{words}\nResults: {folder}", "\n\t"))
     if options.json:
         _write(options.json, text_of_json)
     _draw(document, folder)

@@ -59,13 +59,12 @@ class LocalOptimum:
 @dataclass
 class SearchResult:
     """optima: feasible and stationary, the best first; if a point that is not stationary is better, that
-    before them. nearest: the point that misses the constraints least."""
+    before them."""
 
     optima: list[LocalOptimum] = field(default_factory=list)
     local_searches: int = 0
     not_stationary: int = 0  # local searches that ended elsewhere
     infeasible: int = 0  # … without a point that keeps the constraints
-    nearest: tuple[float, ...] = ()
 
 
 def maximise(
@@ -102,7 +101,6 @@ def maximise(
     # A better point is the result, even if nothing is known of its surroundings.
     if elsewhere and not (result.optima and elsewhere[0].trial.gain <= result.optima[0].trial.gain + FEASIBILITY):
         result.optima.insert(0, elsewhere[0])
-    result.nearest = objective.nearest
     return result
 
 

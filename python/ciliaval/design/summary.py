@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from .. import _core
 from .._core import StudyFile, StudyOutput, StudyParameter
+from ..command import printable
 
 _MOST_ROWS = 25
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|-?(inf|nan)")
@@ -39,16 +40,6 @@ def results_of(points: Iterable[Iterable[tuple[Any, ...]]]) -> list[list[Result]
 # Texts.
 
 
-def printable(text: str, allowed: str = "\n\t") -> str:
-    """A text for a terminal, a table or a file: control characters, which a terminal would obey, and
-    bytes of a file's name that are no UTF-8 as \\x1B."""
-
-    def shown(found: re.Match[str]) -> str:
-        return "".join(f"\\x{byte:02X}" for byte in found[0].encode("utf-8", "surrogateescape"))
-
-    return re.sub(rf"[^\x20-\x7e\xa0-\ud7ff\ue000-\U0010ffff{allowed}]", shown, text)
-
-
 def number_text(value: float | None, size: float = 1.0, digits: int = 5) -> str:
     """A value in a unit of this size; "-" if there is none, and no sign of a zero."""
     if value is None or not math.isfinite(value):
@@ -73,7 +64,7 @@ def csv_text(rows: Sequence[Sequence[Any]], comment: str) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(map(cell, rows[0]))
-    text.write(f"# {printable(comment, '')}\n")
+    text.write(f"# {printable(comment)}\n")
     for row in rows[1:]:
         writer.writerow(map(cell, row))
     return text.getvalue()

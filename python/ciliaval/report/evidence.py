@@ -286,6 +286,21 @@ def readings_blocks(sensing: dict[str, Any]) -> list[Block]:
     return [Text(f"{text}."), Images([drawing]), Details("The loads' numbers", [table])]
 
 
+def calibration_blocks(data: dict[str, Any]) -> list[Block]:
+    text = (
+        f"{len(data['parameters'])} numbers from {len(data['residuals'])} readings at known loads by {data['models']}; "
+        f"χ² {number(data['chi_squared'])} with {data['freedom']} degrees of freedom."
+    )
+    table = Table("Intervals of 95 %, of the noise alone", ["number", "unit", "start", "found", "±"])
+    for p in data["parameters"]:
+        unit = shown(p["unit"])
+        spread = None if p["deviation"] is None else 1.96 * p["deviation"]
+        values = [number(p["start"], unit.size), number(p["value"], unit.size, 6), number(spread, unit.size, 2)]
+        table.rows.append([p["path"], unit.name, *values])
+    apart = [f"The readings cannot tell apart: {in_words(group)}." for group in data["together"]]
+    return [Text(text), table, *map(Text, apart)]
+
+
 def surface_blocks(profile: dict[str, Any]) -> list[Block]:
     counts = Counter(r["status"] for r in profile["readings"])
     text = f"{len(profile['readings'])} readings by {profile['models']}: "

@@ -37,6 +37,7 @@ _PARTS: dict[str, tuple[str, Callable[[Any], list[Block]]]] = {
     "bench": ("Simulated test bench", evidence.bench_blocks),
     "readings": ("Loads from readings, case {}", evidence.readings_blocks),
     "surface": ("A surface from readings, case {}", evidence.surface_blocks),
+    "calibrate": ("Calibration of {}", evidence.calibration_blocks),
     "claims": ("The paper's claims", evidence.claims_blocks),
     "check": ("Regression check", evidence.check_blocks),
 }

@@ -84,10 +84,14 @@ def _read(case: Case, options: argparse.Namespace) -> Readings:
     )
 
 
+def _pair_and_noise(options: argparse.Namespace) -> tuple[Pair, float]:
+    return Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+
+
 def _loads(case: Case, options: argparse.Namespace, progress: Progress) -> tuple[Any, str, int]:
     """The load and its direction, with intervals, from each reading of the case's sensors."""
     require_load_to_sense(case)
-    pair, noise = Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+    pair, noise = _pair_and_noise(options)
     largest = largest_load(case, options.largest)
     read = _read(case, options)  # before the models run, which may take a minute
     result = sense_readings(case, read, pair, noise, largest, progress)
@@ -107,7 +111,7 @@ def _calibrate(
 
     options.csv = options.output  # checked as an output
     outputs = Outputs(options, inputs)
-    pair, noise = Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+    pair, noise = _pair_and_noise(options)
     fit = [name.strip() for name in options.fit.split(",")]
     result = calibrate_readings(case, _read(case, options), fit, pair, noise, progress)
     progress.clear()
@@ -120,7 +124,7 @@ def _surface(case: Case, options: argparse.Namespace, progress: Progress) -> tup
     """The surface's levels from the readings of a sweep."""
     from .levels import LevelCurve, sense_surface
 
-    pair, noise = Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+    pair, noise = _pair_and_noise(options)
     read = _read(case, options)
     if options.largest:
         largest = _core.quantity(options.largest, "m")
@@ -128,8 +132,7 @@ def _surface(case: Case, options: argparse.Namespace, progress: Progress) -> tup
         largest = max(0.0, *(4 * load.magnitude for load in case.loads))
     if not 0 < largest < case.cilium.length:
         raise InputError("--largest: the largest interference lies between 0 and the length of the cilium")
-    if not read.measured_offset:
-        raise InputError(f"{options.readings}: the levels of a surface need dBx, dBy, dBz, or unloaded rows")
+    read.require_offset(f"{options.readings}: a surface")
     curve = LevelCurve(case, pair, largest, progress)
     result = sense_surface(case, read, pair, noise, curve)
     lines = [*read.remarks]

@@ -132,7 +132,7 @@ class Calibration:
         """docs/guide/calibration.md; SI units."""
         return {
             "schema": 1,
-            "calibration": self.case.name,
+            "case": self.case.name,
             "provenance": provenance,
             "models": str(self.pair),
             "noise": self.noise,
@@ -199,8 +199,7 @@ def calibrate_readings(
     case: Case, read: Readings, fit: Sequence[str], pair: Pair, noise: float, progress: Progress | None = None
 ) -> Calibration:
     """See calibrate()."""
-    if not read.measured_offset:
-        raise InputError("a calibration needs dB, or unloaded rows: the model's own B is what is to be found")
+    read.require_offset("a calibration")
     if len(read.change) != len(case.loads):
         raise InputError(
             f"there are {len(read.change)} readings and {len(case.loads)} load steps in the case: it lists the known loads, "

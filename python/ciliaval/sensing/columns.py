@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .._core import quantity
+from ..command import printable
 from ..errors import InputError
 
 MOST_CELLS = 1000  # of a line
@@ -111,15 +112,6 @@ class Column:
 def in_quotes(text: str) -> str:
     """The text for a message: control characters escaped, the rest of a long text cut off."""
     return f"'{printable(text[:60])}{'...' if len(text) > 60 else ''}'"
-
-
-def printable(text: str) -> str:
-    """The text without the control characters that a terminal would obey, and bytes that are no UTF-8 as \\xFF."""
-    return re.sub(
-        r"[\x00-\x1f\x7f-\x9f\ud800-\udfff]",
-        lambda m: "".join(f"\\x{b:02X}" for b in m[0].encode("utf-8", "surrogateescape")),
-        text,
-    )
 
 
 def cells_of(line: str, separator: str = ",") -> list[Cell]:

@@ -173,8 +173,7 @@ def sense_surface(
 ) -> SensedSurface:
     """The levels of the surface from readings in the order of the sweep. Raises InputError if they are
     no changes."""
-    if not readings.measured_offset:
-        raise InputError("the levels of a surface need dBx, dBy, dBz, or unloaded rows")
+    readings.require_offset("a surface")
     reads = Chips.of(sweep).reads
     change = np.where(reads, readings.change, 0.0).reshape(len(readings.change), -1)
     common = noise * np.sqrt(readings.common_variance())

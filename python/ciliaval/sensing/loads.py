@@ -228,28 +228,27 @@ def _scatter_remark(readings: Readings, noise: float) -> list[str]:
 
 
 def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[str]:
-    """A doubt about the sensor's axes where its unloaded reading is not the model's by more than the
-    earth's field and an offset make, and is with other axes."""
+    """A doubt about the sensor where its unloaded reading is not the model's by more than the earth's field and an
+    offset make; and which of its axes points elsewhere, where a component is large enough to tell."""
     if readings.unloaded is None or not chips.reads.all():
         return []
     remarks = []
     for i, (read, known) in enumerate(zip(chips.in_case(readings.unloaded), response.undeformed)):
-        off = np.abs(read - known).max()
-        if off <= max(_EARTH, 0.2 * float(np.abs(known).max())):
+        limit = max(_EARTH, 0.2 * float(np.abs(known).max()))
+        if np.abs(read - known).max() <= limit:
             continue
-        best, axes = min(
-            (float(np.abs(np.array(signs) * read[list(order)] - known).max()), (order, signs))
-            for order in itertools.permutations(range(3))
-            for signs in itertools.product((1, -1), repeat=3)
-        )
+        told = [
+            f"its own {'xyz'[own]} seems to point along the case's {'+' if sign > 0 else '-'}{'xyz'[k]}"
+            for k in np.flatnonzero(np.abs(known) > limit)
+            for own, sign in itertools.product(range(3), (1, -1))
+            if abs(sign * read[own] - known[k]) <= limit and (own, sign) != (k, 1)
+        ]
         text = (
             f"Unloaded, sensor {i} reads ({', '.join(f'{1e6 * v:.4g}' for v in read)}) uT where the model has "
             f"({', '.join(f'{1e6 * v:.4g}' for v in known)}) uT"
         )
-        if best < 0.3 * off and (chips.axes[i] == np.eye(3)).all():
-            own = sorted(zip(*axes, "xyz"))  # of the chip's x, y, z: sign and direction in the case
-            turned = ", ".join(f'"{"+" if sign > 0 else "-"}{axis}"' for _, sign, axis in own)
-            text += f": they would agree with axes = [{turned}]"
+        if told and (chips.axes[i] == np.eye(3)).all():
+            text += f": {', '.join(told)} (key `axes` of the sensor)"
         remarks.append(f"{text}. Is the sensor turned, or its unit, place or magnet another?")
     return remarks
 

@@ -14,9 +14,10 @@ from scipy import sparse
 
 from .._core import quantity
 from ..arrays import Array
+from ..command import printable
 from ..errors import FileError, InputError
 from ..files import content
-from .columns import Faults, Option, in_quotes, printable
+from .columns import Faults, Option, in_quotes
 from .loggers import MOST_ROWS, Table, read_table
 
 __all__ = ["Background", "Option", "ReadingOptions", "Readings", "read_readings"]
@@ -68,6 +69,11 @@ class Readings:
     def variance(self) -> Array:
         """Of dB by the noise of reading, over sigma^2, (n,): 1/m + 1/n with m rows and n unloaded ones."""
         return 1 / self.rows + self.offset_variance
+
+    def require_offset(self, what: str) -> None:
+        """Raises InputError where B of the unloaded cilium is not known, so that these are no changes."""
+        if not self.measured_offset:
+            raise InputError(f"{what} needs dBx, dBy, dBz, or unloaded rows")
 
     def common_variance(self) -> Array:
         """The variance over sigma^2 that dB of a sample has in common with that of the others, (n,): of the offset and

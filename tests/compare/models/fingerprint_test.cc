@@ -40,7 +40,9 @@ const std::string round_section = "diameter = \"3 mm\"\n";
 const std::string models_table =
     "[models]\nmechanics = [\"beam\", \"solid\"]\nfields = [\"line\"]\n";
 const std::string sensors =
-    "[[sensor]]\nname = \"s\"\nposition = [\"1 mm\", \"0 mm\", \"-2 mm\"]\n";
+    "[[sensor]]\nname = \"s\"\nposition = [\"1 mm\", \"0 mm\", \"-2 mm\"]\n"
+    "rotation = \"1 deg\"\ngain = 1.1\ncomponents = [\"x\", \"y\"]\n"
+    "axes = [\"+x\", \"-y\", \"+z\"]\n";
 
 std::string sweep(std::string_view surface, std::string_view rest = "") {
   return rod(round_section) + sensors +
@@ -77,7 +79,10 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
           "step = 1\nvalue = \"3.5 mm\"\nuncertainty = \"0.1 mm\"\nsource = \"photograph\"\n"
           "fitted = true\n[[input_uncertainty]]\nnumber = \"cilium.diameter\"\n"
           "uncertainty = \"0.1 mm\"\nsource = \"calliper\"\n",
-      rod(round_section) + contact + "[readings]\nscale = \"0.15 uT\"\n" + models_table +
+      rod(round_section) + contact +
+          "[readings]\nscale = \"0.15 uT\"\naverage = \"10 ms\"\n"
+          "temperature = \"-0.1 %/K\"\n" +
+          models_table +
           "[models.solid]\nmaterial = \"mooney-rivlin\"\nmooney_ratio = 0.2\n"
           "[models.volume]\nmethod = \"uniform\"\nelements = 10\n"
           "[models.line]\nmethod = \"quadrature\"\ntolerance = 1e-9\n" +
@@ -195,12 +200,13 @@ bool is_of_a_file(const Key& key) {
 
 /// Keys of which no other value is right by itself: choices with keys of their own, of which the
 /// texts above have all; the four numbers of a unit quaternion; what was
-/// measured, with its unit; an error limit in place of a refinement, which has a test below.
+/// measured, with its unit; the axes of a chip, of which each stands once; an error limit in place
+/// of a refinement, which has a test below.
 bool is_changed_with_others(std::string_view key) {
   for (const std::string_view with_others :
-       {"cilium.section.shape", "load.type", "environment.magnet.shape", "surface.profile",
-        "environment.magnet.rotation", "measurement.quantity", "models.solid.tolerance",
-        "models.solid.tolerance_of"})
+       {"cilium.section.shape", "load.type", "sensor.axes", "environment.magnet.shape",
+        "surface.profile", "environment.magnet.rotation", "measurement.quantity",
+        "models.solid.tolerance", "models.solid.tolerance_of"})
     if (key == with_others) return true;
   return false;
 }
