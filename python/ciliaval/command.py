@@ -68,17 +68,24 @@ def terminal_width() -> int:
 
 def json_text(value: Any) -> str:
     """As the program writes JSON: null for a number that is not finite."""
-    value = _finite(value)
     if not isinstance(value, dict):
-        return json.dumps(value, indent=1, ensure_ascii=False) + "\n"
-    # Of a long list each entry is a line: indented, a hundred thousand samples take seconds.
+        return _dumped(value, 1) + "\n"
+    # Of a list of objects each is a line, of a very long one some are: indented, a hundred thousand samples take seconds.
     parts = []
     for key, entry in value.items():
         is_rows = isinstance(entry, list) and bool(entry) and isinstance(entry[0], dict)
-        lines = ",\n  ".join(json.dumps(row, ensure_ascii=False) for row in entry) if is_rows else ""
-        text = f"[\n  {lines}\n ]" if is_rows else json.dumps(entry, indent=1, ensure_ascii=False).replace("\n", "\n ")
+        step = 1 if not is_rows or len(entry) < 1000 else 500
+        lines = ",\n  ".join(_dumped(entry[i : i + step])[1:-1] for i in range(0, len(entry), step)) if is_rows else ""
+        text = f"[\n  {lines}\n ]" if is_rows else _dumped(entry, 1).replace("\n", "\n ")
         parts.append(f" {json.dumps(key)}: {text}")
     return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def _dumped(value: Any, indent: int | None = None) -> str:
+    try:
+        return json.dumps(value, indent=indent, ensure_ascii=False, allow_nan=False)
+    except ValueError:
+        return json.dumps(_finite(value), indent=indent, ensure_ascii=False)
 
 
 def _finite(value: Any) -> Any:

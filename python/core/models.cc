@@ -553,7 +553,7 @@ void bind_models(py::module_& module) {
       "message. slip_off, the largest contact force or probe's displacement, is NaN for loads "
       "that\n"
       "cannot slip off and for models that do not know it; slip_off=False does not look for it\n"
-      "(NaN), which takes the elastica less than half the time. One design's failure does not "
+      "(NaN), which takes the elastica a third less time. One design's failure does not "
       "stop\n"
       "the others. Raises InputError.\n\n"
       ">>> import ciliaval as cv\n"
