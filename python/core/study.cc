@@ -45,6 +45,7 @@ using PointModel = std::pair<std::size_t, std::string>;
 
 std::vector<PointModel> to_python(const std::vector<study::Task>& tasks) {
   std::vector<PointModel> pairs;
+  pairs.reserve(tasks.size());
   for (const study::Task& task : tasks) pairs.emplace_back(task.point, task.mechanics);
   return pairs;
 }

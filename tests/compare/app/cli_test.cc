@@ -473,10 +473,8 @@ TEST(CommandLine, AMistypedCommandIsNamedWithTheValidOnes) {
   const Outcome outcome = ciliaval(folder.path(), "rum case.toml");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("`rum`"));
-  EXPECT_THAT(
-      outcome.err,
-      HasSubstr(
-          "run, validate, mesh, check, converge, budget, sense, calibrate, study, claims, report, list"));
+  EXPECT_THAT(outcome.err, HasSubstr("run, validate, mesh, check, converge, budget, sense, "
+                                     "calibrate, study, claims, report, list"));
 }
 
 TEST(CommandLine, AMessageWithAPlaceStartsWithIt) {
