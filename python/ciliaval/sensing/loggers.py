@@ -16,8 +16,8 @@ from .._core import quantity
 from ..arrays import Array
 from ..errors import InputError
 from .columns import (
-    Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, units_in,
-    without_brackets,
+    Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, thousands_in,
+    units_in, without_brackets,
 )  # fmt: skip
 from .header import (
     SEPARATORS, Header, MapEntry, choose_columns, find_factors, find_header, is_comment, map_entries, sensor_index,
@@ -427,27 +427,13 @@ class _Reader:
         return None
 
     def _refuse_thousands(self) -> None:
-        """Adds a fault where numbers look like "7,640" beside "122": marks between thousands, read as decimals, would
-        make them a thousand times too small."""
-        first, has_plain = None, False
-        for i, line in enumerate(self.lines[:2000]):
-            cells = cells_of(line, self.header.separator)
-            for cell in (cells[field] for field, _, _ in self.header.fields if field < len(cells)):
-                if number_in(cell.text) is None:
-                    continue
-                if re.fullmatch(r"[+-]?\d{1,3}", cell.text):
-                    has_plain |= cell.text.strip("+-0") != ""
-                elif re.fullmatch(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", cell.text):
-                    first = first or (cell, self.first_line + i)
-                else:
-                    return
-        if first and has_plain:
-            cell, line_of = first
-            self.faults.add(
-                f"{in_quotes(cell.text)} is not a number: does it have a mark between thousands, as the others without one "
-                "suggest? Write a decimal point, and nothing between thousands",
-                line_of, cell.column,
-            )  # fmt: skip
+        """Adds a fault where marks stand between thousands, as far as the first rows tell."""
+        rows = ((i, cells_of(line, self.header.separator)) for i, line in enumerate(self.lines[:2000], self.first_line))
+        fields = [field for field, _, _ in self.header.fields]
+        if found := thousands_in((i, cells[f]) for i, cells in rows for f in fields if f < len(cells)):
+            what = "is not a number: does it have a mark between thousands, as the others without one suggest? Write a "
+            what = f"{in_quotes(found[1].text)} {what}decimal point, and nothing between thousands"
+            self.faults.add(what, found[0], found[1].column)
 
     def _decimal_mark(self) -> tuple[str, int]:
         """The first decimal mark of the numbers, and its line."""
