@@ -30,8 +30,9 @@ class CMakeBuild(build_ext):
         if self.inplace:
             package = SOURCE / "python" / "ciliaval"
         (package / "bin").mkdir(parents=True, exist_ok=True)
-        for module in (build / "python" / "ciliaval").glob("_core*.so"):
-            shutil.copy2(module, package)
+        built = build / "python" / "ciliaval"
+        for file in [*built.glob("_core*.so"), built / "declared.json"]:
+            shutil.copy2(file, package)
         shutil.copy2(build / "ciliaval", package / "bin")
 
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "problem/error.h"
 
@@ -66,13 +67,51 @@ description::Field<LoadStatement::Values> stated(std::size_t place, std::string_
   return field;
 }
 
-/// q = ½ρv²C_d d (paper, Eq. 11), N/m, of v, ρ and C_d.
+/// Of a flow's LoadStatement.
+struct FlowValues {
+  explicit FlowValues(const LoadStatement::Values& values)
+      : velocity(values.at(0)),
+        density(values.at(1)),
+        drag_coefficient(values.at(2)),
+        viscosity(values.at(3)) {}
+
+  bool is_by_correlation() const { return drag_coefficient == description::Key::stands_for_word; }
+  double velocity, density, drag_coefficient, viscosity;
+};
+
+/// q = ½ρv²C_d d (paper, Eq. 11), N/m.
 double drag_per_height(const LoadStatement::Values& values, const Cilium& cilium) {
   if (cilium.is_rectangular())
     throw InputError(
         "the drag of a rectangle is not known from a velocity: state force_per_height");
-  const double velocity = values[0];
-  return values[1] * velocity * velocity * values[2] * cilium.diameter / 2;
+  const FlowValues flow(values);
+  if (flow.velocity == 0) return 0;
+  const double C_d = flow.is_by_correlation()
+                         ? cylinder_drag_coefficient(flow.density * flow.velocity *
+                                                     cilium.diameter / flow.viscosity)
+                         : flow.drag_coefficient;
+  return flow.density * flow.velocity * flow.velocity * C_d * cilium.diameter / 2;
+}
+
+description::Field<LoadStatement::Values> drag_coefficient() {
+  auto key = stated(2, "drag_coefficient", quantity::number,
+                    {1e-6, 1e6, false, "a drag coefficient is near 1"}, 1, "1",
+                    "`flow` by `velocity`: the drag coefficient C_d, or \"cylinder\": of a long "
+                    "cylinder across the flow at its Reynolds number density v d/viscosity, 1e-4 "
+                    "to 2e5 (Sucker and Brauer, 1975).");
+  key.word = "cylinder";
+  return key;
+}
+
+description::Field<LoadStatement::Values> viscosity() {
+  auto key = stated(3, "viscosity", quantity::viscosity, {1e-9, 1e6, false, unit_slip}, 1.0016e-3,
+                    "1.0016 mPa s, of water at 20 deg C",
+                    "`flow` by `velocity` with `drag_coefficient = \"cylinder\"`: of the fluid.");
+  key.condition = [](const LoadStatement::Values& values) {
+    return FlowValues(values).is_by_correlation();
+  };
+  key.goes_with = "'drag_coefficient = \"cylinder\"'";
+  return key;
 }
 
 double minus_the_clearance(const LoadStatement::Values& values, const Cilium& /*cilium*/) {
@@ -103,6 +142,17 @@ std::optional<double> value_at(const Load& load, Site site) {
 }
 
 }  // namespace
+
+double cylinder_drag_coefficient(double Re) {
+  if (!cylinder_reynolds_numbers.contains(Re)) {
+    std::ostringstream message;
+    message << "the drag of a cylinder is known for Reynolds numbers of 1e-4 to 2e5, not for " << Re
+            << ": state the drag coefficient";
+    throw InputError(message.str());
+  }
+  return 1.18 + 6.8 / std::pow(Re, 0.89) + 1.96 / std::sqrt(Re) -
+         0.0004 * Re / (1 + 3.64e-7 * Re * Re);
+}
 
 LoadParameter load_parameter(std::string_view name, const Quantity& quantity, const Range& range,
                              std::string_view doc, std::string_view words, double display_factor,
@@ -166,9 +216,7 @@ const LoadType& FlowLoad::type() {
                   "(paper, Eq. 11)."),
            stated(1, "density", quantity::density, {1e-9, 1e6, false, unit_slip}, 1000,
                   "1000 kg/m^3", "`flow` by `velocity`: the fluid's density."),
-           stated(2, "drag_coefficient", quantity::number,
-                  {1e-6, 1e6, false, "a drag coefficient is near 1"}, 1, "1",
-                  "`flow` by `velocity`: the drag coefficient C_d.")},
+           drag_coefficient(), viscosity()},
           &drag_per_height}};
   return type;
 }

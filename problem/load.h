@@ -38,6 +38,15 @@ LoadParameter load_parameter(std::string_view name, const Quantity& quantity, co
                              double display_factor = 1,
                              LoadParameter::Site site = LoadParameter::Site::none);
 
+/// Where cylinder_drag_coefficient() holds.
+inline constexpr Range cylinder_reynolds_numbers{1e-4, 2e5, false, ""};
+
+/// C_d of a long circular cylinder across the flow, Re = v d/ν,
+///   C_d = 1.18 + 6.8/Re^0.89 + 1.96/Re^0.5 − 0.0004 Re/(1 + 3.64e-7 Re²)
+/// (Sucker and Brauer, Wärme- und Stoffübertragung 8, 149, 1975). A free end, a wall at the base
+/// and turbulence are not in it. Throws InputError beyond cylinder_reynolds_numbers.
+double cylinder_drag_coefficient(double Re);
+
 /// Values from which a file may state the magnitude of a load.
 struct LoadStatement {
   using Values = std::vector<double>;

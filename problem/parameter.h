@@ -22,6 +22,7 @@ inline constexpr Quantity force_per_length{"a", "force per length", "N/m", "0.3 
 inline constexpr Quantity velocity{"a", "velocity", "m/s", "0.5 m/s"};
 inline constexpr Quantity acceleration{"an", "acceleration", "m/s^2", "-9.81 m/s2"};
 inline constexpr Quantity density{"a", "density", "kg/m^3", "1000 kg/m^3"};
+inline constexpr Quantity viscosity{"a", "dynamic viscosity", "Pa s", "1 mPa s"};
 inline constexpr Quantity angle{"an", "angle", "rad", "30 deg"};
 inline constexpr Quantity frequency{"a", "frequency", "Hz", "100 Hz"};
 inline constexpr Quantity time{"a", "time", "s", "10 min"};

@@ -61,8 +61,27 @@ std::optional<Value> read_as_list(const toml::node& node, const Key& key, Faults
   return is_right ? std::optional<Value>(values) : std::nullopt;
 }
 
+template <class T>
+std::optional<Value> as_value(std::optional<T> value) {
+  return value ? std::optional<Value>(*value) : std::nullopt;
+}
+
+/// A number, or the word that may stand in its place.
+std::optional<Value> read_number(const toml::node& node, const Key& key, Faults& faults) {
+  if (const auto* text = node.as_string(); text != nullptr && !key.word.empty()) {
+    if (text->get() == key.word) return Key::stands_for_word;
+    if (text->get().find_first_of("0123456789") == std::string::npos) {
+      faults.add(place(node), fmt::format("'{}' must be a number or \"{}\", found {}", key.name,
+                                          key.word, describe(node)));
+      return std::nullopt;
+    }
+  }
+  return as_value(read_value(node, key.name, key.quantity, key.range, faults));
+}
+
 /// A number, quoted if it has a unit.
 std::string number_text(const Key& key, double value) {
+  if (key.is_word(value)) return fmt::format("\"{}\"", key.word);
   const std::string text = format_quantity(value, key.quantity);
   return key.quantity.unit.empty() ? text : fmt::format("\"{}\"", text);
 }
@@ -83,11 +102,6 @@ std::string in_toml_quotes(const std::string& text) {
   return quoted + '"';
 }
 
-template <class T>
-std::optional<Value> as_value(std::optional<T> value) {
-  return value ? std::optional<Value>(*value) : std::nullopt;
-}
-
 }  // namespace
 
 std::optional<Value> read_value(const toml::node& node, const Key& key, Faults& faults) {
@@ -104,7 +118,7 @@ std::optional<Value> read_value(const toml::node& node, const Key& key, Faults& 
         } else if constexpr (std::is_same_v<T, unsigned int>) {
           return as_value(read_whole_number(node, key.name, key.range, faults));
         } else if constexpr (std::is_same_v<T, double>) {
-          return as_value(read_value(node, key.name, key.quantity, key.range, faults));
+          return read_number(node, key, faults);
         } else if constexpr (std::is_same_v<T, Vector3>) {
           if (!key.may_be_axial || node.is_array()) return as_value(read_point(node, key, faults));
           const auto axial = read_value(node, key.name, key.quantity, key.range, faults);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -105,6 +106,9 @@ struct Entry {
   SubTables tables{};
   /// What it adds to the models before it, an assumption a stage; empty: the budget leaves it out.
   std::function<std::vector<BudgetStage>(const ModelOptions&)> budget_stages{};
+  /// Sets the options by which it leaves out least; empty: no option of it tells what it leaves
+  /// out.
+  std::function<void(ModelOptions&)> correct{};
   /// Sets the options by which it takes least time: closed forms, no estimate of its error.
   std::function<void(ModelOptions&)> hasten{};
   /// Sets the options by which it does not look for the largest load where the load is borne.
@@ -115,6 +119,14 @@ struct Entry {
   /// it takes but a moment.
   std::optional<std::vector<std::string_view>> checkpoint_without{};
 
+  /// Whether correct() would change nothing.
+  bool is_corrected(const ModelOptions& given) const {
+    if (!correct) return false;
+    ModelOptions best = given;
+    correct(best);
+    return std::ranges::all_of(
+        options, [&](const Option& option) { return option.get(given) == option.get(best); });
+  }
   /// True if it takes a moment, in any thread, with rods.
   bool is_quick() const { return !is_slow && !is_collective && !has_body; }
 };

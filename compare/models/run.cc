@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "compare/models/evaluator.h"
+#include "compare/models/model_part.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
@@ -33,6 +34,15 @@ std::vector<const Entry*> chosen(std::span<const Entry> entries,
   for (const Entry& entry : entries)
     if (std::find(ids.begin(), ids.end(), entry.id) != ids.end()) result.push_back(&entry);
   return result;
+}
+
+/// Plain rods before corrected ones: in a comparison the later one is the reference.
+void put_corrected_last(std::vector<const MechanicsEntry*>& entries,
+                        const input::ModelOptions& options) {
+  const auto is_rod = [](const MechanicsEntry* entry) { return bool(entry->correct); };
+  const auto end = std::ranges::find_if_not(entries, is_rod);
+  std::stable_partition(entries.begin(), end,
+                        [&](const MechanicsEntry* entry) { return !entry->is_corrected(options); });
 }
 
 /// B and its uncertainty at some of the sensors; throws if they are not as many or not finite.
@@ -333,7 +343,8 @@ FieldRun run_field(const std::string& id, const FieldModel& model, const Mechani
 CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress,
                const std::map<std::string, Checkpoint>& checkpoints) {
-  const std::vector<const MechanicsEntry*> mechanics_entries = chosen(mechanics, problem.mechanics);
+  std::vector<const MechanicsEntry*> mechanics_entries = chosen(mechanics, problem.mechanics);
+  put_corrected_last(mechanics_entries, problem.options);
   const std::vector<const FieldEntry*> field_entries = chosen(fields, problem.fields);
   for (const input::external::ExternalModel& model : problem.external)
     require_of_path(model, problem.load_path);
@@ -360,6 +371,7 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.readings.empty())
       result.fields.push_back(external_fields(model, problem.sensors.size()));
+  add_model_parts(result, mechanics, fields, progress);
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "compare/input/case.h"
@@ -15,11 +16,43 @@
 
 namespace ciliaval::compare::models {
 
+/// What a model leaves out of a quantity, as far as a better one tells that takes but a moment.
+template <class Value>
+struct ModelPart {
+  Value difference;              ///< |Q(model) − Q(better)|, of a vector by components
+  double of_the_better = 0;      ///< its own error: numerical, and of its corrections
+  bool is_in_numerical = false;  ///< the model's numerical error has the second already
+
+  Value uncertainty() const { return difference + ones() * of_the_better; }
+  /// The numerical error with it: about 95 %, both parts being bounds.
+  Value band(const Value& numerical) const {
+    return numerical + difference + ones() * (is_in_numerical ? 0 : of_the_better);
+  }
+
+ private:
+  static Value ones() {
+    if constexpr (std::is_same_v<Value, double>)
+      return 1;
+    else
+      return Value::Ones();
+  }
+};
+
+/// That of the shape at a step.
+struct ShapeModelParts {
+  std::optional<ModelPart<double>> tip;            ///< position, m
+  std::optional<ModelPart<double>> tip_angle;      ///< rad
+  std::optional<ModelPart<double>> applied_force;  ///< N
+  std::optional<ModelPart<double>> slip_off;       ///< slip_off_limit()
+  std::string unknown;                             ///< why they are not known; else empty
+};
+
 /// What one mechanics model made of the load path.
 struct MechanicsRun {
   std::string model;       ///< id
   MechanicsResult result;  ///< one step for each load; if the model threw, all of them failed with
                            ///< its message
+  std::vector<ShapeModelParts> model_parts{};  ///< of each step, after add_model_parts()
 };
 
 /// A vector at each sensor, T; none where it is undefined or unknown.
@@ -35,6 +68,10 @@ struct FieldStep {
   /// from the fields of its companions (problem/error_estimate.h). None where it is not known.
   std::vector<std::optional<double>> from_mechanics;
   std::vector<std::optional<double>> dB_from_mechanics;
+  /// What the two models leave out, after add_model_parts(); none where it is not known.
+  std::vector<std::optional<ModelPart<Vector3>>> B_model_part;
+  std::vector<std::optional<ModelPart<Vector3>>> dB_model_part;
+  std::string model_part_unknown;         ///< why; else empty
   std::shared_ptr<const FieldMesh> mesh;  ///< what B was computed from, if it can be drawn
   double seconds = 0;                     ///< wall time
   std::string remark;   ///< of the field model: why an uncertainty is not known; else empty

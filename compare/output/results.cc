@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -112,6 +113,26 @@ Json pull_in_json(const continuation::PullIn& pull_in) {
   return json;
 }
 
+/// What a model leaves out of each number of a shape, and the band with the numerical error; null
+/// where it is not known.
+void add_model_parts(const models::MechanicsRun& run, std::size_t index, Json& json) {
+  const MechanicsStep& step = run.result.steps[index];
+  const models::ShapeModelParts& parts = run.model_parts[index];
+  const auto angle_uncertainty =
+      step.deformation ? results::tip_angle_uncertainty(step) : std::nullopt;
+  const std::tuple<const char*, const std::optional<models::ModelPart<double>>&,
+                   std::optional<double>>
+      all[] = {{"tip", parts.tip, step.tip_uncertainty},
+               {"tip_angle", parts.tip_angle, angle_uncertainty},
+               {"applied_force", parts.applied_force, step.applied_force_uncertainty},
+               {"slip_off", parts.slip_off, step.slip_off_uncertainty}};
+  for (const auto& [name, part, numerical] : all) {
+    json["model_uncertainty"][name] = part ? Json(part->uncertainty()) : Json(nullptr);
+    json["band"][name] = part && numerical ? Json(part->band(*numerical)) : Json(nullptr);
+  }
+  if (!parts.unknown.empty()) json["model_uncertainty_unknown"] = parts.unknown;
+}
+
 Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
   const MechanicsStep& step = run.result.steps[index];
   Json json{{"status", to_string(step.status)}, {"message", step.message}};
@@ -126,6 +147,7 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
     else
       number = values;
   }
+  if (!run.model_parts.empty()) add_model_parts(run, index, json);
   if (step.contact) json["contact"] = contact_json(*step.contact);
   if (step.contact && step.contact->energy_lost)
     json["jump"] = {{"energy_lost", *step.contact->energy_lost}};
@@ -174,7 +196,11 @@ Json field_json(const models::CaseResult& result, const models::FieldRun& run, s
     json[fmt::format("{}uncertainty_of_field", prefix)] =
         rows(change ? step.dB_uncertainty : step.uncertainty);
     json[fmt::format("{}uncertainty_of_shape", prefix)] = numbers(of_shape);
+    json[fmt::format("{}model_uncertainty", prefix)] =
+        rows(models::model_uncertainties(step, change));
+    json[fmt::format("{}band", prefix)] = rows(models::bands(result, run, index, change));
   }
+  if (!step.model_part_unknown.empty()) json["model_uncertainty_unknown"] = step.model_part_unknown;
   return json;
 }
 

@@ -69,9 +69,39 @@ std::string sentences(const std::string& model, const MechanicsStep& step) {
   return text;
 }
 
+/// The band, or "> 3", the numerical error alone, where it is not known what the model leaves out.
+std::string band_cell(std::optional<double> band, std::optional<double> numerical) {
+  constexpr double unit = 1e-6;
+  const std::optional<double> shown = band ? band : numerical;
+  if (!shown) return "?";
+  return (band ? "" : ">") + number_cell(shown, unit, *shown >= 10 * unit ? "{:.0f}" : "{:.2g}");
+}
+
+/// A number with as many decimals as its band leaves two digits of, at most so many.
+std::string cell_within(std::optional<double> value, std::optional<double> band, double unit,
+                        int most) {
+  int decimals = most;
+  if (band && *band > 0)
+    decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(*band / unit))), 0, most);
+  return number_cell(value, unit, fmt::format("{{:.{}f}}", decimals));
+}
+
+std::optional<double> angle_band(const models::MechanicsRun& run, std::size_t step) {
+  const auto numerical = results::tip_angle_uncertainty(run.result.steps[step]);
+  if (run.model_parts.empty() || !run.model_parts[step].tip_angle || !numerical)
+    return std::nullopt;
+  return run.model_parts[step].tip_angle->band(*numerical);
+}
+
+std::optional<double> tip_band(const models::MechanicsRun& run, std::size_t step) {
+  const auto& numerical = run.result.steps[step].tip_uncertainty;
+  if (run.model_parts.empty() || !run.model_parts[step].tip || !numerical) return std::nullopt;
+  return run.model_parts[step].tip->band(*numerical);
+}
+
 std::string mechanics_table(const models::CaseResult& result, std::size_t index) {
-  TextRows rows{{"mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)", "force(mN)",
-                 "unknowns", "iter.", "time (s)"}};
+  TextRows rows{
+      {"mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)", "force(mN)", "time (s)"}};
   for (const models::MechanicsRun& run : result.mechanics) {
     const MechanicsStep& step = run.result.steps[index];
     std::vector<std::string>& row = rows.emplace_back();
@@ -79,16 +109,18 @@ std::string mechanics_table(const models::CaseResult& result, std::size_t index)
     if (step.deformation) {
       const Centreline& centreline = step.deformation->centreline;
       const CentrelinePoint tip = centreline.at(centreline.length());
-      for (const double x : tip.position) row.push_back(number_cell(x, 1e-3, "{:.4f}"));
-      row.push_back(number_cell(step.tip_uncertainty, 1e-6, "{:.2g}"));
-      row.push_back(number_cell(tip.theta(), degree, "{:.3f}"));
+      const auto band = tip_band(run, index);
+      const auto or_numerical = band ? band : step.tip_uncertainty;
+      for (const double x : tip.position) row.push_back(cell_within(x, or_numerical, 1e-3, 4));
+      row.push_back(band_cell(band, step.tip_uncertainty));
+      const auto angle = angle_band(run, index);
+      row.push_back(cell_within(tip.theta(), angle ? angle : results::tip_angle_uncertainty(step),
+                                degree, 3));
       row.push_back(number_cell(step.applied_force, 1e-3, "{:.5g}"));
     } else {
       row.insert(row.end(), 6, "-");
     }
-    row.push_back(fmt::format("{}", step.unknowns));
-    row.push_back(fmt::format("{}", step.iterations));
-    row.push_back(fmt::format("{:.3g}", step.seconds));
+    row.push_back(fmt::format("{:.1g}", step.seconds));
   }
   std::string text = text_table(rows, "<<>");
   for (const models::MechanicsRun& run : result.mechanics) {
@@ -143,8 +175,8 @@ bool has_field(const models::FieldRun& run, std::size_t step, std::size_t sensor
 std::string fields_table(const models::CaseResult& result,
                          const std::vector<models::Comparison>& comparisons, std::size_t step,
                          std::size_t sensor) {
-  TextRows rows{{"field at sensor " + input::sensor_name(result.problem, sensor), "Bx", "By",
-                 "Bz (mT)", "dBx", "dBy", "dBz (uT)", "+-dB", "x (%)", "y", "z (2)", "time (s)"}};
+  TextRows rows{{"sensor " + input::sensor_name(result.problem, sensor), "Bx", "By", "Bz (mT)",
+                 "dBx", "dBy", "dBz (uT)", "+-dB", "% (2)"}};
   const models::FieldRun* reference = nullptr;  // the most detailed pair that has a field here
   for (const models::FieldRun& run : result.fields)
     if (has_field(run, step, sensor)) reference = &run;
@@ -155,16 +187,23 @@ std::string fields_table(const models::CaseResult& result,
     row.push_back(run.name());
     for (Eigen::Index i = 0; i < 3; ++i)
       row.push_back(number_cell(component(field.B[sensor], i), 1e-3, "{:.4f}"));
+    const models::AtSensors bands = models::bands(result, run, step, true);
+    const auto band = sensor < bands.size() && bands[sensor]
+                          ? std::optional(bands[sensor]->maxCoeff())
+                          : std::nullopt;
+    const auto numerical = models::change_uncertainty(result, run, step, sensor);
     for (Eigen::Index i = 0; i < 3; ++i)
-      row.push_back(number_cell(component(field.dB[sensor], i), 1e-6, "{:.2f}"));
-    const std::optional<double> uncertainty = models::change_uncertainty(result, run, step, sensor);
-    row.push_back(field.dB[sensor] && !uncertainty ? "not known"
-                                                   : number_cell(uncertainty, 1e-6, "{:.1g}"));
-    for (const char* axis : axis_names)
-      row.push_back(&run == reference ? "ref."
-                                      : percent(find(comparisons, step, "dB", axis, "value",
-                                                     run.name(), reference->name(), sensor)));
-    row.push_back(fmt::format("{:.2g}", field.seconds));
+      row.push_back(cell_within(component(field.dB[sensor], i), band ? band : numerical, 1e-6, 2));
+    row.push_back(field.dB[sensor] ? band_cell(band, numerical) : "-");
+    const models::Comparison* largest = nullptr;
+    for (const char* axis : axis_names) {
+      const auto* c =
+          find(comparisons, step, "dB", axis, "value", run.name(), reference->name(), sensor);
+      if (c != nullptr && c->relative &&
+          (largest == nullptr || std::abs(*c->relative) > std::abs(*largest->relative)))
+        largest = c;
+    }
+    row.push_back(&run == reference ? "ref." : percent(largest));
   }
   return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
 }
@@ -176,6 +215,23 @@ std::string failures(const models::CaseResult& result, std::size_t step) {
     if (run.steps[step])
       for (const std::string& message : {run.steps[step]->failure, run.steps[step]->remark})
         if (!message.empty()) text += fmt::format("  {}: {}\n", run.name(), message);
+  return text;
+}
+
+/// What is not as it should be at the steps whose tables are not shown.
+std::string troubles(const models::CaseResult& result, std::size_t steps) {
+  std::string text;
+  for (std::size_t step = 0; step < steps; ++step) {
+    std::string of_step;
+    for (const models::MechanicsRun& run : result.mechanics) {
+      const MechanicsStep& at = run.result.steps[step];
+      if (at.status != Status::converged || !at.message.empty())
+        of_step += fmt::format("  {} {}{}{}\n", run.model, to_string(at.status),
+                               at.message.empty() ? "" : ": ", at.message);
+    }
+    of_step += failures(result, step);
+    if (!of_step.empty()) text += fmt::format("Step {} of {}:\n{}", step + 1, steps + 1, of_step);
+  }
   return text;
 }
 
@@ -244,6 +300,20 @@ std::string_view field_verdict(const std::vector<models::Comparison>& comparison
   return to_string(verdict);
 }
 
+/// " (band 11 %)" of a number; empty where it is not known.
+std::string band_words(std::optional<double> band, double value) {
+  if (!band || value == 0) return {};
+  return fmt::format(" (its band: {:.2g} %)", 100 * *band / std::abs(value));
+}
+
+/// Of |ΔB|.
+std::optional<double> norm_band(const models::CaseResult& result, const models::FieldRun& run,
+                                std::size_t step, std::size_t sensor) {
+  const models::AtSensors bands = models::bands(result, run, step, true);
+  return sensor < bands.size() && bands[sensor] ? std::optional(bands[sensor]->norm())
+                                                : std::nullopt;
+}
+
 /// What the pairs see at a sensor, against the most detailed one.
 std::string field_meaning(const models::CaseResult& result,
                           const std::vector<models::Comparison>& comparisons, std::size_t step,
@@ -261,8 +331,9 @@ std::string field_meaning(const models::CaseResult& result,
                   input::sensor_name(result.problem, sensor), reference->name(), 1e6 * signal);
   for (const models::FieldRun& run : result.fields)
     if (&run != reference && change_of(run) && signal != 0)
-      text += fmt::format("  {} sees {}: {}\n", run.name(),
+      text += fmt::format("  {} sees {}{}: {}\n", run.name(),
                           more_or_less(change_of(run)->norm() / signal, "more", "less"),
+                          band_words(norm_band(result, run, step, sensor), change_of(run)->norm()),
                           field_verdict(comparisons, step, run.name(), reference->name(), sensor));
   return text;
 }
@@ -285,9 +356,10 @@ std::string meaning(const models::CaseResult& result,
       if (&run == best || !run.result.steps[step].deformation || deflection(*best) == 0) continue;
       const auto* tip = find(comparisons, step, "tip", "", "value", run.model, best->model);
       if (tip == nullptr) continue;
-      text += fmt::format("  {} bends {} than {}: {}\n", run.model,
+      text += fmt::format("  {} bends {} than {}{}: {}\n", run.model,
                           more_or_less(deflection(run) / deflection(*best), "further", "less far"),
-                          best->model, to_string(tip->verdict));
+                          best->model, band_words(tip_band(run, step), deflection(run)),
+                          to_string(tip->verdict));
     }
     for (std::size_t sensor = 0; sensor < shown_sensors(result.problem); ++sensor)
       text += field_meaning(result, comparisons, step, sensor);
@@ -298,16 +370,19 @@ std::string meaning(const models::CaseResult& result,
 }
 
 constexpr const char* mechanics_legend =
-    "+- estimate of the tip's discretisation error in micrometres, where the model has one.\n"
+    "+- 95 % band of the tip in micrometres: its numerical error, and what the rod leaves out,\n"
+    "    against one with corrected joints; >3: the numerical error, the rest is not known.\n"
     "(1) distance of the two centrelines at common material points, largest, RMS over the arc\n"
     "    length and at the tip, divided by the tip deflection of the second; tip angle divided by\n"
     "    its tip angle. R2 of the deflection w over the current height z, and the square of its\n"
     "    correlation, which does not see a constant factor. The last column says whether the\n"
     "    difference of the tips is larger than the numerical uncertainty of the two.\n";
 constexpr const char* fields_legend =
-    "+-dB: numerical uncertainty of dB in uT, its own and its shape's, largest component.\n"
-    "(2) error of dB = B - B(undeformed), each component divided by the largest |dB| of the\n"
-    "    reference (ref.) over the load path.\n"
+    "+-dB: 95 % band of dB in uT, largest component: the numerical errors of field and shape,\n"
+    "    and what the two models leave out; >3: the numerical errors, the rest is not known;\n"
+    "    ?: neither is known.\n"
+    "(2) largest error of a component of dB = B - B(undeformed), divided by the largest |dB| of\n"
+    "    the reference (ref.) over the load path.\n"
     "(3) RMS of the error of a component over the path divided by the RMS of that component.\n"
     "    - is undefined: the divisor vanishes.\n";
 
@@ -348,7 +423,8 @@ std::string footnotes(Footnotes which, std::string_view text) {
 }
 
 std::string table(const models::CaseResult& result,
-                  const std::vector<models::Comparison>& comparisons, Footnotes which) {
+                  const std::vector<models::Comparison>& comparisons, Footnotes which,
+                  Steps steps) {
   const input::Case& problem = result.problem;
   const std::size_t sensors = shown_sensors(problem);
   const auto of_path = [&] {
@@ -363,9 +439,10 @@ std::string table(const models::CaseResult& result,
     legend = sweep_legend;
   } else {
     text += meaning(result, comparisons);
-    for (std::size_t step = 0; step < problem.load_path.size(); ++step) {
-      text += fmt::format("\nStep {} of {}: {}\n", step + 1, problem.load_path.size(),
-                          describe(problem.load_path[step]));
+    const std::size_t count = problem.load_path.size();
+    for (std::size_t step = steps == Steps::all ? 0 : count - 1; step < count; ++step) {
+      text +=
+          fmt::format("\nStep {} of {}: {}\n", step + 1, count, describe(problem.load_path[step]));
       text += mechanics_table(result, step);
       text += magnets_table(result, step);
       const std::string errors = mechanics_errors(result, comparisons, step);
@@ -375,6 +452,8 @@ std::string table(const models::CaseResult& result,
       text += failures(result, step);
     }
     text += of_path();
+    if (steps == Steps::last && count > 1)
+      text += fmt::format("\n{}The steps before: --all\n", troubles(result, count - 1));
   }
   if (!result.fields.empty() && sensors > 0) legend += fields_legend;
   text += '\n' + footnotes(which, legend);

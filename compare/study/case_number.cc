@@ -88,6 +88,7 @@ void append_numbers(const Fields<T>& fields, const std::string& table, const Cas
       return std::ranges::all_of(steps, [&](const T& step) { return field.get(step) == value; });
     };
     if (field.absence == Key::Absence::nothing && at_all_steps(field.initial)) continue;
+    if (!field.word.empty() && at_all_steps(description::Key::stands_for_word)) continue;
     if (varying != Varying::all && !at_all_steps(field.get(steps.front()))) continue;
     const std::string path = fmt::format("{}.{}", table, field.name);
     if (field.is_number() || field.may_be_axial)

@@ -119,7 +119,7 @@ std::string series_text(const Series& series) {
                     verdict_cell(point, unit)});
   }
   std::string text = "\n" + series.model;
-  if (!series.sensitivities_by.empty() && series.sensitivities_by != series.model)
+  if (series.has_sensitivities_of_another())
     text += fmt::format(" (u_in by {})", series.sensitivities_by);
   text += fmt::format("\n{}{}", output::text_table(rows, ">>>>>>>><"), notes_of(series));
   const std::size_t n = series.assessed;
@@ -138,6 +138,9 @@ std::string series_text(const Series& series) {
       if (factor != 1)
         seen.push_back(fmt::format("{} ({:g} u_D)", series.seen_with(factor), factor));
     text += fmt::format("\n  seen with another u_D: {}", fmt::join(seen, ", "));
+    if (series.has_sensitivities_of_another())
+      text += fmt::format("\n  seen with twice the u_in of {}: {}", series.sensitivities_by,
+                          series.seen_with(1, 2));
   }
   return text + '\n';
 }
@@ -207,6 +210,7 @@ Json series_json(const Series& series) {
             {"bounded", series.count(Verdict::bounded)},
             {"not_resolved", series.count(Verdict::not_resolved)},
             {"bounded_with_u_D", Json::array()},
+            {"bounded_with_twice_u_input", series.seen_with(1, 2)},
             {"fitted", series.fitted()},
             {"chi_squared", or_null(series.chi_squared)},
             {"rms_error", or_null(series.rms_error)},

@@ -16,15 +16,16 @@ using models::FieldEntry;
 using models::MechanicsEntry;
 using Row = std::vector<std::optional<double>>;  ///< one for each measurement
 
-/// The id itself if its entry will do, or the last one that will.
+/// The id itself if its entry will do, or the last quick one that will.
 template <class Entry, class Will>
-std::optional<std::string> quick_one(const std::string& id, std::span<const Entry> entries,
-                                     const Will& will) {
+std::optional<std::string> stand_in(const std::string& id, Sensitivities whose,
+                                    std::span<const Entry> entries, const Will& will) {
   std::optional<std::string> last;
   for (const Entry& entry : entries) {
-    if (!entry.is_quick() || !will(entry)) continue;
+    const bool is_itself = entry.id == id;
+    if (!will(entry) || !(entry.is_quick() || (is_itself && whose == Sensitivities::own))) continue;
     last = entry.id;
-    if (entry.id == id) return id;
+    if (is_itself) return id;
   }
   return last;
 }
@@ -61,15 +62,15 @@ std::map<Stand, Row> values_of(const input::Case& problem, const input::Case& sh
 }  // namespace
 
 std::optional<Stand> stand_in(const std::string& mechanics, const std::string& field,
-                              const input::Case& problem,
+                              Sensitivities whose, const input::Case& problem,
                               std::span<const MechanicsEntry> mechanics_entries,
                               std::span<const FieldEntry> field_entries) {
-  const auto shape = quick_one(mechanics, mechanics_entries, [&](const MechanicsEntry& entry) {
-    return models::fault_of(entry, problem).empty();
-  });
+  const auto shape = stand_in(
+      mechanics, whose, mechanics_entries,
+      [&](const MechanicsEntry& entry) { return models::fault_of(entry, problem).empty(); });
   if (!shape) return std::nullopt;
   if (field.empty()) return Stand{*shape, {}};
-  const auto magnet = quick_one(field, field_entries, [](const FieldEntry&) { return true; });
+  const auto magnet = stand_in(field, whose, field_entries, [](const FieldEntry&) { return true; });
   if (!magnet) return std::nullopt;
   return Stand{*shape, *magnet};
 }

@@ -13,8 +13,14 @@
 
 namespace ciliaval::compare::validation {
 
-/// What takes the derivatives of a model: itself if it is quick; else the most detailed quick one
-/// that takes the load. For a pair of models each of the two.
+/// Whose derivatives u_input is from.
+enum class Sensitivities {
+  quick,  ///< of quick models: a slow one has those of the most detailed quick one
+  own     ///< each model's own, which solves a slow one twice for each input
+};
+
+/// What takes the derivatives of a model: itself, or, if it is slow and `whose` says so, the most
+/// detailed quick one that takes the load. For a pair of models each of the two.
 struct Stand {
   std::string mechanics;
   std::string field;  ///< empty: of the shape
@@ -22,9 +28,9 @@ struct Stand {
   std::string name() const { return field.empty() ? mechanics : mechanics + "/" + field; }
   auto operator<=>(const Stand&) const = default;
 };
-/// None if no quick model takes the load. `field` is empty for a measurand of the shape.
+/// None if no such model takes the load. `field` is empty for a measurand of the shape.
 std::optional<Stand> stand_in(const std::string& mechanics, const std::string& field,
-                              const input::Case& problem,
+                              Sensitivities whose, const input::Case& problem,
                               std::span<const models::MechanicsEntry> mechanics_entries,
                               std::span<const models::FieldEntry> field_entries);
 

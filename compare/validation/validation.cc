@@ -34,7 +34,7 @@ std::vector<Measurand> measurands_of(const std::vector<Measurement>& measurement
   return result;
 }
 
-std::vector<Planned> plan(const models::CaseResult& result,
+std::vector<Planned> plan(const models::CaseResult& result, Sensitivities whose,
                           std::span<const models::MechanicsEntry> mechanics,
                           std::span<const models::FieldEntry> fields) {
   const input::Case& problem = result.problem;
@@ -45,9 +45,10 @@ std::vector<Planned> plan(const models::CaseResult& result,
     for (std::size_t m = 0; m < measurements.size(); ++m)
       if (measurements[m].measurand == measurand) indices.push_back(m);
     const auto add = [&](const models::MechanicsRun* shape, const models::FieldRun* field) {
-      all.push_back({shape, field, measurand, indices,
-                     stand_in(field != nullptr ? field->mechanics : shape->model,
-                              field != nullptr ? field->field : "", problem, mechanics, fields)});
+      all.push_back(
+          {shape, field, measurand, indices,
+           stand_in(field != nullptr ? field->mechanics : shape->model,
+                    field != nullptr ? field->field : "", whose, problem, mechanics, fields)});
     };
     if (!measurand.is_field()) {
       for (const models::MechanicsRun& run : result.mechanics) add(&run, nullptr);
@@ -90,7 +91,7 @@ Point point_of(const Computed& model, const Measurement& measured, std::size_t i
   if (!point.u_num)
     point.note = "u_num is not known";
   else if (!point.u_input)
-    point.note = "u_input is not known: with an input shifted, no quick model has a value";
+    point.note = "u_input is not known: with an input shifted, no model has a value";
   else if (point.simulated)
     point.assessment = assess(*point.simulated, measured.value,
                               {*point.u_num, *point.u_input, measured.uncertainty});
@@ -146,12 +147,12 @@ std::size_t Series::count(Verdict verdict) const {
       points, [&](const Point& point) { return point.verdict() == verdict; }));
 }
 
-std::size_t Series::seen_with(double factor) const {
+std::size_t Series::seen_with(double factor_of_u_D, double factor_of_u_input) const {
   return static_cast<std::size_t>(std::ranges::count_if(points, [&](const Point& point) {
-    return point.assessment &&
-           assess(*point.simulated, point.measured.value,
-                  {*point.u_num, *point.u_input, factor * point.measured.uncertainty})
-                   .verdict == Verdict::bounded;
+    return point.assessment && assess(*point.simulated, point.measured.value,
+                                      {*point.u_num, factor_of_u_input * *point.u_input,
+                                       factor_of_u_D * point.measured.uncertainty})
+                                       .verdict == Verdict::bounded;
   }));
 }
 
@@ -163,13 +164,13 @@ std::size_t Series::fitted() const {
 std::optional<Validation> validate(const models::CaseResult& result,
                                    std::span<const models::MechanicsEntry> mechanics,
                                    std::span<const models::FieldEntry> fields,
-                                   const Progress& progress) {
+                                   const Progress& progress, Sensitivities whose) {
   const input::Case& problem = result.problem;
   if (problem.measured.measurements.empty()) return std::nullopt;
   Validation validation;
   validation.inputs = read_inputs(problem);
   validation.domain = domain_of(problem);
-  const std::vector<Planned> all = plan(result, mechanics, fields);
+  const std::vector<Planned> all = plan(result, whose, mechanics, fields);
   std::vector<Stand> stands;
   for (const Planned& planned : all)
     if (planned.stand) stands.push_back(*planned.stand);

@@ -9,6 +9,7 @@
 
 #include "compare/models/run.h"
 #include "compare/validation/input_number.h"
+#include "compare/validation/sensitivity.h"
 #include "compare/validation/statistics.h"
 
 namespace ciliaval::compare::validation {
@@ -42,8 +43,12 @@ struct Series {
     return points.front().measured.measurand;
   }
   std::size_t count(Verdict verdict) const;
-  /// Points at which the model's error would be seen with a u_D `factor` times as large.
-  std::size_t seen_with(double factor) const;
+  bool has_sensitivities_of_another() const {
+    return !sensitivities_by.empty() && sensitivities_by != model;
+  }
+  /// Points at which the model's error would be seen with a u_D and a u_input so many times as
+  /// large.
+  std::size_t seen_with(double factor_of_u_D, double factor_of_u_input = 1) const;
   std::size_t fitted() const;  ///< points to which parameters were fitted
 };
 
@@ -68,12 +73,13 @@ struct Validation {
 };
 
 /// Every model of the results against the measurements of the case: shapes by the mechanics models,
-/// fields by the pairs. None without measurements. Solves the quick models again for the
-/// sensitivities, twice for each input. Throws InputError as read_inputs().
+/// fields by the pairs. None without measurements. Solves the models that `whose` names again for
+/// the sensitivities, twice for each input. Throws InputError as read_inputs().
 std::optional<Validation> validate(const models::CaseResult& result,
                                    std::span<const models::MechanicsEntry> mechanics,
                                    std::span<const models::FieldEntry> fields,
-                                   const Progress& progress = {});
+                                   const Progress& progress = {},
+                                   Sensitivities whose = Sensitivities::quick);
 
 /// The numbers that place a case among others: load and field, both also as λ against the bending
 /// stiffness of the softest segment, slenderness, Poisson's ratio.

@@ -39,7 +39,7 @@ with tempfile.TemporaryDirectory() as folder:
     file.write_text(CASE)
     case = cv.Case(file)
     loads = [cv.Load("contact", force=f, height=16e-3, azimuth=np.radians(30)) for f in forces]
-    B = np.array([s.B(case.sensors)[0] for s in cv.bend(case.cilium, loads, "beam")])
+    B = np.array([s.B(case.sensors)[0] for s in cv.bend(case.cilium, loads, "beam", joints="corrected")])
     B += random.normal(0, 1e-6, B.shape)
     rows = np.column_stack([0.1 * np.arange(len(B)), 1e6 * B])
     np.savetxt(log, rows, delimiter=",", header="time [s], Bx [uT], By [uT], Bz [uT]", comments="", fmt="%.3f")

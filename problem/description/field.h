@@ -53,13 +53,18 @@ struct Key {
   std::string_view example{};   ///< of a text or a quantity of any kind, as a file states it
   bool is_of_any_kind = false;  ///< a quantity of what another key says, or a percentage
   std::size_t longest = 0;      ///< bytes of a text for people, of one line and not empty; 0: any
-  bool may_be_axial = false;    ///< of a vector: one number is its third component
-  bool is_along_path = false;   ///< one value, or a list of them, one for each load step
+  /// May stand in place of a number, which is then `stands_for_word`, beyond its range.
+  std::string_view word{};
+  bool may_be_axial = false;   ///< of a vector: one number is its third component
+  bool is_along_path = false;  ///< one value, or a list of them, one for each load step
   /// The key that this one takes the place of, if a file states it; it is not written back.
   std::string_view in_place_of{};
   File file = File::none;
   std::string goes_with{};  ///< what makes it belong, as a file would state it
 
+  static constexpr double stands_for_word = 0;
+
+  bool is_word(double value) const { return !word.empty() && value == stands_for_word; }
   /// A single number, whole or not.
   bool is_number() const { return std::holds_alternative<double>(initial) || is_whole_number(); }
   bool is_whole_number() const { return std::holds_alternative<unsigned int>(initial); }

@@ -36,7 +36,7 @@ void add_companion(MechanicsResult& result, const Cilium& cilium, Corrections co
   result.companions.push_back(companion_of(result, [&] {
     return MechanicsResult{.undeformed = result.undeformed, .steps = solve(path, corrections)};
   }));
-  result.error_parts.push_back({"joints", result.companions.size(), 0, 1});
+  result.error_parts.push_back({std::string(error_direction), result.companions.size(), 0, 1});
   for (std::size_t i = 0; i < result.steps.size(); ++i)
     result.steps[i].seconds += result.companions.back().steps[i].seconds;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "problem/joints/joints.h"
@@ -15,6 +16,9 @@ inline constexpr double largest_strain = 0.6;
 /// Of a probe's displacement, relative: the load deforms the section that it moves. As much as the
 /// random designs of docs/evidence/joints.md show.
 inline constexpr double probe_error = 6e-4;
+
+/// ErrorPart::direction of what the corrections are uncertain by.
+inline constexpr std::string_view error_direction = "joints";
 
 /// The largest ε of each segment.
 std::vector<double> strains(const Cilium& cilium, const Centreline& centreline);

@@ -2,12 +2,15 @@
 """Files that are never half written, and the one door by which result files are read."""
 
 import csv
+import json
 import os
 import stat
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 from .errors import FileError
@@ -36,6 +39,14 @@ def replacing(file: Path) -> Iterator[Path]:
         raise FileError(f"{file}: {error.strerror}") from error
     finally:
         scratch.unlink(missing_ok=True)
+
+
+@cache
+def declared() -> dict[str, Any]:
+    """What the compiled models declare, without loading them: `models` and `loads` as
+    ciliaval.models() and ciliaval.load_types() say them. The build writes it."""
+    found: dict[str, Any] = json.loads((Path(__file__).parent / "declared.json").read_text(encoding="utf-8"))
+    return found
 
 
 def content(file: Path, largest: int = _LARGEST) -> bytes:

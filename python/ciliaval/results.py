@@ -104,6 +104,7 @@ class ValidationSeries:
     rms_error: float | None
     points: tuple[ValidationPoint, ...]
     bounded_with_u_D: tuple[dict[str, Any], ...] = ()
+    bounded_with_twice_u_input: int | None = None
 
 
 @dataclass(frozen=True)
@@ -214,6 +215,17 @@ class Result:
         """(steps,), N."""
         return self._mechanics(model, "applied_force")
 
+    def model_uncertainty(self, model: str, quantity: str = "tip") -> Array:
+        """What a model leaves out, (steps,), SI: of "tip", "tip_angle", "applied_force" or "slip_off".
+        NaN where it is not known: of a solid, and of a rod where the corrected joints do not reach
+        (docs/theory/band.md)."""
+        return self._part(model, "model_uncertainty", quantity)
+
+    def band(self, model: str, quantity: str = "tip") -> Array:
+        """The 95 % band of a quantity as of model_uncertainty(), (steps,), SI: its numerical error and
+        what the model leaves out; NaN where that is not known."""
+        return self._part(model, "band", quantity)
+
     def contact(self, model: str, quantity: str = "normal_force") -> Array:
         """A number of a sweep's contact at each sample, (steps,), SI: normal_force, friction_force,
         elastic_energy, …; NaN where the cilium touches nothing."""
@@ -231,8 +243,16 @@ class Result:
         return self._field(pair, "dB")
 
     def dB_uncertainty(self, pair: str) -> Array:
-        """The field model's numerical error of dB, (steps, sensors, 3), T."""
+        """The numerical error of dB, of field and shape, (steps, sensors, 3), T."""
         return self._field(pair, "dB_uncertainty")
+
+    def dB_model_uncertainty(self, pair: str) -> Array:
+        """What the two models leave out of dB, (steps, sensors, 3), T; NaN where it is not known."""
+        return self._field(pair, "dB_model_uncertainty")
+
+    def dB_band(self, pair: str) -> Array:
+        """The 95 % band of dB: both, (steps, sensors, 3), T; NaN where that is not known."""
+        return self._field(pair, "dB_band")
 
     @property
     def comparisons(self) -> list[Comparison]:
@@ -283,6 +303,12 @@ class Result:
             raise InputError(f"{self.name} has no model '{model}', but {', '.join(self.models)}")
         found: dict[str, Any] = step["mechanics"].get(model, {})
         return found
+
+    def _part(self, model: str, what: str, quantity: str) -> Array:
+        known = ("tip", "tip_angle", "applied_force", "slip_off")
+        if quantity not in known:
+            raise InputError(f"there is no {what} of {quantity!r}, but of {', '.join(known)}")
+        return _numbers([(self._of(step, model).get(what) or {}).get(quantity) for step in self.steps])
 
     def _mechanics(self, model: str, quantity: str, size: int | None = None) -> Array:
         found = [self._of(step, model).get(quantity) for step in self.steps]

@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
+from .files import declared
+
 
 class Unit(NamedTuple):
     """A unit that is shown: value / size is the number before `name`."""
@@ -68,9 +70,7 @@ def in_words(names: Iterable[str]) -> str:
 def describe_load(load: dict[str, Any], environment: dict[str, Any] | None = None) -> str:
     """ "contact: force 4 mN, height 16 mm, azimuth 30°": a step's load in summary.json, and what is
     around it."""
-    from ._core import load_types
-
-    parameters = load_types().get(load["type"], {})
+    parameters = declared()["loads"].get(load["type"], {})
     parts = []
     for name, value in load.items():
         if name == "type" or value is None:

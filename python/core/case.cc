@@ -15,6 +15,7 @@
 #include "compare/input/case.h"
 #include "compare/input/units.h"
 #include "compare/models/errors.h"
+#include "compare/models/model_part.h"
 #include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
@@ -164,6 +165,14 @@ void bind_case(py::module_& module) {
                   py::arg("sensors"), py::arg("mechanics"), py::arg("fields"), py::arg("name"),
                   py::arg("title"))
       .def("changed", &changed, py::arg("values"))
+      .def(
+          "corrected",
+          [](input::Case problem, const Text& model) {
+            const auto& entry = models::entry_of(models::mechanics_models(), text(model, "model"));
+            std::string fault = models::correct(entry, problem);
+            return py::make_tuple(std::move(problem), std::move(fault));
+          },
+          py::arg("model"))
       .def("numbers",
            [](const input::Case& problem) {
              py::dict numbers;

@@ -19,6 +19,8 @@
 #include "compare/models/run.h"
 #include "compare/output/results.h"
 #include "problem/error.h"
+#include "problem/error_estimate.h"
+#include "problem/joints/companions.h"
 #include "python/core/calls.h"
 #include "python/core/convert.h"
 #include "python/core/pickle.h"
@@ -149,6 +151,18 @@ BentShape straight(const BentShape& shape) {
   step.status = Status::converged;
   step.deformation = result.undeformed;
   return shapes_of(shape.problem(), {shape.model(), std::move(result)}).front();
+}
+
+/// The shape by joints that are as much softer as their correction is uncertain by; none of a shape
+/// whose joints are not corrected, or if that one has no equilibrium.
+std::optional<BentShape> with_softer_joints(const BentShape& shape) {
+  const MechanicsResult& result = shape.path->run.result;
+  const auto part =
+      std::ranges::find(result.error_parts, joints::error_direction, &ErrorPart::direction);
+  if (part == result.error_parts.end()) return std::nullopt;
+  MechanicsResult softer = step_of(solution(result, part->finer), shape.index);
+  if (softer.steps.front().status != Status::converged) return std::nullopt;
+  return shapes_of(shape.problem(), {shape.model(), std::move(softer)}).front();
 }
 
 /// Components at each point, (n, 3); NaN where there is none.
@@ -449,6 +463,10 @@ void bind_models(py::module_& module) {
           "Whether there is an equilibrium to be asked for.")
       .def_property_readonly("straight", &straight, "The straight cilium that it was bent from.")
       .def_property_readonly(
+          "with_softer_joints", &with_softer_joints,
+          "The shape by corrected joints that are as much softer as the\n"
+          "correction is uncertain by; None of one whose joints are not corrected.")
+      .def_property_readonly(
           "unstable_modes", [](const BentShape& s) { return s.step().unstable_modes; },
           "Ways in which the energy decreases, 0: stable; None: not known.")
       .def_property_readonly(
@@ -528,6 +546,9 @@ void bind_models(py::module_& module) {
 
   module.def("bend_path", &bend, py::arg("cilium"), py::arg("loads"), py::arg("model"),
              py::arg("progress"));
+  module.def(
+      "best_field", [] { return models::quick_one(models::field_models()).id; },
+      "The most detailed field model that takes but a moment.");
   module.def(
       "has_body",
       [](const Text& mechanics, const Text& field) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -297,6 +298,12 @@ void bind_problem(py::module_& module) {
       .def("__repr__", [](const Load& of) { return representation(of); });
 
   module.def("surrounded", &surrounded, py::arg("loads"), py::arg("environments"));
+
+  module.attr("cylinder_reynolds_numbers") =
+      py::make_tuple(cylinder_reynolds_numbers.lower, cylinder_reynolds_numbers.upper);
+  module.def("cylinder_drag_coefficient", py::vectorize(&cylinder_drag_coefficient), py::arg("Re"),
+             "C_d of a long cylinder across the flow at Reynolds numbers Re = v d/nu of 1e-4 to\n"
+             "2e5, an array of any shape (Sucker and Brauer, 1975). InputError beyond.");
 
   module.def(
       "load_types",

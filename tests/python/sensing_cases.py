@@ -37,6 +37,10 @@ position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
 [models]
 mechanics = ["beam"]
 fields = ["line"]
+[models.elastica]
+joints = "corrected"
+[models.beam]
+joints = "corrected"
 """
 FLOW = CASE.replace(CASE[CASE.index("[load]") : CASE.index("[sensor]")], """[load]
 type = "flow"
@@ -59,7 +63,12 @@ flank = "1 mm"
 radius = "0.5 mm"
 friction = 0.3
 """).replace('["-0.1 mm", "0.2 mm", "-1.55 mm"]', '[["-0.1 mm", "0.2 mm", "-1.55 mm"], ["2 mm", "0 mm", "-1.55 mm"]]')  # fmt: skip
-SWEEP = SWEEP.replace('["beam"]', '["elastica"]').replace('["line"]', '["volume"]')
+SWEEP = SWEEP.replace('["beam"]', '["elastica"]').replace('["line"]', '["volume"]').replace('"corrected"', '"none"')
+
+
+def noise_interval(frame):
+    """The interval of a frame of loads by the noise alone."""
+    return np.sqrt(frame["magnitude_interval"] ** 2 - frame["model_interval"] ** 2)
 
 
 def polar(size, azimuth):

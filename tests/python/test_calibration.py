@@ -50,7 +50,7 @@ class Calibration(unittest.TestCase):
         chip = 'position = ["-0.03 mm", "0.15 mm", "-1.6 mm"]\nrotation = ["1 deg", "-2 deg", "3 deg"]\ngain = 1.02'
         other = cv.Case.from_text(self.case.toml().replace('position = ["-0.0001 m", "0.0002 m", "-0.00155 m"]', chip))
         chips = Chips.of(other)
-        shapes = cv.bend(other.cilium, other.loads, "beam")
+        shapes = cv.bend(other.cilium, other.loads, "beam", joints="corrected")
         dB = np.stack([shape.dB(other.sensors, "line") for shape in shapes])
         read = chips.own(dB)[:, 0]
         names = ["sensor.position", "sensor.orientation"]
@@ -78,7 +78,7 @@ class Calibration(unittest.TestCase):
         true = np.array([0.11e6, -1.5e-3])
         case = self.case.changed({"sensor.position.z": -1.5e-3})
         case = case.changed({self.base: 0.11e6})
-        dB = np.stack([s.dB(case.sensors) for s in cv.bend(case.cilium, case.loads)])[:, 0]
+        dB = np.stack([s.dB(case.sensors) for s in cv.bend(case.cilium, case.loads, joints="corrected")])[:, 0]
         straight = np.zeros((2, 3))
         held, chi = 0, []
         for _ in range(60):

@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import ciliaval as cv
 from ciliaval import plot, program
+from ciliaval.plain_cilium import PlainCilium
 from test_results import SOURCE, quick
 
 
@@ -113,6 +114,27 @@ class Plot(unittest.TestCase):
             text = re.sub(r"(?m)^\[load\]\n(?:.*\n)*?(?=^\[)", load, quick("fig3b"))
             (self.folder / "c.toml").write_text(text)
             self.draw(plot.setup(cv.Case(self.folder / "c.toml")))
+
+    def test_the_cilium_of_a_case_file_is_that_of_the_models(self):
+        files = [f for f in (SOURCE / "cases").rglob("*.toml") if ".study" not in f.name and ".sense" not in f.name]
+        self.assertGreater(len(files), 10)
+        for file in files:
+            with self.subTest(file.name):
+                case = cv.Case(file)
+                plain, whole = PlainCilium.of(case._core.toml()), case.cilium
+                self.assertEqual(plain.length, whole.length)
+                self.assertEqual(plain.sides, whole.sides and tuple(whole.sides))
+                side = plain.orientation
+                for azimuth in (side, side + np.pi / 2, side - np.pi):
+                    self.assertEqual(plain.extent(azimuth), whole.extent(azimuth))
+                for a, b in zip(plain.segments, whole.segments, strict=True):
+                    self.assertEqual((a.name, a.length, a.young_modulus), (b.name, b.length, b.young_modulus))
+                    self.assertEqual(a.poisson_ratio, b.poisson_ratio)
+                    M = b.magnetization
+                    self.assertEqual(a.magnetization, M if isinstance(M, tuple) else (0, 0, M))
+        for damage in ("", "[cilium]", "[[cilium.segment]]", "[cilium]\ndiameter = []\nsegment = [1]", "=", "cilium = 1"):
+            with self.assertRaises(cv.FileError):
+                PlainCilium.of(damage)
 
     def test_a_matrix_of_pairs_has_the_differences(self):
         figure = plot.pairs(self.result)

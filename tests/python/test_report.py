@@ -274,6 +274,16 @@ class Report(Results):
         self.assertEqual(done.returncode, 4)
         self.assertIn("cut.json", done.stderr)
 
+    def test_pages_and_figures_of_results_do_not_load_the_models(self):
+        program = (
+            "import sys, ciliaval as cv\nfrom ciliaval import plot, report\nfrom ciliaval.plot.__main__ import main_figure\n"
+            "report.write(sys.argv[1])\nresult = cv.load(sys.argv[1] + '/one')\n"
+            "plot.setup(result), main_figure(result), plot.curves(cv.load(sys.argv[1] + '/two/study.json'), 'dB_norm')\n"
+            "loaded = [name for name in sys.modules if name.startswith('ciliaval')]\nassert 'ciliaval._core' not in loaded, loaded\n"
+        )
+        done = subprocess.run([sys.executable, "-c", program, str(self.folder)], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_the_grid_of_a_field_is_that_of_the_file(self):
         file = sorted((self.folder / "one" / "vtk").glob("field_*_0000.vti"))[0]
         grid = view3d.read_grid(file)

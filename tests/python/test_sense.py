@@ -83,7 +83,7 @@ class Command(unittest.TestCase):
         self.write("change.csv", self.changes())
         self.ciliaval("sense", "one.toml", "change.csv", "--models", "beam/line", "--json", "change.json")
         # The mean of two unloaded readings adds its noise: sqrt(1 + 1/2).
-        width = [self.found(file)["samples"][1]["magnitude_interval"] for file in ("found.json", "change.json")]
+        width = [self.found(file)["samples"][1]["noise_interval"] for file in ("found.json", "change.json")]
         self.assertAlmostEqual(width[0] / width[1], math.sqrt(1.5), delta=1e-6)
         self.assertIn("\n1,found,", (self.folder / "found.csv").read_text())
         self.assertIn("<svg", (self.folder / "found.svg").read_text())
@@ -216,9 +216,9 @@ class Command(unittest.TestCase):
                 "sense", "one.toml", "change.csv", "--models", "beam/line", "--largest", largest, "--json", "found.json"
             )
             self.expect_the_forces()
-            self.assertIn("Loads are looked for up to 5.8", self.out)
+            self.assertIn("Loads are looked for up to 6.3", self.out)
             self.assertIn(said, self.out)
-            self.assertTrue(5.8e-3 < self.found()["largest"] < 5.9e-3)
+            self.assertTrue(6.3e-3 < self.found()["largest"] < 6.4e-3)
 
     def test_refuses_noise_and_readings_that_no_sensor_has(self):
         self.write("change.csv", self.changes())
@@ -245,7 +245,7 @@ class Command(unittest.TestCase):
         self.write("two.toml", two)
         self.write("named.toml", named)
         case = cv.Case.from_text(two)
-        dB = cv.bend(case.cilium, case.loads[1], "elastica").dB(case.sensors)
+        dB = cv.bend(case.cilium, case.loads[1], "elastica", joints="corrected").dB(case.sensors)
         text = "sample,sensor,dBx [T],dBy [T],dBz [T]\n" + "".join(self.row("a", dB[s], s) for s in (1, 0))
         self.write("readings.csv", text)
         self.ciliaval("sense", "two.toml", "readings.csv", "--json", "found.json")

@@ -20,7 +20,7 @@ from ciliaval import sensing
 from ciliaval.sensing.inversion import Chips, LinearFit, wrapped
 from ciliaval.sensing.loads import sense_readings
 from ciliaval.sensing.response import shapes_up_to
-from sensing_cases import CASE, NOISE, PAIR, SENSOR, paper_response, polar
+from sensing_cases import CASE, NOISE, PAIR, SENSOR, noise_interval, paper_response, polar
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -35,7 +35,7 @@ class Response(unittest.TestCase):
             self.assertLess(response.interpolation_error, 1e-7 * response.largest_change)
             for size, azimuth in ((3.3e-3, 0.4), (0.7e-3, -2.5), (4e-3, 1.9), (1e-5, 3.1)):
                 load = cv.Load("contact", force=size, height=16e-3, azimuth=azimuth)
-                direct = cv.bend(case.cilium, load, mechanics).dB(sensors, field)
+                direct = cv.bend(case.cilium, load, mechanics, joints="corrected").dB(sensors, field)
                 found = response.change(polar(size, azimuth))[0]
                 self.assertLess(np.abs(found - direct).max(), 1e-8 * response.largest_change)
             self.assertEqual(np.abs(response.change([0, 0])).max(), 0)
@@ -60,11 +60,12 @@ class Response(unittest.TestCase):
     def test_ranges_end_at_the_slip_off(self):
         """The slip-off that the elastica itself states for one load."""
         case = cv.Case.from_text(CASE)
-        limit = cv.bend(case.cilium, cv.Load("contact", force=1.0, height=16e-3)).slip_off
+        shape = cv.bend(case.cilium, cv.Load("contact", force=1.0, height=16e-3), joints="corrected")
+        limit = shape.slip_off
         for asked in (1.01 * limit, 7e-3, 1e3):
             shapes = sensing.shapes_within(case, "elastica", asked)
             self.assertLess(shapes.largest, limit)
-            self.assertGreater(shapes.largest, 0.9999 * limit)
+            self.assertGreater(shapes.largest, 0.9999 * (limit - shape.slip_off_uncertainty))
             self.assertIn("slips off", shapes.limit)
             self.assertLess(sensing.Response(case, "volume", shapes, [SENSOR]).interpolation_error, 1e-9)
         self.assertEqual(sensing.shapes_within(case, "elastica", 0.9 * limit).limit, "")
@@ -80,7 +81,7 @@ class Response(unittest.TestCase):
         for text, what in (
             (CASE + sideways, "points along z"),
             (CASE.replace('magnetization = "75 kA/m"', 'magnetization = ["1 kA/m", "0 A/m", "75 kA/m"]'), "round"),
-            (CASE.replace('diameter = "3 mm"', 'section = { shape = "rectangle", width = "3 mm", height = "2 mm" }').replace("30 deg", "0 deg"), "round"),
+            (CASE.replace('diameter = "3 mm"', 'section = { shape = "rectangle", width = "3 mm", height = "2 mm" }').replace("30 deg", "0 deg").replace('"corrected"', '"none"'), "round"),
         ):
             odd = cv.Case.from_text(text)
             with self.assertRaisesRegex(cv.InputError, what):
@@ -224,7 +225,7 @@ class AChip(unittest.TestCase):
         change[:, 2] = np.nan  # what it does not read does not matter
         frame = self.found('components = ["x", "y"]', change)
         np.testing.assert_allclose(frame[["load_x", "load_y"]], p, atol=1e-11)
-        self.assertTrue((frame["magnitude_interval"] > full["magnitude_interval"]).all())
+        self.assertTrue((noise_interval(frame) > noise_interval(full)).all())
         self.assertTrue((frame["misfit_probability"] == 1).all())
         with self.assertRaisesRegex(cv.InputError, "two components"):
             self.found('components = ["x"]', change)
@@ -269,7 +270,7 @@ class AChip(unittest.TestCase):
             case = cv.Case.from_text(CASE.replace('"-1.55 mm"]', f'"-1.55 mm"]\ngain = {gain}'))
             read = gain * paper_response().change(p)[:, 0] + 0.5e-6 * rng.standard_normal((2000, 3))
             frame = cv.sense(case, read, noise=0.5e-6)
-            held = np.abs(frame["magnitude"] - 1e-3) <= frame["magnitude_interval"]
+            held = np.abs(frame["magnitude"] - 1e-3) <= noise_interval(frame)
             self.assertAlmostEqual(held.mean(), 0.95, delta=0.02)
             self.assertAlmostEqual(frame["chi_squared"].mean(), 1, delta=0.15)
 
@@ -362,7 +363,7 @@ class Arrays(unittest.TestCase):
         each = cv.sense(case, B + ambient, background=ambient, **kept)
         np.testing.assert_allclose(one["magnitude"], [1e-3, 2e-3], rtol=1e-9)
         np.testing.assert_allclose(each["magnitude"], [1e-3, 2e-3], rtol=1e-9)
-        np.testing.assert_allclose(each["magnitude_interval"] / one["magnitude_interval"], np.sqrt(2), rtol=1e-9)
+        np.testing.assert_allclose(noise_interval(each) / noise_interval(one), np.sqrt(2), rtol=1e-9)
 
     def test_with_faults_are_refused(self):
         case = cv.Case.from_text(CASE)
@@ -378,6 +379,38 @@ class Arrays(unittest.TestCase):
         ):  # fmt: skip
             with self.subTest(what), self.assertRaisesRegex((cv.InputError, cv.FileError), what):
                 cv.sense(case, B, **more)
+
+
+class LeftOut(unittest.TestCase):
+    """The part of the interval that is the models'."""
+
+    def test_of_a_plain_rod_it_holds_what_corrected_joints_make(self):
+        """Readings of the corrected rod without noise, by the case's plain one: off by what the interval says."""
+        case = cv.Case.from_text(CASE.replace('"corrected"', '"none"'))
+        p = polar(np.linspace(0.5e-3, 3.5e-3, 7), np.linspace(-3, 3, 7))
+        B = paper_response().change(p)[:, 0]
+        corrected = cv.sense(case, B, noise=1e-9)
+        np.testing.assert_allclose(corrected["magnitude"], np.hypot(*p.T), rtol=1e-6)
+        plain = cv.sense(case, B, noise=4e-7, joints="case")
+        error = np.abs(plain["magnitude"] - np.hypot(*p.T))
+        self.assertTrue((error > 0.04 * np.hypot(*p.T)).all())
+        self.assertTrue((error < plain["magnitude_interval"]).all())
+        self.assertTrue((plain["magnitude_interval"] < 1.3 * error).all())
+        self.assertEqual(set(plain["status"]), {"found"})  # what is left out is no misfit
+
+    def test_is_said_to_be_unknown_where_the_corrections_do_not_reach(self):
+        """A foot of a tenth of a diameter."""
+        text = CASE.replace('length = "3 mm"', 'length = "0.3 mm"').replace('"corrected"', '"none"')
+        case = cv.Case.from_text(text)
+        result = sense_readings(case, sensing.readings_of_arrays(np.zeros((2, 3)), 1, None, None), PAIR, 1e-6, 1e-3)
+        self.assertIn("not known (elastica", result.text(80))
+        self.assertIn("elastica", result.json({})["model_uncertainty_unknown"])
+        self.assertEqual(result.loads.model_interval.tolist(), [0, 0])
+        self.assertEqual(result.json({})["joints"], "none")
+
+    def test_joints_are_corrected_or_the_cases(self):
+        with self.assertRaisesRegex(cv.InputError, "joints: `corrected`"):
+            cv.sense(cv.Case.from_text(CASE), np.zeros((1, 3)), joints="none")
 
 
 class SenseReadings(unittest.TestCase):

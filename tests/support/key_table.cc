@@ -51,6 +51,7 @@ std::string value_of(const Key& key) {
     case Key::Kind::points:
       break;
   }
+  if (!key.word.empty()) return fmt::format("{}, or `\"{}\"`", key.quantity.name, key.word);
   return key.quantity.unit.empty()
              ? std::string(key.quantity.name)
              : fmt::format("{}, `\"{}\"`", key.quantity.name, key.quantity.example);

@@ -36,9 +36,11 @@ namespace fs = std::filesystem;
 struct RunOptions {
   std::vector<fs::path> files;
   fs::path directory = "results";
-  bool fresh = false;    ///< empty the stores of runs that were killed
-  bool all_vtk = false;  ///< VTK files of every step of a long path
-  bool explain = false;  ///< print the footnotes
+  bool fresh = false;              ///< empty the stores of runs that were killed
+  bool all_vtk = false;            ///< VTK files of every step of a long path
+  bool own_sensitivities = false;  ///< u_input of slow models by themselves
+  bool all = false;                ///< print the tables of every step
+  bool explain = false;            ///< print the footnotes
 };
 
 /// A case of `ciliaval run`, what it may write to, and what it goes on from.
@@ -124,7 +126,9 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options, const std::strin
   const std::vector<models::Comparison> comparisons = models::compare_models(result);
   const auto grid = output::field_grid(result, models::field_models(), progress);
   const std::optional<validation::Validation> measured =
-      validation::validate(result, models::mechanics_models(), models::field_models(), progress);
+      validation::validate(result, models::mechanics_models(), models::field_models(), progress,
+                           options.own_sensitivities ? validation::Sensitivities::own
+                                                     : validation::Sensitivities::quick);
   const output::Provenance origin = output::provenance(words);
   output::write_file(folder.path() / "case.toml", input::to_toml(problem, models::known()));
   output::write_results(result, comparisons, origin, folder.path(),
@@ -140,7 +144,8 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options, const std::strin
   folder.commit();
   line.clear();
   const output::Footnotes footnotes = footnotes_of(options.explain);
-  print(output::table(result, comparisons, footnotes));
+  print(output::table(result, comparisons, footnotes,
+                      options.all ? output::Steps::all : output::Steps::last));
   if (measured) print('\n' + validation::text(*measured, footnotes));
   if (drawn.size() < problem.load_path.size())
     print(fmt::format("VTK files of {} of the {} steps; --all-vtk writes all.\n", drawn.size(),
@@ -198,6 +203,11 @@ void add_run(CommandLine& line) {
                 "Start anew: forget what a run that was killed or did not converge has solved");
   run->add_flag("--all-vtk", options->all_vtk,
                 "Write VTK files of every step of a long path, not of 200, evenly chosen");
+  run->add_flag(
+      "--own-sensitivities", options->own_sensitivities,
+      "With measurements: u_input of slow models by themselves, not by a rod; solves each\n"
+      "twice for each input");
+  run->add_flag("--all", options->all, "Print the tables of every load step, not of the last");
   add_explain(run, options->explain);
 }
 

@@ -93,6 +93,9 @@ void add_reading_options(CLI::App* command) {
       "--skip", [] {}, "Leave rows without B out, and count them");
   add_text(command, "--models", "MECHANICS/FIELD",
            "The pair of models, such as solid/mesh [elastica/volume]");
+  add_text(command, "--joints", "WHICH",
+           "Of the rod: `corrected` where the corrections reach, or `case`, as the case states\n"
+           "them [corrected]");
   add_text(command, "--noise", "QUANTITY", "Standard deviation of a component of a reading [1 uT]");
 }
 

@@ -66,8 +66,11 @@ Json value_of(const Key& key) {
       return with_range({{"type", "integer"}}, key.range);
     case Key::Kind::quantity:
       return number_or_quantity(key);
-    case Key::Kind::quantities:
-      return {{"anyOf", {number_or_quantity(key), list_of(number_or_quantity(key))}}};
+    case Key::Kind::quantities: {
+      Json one = number_or_quantity(key);
+      if (!key.word.empty()) one = {{"anyOf", {{{"const", key.word}}, one}}};
+      return {{"anyOf", {one, list_of(one)}}};
+    }
     case Key::Kind::point:
       return point_of(number_or_quantity(key));
     case Key::Kind::points: {

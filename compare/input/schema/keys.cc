@@ -46,6 +46,7 @@ Key of_key(std::string_view table, const description::Key& k) {
   key.quantity = k.quantity;
   key.range = k.range;
   key.choices = k.choices;
+  key.word = k.word;
   const std::array kinds{Kind::flag, Kind::whole_number, Kind::quantity,  Kind::text,
                          Kind::pair, Kind::point,        Kind::quantities};  // as Value has them
   key.kind = kinds.at(k.initial.index());

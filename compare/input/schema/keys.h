@@ -33,6 +33,7 @@ struct Key {
   Kind kind = Kind::text;
   std::string example{};  ///< of a text, as a file states it
   std::vector<std::string_view> choices{};
+  std::string_view word{};  ///< in place of a number
   Quantity quantity = quantity::number;
   Range range{};           ///< empty: not stated
   std::string fallback{};  ///< as a file states it, or in words; empty: the key is required

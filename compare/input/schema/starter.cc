@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compare/input/case_sections.h"
+#include "compare/input/described.h"
 #include "compare/input/units.h"
 
 namespace ciliaval::compare::input::schema {
@@ -111,19 +112,40 @@ std::string models_line(std::string_view name, const Entries& entries, const Tak
   return fmt::format("{} = [{}]\n{}", name, fmt::join(chosen, ", "), others);
 }
 
+/// The options by which the rods leave out least.
+std::string corrections(const Models& models) {
+  std::string text;
+  for (const MechanicsEntry& entry : models.mechanics) {
+    if (!entry.correct) continue;
+    const ModelOptions stated;
+    ModelOptions best;
+    entry.correct(best);
+    text += fmt::format("\n[models.{}]\n", entry.id);
+    for (const Option& option : entry.options)
+      if (option.get(best) != option.get(stated))
+        text += fmt::format("{:<32} # as stiff as bonded sections are; {} in the paper\n",
+                            fmt::format("{} = {}", option.name, to_toml(option, option.get(best))),
+                            to_toml(option, option.get(stated)));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string starter_case(const std::string& name, const LoadType& load, const Models& models) {
   const auto takes_load = [&](const MechanicsEntry& entry) {
     return entry.loads.empty() || std::ranges::find(entry.loads, &load) != entry.loads.end();
   };
+  // Not all rods take them under what is around the cilium, and none under a surface.
+  const bool corrections_reach = &load != &SweepLoad::type() && &load != &EnvironmentLoad::type();
   const auto is_of_rods = [](const FieldEntry& entry) { return !entry.has_body; };
   std::string text = fmt::format(fmt::runtime(top), name) + load_table(load);
   if (&load == &SweepLoad::type()) text += surface;
   if (&load == &EnvironmentLoad::type()) text += field;
   return text + sensor + "[models]                         # `ciliaval list` says what they are\n" +
          models_line(keys().mechanics.name, models.mechanics, takes_load) +
-         models_line(keys().fields.name, models.fields, is_of_rods);
+         models_line(keys().fields.name, models.fields, is_of_rods) +
+         (corrections_reach ? corrections(models) : "");
 }
 
 }  // namespace ciliaval::compare::input::schema

@@ -59,6 +59,7 @@ input::MechanicsEntry beam() {
             check_joints(check, "beam", check.problem.options.of<BeamOptions>().joints);
           },
       .budget_stages = budget_stages,
+      .correct = set(&BeamOptions::joints, joints::Correction::corrected),
       .hasten = set(&BeamOptions::error_estimate, false),
   };
 }

@@ -117,6 +117,7 @@ input::MechanicsEntry elastica() {
                 {.physics = "elastica",
                  .set = set(&ElasticaOptions::joints, joints::Correction::none)}};
           },
+      .correct = set(&ElasticaOptions::joints, joints::Correction::corrected),
       .hasten = set(&ElasticaOptions::error_estimate, false),
       .skip_range = set(&ElasticaOptions::slip_off, false),
   };

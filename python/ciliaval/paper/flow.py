@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import _core
 from ..arrays import Array
 from ..model import Case, bend, toml_of
 from ..sensing.bench import bench_json, read_bench, run_bench
@@ -45,15 +46,14 @@ def largest_force(case: Case) -> Claim:
 def drag(case: Case) -> Claim:
     """C_d of a circular cylinder across the flow.
 
-    Without ends: Sucker and Brauer, Waerme- und Stoffuebertragung 8, 149 (1975),
-    C_d = 1.18 + 6.8/Re^0.89 + 1.96/Re^0.5 - 0.0004 Re/(1 + 3.64e-7 Re^2), 1e-4 < Re < 2e5. Over a free end
+    Without ends: Sucker and Brauer (1975), as `drag_coefficient = "cylinder"` has it. Over a free end
     the wake fills from above, which takes 20 to 40 % of it at L/d = 7: assumed, of the order that
     experiments with cylinders on a wall report.
     """
     claim = Claim("3.5", "the drag coefficient is approximately 1")
     v = _speeds(case)
     Re = v * case.cilium.diameter / _WATER
-    C_d = 1.18 + 6.8 / Re**0.89 + 1.96 / np.sqrt(Re) - 0.0004 * Re / (1 + 3.64e-7 * Re**2)
+    C_d = _core.cylinder_drag_coefficient(Re)
     claim.findings = [
         in_range("cylinder without ends", C_d, "", 0.5, 1.5),
         in_range("with a free end, assumed 0.6 to 0.8 of it", [0.6 * C_d.min(), 0.8 * C_d.max()], "", 0.5, 1.5),

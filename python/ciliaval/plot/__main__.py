@@ -15,7 +15,6 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from .. import plot
-from .._core import CaseFile
 from ..errors import Error, FileError
 from ..files import replacing
 from ..results import Document, Result, read
@@ -61,6 +60,8 @@ def main() -> int:
     options = parser.parse_args()
     try:
         if options.file.suffix == ".toml":
+            from .._core import CaseFile
+
             save(plot.setup(CaseFile(str(options.file))), options.figure)
             return 0
         data = read(options.file)

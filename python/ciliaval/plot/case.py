@@ -11,6 +11,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from ..arrays import Array
+from ..files import declared
 from ..results import Result
 from ..units import number, shown
 from .style import best_first, dashes, legend, look, new_figure, not_finer_than, style
@@ -64,7 +65,8 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
     """ΔB ("dB") or B ("B") at a sensor, by its number or name, by components and in magnitude, over
     the load.
 
-    Bands are the field models' own numerical errors. A curve of ΔB begins where there is no load,
+    Bands are those of dB at 95 %, numerical error and what the models leave out; a pair of which the
+    second is not known has none, which the legend says, as where it is thinner than the line. A curve of ΔB begins where there is no load,
     unless the load is a sweep's travel. Samples between which a model jumps are shaded.
     """
     if quantity_name not in ("dB", "B"):
@@ -81,9 +83,10 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
         pairs = best_first(result.pairs)
         values = result.dB if change else result.B
         largest = 0.0
+        names: dict[str, str] = {}
         for pair in reversed(pairs):
             field = values(pair)[:, sensor] / size
-            error = result.dB_uncertainty(pair)[:, sensor] / size if change else np.nan * field
+            error = result.dB_band(pair)[:, sensor] / size if change else np.nan * field
             x = load
             if from_nothing:
                 x = np.append(0, x)
@@ -92,11 +95,12 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
             largest = max([largest, *norm[np.isfinite(norm)]])
             columns = [*field.T, norm]
             errors = [*error.T, np.linalg.norm(error, axis=1)]
+            names[pair] = pair + _of_band(errors[-1], norm) if change else pair
             for axes, y, u in zip(grid.flat, columns, errors):
                 looks = {**look(pair), "linestyle": dashes(pair, pairs)}
                 if len(x) > 25:
                     looks["marker"] = ""
-                axes.plot(x, y, label=pair, markersize=3, linewidth=1.2, **looks)
+                axes.plot(x, y, label=names[pair], markersize=3, linewidth=1.2, **looks)
                 if np.isfinite(u).any():
                     axes.fill_between(x, y - u, y + u, color=looks["color"], alpha=0.2, linewidth=0)
         for axes, of in zip(grid.flat, ["_x", "_y", "_z", None]):
@@ -105,8 +109,15 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
             _shade_jumps(axes, result, load, "0.5")
         for axes in grid[1]:
             axes.set_xlabel(label)
-        legend(figure, grid[0, 0], pairs)
+        legend(figure, grid[0, 0], [names[pair] for pair in pairs])
         return figure
+
+
+def _of_band(band: Array, values: Array) -> str:
+    """What a legend says of a band that is not seen."""
+    if not np.isfinite(band[1:] if len(band) > 1 else band).any():
+        return ", ± not known"
+    return ", ± below the line" if np.nanmax(band) < 4e-3 * np.nanmax(values) else ""
 
 
 def sweep(result: Result) -> Figure:
@@ -179,8 +190,6 @@ def pairs(result: Result, quantity_name: str = "centreline", step: int = -1) -> 
 def abscissa(result: Result) -> tuple[Array, str]:
     """What changes along the path, in the unit of its label, and the label: the load's parameter, or
     the uniform field under one load."""
-    from .._core import load_types
-
     load = result.loads[0]
     names = [name for name in _ABSCISSAE if name in load]
     if not names:
@@ -193,7 +202,7 @@ def abscissa(result: Result) -> tuple[Array, str]:
         return values, "flow speed in m/s"
     if name == "scale":
         return values, "factor on gravity and field"
-    unit = shown(load_types()[load["type"]][name].rsplit(", ", 1)[-1])
+    unit = shown(declared()["loads"][load["type"]][name].rsplit(", ", 1)[-1])
     return values / unit.size, f"{name.replace('_', ' ')} in {unit.name}"
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
 
 from ..arrays import Array
+from ..plain_cilium import PlainCilium
 from ..results import Result
 from ..units import number, quantity
 from .style import SEGMENTS, best_first, style
@@ -26,13 +28,15 @@ def setup(case: Result | Any) -> Figure:
     case: a Case, or the Result of one, which shows the bent cilium too, by the most detailed model at
     the last step. Raises FileError if its folder has no case.toml.
     """
-    from .._core import CaseFile
-
     result = case if isinstance(case, Result) else None
-    of: Any = case if result is None else CaseFile.from_text(result.case_text, "case.toml")
-    cilium, load = of.cilium, of.loads[-1]
-    sensors = np.asarray(of.sensors).reshape(-1, 3)
-    names = of.sensor_names
+    cilium: Any
+    load: Any
+    if isinstance(case, Result):
+        cilium, load = PlainCilium.of(case.case_text), _last_load(case)
+    else:
+        cilium, load = case.cilium, case.loads[-1]
+    sensors = np.asarray(case.sensors).reshape(-1, 3)
+    names = case.sensor_names
     azimuth = load.parameters.get("azimuth", 0.0)
     with style():
         figure = Figure(figsize=(6.4, 3.5), layout="constrained")
@@ -45,6 +49,14 @@ def setup(case: Result | Any) -> Figure:
             _draw_bent(side, result, azimuth)
         _draw_above(above, cilium, load, sensors, names, azimuth)
         return figure
+
+
+def _last_load(result: Result) -> SimpleNamespace:
+    """As a ciliaval.Load has it."""
+    load, around = result.loads[-1], result.environments[-1]
+    vectors = {name: np.array(around.get(name, [0.0] * 3)) for name in ("gravity", "uniform_field")}
+    parameters = {key: value for key, value in load.items() if key != "type"}
+    return SimpleNamespace(type=load["type"], parameters=parameters, environment=SimpleNamespace(**vectors))
 
 
 def _draw_side(

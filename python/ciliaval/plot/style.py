@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
-from functools import cache
 from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from ..files import declared
 
 # Okabe and Ito's colours, which the colour-blind tell apart; in the order of the models.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -38,16 +39,9 @@ def style() -> AbstractContextManager[None]:
     return settings
 
 
-@cache
-def _known(kind: str) -> list[str]:
-    from .._core import models
-
-    return list(models()[kind])
-
-
 def detail(kind: str, model: str) -> int:
     """The place of a model among all: those that leave out less come later."""
-    known = _known(kind)
+    known = list(declared()["models"][kind])
     return known.index(model) if model in known else len(known)
 
 

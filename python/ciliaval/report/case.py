@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from typing import Any
+
 import numpy as np
 
 from .. import plot
@@ -115,19 +117,28 @@ def _listed(result: Result) -> list[int]:
 def _shapes(result: Result) -> Table:
     table = Table(
         "What each mechanics model found",
-        ["step, model", "status", "tip x, mm", "y", "z", "±, µm", "angle, °", "force, mN",
+        ["step, model", "status", "tip x, mm", "y", "z", "± at 95 %, µm", "angle, °", "force, mN",
          "unknowns", "iterations", "time, s"],
     )  # fmt: skip
     for i in _listed(result):
         for model, m in result.steps[i]["mechanics"].items():
             tip = m.get("tip") or [None] * 3
             row = [f"{i + 1}, {model}", m["status"], *(number(t, 1e-3, 5) for t in tip)]
-            row.append(number(m.get("tip_uncertainty"), 1e-6, 2))
+            row.append(_band(m))
             row.append(number(m.get("tip_angle"), np.pi / 180, 5))
             row.append(number(m.get("applied_force"), 1e-3, 5))
             row += [number(m.get(key), 1, 9) for key in ("unknowns", "iterations")]
             table.rows.append([*row, number(m.get("seconds"), 1, 3)])
     return table
+
+
+def _band(mechanics: dict[str, Any]) -> str:
+    """The tip's, or "> 3", the numerical error, where it is not known what the model leaves out."""
+    band = (mechanics.get("band") or {}).get("tip")
+    if band is not None:
+        return number(band, 1e-6, 2)
+    numerical = mechanics.get("tip_uncertainty")
+    return "–" if numerical is None else f"> {number(numerical, 1e-6, 2)}"
 
 
 def _fields(result: Result) -> Table:

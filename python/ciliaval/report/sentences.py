@@ -138,13 +138,7 @@ def _trust(result: Result) -> str:
     step = _last(result, model)
     parts = []
     if step is not None:
-        u = result.tip_uncertainty(model)[step]
-        tip = result.tip(model)[step]
-        size = float(np.hypot(tip[0], tip[1]))
-        if np.isnan(u):
-            parts.append(f"the numerical error of the {model} is not known")
-        elif size > 0:
-            parts.append(f"the tip of the {model} is known to {percent(u / size, 2)} of its deflection")
+        parts += _of_the_tip(result, model, step)
     total = sum(verdicts.values())
     if total:
         parts.append(
@@ -154,6 +148,24 @@ def _trust(result: Result) -> str:
         )
     text = " and ".join(parts)
     return f"{text[:1].upper()}{text[1:]}." if text else ""
+
+
+def _of_the_tip(result: Result, model: str, step: int) -> list[str]:
+    """Its band and what makes most of it."""
+    x, y, _ = result.tip(model)[step]
+    size = float(np.hypot(x, y))
+    if size == 0:
+        return []
+    u, left_out, band = (
+        values[step] for values in (result.tip_uncertainty(model), result.model_uncertainty(model), result.band(model))
+    )
+    text = f"the tip of the {model} is known to"
+    if np.isfinite(band):
+        share = "what the rod leaves out" if left_out > u else "its numerical error"
+        return [f"{text} ± {percent(band / size, 2)} of its deflection at 95 %, most of it {share}"]
+    if np.isnan(u):
+        return [f"the numerical error of the {model} is not known"]
+    return [f"{text} {percent(u / size, 2)} of its deflection but for what the model leaves out, which is not known"]
 
 
 def _deflections(result: Result, step: int) -> dict[str, float]:

@@ -57,12 +57,16 @@ def _findings(validation: Validation) -> list[str]:
 
 
 def _over(series: ValidationSeries) -> str:
-    """How the verdicts hang on u_D, which may be assumed."""
+    """How the verdicts hang on u_D, which may be assumed, and on u_input by another model."""
     others = [of for of in series.bounded_with_u_D if of["factor"] != 1]
     if not others:
         return ""
     factors, counts = (in_words(number(of[key]) for of in others) for key in ("factor", "bounded"))
-    return f" With a u_D {factors} times as large it would be seen at {counts} values."
+    text = f" With a u_D {factors} times as large it would be seen at {counts} values."
+    if series.bounded_with_twice_u_input is not None and series.sensitivities_by not in (None, series.model):
+        twice = series.bounded_with_twice_u_input
+        text += f" Its u_input is that of {series.sensitivities_by}: with twice as much, at {twice}."
+    return text
 
 
 def _domain(validation: Validation) -> str:

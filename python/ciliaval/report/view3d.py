@@ -14,6 +14,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..files import content
+from ..plain_cilium import PlainCilium
 from ..plot.style import SEGMENTS, best_first
 from ..results import Result
 from ..units import describe_load, in_words
@@ -37,12 +38,9 @@ def scripts() -> list[str]:
 
 def view(result: Result) -> View | None:
     """None if there is nothing to draw with, or nothing to draw."""
-    from .._core import CaseFile
-
-    file = result.folder / "case.toml" if result.folder else None
-    if not scripts() or file is None or not file.exists():
+    if not scripts() or not result.folder or not result.has_case():
         return None
-    cilium = CaseFile(str(file)).cilium
+    cilium = PlainCilium.of(result.case_text)
     model = next((m for m in best_first(result.models) if "converged" in result.status(m)), None)
     if model is None:
         return None
@@ -58,7 +56,7 @@ def view(result: Result) -> View | None:
         "extents": [cilium.extent(azimuth), cilium.extent(azimuth + np.pi / 2)],  # along the load, across
         "is_rectangle": cilium.sides is not None,
         "segments": [
-            {"length": s.length, "name": s.name, "magnetic": s.magnetization != 0,
+            {"length": s.length, "name": s.name, "magnetic": any(s.magnetization),
              "colour": SEGMENTS[i % len(SEGMENTS)]}
             for i, s in enumerate(cilium.segments)
         ],

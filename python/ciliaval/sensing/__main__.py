@@ -17,10 +17,10 @@ from ..model import Case
 from .readings import Readings, read_readings
 from .response import Pair, require_load_to_sense
 from .inversion import Chips
-from .loads import case_of, largest_load, noise_of, options_of, sense_readings
+from .loads import case_of, joints_of, largest_load, noise_of, options_of, sense_readings
 
 _OF_FILES = ("map", "unit", "scale", "unloaded", "average", "temperature")
-_NOT_OF_BENCHES = ("background", "models", "noise", "largest", "csv", *_OF_FILES, "skip")
+_NOT_OF_BENCHES = ("background", "models", "joints", "noise", "largest", "csv", *_OF_FILES, "skip")
 
 
 def main() -> int:
@@ -30,7 +30,7 @@ def main() -> int:
     parser.add_argument("-o", "--output", help="calibrate: the case to write")
     parser.add_argument("--validate", action="store_true", help="only check the benches that the files are")
     parser.add_argument("--background", type=Path)
-    for name in (*_OF_FILES, "models", "noise", "largest"):
+    for name in (*_OF_FILES, "models", "joints", "noise", "largest"):
         parser.add_argument(f"--{name}")
     parser.add_argument("--skip", action="store_true")
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
@@ -94,7 +94,7 @@ def _loads(case: Case, options: argparse.Namespace, progress: Progress) -> tuple
     pair, noise = _pair_and_noise(options)
     largest = largest_load(case, options.largest)
     read = _read(case, options)  # before the models run, which may take a minute
-    result = sense_readings(case, read, pair, noise, largest, progress)
+    result = sense_readings(case, read, pair, noise, largest, progress, joints_of(options.joints))
     status = result.loads.status
     if (status == "failed").any():
         code = SOLVER
@@ -113,7 +113,9 @@ def _calibrate(
     outputs = Outputs(options, inputs)
     pair, noise = _pair_and_noise(options)
     fit = [name.strip() for name in options.fit.split(",")]
-    result = calibrate_readings(case, _read(case, options), fit, pair, noise, progress)
+    result = calibrate_readings(
+        case, _read(case, options), fit, pair, noise, progress, joints_of(options.joints)
+    )
     progress.clear()
     write_out(result.text(terminal_width()))
     outputs.write(lambda: result.json(provenance), result.case.toml)

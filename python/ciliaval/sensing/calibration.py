@@ -21,7 +21,8 @@ from ..errors import InputError, SolverError
 from ..model import Case
 from ..units import shown
 from .inversion import TWO_SIDED_95, UNLIKELY, Chips
-from .loads import case_of, noise_of, options_of, readings_of_arrays
+from .left_out import with_joints
+from .loads import case_of, joints_of, noise_of, options_of, readings_of_arrays
 from .readings import Readings, read_readings
 from .response import Pair, Progress
 
@@ -159,6 +160,7 @@ def calibrate(
     models: str = "elastica/volume",
     noise: float | str = 1e-6,
     unloaded: Any = None,
+    joints: str = "corrected",
     progress: Progress | None = None,
     **options: Any,
 ) -> Calibration:
@@ -167,8 +169,8 @@ def calibrate(
 
     fit: "base.young_modulus", any number by its path in studies or the end of it; "sensor.position" (three
     numbers), "sensor.rotation" (about z), "sensor.orientation" (about x, y, z), "sensor.gain" or "scale"; with
-    several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, unloaded, options: as of
-    sense(). Weighted least squares (scipy.optimize.least_squares) of dB; the offset's noise, which all
+    several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, unloaded, joints, options:
+    as of sense(); the case that is written has the joints that were used. Weighted least squares (scipy.optimize.least_squares) of dB; the offset's noise, which all
     readings share, is in the weights. Deviations are (J^T V^-1 J)^-1 by the noise alone.
 
     Raises InputError, SolverError.
@@ -177,7 +179,7 @@ def calibrate(
     >>> from ciliaval.sensing import calibrate
     >>> case = cv.Case("cases/paper/fig3d.toml")
     >>> soft = case.changed({"cilium.segment.base.young_modulus": 0.09e6})
-    >>> dB = [shape.dB(case.sensors)[0] for shape in cv.bend(soft.cilium, soft.loads)]  # readings of a softer one
+    >>> dB = [shape.dB(case.sensors)[0] for shape in cv.bend(soft.cilium, soft.loads, joints="corrected")]
     >>> found = calibrate(case, dB, ["base.young_modulus"], noise=1e-6)
     >>> round(float(found.values[0]))
     90000
@@ -192,13 +194,20 @@ def calibrate(
         raise InputError(f"{', '.join(options)}: of a file of readings alone")
     else:
         read = readings_of_arrays(readings, len(case.sensors), unloaded, None, Chips.of(case))
-    return calibrate_readings(case, read, fit, Pair.of(models), noise_of(noise), progress)
+    return calibrate_readings(case, read, fit, Pair.of(models), noise_of(noise), progress, joints_of(joints))
 
 
 def calibrate_readings(
-    case: Case, read: Readings, fit: Sequence[str], pair: Pair, noise: float, progress: Progress | None = None
+    case: Case,
+    read: Readings,
+    fit: Sequence[str],
+    pair: Pair,
+    noise: float,
+    progress: Progress | None = None,
+    joints: str = "corrected",
 ) -> Calibration:
     """See calibrate()."""
+    case, _ = with_joints(case, pair.mechanics, joints)
     read.require_offset("a calibration")
     if len(read.change) != len(case.loads):
         raise InputError(

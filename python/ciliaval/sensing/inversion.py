@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -21,8 +22,11 @@ TWO_SIDED_95 = float(special.ndtri(0.975))
 UNLIKELY = 1e-3
 """Probability below which a reading is no matter of chance."""
 _COMPONENTS = 2  # of a load
+_SHIFTS = 4  # steps to the load that better models would have found
 _MOST_STEPS = 200
 _CHUNK = 10_000  # readings at once: what they need stays in the cache
+
+LeftOutOfLoads = Callable[[Array], list[Array]]
 
 STATUSES = ("found", "nothing", "ambiguous", "beyond range", "misfit", "failed")
 
@@ -33,8 +37,8 @@ class SensedLoads:
 
     load: (n, 2), magnitude times direction. covariance: (n, 2, 2) of it, (J^T V^-1 J)^-1, by the noise.
     chi_squared: (n,), (dB - reading)^T V^-1 (dB - reading), whose degrees of freedom are the components that are
-    read less 2.
-    misfit_probability: of a larger one by noise alone. nothing_probability: of a larger
+    read less 2. model_covariance: (n, 2, 2), of the load, by what the models leave out.
+    misfit_probability: of a larger one by noise and what the models leave out. nothing_probability: of a larger
     chi_squared(0) - chi_squared by noise alone, without a load. is_beyond: the load is larger than the
     largest computed. is_ambiguous: another load explains the reading as well, within chi squared of 3.84; it is
     looked for where a chip does not read all components. converged: (n,).
@@ -47,6 +51,7 @@ class SensedLoads:
     nothing_probability: Array
     is_beyond: Array
     converged: Array
+    model_covariance: Array
     is_ambiguous: Array
 
     @property
@@ -66,16 +71,34 @@ class SensedLoads:
         return ~(self.nothing_probability < 0.05)
 
     @property
+    def total_covariance(self) -> Array:
+        """By the noise and what the models leave out, (n, 2, 2)."""
+        return self.covariance + self.model_covariance
+
+    @property
     def magnitude_interval(self) -> Array:
         """Half-widths of the intervals that hold the magnitude with 95 %, to first order: 1.96 standard
-        deviations along the load; where none is seen they hold zero too."""
+        deviations along the load, of all errors; where none is seen they hold zero too."""
+        width = self._along(self.total_covariance)
+        return np.where(self.is_nothing, np.maximum(width, self.magnitude), width)
+
+    @property
+    def noise_interval(self) -> Array:
+        """1.96 standard deviations along the load by the noise alone, (n,)."""
+        return self._along(self.covariance)
+
+    @property
+    def model_interval(self) -> Array:
+        """The same by what the models leave out, (n,)."""
+        return self._along(self.model_covariance)
+
+    def _along(self, covariance: Array) -> Array:
         magnitude = self.magnitude
         along = self.load / np.where(magnitude > 0, magnitude, 1)[:, None]
         along[magnitude == 0] = [1, 0]
         with np.errstate(invalid="ignore"):
-            width = TWO_SIDED_95 * np.sqrt(np.einsum("ni,nij,nj->n", along, self.covariance, along))
-        width = np.where(np.isfinite(self.covariance).all(axis=(1, 2)), width, np.inf)
-        return np.where(self.is_nothing, np.maximum(width, magnitude), width)
+            width = TWO_SIDED_95 * np.sqrt(np.einsum("ni,nij,nj->n", along, covariance, along))
+        return np.where(np.isfinite(covariance).all(axis=(1, 2)), width, np.inf)
 
     @property
     def azimuth_interval(self) -> Array:
@@ -86,10 +109,11 @@ class SensedLoads:
         asin(1.96 sigma/|p|); by p = L y with L L^T the covariance any other is one.
         """
         result = np.full(len(self.load), np.pi)
-        seen = ~self.is_nothing & np.isfinite(self.covariance).all(axis=(1, 2))
+        covariance = self.total_covariance
+        seen = ~self.is_nothing & np.isfinite(covariance).all(axis=(1, 2))
         if not seen.any():
             return result
-        L = np.linalg.cholesky(self.covariance[seen])
+        L = np.linalg.cholesky(covariance[seen])
         y = np.linalg.solve(L, self.load[seen][..., None])[..., 0]
         half = np.arcsin(np.minimum(1, TWO_SIDED_95 / np.hypot(*y.T)))
         azimuth, ends = self.azimuth[seen], []
@@ -103,7 +127,7 @@ class SensedLoads:
 
     @property
     def status(self) -> Array:
-        """Of each: "found", "nothing" (is_nothing), "ambiguous", "misfit" (no load explains the reading: noise alone
+        """Of each: "found", "nothing" (is_nothing), "ambiguous", "misfit" (no load explains the reading: chance alone
         does so once in a thousand times), "beyond range", "failed" (the least squares did not converge)."""
         conditions = [
             ~self.converged, self.is_beyond, self.misfit_probability < UNLIKELY, self.is_nothing, self.is_ambiguous,
@@ -168,6 +192,7 @@ def invert(
     variance: npt.ArrayLike = 1.0,
     common: Array | None = None,
     chips: Chips | None = None,
+    left_out: LeftOutOfLoads | None = None,
 ) -> SensedLoads:
     """The loads whose dB is nearest to readings: the least squares weighted by the noise, by the method of
     Levenberg and Marquardt with the response's own derivatives, from the nearest of a grid of 129 loads
@@ -177,7 +202,8 @@ def invert(
     change: dB, (n, s, 3), T. noise: standard deviation of a component of a single reading, T, a number or
     (3,). variance: of dB over noise^2, (n,): 1/m + 1/k of means of m loaded and k unloaded readings.
     common: (n, s, s), the covariance of the sensors by an error that they share, over noise^2. chips: which of
-    the components count; None: all.
+    the components count; None: all. left_out: of loads (n, 2) what the models leave out of dB there, each
+    (n, s, 3), T, for about 95 %; None: nothing.
 
     Raises InputError if a number is not finite, the noise not positive, or a shape is another.
 
@@ -203,7 +229,7 @@ def invert(
     def part(start: int) -> tuple[Array, ...]:
         rows = slice(start, start + _CHUNK)
         whitened = _Whitening(sigma, over[rows], None if common is None else common[rows], chips)
-        return _both(response, dB[rows], whitened)
+        return _both(response, dB[rows], whitened, left_out)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:  # NumPy lets them run side by side
         parts = [_nothing_read(), *threads.map(part, range(0, len(change), _CHUNK))]
@@ -213,7 +239,7 @@ def invert(
 def _nothing_read() -> tuple[Array, ...]:
     none = np.zeros(0)
     no = none.astype(bool)
-    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, no, no, no
+    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, no, no, np.zeros((0, 2, 2)), no
 
 
 class _Whitening:
@@ -266,12 +292,14 @@ class _Whitening:
         return np.asarray(own - 2 * read.reshape(len(read), -1) @ known.reshape(len(known), -1).T)
 
 
-def _both(response: Response, change: Array, whitened: _Whitening) -> tuple[Array, ...]:
+def _both(
+    response: Response, change: Array, whitened: _Whitening, left_out: LeftOutOfLoads | None
+) -> tuple[Array, ...]:
     """_invert(), and whether another load explains the reading as well; the better one is the first."""
-    first = _invert(response, change, whitened, _starts(response, change, whitened))
+    first = _invert(response, change, whitened, _starts(response, change, whitened), left_out)
     if whitened.chips is None or whitened.chips.reads.all():
         return *first, np.zeros(len(change), dtype=bool)
-    second = _invert(response, change, whitened, _starts(response, change, whitened, first[0]))
+    second = _invert(response, change, whitened, _starts(response, change, whitened, first[0]), left_out)
     better = second[6] & (second[2] < first[2])
     best = [np.where(better.reshape(-1, *[1] * (a.ndim - 1)), b, a) for a, b in zip(first, second)]
     apart = np.hypot(*(first[0] - second[0]).T) > 1e-3 * np.hypot(*best[0].T)
@@ -279,7 +307,9 @@ def _both(response: Response, change: Array, whitened: _Whitening) -> tuple[Arra
     return *best, also
 
 
-def _invert(response: Response, change: Array, whitened: _Whitening, starts: Array) -> tuple[Array, ...]:
+def _invert(
+    response: Response, change: Array, whitened: _Whitening, starts: Array, left_out: LeftOutOfLoads | None
+) -> tuple[Array, ...]:
     n, largest = len(change), response.largest
     x = starts / largest
     converged = np.zeros(n, dtype=bool)
@@ -312,15 +342,56 @@ def _invert(response: Response, change: Array, whitened: _Whitening, starts: Arr
     J = J / largest
     covariance = _inverse(np.einsum("nki,nkj->nij", J, J))
     without = np.einsum("nk,nk->n", *[whitened(change).reshape(n, -1)] * 2)
+    by_better, model_covariance = _left_out(response, change, whitened, left_out, load, J, covariance)
+    rest = np.minimum(cost, by_better(cost > special.chdtri(freedom, UNLIKELY))) if freedom > 0 else cost
     return (
         load,
         covariance,
         cost,
-        special.chdtrc(freedom, cost) if freedom > 0 else np.ones(n),
+        special.chdtrc(freedom, rest) if freedom > 0 else np.ones(n),
         special.chdtrc(_COMPONENTS, np.maximum(0, without - cost)),
         np.hypot(*load.T) > largest * (1 + 1e-9),
         converged & np.isfinite(load).all(axis=1),
+        model_covariance,
     )
+
+
+def _left_out(
+    response: Response, change: Array, whitened: _Whitening, left_out: LeftOutOfLoads | None, load: Array, J: Array,
+    covariance: Array,
+) -> tuple[Callable[[Array], Array], Array]:
+    """chi squared by better models, of chosen rows (infinite of the others), and the covariance of the load by what
+    the models leave out, (n, 2, 2).
+
+    The true load p* has the reading by a better model, dB(p*) + d(p*) = dB(p): p* = p - G d(p*) with
+    G = (J^T V^-1 J)^-1 J^T V^-1. The parts of d are bounds: their shifts add up.
+    """
+    n = len(load)
+    known = np.where(np.isfinite(covariance), covariance, 0)
+    shifts = np.zeros((n, 2, 0))
+    for _ in range(_SHIFTS if n else 0):
+        parts = left_out(load - shifts.sum(axis=2)) if left_out is not None else []
+        if not parts:
+            break
+        d = np.stack([whitened(part).reshape(n, -1) for part in parts], axis=-1)
+        before, shifts = shifts.sum(axis=2), np.einsum("nij,nkj,nkd->nid", known, J, d)
+        if np.abs(shifts.sum(axis=2) - before).max() < 1e-3 * response.largest:
+            break
+
+    def by_better(chosen: Array) -> Array:
+        result = np.full(n, np.inf)
+        if left_out is not None and shifts.size and chosen.any():
+            true = load[chosen] - shifts[chosen, :, 0]
+            off = response.change(true) + left_out(true)[0] - change[chosen]
+            rest = whitened.rows(chosen)(off).reshape(chosen.sum(), -1)
+            result[chosen] = np.einsum("nk,nk->n", rest, rest)
+        return result
+
+    if not shifts.size:
+        return by_better, np.zeros((n, 2, 2))
+    signs = np.where(np.einsum("ni,nid->nd", shifts[:, :, 0], shifts) < 0, -1.0, 1.0)
+    shift = np.einsum("nid,nd->ni", shifts, signs) / TWO_SIDED_95
+    return by_better, np.einsum("ni,nj->nij", shift, shift)
 
 
 def _inverse(A: Array) -> Array:
@@ -361,7 +432,9 @@ def loads_over(largest: float, magnitudes: int = 8, azimuths: int = 16) -> Array
 def _starts(response: Response, change: Array, whitened: _Whitening, avoided: Array | None = None) -> Array:
     """Of each reading the nearest of the loads over the range; of those that point elsewhere than `avoided` does, by
     more than 30 degrees."""
-    loads = loads_over(response.largest)
+    # Two components leave narrow valleys, which a coarse grid misses.
+    all_read = whitened.chips is None or whitened.chips.reads.all()
+    loads = loads_over(response.largest) if all_read else loads_over(response.largest, 24, 48)
     squares = whitened.squares(response.change(loads), change)
     if avoided is not None:
         size = np.hypot(*avoided.T)[:, None] * np.hypot(*loads.T)

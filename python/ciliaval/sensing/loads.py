@@ -20,6 +20,7 @@ from ..errors import InputError
 from ..model import Case
 from ..units import shown
 from .inversion import STATUSES, UNLIKELY, Chips, SensedLoads, invert
+from .left_out import JOINTS, LeftOut, with_joints
 from .readings import Option, ReadingOptions, Readings, read_readings
 from .response import Pair, Progress, Response, Shapes, require_load_to_sense, shapes_within
 
@@ -34,25 +35,33 @@ _EARTH = 150e-6  # T: the earth's field and a sensor's offset, about, which a re
 class FlowLaw:
     """How a flow's force per height q becomes a velocity, v = sqrt(2 q/(rho d C_d)) (paper, Eq. 10-11).
 
-    density rho, kg/m^3; drag_coefficient C_d; diameter d, m.
+    density rho, kg/m^3; drag_coefficient C_d, 0: that of a cylinder at its Reynolds number
+    rho v d/viscosity; diameter d, m; viscosity, Pa s.
     """
 
     density: float
     drag_coefficient: float
     diameter: float
+    viscosity: float
 
     @staticmethod
     def of(case: Case) -> FlowLaw | None:
         """The law of a case whose flow is given by its velocity."""
         if not case._core.stated("velocity"):
             return None
-        return FlowLaw(
-            case._core.stated("density")[0], case._core.stated("drag_coefficient")[0], case.cilium.diameter
-        )
+        density, C_d, viscosity = (case._core.stated(key)[0] for key in ("density", "drag_coefficient", "viscosity"))
+        return FlowLaw(density, C_d, case.cilium.diameter, viscosity)
 
     def velocity(self, q: npt.ArrayLike) -> Array:
         """m/s of N/m; 0 for a q below 0."""
-        v: Array = np.sqrt(2 * np.maximum(0, q) / (self.density * self.diameter * self.drag_coefficient))
+        squared = 2 * np.maximum(0, q) / (self.density * self.diameter)  # C_d v^2
+        if self.drag_coefficient:
+            return np.asarray(np.sqrt(squared / self.drag_coefficient))
+        low, high = _core.cylinder_reynolds_numbers
+        to_reynolds = self.density * self.diameter / self.viscosity
+        v: Array = np.sqrt(squared)
+        for _ in range(50):  # C_d falls less than as Re^-0.9: each step leaves at most 0.45 of the error
+            v = np.sqrt(squared / _core.cylinder_drag_coefficient(np.clip(v * to_reynolds, low, high)))
         return v
 
 
@@ -68,6 +77,7 @@ class Sensing:
     readings: Readings
     loads: SensedLoads
     flow: FlowLaw | None
+    left_out: LeftOut
     remarks: list[str] = field(default_factory=list)
 
     def velocities(self) -> tuple[Array, Array, Array]:
@@ -86,6 +96,7 @@ class Sensing:
             "load_y": (self.unit, found.load[:, 1]),
             "magnitude": (self.unit, found.magnitude),
             "magnitude_interval": (self.unit, found.magnitude_interval),
+            "model_interval": (self.unit, found.model_interval),
             "azimuth": ("rad", found.azimuth),
             "azimuth_interval": ("rad", found.azimuth_interval),
             "chi_squared": ("", found.chi_squared),
@@ -124,8 +135,8 @@ class Sensing:
         each: dict[str, Sequence[Any]] = {"sample": self.readings.names, "rows": self.readings.rows.tolist()}
         if self.readings.time is not None:
             each["time"] = self.readings.time.tolist()
-        for name in ("status", "load", "magnitude", "magnitude_interval", "azimuth", "azimuth_interval",
-                     "covariance", "chi_squared", "misfit_probability", "nothing_probability"):  # fmt: skip
+        for name in ("status", "load", "magnitude", "magnitude_interval", "noise_interval", "model_interval", "azimuth", "azimuth_interval",
+                     "covariance", "model_covariance", "chi_squared", "misfit_probability", "nothing_probability"):  # fmt: skip
             each[name] = getattr(found, name).tolist()
         if self.flow:
             v, low, high = self.velocities()
@@ -135,6 +146,8 @@ class Sensing:
             "case": self.case,
             "provenance": provenance,
             "models": str(self.pair),
+            "joints": "corrected" if self.is_corrected else "none",
+            "model_uncertainty_unknown": self.left_out.unknown or None,
             "noise": [self.noise] * 3,
             "unit": self.unit,
             "largest": self.response.largest,
@@ -182,27 +195,56 @@ class Sensing:
             counts = [(status, int((columns["status"] == status).sum())) for status in STATUSES]
             of_each = ", ".join(f"{count} {status}" for status, count in counts if count)
             text += f"{n} samples: {of_each}. --csv and --json have them all; --average takes means.\n"
-        return text + "Intervals of 95 %, of the noise of reading, offset and background alone."
+        return text + self._of_intervals()
+
+    @property
+    def is_corrected(self) -> bool:
+        return self.left_out.is_corrected
+
+    def _of_intervals(self) -> str:
+        """What the intervals hold, and their largest share at the largest load found."""
+        left_out, found = self.left_out, self.loads
+        text = "Intervals of 95 %, of the noise of reading, offset and background"
+        if left_out.unknown:
+            return f"{text} alone: what {self.pair} leaves out is not known ({left_out.unknown}).\n"
+        text += f" and what {self.pair}{' with corrected joints' if self.is_corrected else ''} leaves out"
+        seen = np.flatnonzero((found.status == "found") & np.isfinite(found.magnitude_interval))
+        if len(seen):
+            unit, size = shown(self.unit)
+            i = seen[found.magnitude[seen].argmax()]
+            noise, model = found.noise_interval[i] / size, found.model_interval[i] / size
+            text += f": at {found.magnitude[i] / size:.3g} {unit} {noise:.2g} and {model:.2g} {unit}"
+            if found.magnitude[i] > left_out.beyond:
+                text += f", of which the second is not known beyond {left_out.beyond / size:.3g} {unit}"
+        return text + ".\n"
 
 
 def sense_readings(
-    case: Case, readings: Readings, pair: Pair, noise: float, largest: float, progress: Progress | None = None
+    case: Case,
+    readings: Readings,
+    pair: Pair,
+    noise: float,
+    largest: float,
+    progress: Progress | None = None,
+    joints: str = "corrected",
 ) -> Sensing:
     """The load of each reading of the case's sensors: see sense(). Raises InputError, SolverError."""
     require_load_to_sense(case)
+    case, _ = with_joints(case, pair.mechanics, joints)
     shapes = shapes_within(case, pair.mechanics, largest, progress)
     response = Response(case, pair.field, shapes, case.sensors)
+    left_out = LeftOut.of(case, pair, shapes, response, progress)
     chips = Chips.of(case)
     change = chips.in_case(readings.change)
     if not readings.measured_offset:
         change = change - response.undeformed
-    loads = invert(response, change, noise, readings.variance(), readings.background, chips)
+    loads = invert(response, change, noise, readings.variance(), readings.background, chips, left_out.changes)
     unit = case.loads[0].unit
     remarks = [*readings.remarks]
     remarks += _range_remark(shapes, largest, unit)
     remarks += _scatter_remark(readings, noise)
     remarks += _axes_remark(readings, response, chips)
-    return Sensing(case.name, pair, noise, unit, response, readings, loads, FlowLaw.of(case), remarks)
+    return Sensing(case.name, pair, noise, unit, response, readings, loads, FlowLaw.of(case), left_out, remarks)
 
 
 def _range_remark(shapes: Shapes, asked: float, unit: str) -> list[str]:
@@ -261,6 +303,13 @@ def noise_of(value: float | str, where: str = "noise") -> float:
     return noise
 
 
+def joints_of(joints: str | None) -> str:
+    """Raises InputError unless it is one of JOINTS."""
+    if joints is not None and joints not in JOINTS:
+        raise InputError(f"joints: `corrected`, or `case`, as the case states them, not `{joints}`")
+    return joints or JOINTS[0]
+
+
 def largest_load(case: Case, largest: float | str | None = None) -> float:
     """The largest load to look for: as stated, or 1.25 times the case's largest. Raises InputError."""
     if largest is not None:
@@ -301,12 +350,14 @@ def sense(
     average: str | None = None,
     temperature: str | None = None,
     skip: bool = False,
+    joints: str = "corrected",
     progress: Progress | None = None,
 ) -> Any:
     """The load of each reading: a pandas.DataFrame with a row for each, SI units, whose columns are sample,
-    status, load_x, load_y, magnitude, magnitude_interval, azimuth, azimuth_interval, chi_squared,
-    misfit_probability, nothing_probability, of a flow velocity, velocity_low, velocity_high, and time
-    where it is known. Intervals of 95 %, by the noise.
+    status, load_x, load_y, magnitude, magnitude_interval, model_interval, azimuth, azimuth_interval,
+    chi_squared, misfit_probability, nothing_probability, of a flow velocity, velocity_low, velocity_high, and
+    time where it is known. Intervals of 95 %, by the noise and by what the models leave out, which model_interval
+    has alone.
 
     case: a Case or its file; its sensors, its kind of load. readings: B, (n, 3) of one sensor or
     (n, sensors, 3), T; or a logger's file, to which map, unit, scale, average, temperature and skip belong
@@ -315,7 +366,8 @@ def sense(
     frame; "model" takes the model's own B; None: the readings are changes dB. Of a file as --unloaded.
     background: the ambient field that goes with each reading, as large as these, each with the noise of
     a reading; or one field for all, which drops out of dB. Of a file the background's file. models: the
-    pair that is inverted. largest: the largest load to look for.
+    pair that is inverted. joints: "corrected", those of a rod where the corrections reach (docs/theory/joints.md), or
+    "case", as the case states them. largest: the largest load to look for.
 
     Raises InputError, FileError, SolverError.
 
@@ -344,7 +396,9 @@ def sense(
             raise InputError(f"{', '.join(extra)}: of a file of readings alone; arrays are in T")
         read = readings_of_arrays(readings, len(case.sensors), unloaded, background, Chips.of(case))
     asked = largest_load(case, largest)
-    return sense_readings(case, read, Pair.of(models), noise_of(noise), asked, progress).frame()
+    return sense_readings(
+        case, read, Pair.of(models), noise_of(noise), asked, progress, joints_of(joints)
+    ).frame()
 
 
 def readings_of_arrays(

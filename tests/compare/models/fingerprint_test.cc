@@ -122,7 +122,10 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
             "flank = \"1 mm\"\nradius = \"0.5 mm\"\n"),
       sweep("profile = \"random\"\nrms = \"40 um\"\nhurst = 0.4\nlongest = \"2 mm\"\n"
             "shortest = \"0.4 mm\"\nseed = 1\n"),
-      sweep("profile = \"file\"\npath = " + file("profile.csv", profile))};
+      sweep("profile = \"file\"\npath = " + file("profile.csv", profile)),
+      rod(round_section) +
+          "[load]\ntype = \"flow\"\nvelocity = \"0.5 m/s\"\ndrag_coefficient = \"cylinder\"\n"
+          "viscosity = \"2 mPa s\"\n[models]\nmechanics = [\"solid\"]\n"};
   all.push_back(replaced(all[10], "interference = \"1 mm\"", "clearance = \"-1 mm\""));
   return all;
 }

@@ -301,8 +301,9 @@ TEST_F(ToyModel, AddsItsStagesToTheBudget) {
                                           "hinge/lamp single", "hinge/lamp double"));
   bool found = false;
   for (const auto& row : budget.at("rows")) {
-    if (row.at("quantity") == "tip_angle" && row.at("step") == 1)
+    if (row.at("quantity") == "tip_angle" && row.at("step") == 1) {
       EXPECT_NEAR(row.at("best").get<double>(), angle(2e-3), 1e-12);
+    }
     if (row.at("quantity") != "B") continue;
     found = true;
     const auto& links = row.at("links");

@@ -95,12 +95,13 @@ input::Case measured_case() {
 }
 
 Validation validated(input::Case c, std::vector<models::MechanicsEntry> mechanics,
-                     std::vector<models::FieldEntry> fields = {}) {
+                     std::vector<models::FieldEntry> fields = {},
+                     Sensitivities whose = Sensitivities::quick) {
   c.mechanics.clear();
   for (const auto& entry : mechanics) c.mechanics.push_back(entry.id);
   c.fields.clear();
   for (const auto& entry : fields) c.fields.push_back(entry.id);
-  return validate(models::run(c, mechanics, fields), mechanics, fields).value();
+  return validate(models::run(c, mechanics, fields), mechanics, fields, {}, whose).value();
 }
 
 // Oracle: by hand, and the inverse of a matrix of two rows.
@@ -165,6 +166,25 @@ TEST(SlowToy, TakesTheSensitivitiesOfTheQuickOne) {
   const Point& point = v.series[2].points[1];
   EXPECT_NEAR(point.simulated.value(), 1.5 * (a * forces[1] + b * 0.1e6), 1e-15);
   EXPECT_NEAR(point.contributions[0].value(), 0.01 * a * forces[1], 1e-15);
+}
+
+TEST(SlowToy, TakesItsOwnSensitivitiesIfAsked) {
+  models::MechanicsEntry slow = toy("slow", 1.5);
+  slow.is_slow = true;
+  models::FieldEntry slow_field = lamp("slow_lamp");
+  slow_field.is_slow = true;
+  input::Case c = measured_case();
+  c.measured.measurements.push_back(
+      {{.name = "dB.0.x", .kind = Kind::dB, .axis = 0}, 1, 3e-4, 1e-6, "a Hall sensor", false});
+  const Validation v =
+      validated(c, {toy("toy", 1), slow}, {lamp("lamp"), slow_field}, Sensitivities::own);
+  for (const Series& series : v.series) {
+    EXPECT_EQ(series.sensitivities_by, series.model);
+    EXPECT_FALSE(series.has_sensitivities_of_another());
+    const double of_tip = (series.model.starts_with("slow") ? 1.5 : 1) * 0.01 * a * forces[1];
+    const double of_value = series.measurand().is_field() ? tesla * of_tip : of_tip;
+    EXPECT_NEAR(series.points.back().contributions[0].value(), of_value, 1e-14) << series.model;
+  }
 }
 
 TEST(ToyField, IsHeldAgainstAReadingOfASensor) {
@@ -233,6 +253,7 @@ TEST(Report, FitsATerminalAndNeverSaysValidated) {
   const std::string shown = text(v, output::Footnotes::text);
   for (const std::string& line : lines(shown)) EXPECT_LE(line.size(), 80U) << line;
   EXPECT_THAT(shown, HasSubstr("a_slow_model (u_in by toy)"));
+  EXPECT_THAT(shown, HasSubstr("seen with twice the u_in of toy: "));
   EXPECT_THAT(shown, HasSubstr("not seen, < "));
   EXPECT_THAT(shown, HasSubstr("model error seen at 1, not seen at 1"));
   EXPECT_EQ(shown.find("validated"), std::string::npos);

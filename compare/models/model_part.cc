@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "compare/models/model_part.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+#include <utility>
+
+#include "compare/models/errors.h"
+#include "compare/models/registry.h"
+#include "problem/joints/companions.h"
+
+namespace ciliaval::compare::models {
+namespace {
+
+/// The better models on the case.
+struct Better {
+  std::optional<MechanicsRun> shape;  ///< none: the corrections do not reach, says `unknown`
+  std::string unknown;
+  std::optional<FieldRun> field;  ///< of that shape
+};
+
+/// The entry of a rod; null: the model is none.
+const MechanicsEntry* rod(std::span<const MechanicsEntry> entries, const std::string& id) {
+  const auto found = std::ranges::find(entries, id, &MechanicsEntry::id);
+  return found != entries.end() && found->correct ? &*found : nullptr;
+}
+
+std::string not_of_a_rod(const std::string& model) {
+  return "what " + model + " leaves out is not known: only rods are held against a better model";
+}
+
+const FieldEntry* best_field(std::span<const FieldEntry> fields) {
+  const FieldEntry* best = nullptr;
+  for (const FieldEntry& entry : fields)
+    if (entry.is_quick()) best = &entry;
+  return best;
+}
+
+Better better_models(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
+                     std::span<const FieldEntry> fields, const Progress& progress) {
+  Better better;
+  for (const MechanicsEntry& entry : mechanics | std::views::reverse) {
+    if (!entry.correct) continue;
+    input::Case corrected = problem;
+    const std::string fault = correct(entry, corrected);
+    if (!fault.empty()) {
+      if (better.unknown.empty()) better.unknown = fault;
+      continue;
+    }
+    const Progress named = with_prefix(progress, "model part, ");
+    better.unknown.clear();
+    better.shape = run_mechanics(entry, corrected, fields, named);
+    if (const FieldEntry* field = best_field(fields);
+        field != nullptr && !problem.sensors.empty() && !problem.fields.empty())
+      better.field =
+          run_field(field->id, *field->make(problem.options), *better.shape, corrected, named);
+    return better;
+  }
+  return better;
+}
+
+/// Why the better shape does not tell the model's error at a step; empty: it does.
+std::string reason_against(const input::Case& problem, const MechanicsStep& step,
+                           const MechanicsRun& better, std::size_t index) {
+  const MechanicsStep& other = better.result.steps[index];
+  if (other.status == Status::failed)
+    return fmt::format("{} with corrected joints: {}", better.model, other.message);
+  if (step.status != other.status)
+    return fmt::format(
+        "{} with corrected joints {} at this load", better.model,
+        other.status == Status::converged ? "does not slip off" : "has no equilibrium");
+  if (step.status != Status::converged) return {};
+  const std::vector<double> strains =
+      joints::strains(problem.cilium, other.deformation->centreline);
+  const double largest = *std::ranges::max_element(strains);
+  if (largest > joints::largest_strain)
+    return fmt::format("a strain of {:.2g}: the corrections are known up to {:g}", largest,
+                       joints::largest_strain);
+  return {};
+}
+
+std::optional<ModelPart<double>> part_of(double difference, std::optional<double> of_the_better,
+                                         bool is_corrected) {
+  if (!of_the_better) return std::nullopt;
+  return ModelPart<double>{std::abs(difference), *of_the_better, is_corrected};
+}
+
+ShapeModelParts shape_parts(const input::Case& problem, const MechanicsRun& run, std::size_t index,
+                            bool corrected, const Better& better) {
+  ShapeModelParts parts;
+  parts.unknown = better.unknown;
+  if (!better.shape) return parts;
+  const MechanicsStep& step = run.result.steps[index];
+  const MechanicsStep& other = better.shape->result.steps[index];
+  const auto limit = slip_off_limit(step);
+  const auto other_limit = slip_off_limit(other);
+  if (limit && other_limit)
+    parts.slip_off = part_of(*limit - *other_limit, other.slip_off_uncertainty, corrected);
+  parts.unknown = reason_against(problem, step, *better.shape, index);
+  if (!parts.unknown.empty() || step.status != Status::converged) return parts;
+  const auto tip = [](const MechanicsStep& of) {
+    return of.deformation->centreline.at(of.deformation->centreline.length());
+  };
+  parts.tip =
+      part_of((tip(step).position - tip(other).position).norm(), other.tip_uncertainty, corrected);
+  parts.tip_angle =
+      part_of(tip(step).theta() - tip(other).theta(), other.tip_angle_uncertainty, corrected);
+  parts.applied_force =
+      part_of(step.applied_force - other.applied_force, other.applied_force_uncertainty, corrected);
+  return parts;
+}
+
+/// Of B, or of ΔB: values, the field model's uncertainty and what the shape's error makes.
+struct Members {
+  AtSensors FieldStep::*value;
+  AtSensors FieldStep::*uncertainty;
+  std::vector<std::optional<double>> FieldStep::*from_mechanics;
+  std::vector<std::optional<ModelPart<Vector3>>> FieldStep::*part;
+};
+constexpr Members members[] = {
+    {&FieldStep::B, &FieldStep::uncertainty, &FieldStep::from_mechanics, &FieldStep::B_model_part},
+    {&FieldStep::dB, &FieldStep::dB_uncertainty, &FieldStep::dB_from_mechanics,
+     &FieldStep::dB_model_part}};
+
+/// Of a sensor; none where there is no list: the straight cilium's ΔB has no error.
+template <class T>
+std::optional<T> at(const std::vector<std::optional<T>>& values, std::size_t sensor) {
+  return sensor < values.size() ? values[sensor] : std::nullopt;
+}
+
+/// `own` has the values that the better ones are held against: the step's own, or those of the
+/// better field on the step's shape.
+void set_parts(FieldStep& step, const FieldStep& own, const FieldStep& better, bool corrected) {
+  for (const Members& of : members) {
+    auto& parts = step.*of.part;
+    parts.resize(step.B.size());
+    for (std::size_t s = 0; s < step.B.size(); ++s) {
+      const auto a = at(own.*of.value, s);
+      const auto b = at(better.*of.value, s);
+      if (!a || !b) continue;
+      const Vector3 field = at(better.*of.uncertainty, s).value_or(Vector3::Zero());
+      const double shape = at(better.*of.from_mechanics, s).value_or(0);
+      parts[s] =
+          ModelPart<Vector3>{(*a - *b).cwiseAbs() + (corrected ? field : Vector3(0, 0, 0)),
+                             shape + (corrected ? 0 : field.lpNorm<Eigen::Infinity>()), corrected};
+    }
+  }
+}
+
+}  // namespace
+
+std::string correct(const MechanicsEntry& entry, input::Case& problem) {
+  if (!entry.correct) return entry.id + " has no corrected joints";
+  entry.correct(problem.options);
+  return fault_of(entry, problem);
+}
+
+void add_model_parts(CaseResult& result, std::span<const MechanicsEntry> mechanics,
+                     std::span<const FieldEntry> fields, const Progress& progress) {
+  const input::Case& problem = result.problem;
+  Better better;
+  if (std::ranges::any_of(result.mechanics, [&](const MechanicsRun& run) {
+        return rod(mechanics, run.model) != nullptr;
+      }))
+    better = better_models(problem, mechanics, fields, progress);
+  for (MechanicsRun& run : result.mechanics) {
+    const MechanicsEntry* entry = rod(mechanics, run.model);
+    for (std::size_t i = 0; i < run.result.steps.size(); ++i)
+      run.model_parts.push_back(
+          entry != nullptr
+              ? shape_parts(problem, run, i, entry->is_corrected(problem.options), better)
+              : ShapeModelParts{{}, {}, {}, {}, not_of_a_rod(run.model)});
+  }
+  const FieldEntry* best = best_field(fields);
+  for (FieldRun& run : result.fields) {
+    if (run.measured) continue;
+    const MechanicsRun& shape = mechanics_of(run, result);
+    const MechanicsEntry* shape_entry = rod(mechanics, shape.model);
+    const bool is_known = shape_entry != nullptr && better.field;
+    const auto entry = std::ranges::find(fields, run.field, &FieldEntry::id);
+    std::optional<FieldRun> own;  // where the field itself is beyond what the better one knows
+    if (is_known && !entry->is_quick())
+      own = run_field(best->id, *best->make(problem.options), shape, problem);
+    const auto set = [&](FieldStep& step, const FieldStep* of_own, const FieldStep* of_better) {
+      if (of_own != nullptr && of_better != nullptr)
+        set_parts(step, *of_own, *of_better, shape_entry->is_corrected(problem.options));
+    };
+    if (is_known)
+      set(run.undeformed, own ? &own->undeformed : &run.undeformed, &better.field->undeformed);
+    for (std::size_t i = 0; i < run.steps.size(); ++i) {
+      if (!run.steps[i]) continue;
+      FieldStep& step = *run.steps[i];
+      step.model_part_unknown = shape.model_parts[i].unknown;
+      if (!is_known || !step.model_part_unknown.empty()) continue;
+      const auto& own_step = own ? own->steps[i] : run.steps[i];
+      const auto& better_step = better.field->steps[i];
+      set(step, own_step ? &*own_step : nullptr, better_step ? &*better_step : nullptr);
+    }
+  }
+}
+
+}  // namespace ciliaval::compare::models

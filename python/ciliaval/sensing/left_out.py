@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""What the inverted models leave out of dB: docs/theory/band.md."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .. import _core
+from ..arrays import Array
+from ..model import Case
+from .response import Pair, Progress, Response, Shapes, shapes_within
+
+JOINTS = ("corrected", "case")
+
+
+def with_joints(case: Case, mechanics: str, joints: str) -> tuple[Case, str]:
+    """The case with the rod's joints corrected ("corrected"), or as it states them ("case"); and why
+    they are not corrected where they cannot be."""
+    if joints == "case":
+        return case, ""
+    core, fault = case._core.corrected(mechanics)
+    return (case, fault) if fault else (Case._of(core, case.file), "")
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """The pair that is inverted held against the rod with corrected joints and the best quick field, and
+    that one against joints as much softer as their correction is uncertain by.
+
+    unknown: why there is no such thing; else empty. is_corrected: the pair's own joints. beyond: magnitude from which on the rod is bent further
+    than the corrections are known.
+    """
+
+    asked: Response
+    better: Response | None = None
+    softer: Response | None = None
+    unknown: str = ""
+    is_corrected: bool = False
+    beyond: float = math.inf
+
+    @staticmethod
+    def of(case: Case, pair: Pair, shapes: Shapes, asked: Response, progress: Progress | None) -> LeftOut:
+        """Of a response that was made from the shapes of a case."""
+        better = shapes
+        if shapes.nodes[0].with_softer_joints is None:
+            corrected, fault = with_joints(case, pair.mechanics, "corrected")
+            if fault:
+                return LeftOut(asked, unknown=fault)
+            better = shapes_within(corrected, pair.mechanics, shapes.largest, progress)
+        nodes, checks = ([s.with_softer_joints for s in of] for of in (better.nodes, better.checks))
+        if None in nodes or None in checks:
+            return LeftOut(asked, unknown="with joints as soft as they may be, a load has no equilibrium")
+        field = _core.best_field()
+        known = asked if better is shapes and pair.field == field else Response(case, field, better, case.sensors)
+        softer = Response(case, field, replace(better, nodes=nodes, checks=checks), case.sensors)
+        outside = [m for s, m in zip(better.nodes, better.node_magnitudes) if "outside of the domain" in s.message]
+        return LeftOut(asked, known, softer, "", better is shapes, min(outside, default=math.inf))
+
+    def changes(self, load: Array) -> list[Array]:
+        """dB of the better models less theirs, and of the softer joints less that, each (n, s, 3), T."""
+        if self.better is None or self.softer is None:
+            return []
+        most = min(r.largest for r in (self.asked, self.better, self.softer))
+        size = np.hypot(*load.T)
+        inside = load * np.minimum(1, most / np.where(size > 0, size, 1))[:, None]
+        dB = [r.change(inside) for r in (self.asked, self.better, self.softer)]
+        return [dB[1] - dB[0], dB[2] - dB[1]]

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""How often the 95 % bands of rods hold the solid's values, on random designs: docs/evidence/band.md.
+
+python3 tests/python/band_coverage.py rods [designs [first seed]]
+python3 tests/python/band_coverage.py sense [designs [first seed]]
+"""
+
+import math
+import sys
+
+import numpy as np
+
+import ciliaval as cv
+
+LOADS = ("contact", "flow", "section", "dead", "probe")
+PAIRS = ("elastica/line", "elastica/volume", "beam/volume")
+REFERENCE = "solid/mesh"
+
+
+def random_cilium(rng, seed):
+    """Base of 0.5 to 8 d, magnet of 2 to 10 d and 1 to 100 times stiffer; every second one with a segment between."""
+    d = 1e-3 * math.exp(rng.uniform(0, math.log(4)))
+    E = 1e6 * math.exp(rng.uniform(math.log(0.03), math.log(1)))
+    ratio = math.exp(rng.uniform(0, math.log(100)))
+    segments = [(d * math.exp(rng.uniform(math.log(0.5), math.log(8))), E, 0.0)]
+    if seed % 2:
+        segments.append((d * rng.uniform(0.5, 3), E * ratio ** rng.uniform(0.2, 0.8), 0.0))
+    segments.append((d * rng.uniform(2, 10), E * ratio, 75e3))
+    nu = [rng.uniform(0.3, 0.4999) for _ in segments]
+    return cv.Cilium(d, [
+        cv.Segment(length, modulus, nu[i], magnetization=M, name=f"s{i}") for i, (length, modulus, M) in enumerate(segments)
+    ])  # fmt: skip
+
+
+def random_load(rng, seed, cilium):
+    """A load that turns the elastica's tip by 2 to 60 degrees; None where none does."""
+    kind, L = LOADS[seed % len(LOADS)], cilium.length
+    place = {"contact": {"height": L * rng.uniform(0.6, 0.9)}, "probe": {"height": L * rng.uniform(0.6, 0.9)},
+             "section": {"arclength": L * rng.uniform(0.6, 1)}}.get(kind, {})  # fmt: skip
+    wanted = math.radians(math.exp(rng.uniform(math.log(2), math.log(60))))
+    azimuth = rng.uniform(-math.pi, math.pi)
+    name = {"flow": "force_per_height", "dead": "force_per_length", "probe": "displacement"}.get(kind, "force")
+    low, high, best = 1e-9, 10.0, None
+    for _ in range(60):
+        middle = math.sqrt(low * high)
+        load = cv.Load(kind, **{name: middle}, **place, azimuth=azimuth)
+        try:
+            shape = cv.bend(cilium, load, "elastica")
+            angle = shape.tip_angle if shape.has_shape else math.inf
+        except (cv.SolverError, cv.InputError):
+            angle = math.inf
+        low, high, best = (middle, high, load) if angle < wanted else (low, middle, best)
+    return best
+
+
+def random_case(seed):
+    rng = np.random.default_rng(seed)
+    cilium = random_cilium(rng, seed)
+    load = random_load(rng, seed, cilium)
+    d, phi = cilium.diameter, rng.uniform(-math.pi, math.pi, 3)
+    aside = d * np.array([0.0, rng.uniform(0, 0.3), rng.uniform(0.5, 1.5)])
+    sensors = np.stack([aside * np.cos(phi), aside * np.sin(phi), -d * rng.uniform(0.3, 2, 3)], axis=-1)
+    return cv.Case.from_objects(cilium, load, sensors, ["elastica", "beam", "solid"], ["line", "volume", "mesh"], f"seed{seed}")
+
+
+def of_design(seed):
+    """{(pair, quantity): [(error, band, the solid's own numerical error), …]}; None: the solid does not bear the load."""
+    case = random_case(seed)
+    result = case.run()
+    if result.status("solid") != ["converged"]:
+        return None
+    runs = [(result, "")]
+    corrected, fault = case._core.corrected("beam")
+    if not fault:
+        corrected.mechanics, corrected.fields = ["beam"], ["volume"]
+        runs.append((cv.Case._of(corrected).run(), "corrected "))
+    found = {}
+    dB = result.dB(REFERENCE)[0]
+    for run, word in runs:
+        for model in run.models:
+            if model == "solid" or run.status(model) != ["converged"]:
+                continue
+            for quantity in ("tip", "tip_angle"):
+                values = run.tip if quantity == "tip" else run.tip_angle
+                known = result.tip if quantity == "tip" else result.tip_angle
+                error = float(np.linalg.norm(values(model)[0] - known("solid")[0]))
+                own = float(result.tip_uncertainty("solid")[0]) if quantity == "tip" else result.steps[0]["mechanics"]["solid"]["tip_angle_uncertainty"]
+                found[word + model, quantity] = [(error, float(run.band(model, quantity)[0]), own)]
+        for pair in set(PAIRS) & set(run.pairs):
+            change = np.linalg.norm(run.dB(pair)[0], axis=1) - np.linalg.norm(dB, axis=1)
+            bands = np.linalg.norm(run.dB_band(pair)[0], axis=1)
+            own = np.linalg.norm(result.dB_uncertainty(REFERENCE)[0], axis=1)
+            found[word + pair, "|dB|"] = list(zip(np.abs(change), bands, own))
+    return found
+
+
+def rods(designs=200, first=0):
+    table, borne = {}, 0
+    for seed in range(first, first + designs):
+        try:
+            found = of_design(seed)
+        except cv.Error as error:
+            print(f"seed {seed}: {error}", file=sys.stderr)
+            continue
+        borne += found is not None
+        for key, values in (found or {}).items():
+            table.setdefault(key, []).extend((seed, *value) for value in values)
+            for error, band, own in values:
+                if not error <= band:
+                    print(f"seed {seed}: {' '.join(key)} is off by {error:.3g}, band {band:.3g}, solid's own {own:.3g}", file=sys.stderr)
+    print(f"{borne} of {designs} designs, seeds {first} to {first + designs - 1}, are borne by the solid\n")
+    print("| model | quantity | n | not known | in the band | with the solid's own error | median error | median band / error |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
+    for (model, quantity), rows in table.items():
+        seeds, error, band, own = np.array(rows, dtype=float).T
+        known = np.isfinite(band)
+        e, b, u = error[known], band[known], np.nan_to_num(own[known])  # where it knows it
+        print(f"| {model} | {quantity} | {len(e)} | {(~known).sum()} | {100 * (e <= b).mean():.1f} % | {100 * (e <= b + u).mean():.1f} % | {np.median(e):.2e} | {np.median(b / e):.2f} |")
+
+
+FORCES, DRAWS, NOISE = 11, 10, 0.4e-6
+
+
+def sensed(seed):
+    """Readings of the solid under eleven forces, with noise, and what sense makes of them: by each way of asking, of
+    each reading (error, interval, of which the model's), N; None: the solid does not bear the largest."""
+    rng = np.random.default_rng(seed)
+    cilium = random_cilium(rng, seed)
+    load = random_load(rng, 0, cilium)  # a contact
+    force, height, phi, d = load.parameters["force"], load.parameters["height"], rng.uniform(-3, 3), cilium.diameter
+    forces = force * np.linspace(1 / FORCES, 1, FORCES)
+    aside = d * rng.uniform(0, 0.3)
+    sensor = [aside * math.cos(phi), aside * math.sin(phi), -d * rng.uniform(0.3, 2)]
+    azimuth = rng.uniform(-math.pi, math.pi)
+    path = [cv.Load("contact", force=f, height=height, azimuth=azimuth) for f in forces]
+    result = cv.Case.from_objects(cilium, path, sensor, ["solid"], ["mesh"]).run()
+    if set(result.status("solid")) != {"converged"}:
+        return None
+    B = np.repeat(result.dB(REFERENCE)[:, 0], DRAWS, axis=0)
+    B = B + NOISE * rng.standard_normal(B.shape)
+    case = cv.Case.from_objects(cilium, path, sensor, ["elastica"], ["volume"])
+    found = {}
+    for joints in ("corrected", "case"):
+        frame = cv.sense(case, B, noise=NOISE, joints=joints)
+        error = np.abs(frame["magnitude"] - np.repeat(forces, DRAWS))
+        counted = frame["status"].isin(["found", "nothing", "misfit"])
+        found[joints] = np.stack([error, frame["magnitude_interval"], frame["model_interval"]], axis=-1)[counted]
+        found[joints + ", noise alone"] = found[joints].copy()
+        total, model = found[joints][:, 1], found[joints][:, 2]
+        found[joints + ", noise alone"][:, 1] = np.sqrt(total**2 - model**2)
+    return found
+
+
+def sense(designs=100, first=0):
+    table, borne = {}, 0
+    for seed in range(first, first + designs):
+        try:
+            found = sensed(seed)
+        except cv.Error as error:
+            print(f"seed {seed}: {error}", file=sys.stderr)
+            continue
+        borne += found is not None
+        for key, rows in (found or {}).items():
+            table.setdefault(key, []).append(rows)
+            if not (rows[:, 0] <= rows[:, 1]).mean() > 0.9:
+                print(f"seed {seed}: {key}: {(rows[:, 0] <= rows[:, 1]).mean():.2f}", file=sys.stderr)
+    print(f"{borne} of {designs} designs, seeds {first} to {first + designs - 1}, {FORCES} forces of {DRAWS} readings each\n")
+    print("| joints, interval | readings | hold the force | designs with 90 % | median interval / error | of it the model |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for key, of_designs in table.items():
+        rows = np.concatenate(of_designs)
+        held = rows[:, 0] <= rows[:, 1]
+        each = [(r[:, 0] <= r[:, 1]).mean() >= 0.9 for r in of_designs]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio, share = np.nanmedian(rows[:, 1] / rows[:, 0]), np.nanmedian(rows[:, 2] / rows[:, 1])
+        print(f"| {key} | {len(rows)} | {100 * held.mean():.1f} % | {100 * np.mean(each):.0f} % | {ratio:.2f} | {100 * share:.0f} % |")
+
+
+if __name__ == "__main__":
+    what, *numbers = sys.argv[1:] or ["rods"]
+    {"rods": rods, "sense": sense}[what](*map(int, numbers))
