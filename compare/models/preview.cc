@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "analytic/elastica/environment/step.h"
+#include "compare/models/model_part.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "problem/cilium.h"
@@ -23,6 +24,7 @@ constexpr double largest_strain = 0.3;   ///< from there on rubber's own law mat
 constexpr double near_magnet = 0.1;      ///< distance of a sensor, in d
 constexpr double least_signal = 0.1e-6;  ///< T: below what Hall sensors resolve
 constexpr double largest_signal = 1;     ///< T
+constexpr double largest_part = 0.02;    ///< of the tip's deflection, that a rod leaves out
 constexpr double most_buckling = 20;     ///< buckling loads over the environment: more are not told
 
 /// What is usual of cilia and their rubbers.
@@ -104,6 +106,24 @@ class Viewer {
     }
   }
 
+  /// `run` is of a rod of the case, which is off by as much as its joints are stiffer.
+  void look_at_joints(const MechanicsRun& run, std::size_t step, double deflection) {
+    std::string plain;
+    for (const MechanicsEntry& entry : mechanics_models())
+      if (entry.correct && !entry.is_corrected(problem_.options) &&
+          std::ranges::find(problem_.mechanics, entry.id) != problem_.mechanics.end())
+        plain += fmt::format("{}[models.{}]", plain.empty() ? "" : ", ", entry.id);
+    if (plain.empty()) return;
+    CaseResult result{problem_, {run}, {}};
+    add_model_parts(result, mechanics_models(), field_models());
+    const auto& part = result.mechanics.front().model_parts.at(step).tip;
+    if (!part || part->difference <= largest_part * deflection) return;
+    warn(
+        fmt::format("rods are off by about {:.2g} % here, because bonded ends are stiffer than "
+                    "theirs: state joints = \"corrected\" in {}, unless you want the paper's",
+                    100 * part->difference / deflection, plain));
+  }
+
   void look_at_signal() {
     // The first one, so the simplest: the paper's elastica, out of its plane and beside magnets the
     // beam.
@@ -132,6 +152,7 @@ class Viewer {
     warn_of_steps(run);
     if (!largest) return;
     const MechanicsStep& step = run.result.steps[*largest];
+    look_at_joints(run, *largest, deflection);
     const double angle =
         step.deformation->centreline.at(problem_.cilium.length()).theta() * 180 / std::numbers::pi;
     preview_.signal.push_back(

@@ -14,11 +14,11 @@
 namespace ciliaval::compare {
 namespace {
 
-input::Case read(const std::string& text) {
+input::Case parsed(const std::string& text) {
   return input::read_case(text, "a.toml", models::known());
 }
 
-input::Case flow(const std::string& keys) {
+input::Case case_of_flow(const std::string& keys) {
   return read(
       "[case]\nname = \"a\"\n[cilium]\ndiameter = \"3 mm\"\n[[cilium.segment]]\n"
       "name = \"rod\"\nlength = \"20 mm\"\nyoung_modulus = \"1 MPa\"\n"
@@ -36,7 +36,7 @@ TEST(Drag, OfACylinderFollowsItsReynoldsNumber) {
   for (const double beyond : {0.0, 3e5})
     EXPECT_THROW(cylinder_drag_coefficient(beyond), InputError);
   // Re = 900 kg/m³ · v · 3 mm/(9 mPa s) = 300 v s/m.
-  const input::Case c = flow(
+  const input::Case c = case_of_flow(
       "velocity = [\"0 m/s\", \"0.5 m/s\", \"0.5 m/s\"]\ndensity = \"0.9 g/cm3\"\n"
       "drag_coefficient = [\"cylinder\", \"cylinder\", 1.2]\nviscosity = \"9 mPa s\"\n");
   const auto q = [&](std::size_t i) { return c.load_path[i].as<FlowLoad>()->force_per_height; };
@@ -44,7 +44,7 @@ TEST(Drag, OfACylinderFollowsItsReynoldsNumber) {
   EXPECT_NEAR(q(1), 0.5 * 900 * 0.25 * cylinder_drag_coefficient(150) * 3e-3, 1e-15);
   EXPECT_NEAR(q(2), 0.5 * 900 * 0.25 * 1.2 * 3e-3, 1e-15);
   const std::string written = input::to_toml(c, models::known());
-  EXPECT_EQ(input::to_toml(read(written), models::known()), written);
+  EXPECT_EQ(input::to_toml(parsed(written), models::known()), written);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "compare/models/registry.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::compare::models {
@@ -18,6 +19,7 @@ using test::paper_case;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 std::vector<std::string> warnings(const input::Case& problem) {
   return preview(problem).warnings;
@@ -98,6 +100,21 @@ TEST(Preview, WarnsOfAStubOfSensorsInTheMagnetAndOfUnseenSignals) {
   EXPECT_THAT(all, Contains(HasSubstr("sensor 0 lies inside")));
   EXPECT_THAT(all, Contains(HasSubstr("sensor 1 is 0.1 mm from the magnet")));
   EXPECT_THAT(all, Contains(HasSubstr("sensor 2 sees a change")));
+}
+
+TEST(Preview, WarnsOfPlainRodsWhereBondedEndsAreMuchStiffer) {
+  input::Case problem = paper_case({0.5e-3});
+  problem.mechanics = {"elastica", "beam"};
+  EXPECT_THAT(warnings(problem), Contains(HasSubstr("joints = \"corrected\" in [models.elastica], "
+                                                    "[models.beam]")));
+  for (const MechanicsEntry& entry : mechanics_models())
+    if (entry.correct) entry.correct(problem.options);
+  EXPECT_THAT(warnings(problem), IsEmpty());
+  // A base of eight diameters is bent as a rod.
+  problem.options = {};
+  problem.cilium.segments.front().length = 24e-3;
+  problem.load_path = {ContactLoad{0.02e-3, 30e-3, 0}};
+  EXPECT_THAT(warnings(problem), Not(Contains(HasSubstr("corrected"))));
 }
 
 TEST(Preview, WarnsOfALoadThatNoEquilibriumBearsAndOfLargeStrains) {
