@@ -310,24 +310,6 @@ std::optional<Vector3> uncertainties(const CaseResult& result, const FieldRun& r
   return uncertainties(mechanics_of(run, result), run, step, sensor, change);
 }
 
-AtSensors model_uncertainties(const FieldStep& step, bool change) {
-  AtSensors result;
-  for (const auto& part : change ? step.dB_model_part : step.B_model_part)
-    result.push_back(part ? std::optional(part->uncertainty()) : std::nullopt);
-  return result;
-}
-
-AtSensors bands(const CaseResult& result, const FieldRun& run, std::size_t step, bool change) {
-  AtSensors all;
-  const FieldStep& fields = run.steps[step].value();
-  const auto& parts = change ? fields.dB_model_part : fields.B_model_part;
-  for (std::size_t s = 0; s < parts.size(); ++s) {
-    const auto numerical = uncertainties(result, run, step, s, change);
-    all.push_back(parts[s] && numerical ? std::optional(parts[s]->band(*numerical)) : std::nullopt);
-  }
-  return all;
-}
-
 std::vector<Comparison> compare_models(const CaseResult& result) {
   std::vector<Comparison> out;
   for (std::size_t step = 0; step < result.problem.load_path.size(); ++step)

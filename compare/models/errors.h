@@ -99,12 +99,6 @@ std::optional<double> change_uncertainty(const CaseResult& result, const FieldRu
 std::optional<Vector3> uncertainties(const CaseResult& result, const FieldRun& run,
                                      std::size_t step, std::size_t sensor, bool change);
 
-/// What the two models leave out of B or ΔB at each sensor, by components, T.
-AtSensors model_uncertainties(const FieldStep& step, bool change);
-/// uncertainties() with it: the band of B or ΔB at each sensor, about 95 %; none where a part is
-/// not known.
-AtSensors bands(const CaseResult& result, const FieldRun& run, std::size_t step, bool change);
-
 /// Every pair of mechanics models and every pair of field results, step by step and over the path.
 std::vector<Comparison> compare_models(const CaseResult& result);
 

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "compare/models/evaluator.h"
-#include "compare/models/model_part.h"
 #include "fem/parallel.h"
 #include "problem/error.h"
 #include "problem/error_estimate.h"
@@ -371,7 +370,6 @@ CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mecha
   for (const input::external::ExternalModel& model : problem.external)
     if (!model.readings.empty())
       result.fields.push_back(external_fields(model, problem.sensors.size()));
-  add_model_parts(result, mechanics, fields, progress);
   return result;
 }
 

@@ -47,12 +47,22 @@ struct ShapeModelParts {
   std::string unknown;                             ///< why they are not known; else empty
 };
 
+/// What one standard uncertainty of an input makes of a shape.
+struct ShapeShift {
+  Vector3 tip = Vector3::Zero();   ///< m
+  double tip_angle = 0;            ///< rad
+  double applied_force = 0;        ///< N
+  std::optional<double> slip_off;  ///< slip_off_limit()
+};
+
 /// What one mechanics model made of the load path.
 struct MechanicsRun {
   std::string model;       ///< id
   MechanicsResult result;  ///< one step for each load; if the model threw, all of them failed with
                            ///< its message
-  std::vector<ShapeModelParts> model_parts{};  ///< of each step, after add_model_parts()
+  std::vector<ShapeModelParts> model_parts{};  ///< of each step, after band::add_parts()
+  /// [step][input] of CaseResult::inputs, after band::add_parts(); none: not known.
+  std::vector<std::vector<std::optional<ShapeShift>>> input_parts{};
 };
 
 /// A vector at each sensor, T; none where it is undefined or unknown.
@@ -68,10 +78,14 @@ struct FieldStep {
   /// from the fields of its companions (problem/error_estimate.h). None where it is not known.
   std::vector<std::optional<double>> from_mechanics;
   std::vector<std::optional<double>> dB_from_mechanics;
-  /// What the two models leave out, after add_model_parts(); none where it is not known.
+  /// What the two models leave out, after band::add_parts(); none where it is not known.
   std::vector<std::optional<ModelPart<Vector3>>> B_model_part;
   std::vector<std::optional<ModelPart<Vector3>>> dB_model_part;
-  std::string model_part_unknown;         ///< why; else empty
+  std::string model_part_unknown;  ///< why; else empty
+  /// Of each input at each sensor, after band::add_parts(); a list is empty, or a
+  /// vector none, where it is not known.
+  std::vector<AtSensors> B_input_parts;
+  std::vector<AtSensors> dB_input_parts;
   std::shared_ptr<const FieldMesh> mesh;  ///< what B was computed from, if it can be drawn
   double seconds = 0;                     ///< wall time
   std::string remark;   ///< of the field model: why an uncertainty is not known; else empty
@@ -100,6 +114,7 @@ struct CaseResult {
   input::Case problem;
   std::vector<MechanicsRun> mechanics;
   std::vector<FieldRun> fields;
+  std::vector<std::string> inputs{};  ///< numbers of [[input_uncertainty]], by their paths
 };
 
 /// Runs the models that the case asks for, and puts its external ones beside them: each mechanics

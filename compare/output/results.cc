@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "compare/band/band.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
@@ -113,24 +113,22 @@ Json pull_in_json(const continuation::PullIn& pull_in) {
   return json;
 }
 
-/// What a model leaves out of each number of a shape, and the band with the numerical error; null
-/// where it is not known.
-void add_model_parts(const models::MechanicsRun& run, std::size_t index, Json& json) {
-  const MechanicsStep& step = run.result.steps[index];
-  const models::ShapeModelParts& parts = run.model_parts[index];
-  const auto angle_uncertainty =
-      step.deformation ? results::tip_angle_uncertainty(step) : std::nullopt;
-  const std::tuple<const char*, const std::optional<models::ModelPart<double>>&,
-                   std::optional<double>>
-      all[] = {{"tip", parts.tip, step.tip_uncertainty},
-               {"tip_angle", parts.tip_angle, angle_uncertainty},
-               {"applied_force", parts.applied_force, step.applied_force_uncertainty},
-               {"slip_off", parts.slip_off, step.slip_off_uncertainty}};
-  for (const auto& [name, part, numerical] : all) {
-    json["model_uncertainty"][name] = part ? Json(part->uncertainty()) : Json(nullptr);
-    json["band"][name] = part && numerical ? Json(part->band(*numerical)) : Json(nullptr);
+/// The parts of the bands of a shape; null where one is not known.
+void add_bands(const models::MechanicsRun& run, std::size_t index, Json& json) {
+  using enum band::ShapeQuantity;
+  constexpr std::pair<const char*, band::ShapeQuantity> quantities[] = {
+      {"tip", tip},
+      {"tip_angle", tip_angle},
+      {"applied_force", applied_force},
+      {"slip_off", slip_off}};
+  for (const auto& [name, quantity] : quantities) {
+    const band::Band parts = band::of_shape(run, index, quantity);
+    json["model_uncertainty"][name] = or_null(parts.model);
+    if (!run.input_parts.empty()) json["input_uncertainty"][name] = or_null(parts.input);
+    json["band"][name] = or_null(parts.total);
   }
-  if (!parts.unknown.empty()) json["model_uncertainty_unknown"] = parts.unknown;
+  if (!run.model_parts.empty() && !run.model_parts[index].unknown.empty())
+    json["model_uncertainty_unknown"] = run.model_parts[index].unknown;
 }
 
 Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
@@ -147,7 +145,7 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
     else
       number = values;
   }
-  if (!run.model_parts.empty()) add_model_parts(run, index, json);
+  if (!run.model_parts.empty() || !run.input_parts.empty()) add_bands(run, index, json);
   if (step.contact) json["contact"] = contact_json(*step.contact);
   if (step.contact && step.contact->energy_lost)
     json["jump"] = {{"energy_lost", *step.contact->energy_lost}};
@@ -196,9 +194,14 @@ Json field_json(const models::CaseResult& result, const models::FieldRun& run, s
     json[fmt::format("{}uncertainty_of_field", prefix)] =
         rows(change ? step.dB_uncertainty : step.uncertainty);
     json[fmt::format("{}uncertainty_of_shape", prefix)] = numbers(of_shape);
-    json[fmt::format("{}model_uncertainty", prefix)] =
-        rows(models::model_uncertainties(step, change));
-    json[fmt::format("{}band", prefix)] = rows(models::bands(result, run, index, change));
+    const band::FieldBands bands = band::of_field(result, run, index, change);
+    json[fmt::format("{}model_uncertainty", prefix)] = rows(bands.model);
+    json[fmt::format("{}band", prefix)] = rows(bands.total);
+    const auto& inputs = change ? step.dB_input_parts : step.B_input_parts;
+    if (inputs.empty()) continue;
+    json[fmt::format("{}input_uncertainty", prefix)] = rows(bands.input);
+    for (const models::AtSensors& of_input : inputs)
+      json[fmt::format("{}input_contributions", prefix)].push_back(rows(of_input));
   }
   if (!step.model_part_unknown.empty()) json["model_uncertainty_unknown"] = step.model_part_unknown;
   return json;
@@ -317,6 +320,7 @@ std::string summary_json(const models::CaseResult& result,
   json["sensors"] = Json::array();
   for (const Vector3& sensor : result.problem.sensors) json["sensors"].push_back(vector(sensor));
   json["sensor_names"] = input::sensor_names(result.problem);
+  if (!result.inputs.empty()) json["inputs"] = result.inputs;
   json["undeformed"] = {{"fields", Json::object()}};
   for (const models::FieldRun& run : result.fields)
     json["undeformed"]["fields"][run.name()] = field_json(run.undeformed);

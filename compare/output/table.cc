@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string_view>
 
+#include "compare/band/band.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/output/results.h"
 #include "compare/output/sweep.h"
@@ -69,7 +70,7 @@ std::string sentences(const std::string& model, const MechanicsStep& step) {
   return text;
 }
 
-/// The band, or "> 3", the numerical error alone, where it is not known what the model leaves out.
+/// The band, or ">3", the numerical error alone, where it is not known what the model leaves out.
 std::string band_cell(std::optional<double> band, std::optional<double> numerical) {
   constexpr double unit = 1e-6;
   const std::optional<double> shown = band ? band : numerical;
@@ -86,19 +87,6 @@ std::string cell_within(std::optional<double> value, std::optional<double> band,
   return number_cell(value, unit, fmt::format("{{:.{}f}}", decimals));
 }
 
-std::optional<double> angle_band(const models::MechanicsRun& run, std::size_t step) {
-  const auto numerical = results::tip_angle_uncertainty(run.result.steps[step]);
-  if (run.model_parts.empty() || !run.model_parts[step].tip_angle || !numerical)
-    return std::nullopt;
-  return run.model_parts[step].tip_angle->band(*numerical);
-}
-
-std::optional<double> tip_band(const models::MechanicsRun& run, std::size_t step) {
-  const auto& numerical = run.result.steps[step].tip_uncertainty;
-  if (run.model_parts.empty() || !run.model_parts[step].tip || !numerical) return std::nullopt;
-  return run.model_parts[step].tip->band(*numerical);
-}
-
 std::string mechanics_table(const models::CaseResult& result, std::size_t index) {
   TextRows rows{
       {"mechanics", "status", "tip x", "y", "z (mm)", "+-(um)", "(deg)", "force(mN)", "time (s)"}};
@@ -109,13 +97,13 @@ std::string mechanics_table(const models::CaseResult& result, std::size_t index)
     if (step.deformation) {
       const Centreline& centreline = step.deformation->centreline;
       const CentrelinePoint tip = centreline.at(centreline.length());
-      const auto band = tip_band(run, index);
-      const auto or_numerical = band ? band : step.tip_uncertainty;
+      const band::Band tip_band = band::of_shape(run, index, band::ShapeQuantity::tip);
+      const auto or_numerical = tip_band.total ? tip_band.total : tip_band.numerical;
       for (const double x : tip.position) row.push_back(cell_within(x, or_numerical, 1e-3, 4));
-      row.push_back(band_cell(band, step.tip_uncertainty));
-      const auto angle = angle_band(run, index);
-      row.push_back(cell_within(tip.theta(), angle ? angle : results::tip_angle_uncertainty(step),
-                                degree, 3));
+      row.push_back(band_cell(tip_band.total, tip_band.numerical));
+      const band::Band angle = band::of_shape(run, index, band::ShapeQuantity::tip_angle);
+      row.push_back(
+          cell_within(tip.theta(), angle.total ? angle.total : angle.numerical, degree, 3));
       row.push_back(number_cell(step.applied_force, 1e-3, "{:.5g}"));
     } else {
       row.insert(row.end(), 6, "-");
@@ -187,14 +175,13 @@ std::string fields_table(const models::CaseResult& result,
     row.push_back(run.name());
     for (Eigen::Index i = 0; i < 3; ++i)
       row.push_back(number_cell(component(field.B[sensor], i), 1e-3, "{:.4f}"));
-    const models::AtSensors bands = models::bands(result, run, step, true);
-    const auto band = sensor < bands.size() && bands[sensor]
-                          ? std::optional(bands[sensor]->maxCoeff())
-                          : std::nullopt;
+    const auto of_sensor = band::of_field(result, run, step, true).total[sensor];
+    const auto band_of_dB = of_sensor ? std::optional(of_sensor->maxCoeff()) : std::nullopt;
     const auto numerical = models::change_uncertainty(result, run, step, sensor);
     for (Eigen::Index i = 0; i < 3; ++i)
-      row.push_back(cell_within(component(field.dB[sensor], i), band ? band : numerical, 1e-6, 2));
-    row.push_back(field.dB[sensor] ? band_cell(band, numerical) : "-");
+      row.push_back(cell_within(component(field.dB[sensor], i), band_of_dB ? band_of_dB : numerical,
+                                1e-6, 2));
+    row.push_back(field.dB[sensor] ? band_cell(band_of_dB, numerical) : "-");
     const models::Comparison* largest = nullptr;
     for (const char* axis : axis_names) {
       const auto* c =
@@ -300,18 +287,27 @@ std::string_view field_verdict(const std::vector<models::Comparison>& comparison
   return to_string(verdict);
 }
 
-/// " (band 11 %)" of a number; empty where it is not known.
-std::string band_words(std::optional<double> band, double value) {
-  if (!band || value == 0) return {};
-  return fmt::format(" (its band: {:.2g} %)", 100 * *band / std::abs(value));
+/// " (+-11 %: model)" of a number: its band and the largest part of it; empty where it is not
+/// known.
+std::string band_words(const band::Band& of, double value) {
+  if (!of.total || value == 0) return {};
+  const std::pair<double, const char*> parts[] = {
+      {of.numerical.value_or(0), "numerical"},
+      {of.model.value_or(0), "model"},
+      {band::two_sided_95 * of.input.value_or(0), "inputs"}};
+  return fmt::format(" (+-{:.2g} %: {})", 100 * *of.total / std::abs(value),
+                     std::ranges::max(parts).second);
 }
 
 /// Of |ΔB|.
-std::optional<double> norm_band(const models::CaseResult& result, const models::FieldRun& run,
-                                std::size_t step, std::size_t sensor) {
-  const models::AtSensors bands = models::bands(result, run, step, true);
-  return sensor < bands.size() && bands[sensor] ? std::optional(bands[sensor]->norm())
-                                                : std::nullopt;
+band::Band norm_band(const models::CaseResult& result, const models::FieldRun& run,
+                     std::size_t step, std::size_t sensor) {
+  const band::FieldBands bands = band::of_field(result, run, step, true);
+  const auto norm = [](const std::optional<Vector3>& of) {
+    return of ? std::optional(of->norm()) : std::nullopt;
+  };
+  return {norm(models::uncertainties(result, run, step, sensor, true)), norm(bands.model[sensor]),
+          norm(bands.input[sensor]), norm(bands.total[sensor])};
 }
 
 /// What the pairs see at a sensor, against the most detailed one.
@@ -356,10 +352,11 @@ std::string meaning(const models::CaseResult& result,
       if (&run == best || !run.result.steps[step].deformation || deflection(*best) == 0) continue;
       const auto* tip = find(comparisons, step, "tip", "", "value", run.model, best->model);
       if (tip == nullptr) continue;
-      text += fmt::format("  {} bends {} than {}{}: {}\n", run.model,
-                          more_or_less(deflection(run) / deflection(*best), "further", "less far"),
-                          best->model, band_words(tip_band(run, step), deflection(run)),
-                          to_string(tip->verdict));
+      text += fmt::format(
+          "  {} bends {} than {}{}: {}\n", run.model,
+          more_or_less(deflection(run) / deflection(*best), "further", "less far"), best->model,
+          band_words(band::of_shape(run, step, band::ShapeQuantity::tip), deflection(run)),
+          to_string(tip->verdict));
     }
     for (std::size_t sensor = 0; sensor < shown_sensors(result.problem); ++sensor)
       text += field_meaning(result, comparisons, step, sensor);
@@ -370,8 +367,11 @@ std::string meaning(const models::CaseResult& result,
 }
 
 constexpr const char* mechanics_legend =
-    "+- 95 % band of the tip in micrometres: its numerical error, and what the rod leaves out,\n"
-    "    against one with corrected joints; >3: the numerical error, the rest is not known.\n"
+    "+- 95 % band of the tip in micrometres: its numerical error, what the rod leaves out, "
+    "against\n"
+    "    one with corrected joints, and what [[input_uncertainty]] make; >3: the numerical error, "
+    "the\n"
+    "    rest is not known. Behind a number it is in % of it, with its largest part.\n"
     "(1) distance of the two centrelines at common material points, largest, RMS over the arc\n"
     "    length and at the tip, divided by the tip deflection of the second; tip angle divided by\n"
     "    its tip angle. R2 of the deflection w over the current height z, and the square of its\n"

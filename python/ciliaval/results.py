@@ -221,9 +221,14 @@ class Result:
         (docs/theory/band.md)."""
         return self._part(model, "model_uncertainty", quantity)
 
+    def input_uncertainty(self, model: str, quantity: str = "tip") -> Array:
+        """What the case's [[input_uncertainty]] make of a quantity as of model_uncertainty(), (steps,), SI, standard;
+        NaN where it is not known, or none is stated."""
+        return self._part(model, "input_uncertainty", quantity)
+
     def band(self, model: str, quantity: str = "tip") -> Array:
-        """The 95 % band of a quantity as of model_uncertainty(), (steps,), SI: its numerical error and
-        what the model leaves out; NaN where that is not known."""
+        """The 95 % band of a quantity as of model_uncertainty(), (steps,), SI: its numerical error, what the
+        model leaves out and 1.96 times what the inputs make; NaN where one is not known."""
         return self._part(model, "band", quantity)
 
     def contact(self, model: str, quantity: str = "normal_force") -> Array:
@@ -250,8 +255,26 @@ class Result:
         """What the two models leave out of dB, (steps, sensors, 3), T; NaN where it is not known."""
         return self._field(pair, "dB_model_uncertainty")
 
+    def dB_input_uncertainty(self, pair: str) -> Array:
+        """What the case's [[input_uncertainty]] make of dB, (steps, sensors, 3), T, standard; NaN where it is not
+        known, or none is stated."""
+        return self._field(pair, "dB_input_uncertainty")
+
+    def dB_covariance(self, pair: str) -> Array:
+        """Of all components of dB by the inputs, whose errors all steps and sensors share: (steps * sensors * 3,) * 2,
+        T^2, rows as dB(pair).ravel() has them. NaN where it is not known."""
+        inputs = self.summary.get("inputs", [])
+        shape = (len(self.steps), len(self.sensors), 3)
+        J = np.full((len(inputs), *shape), np.nan)
+        for i, step in enumerate(self.steps):
+            for k, rows in enumerate(step["fields"].get(pair, {}).get("dB_input_contributions", [])):
+                for s, row in enumerate(rows or []):
+                    J[k, i, s] = np.nan if row is None else row
+        flat = J.reshape(len(inputs), int(np.prod(shape)))
+        return np.asarray(flat.T @ flat)
+
     def dB_band(self, pair: str) -> Array:
-        """The 95 % band of dB: both, (steps, sensors, 3), T; NaN where that is not known."""
+        """The 95 % band of dB: numerical + model + 1.96 input, (steps, sensors, 3), T; NaN where one is not known."""
         return self._field(pair, "dB_band")
 
     @property

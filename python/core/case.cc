@@ -12,10 +12,11 @@
 #include <string_view>
 #include <vector>
 
+#include "compare/band/band.h"
+#include "compare/band/model_part.h"
 #include "compare/input/case.h"
 #include "compare/input/units.h"
 #include "compare/models/errors.h"
-#include "compare/models/model_part.h"
 #include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
@@ -24,6 +25,7 @@
 #include "compare/output/results.h"
 #include "compare/output/text_table.h"
 #include "compare/study/case_number.h"
+#include "compare/validation/input_number.h"
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
 #include "problem/error.h"
@@ -45,6 +47,7 @@ class CaseRun {
   CaseRun(const input::Case& problem, const Progress& shown)
       : result_(models::run(problem, models::mechanics_models(), models::field_models(), shown)),
         comparisons_(models::compare_models(result_)) {
+    band::add_parts(result_, models::mechanics_models(), models::field_models(), shown);
     const auto measured =
         validation::validate(result_, models::mechanics_models(), models::field_models(), shown);
     files_ = output::result_files(result_, comparisons_, output::provenance("ciliaval.Case.run()"),
@@ -166,10 +169,22 @@ void bind_case(py::module_& module) {
                   py::arg("title"))
       .def("changed", &changed, py::arg("values"))
       .def(
+          "input_shifts",
+          [](const input::Case& problem) {
+            py::list shifts;
+            for (const validation::Input& input : validation::read_inputs(problem))
+              shifts.append(py::make_tuple(validation::shifted(problem, input, -input.step),
+                                           validation::shifted(problem, input, input.step),
+                                           2 * input.step));
+            return shifts;
+          },
+          "Of each [[input_uncertainty]] the case with the number lower and higher, and how many\n"
+          "standard uncertainties lie between. InputError.")
+      .def(
           "corrected",
           [](input::Case problem, const Text& model) {
             const auto& entry = models::entry_of(models::mechanics_models(), text(model, "model"));
-            std::string fault = models::correct(entry, problem);
+            std::string fault = band::correct(entry, problem);
             return py::make_tuple(std::move(problem), std::move(fault));
           },
           py::arg("model"))

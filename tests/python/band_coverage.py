@@ -3,12 +3,14 @@
 
 python3 tests/python/band_coverage.py rods [designs [first seed]]
 python3 tests/python/band_coverage.py sense [designs [first seed]]
+python3 tests/python/band_coverage.py inputs [draws [seed]]
 """
 
 import math
 import sys
 
 import numpy as np
+from scipy import stats
 
 import ciliaval as cv
 
@@ -176,6 +178,80 @@ def sense(designs=100, first=0):
         print(f"| {key} | {len(rows)} | {100 * held.mean():.1f} % | {100 * np.mean(each):.0f} % | {ratio:.2f} | {100 * share:.0f} % |")
 
 
+# Standard uncertainties: of E of the base, E and M of the magnet, and the sensor's z (m).
+INPUTS = {"cilium.segment.base.young_modulus": "5 %", "cilium.segment.magnet.young_modulus": "5 %",
+          "cilium.segment.magnet.magnetization": "3 %", "sensor.position.z": "0.05 mm"}  # fmt: skip
+OF_INPUTS = """
+[case]
+name = "inputs"
+[cilium]
+diameter = "3 mm"
+segment = [
+  { name = "base", length = "3 mm", young_modulus = "0.1 MPa", poisson_ratio = 0.49 },
+  { name = "magnet", length = "17 mm", young_modulus = "3 MPa", poisson_ratio = 0.49, magnetization = "75 kA/m" },
+]
+LOAD
+[sensor]
+position = ["-0.1 mm", "0.2 mm", "-1.55 mm"]
+[models]
+mechanics = ["elastica"]
+fields = ["volume"]
+"""
+OF_LOADS = {
+    "contact": '[load]\ntype = "contact"\nforce = ["1 mN", "3 mN"]\nheight = "16 mm"\nazimuth = "30 deg"',
+    "flow": '[load]\ntype = "flow"\nvelocity = ["0.2 m/s", "0.5 m/s"]\nazimuth = "-70 deg"',
+    "sweep": '[load]\ntype = "sweep"\ninterference = "1 mm"\ntravel = "12 mm"\nsamples = 13\n[surface]\nprofile = "flat"\n'
+    "friction = 0.2",
+}
+
+
+def with_inputs(load):
+    """The case with its uncertainties."""
+    tables = "".join(f'[[input_uncertainty]]\nnumber = "{n}"\nuncertainty = "{u}"\n' for n, u in INPUTS.items())
+    return cv.Case.from_text(OF_INPUTS.replace("LOAD", OF_LOADS[load]) + tables)
+
+
+def drawn(case, rng):
+    """The case with other inputs, within their uncertainties."""
+    numbers = case._core.numbers()
+    values = {}
+    for name, u in INPUTS.items():
+        value = numbers[name][0]
+        sigma = float(u.split()[0]) / 100 * value if "%" in u else 1e-3 * float(u.split()[0])
+        values[name] = value + sigma * rng.standard_normal()
+    return case.changed(values)
+
+
+def inputs(draws=1000, seed=0):
+    print("| load | steps | tip in 1.96 u_in | each dB in 1.96 u_in | all dB of a path in their joint region |")
+    print("| --- | --- | --- | --- | --- |")
+    for load in OF_LOADS:
+        case, rng = with_inputs(load), np.random.default_rng(seed)
+        result = case.run()
+        tip, dB = result.tip("elastica"), result.dB("elastica/volume")
+        u_tip, u = result.input_uncertainty("elastica"), result.dB_input_uncertainty("elastica/volume")
+        values, vectors = np.linalg.eigh(result.dB_covariance("elastica/volume"))
+        kept_directions = values > 1e-3 * values.max()  # in the others what is left of the linearisation counts
+        directions, variances = vectors[:, kept_directions], values[kept_directions]
+        limit = stats.chi2.ppf(0.95, len(variances))
+        plain = cv.Case.from_text(OF_INPUTS.replace("LOAD", OF_LOADS[load]))
+        held_tip, held, chi = [], [], []
+        for _ in range(draws):
+            one = drawn(plain, rng)
+            shapes = cv.bend(one.cilium, one.loads)
+            kept = [i for i, s in enumerate(shapes) if s.has_shape and np.isfinite(u_tip[i]) and u_tip[i] > 0]
+            away = np.array([shapes[i].tip for i in kept]) - tip[kept]
+            # The tip moves along a curve: one degree of freedom, whose standard deviation is that of its distance.
+            held_tip.append(np.linalg.norm(away, axis=1) <= 1.96 * u_tip[kept])
+            off = np.array([shapes[i].dB(one.sensors)[0] for i in kept]) - dB[kept, 0]
+            known = u[kept, 0] > 1e-3 * u.max()
+            held.append((np.abs(off) <= 1.96 * u[kept, 0])[known])
+            if len(kept) == len(shapes):
+                chi.append(((off.ravel() @ directions) ** 2 / variances).sum() <= limit)
+        print(f"| {load} | {len(tip)} | {100 * np.concatenate(held_tip).mean():.1f} % | {100 * np.concatenate(held).mean():.1f} % | "
+              f"{100 * np.mean(chi) if chi else math.nan:.1f} % |")  # fmt: skip
+
+
 if __name__ == "__main__":
     what, *numbers = sys.argv[1:] or ["rods"]
-    {"rods": rods, "sense": sense}[what](*map(int, numbers))
+    {"rods": rods, "sense": sense, "inputs": inputs}[what](*map(int, numbers))

@@ -68,7 +68,7 @@ SWEEP = SWEEP.replace('["beam"]', '["elastica"]').replace('["line"]', '["volume"
 
 def noise_interval(frame):
     """The interval of a frame of loads by the noise alone."""
-    return np.sqrt(frame["magnitude_interval"] ** 2 - frame["model_interval"] ** 2)
+    return np.sqrt(frame["magnitude_interval"] ** 2 - frame["model_interval"] ** 2 - frame["input_interval"] ** 2)
 
 
 def polar(size, azimuth):

@@ -53,6 +53,31 @@ class Results(unittest.TestCase):
         np.testing.assert_array_equal(here.dB("elastica/volume"), self.result.dB("elastica/volume"))
         self.assertEqual(here.comparisons, self.result.comparisons)
 
+    def test_have_a_band_with_its_parts(self):
+        """The tip of the plain beam against the corrected one by hand; inputs by hand; their covariance."""
+        name = "cilium.segment.base.young_modulus"
+        text = quick("fig3b") + f'[[input_uncertainty]]\nnumber = "{name}"\nuncertainty = "3 %"\n'
+        case = cv.Case.from_text(text)
+        result = case.run()
+        better = cv.bend(case.cilium, case.loads, "beam", joints="corrected")
+        apart = np.linalg.norm(result.tip("beam") - [shape.tip for shape in better], axis=1)
+        by_hand = apart + [shape.tip_uncertainty for shape in better]
+        np.testing.assert_allclose(result.model_uncertainty("beam"), by_hand, rtol=1e-12)
+        low, high = (case.changed({name: 0.1e6 * (1 + sign * 0.003)}) for sign in (-1, 1))
+        tips = [np.array([shape.tip for shape in cv.bend(c.cilium, c.loads, "beam")]) for c in (low, high)]
+        by_inputs = np.linalg.norm(tips[1] - tips[0], axis=1) / 0.2
+        np.testing.assert_allclose(result.input_uncertainty("beam"), by_inputs, rtol=1e-6)
+        whole = result.model_uncertainty("beam") + result.tip_uncertainty("beam") + 1.96 * result.input_uncertainty("beam")
+        np.testing.assert_allclose(result.band("beam"), whole, rtol=1e-4)
+        pair = "elastica/volume"
+        self.assertTrue((result.dB_band(pair) > result.dB_model_uncertainty(pair)).all())
+        covariance = result.dB_covariance(pair)
+        np.testing.assert_allclose(np.sqrt(np.diag(covariance)), result.dB_input_uncertainty(pair).ravel(), rtol=1e-9)
+        self.assertEqual(np.linalg.matrix_rank(covariance), 1)  # one input
+        self.assertTrue(np.isnan(self.result.input_uncertainty("beam")).all())
+        with self.assertRaisesRegex(cv.InputError, "slip_off"):
+            result.band("beam", "tip.x")
+
     def test_have_verdicts_and_intervals(self):
         (tip,) = self.result.compare(quantity="tip", statistic="value", step=3, model="elastica")
         deflection = np.linalg.norm(self.result.tip("elastica")[3] - self.result.tip("beam")[3])

@@ -403,10 +403,25 @@ class LeftOut(unittest.TestCase):
         text = CASE.replace('length = "3 mm"', 'length = "0.3 mm"').replace('"corrected"', '"none"')
         case = cv.Case.from_text(text)
         result = sense_readings(case, sensing.readings_of_arrays(np.zeros((2, 3)), 1, None, None), PAIR, 1e-6, 1e-3)
-        self.assertIn("not known (elastica", result.text(80))
+        self.assertIn("leaves out is not known: elastica", result.text(80))
         self.assertIn("elastica", result.json({})["model_uncertainty_unknown"])
         self.assertEqual(result.loads.model_interval.tolist(), [0, 0])
         self.assertEqual(result.json({})["joints"], "none")
+
+    def test_inputs_widen_the_interval_by_what_they_make(self):
+        """A modulus of the base that is known to 4 % shifts the load of a reading by the same as another cilium does."""
+        name, uncertainty = "cilium.segment.base.young_modulus", 0.04
+        text = CASE + f'[[input_uncertainty]]\nnumber = "{name}"\nuncertainty = "4 %"\n'
+        B = paper_response().change(polar(np.array([1e-3, 3e-3]), np.array([0.5, -2])))[:, 0]
+        frame = cv.sense(cv.Case.from_text(text), B, noise=1e-7)
+        found = [
+            cv.sense(cv.Case.from_text(CASE).changed({name: 0.1e6 * (1 + sign * 0.1 * uncertainty)}), B, noise=1e-7)
+            for sign in (-1, 1)
+        ]
+        by_hand = 1.96 * (found[1]["magnitude"] - found[0]["magnitude"]) / 0.2
+        np.testing.assert_allclose(frame["input_interval"], by_hand, rtol=1e-3)
+        squares = sum(frame[k] ** 2 for k in ("input_interval", "model_interval"))
+        self.assertTrue((frame["magnitude_interval"] ** 2 > squares).all())
 
     def test_joints_are_corrected_or_the_cases(self):
         with self.assertRaisesRegex(cv.InputError, "joints: `corrected`"):

@@ -12,6 +12,7 @@
 #include "compare/app/commands/commands.h"
 #include "compare/app/python.h"
 #include "compare/app/terminal.h"
+#include "compare/band/band.h"
 #include "compare/models/errors.h"
 #include "compare/models/fingerprint.h"
 #include "compare/models/registry.h"
@@ -121,8 +122,9 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options, const std::strin
   const Progress progress = line.callback();
   const input::Case& problem = prepared.problem;
   output::OutputFolder& folder = prepared.folder;
-  const models::CaseResult result = models::run(
-      problem, models::mechanics_models(), models::field_models(), progress, prepared.checkpoints);
+  models::CaseResult result = models::run(problem, models::mechanics_models(),
+                                          models::field_models(), progress, prepared.checkpoints);
+  band::add_parts(result, models::mechanics_models(), models::field_models(), progress);
   const std::vector<models::Comparison> comparisons = models::compare_models(result);
   const auto grid = output::field_grid(result, models::field_models(), progress);
   const std::optional<validation::Validation> measured =

@@ -414,10 +414,6 @@ std::vector<MeasuredFile> read_measurements(Section& root, std::string_view file
               [&](Section& table) { read_measurement(table, folder, case_is_right, c, files); });
   root.tables(input_table, 0, most_tables,
               [&](Section& table) { read_input(table, file, c.measured.inputs); });
-  if (!c.measured.inputs.empty() && !root.table()->contains(measurement_table))
-    root.faults().add(place(*root.find(input_table)),
-                      fmt::format("[[{}]] goes with [[{}]]: there is nothing measured", input_table,
-                                  measurement_table));
   return files;
 }
 

@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +27,16 @@ _SHIFTS = 4  # steps to the load that better models would have found
 _MOST_STEPS = 200
 _CHUNK = 10_000  # readings at once: what they need stays in the cache
 
-LeftOutOfLoads = Callable[[Array], list[Array]]
+
+
+class LeftOutOfLoads(Protocol):
+    """What is left out of dB at loads (n, 2), lists of (n, s, 3), T: by the models, bounds for 95 % that add up; by the
+    inputs, independent standard deviations."""
+
+    def of_models(self, load: Array) -> list[Array]: ...
+
+    def of_inputs(self, load: Array) -> list[Array]: ...
+
 
 STATUSES = ("found", "nothing", "ambiguous", "beyond range", "misfit", "failed")
 
@@ -37,7 +47,8 @@ class SensedLoads:
 
     load: (n, 2), magnitude times direction. covariance: (n, 2, 2) of it, (J^T V^-1 J)^-1, by the noise.
     chi_squared: (n,), (dB - reading)^T V^-1 (dB - reading), whose degrees of freedom are the components that are
-    read less 2. model_covariance: (n, 2, 2), of the load, by what the models leave out.
+    read less 2. model_covariance, input_covariance: (n, 2, 2), of the load, by what the models leave out and by the
+    case's [[input_uncertainty]].
     misfit_probability: of a larger one by noise and what the models leave out. nothing_probability: of a larger
     chi_squared(0) - chi_squared by noise alone, without a load. is_beyond: the load is larger than the
     largest computed. is_ambiguous: another load explains the reading as well, within chi squared of 3.84; it is
@@ -52,6 +63,7 @@ class SensedLoads:
     is_beyond: Array
     converged: Array
     model_covariance: Array
+    input_covariance: Array
     is_ambiguous: Array
 
     @property
@@ -72,8 +84,8 @@ class SensedLoads:
 
     @property
     def total_covariance(self) -> Array:
-        """By the noise and what the models leave out, (n, 2, 2)."""
-        return self.covariance + self.model_covariance
+        """By the noise, what the models leave out and the inputs, (n, 2, 2)."""
+        return self.covariance + self.model_covariance + self.input_covariance
 
     @property
     def magnitude_interval(self) -> Array:
@@ -91,6 +103,11 @@ class SensedLoads:
     def model_interval(self) -> Array:
         """The same by what the models leave out, (n,)."""
         return self._along(self.model_covariance)
+
+    @property
+    def input_interval(self) -> Array:
+        """The same by the case's [[input_uncertainty]], (n,)."""
+        return self._along(self.input_covariance)
 
     def _along(self, covariance: Array) -> Array:
         magnitude = self.magnitude
@@ -202,8 +219,8 @@ def invert(
     change: dB, (n, s, 3), T. noise: standard deviation of a component of a single reading, T, a number or
     (3,). variance: of dB over noise^2, (n,): 1/m + 1/k of means of m loaded and k unloaded readings.
     common: (n, s, s), the covariance of the sensors by an error that they share, over noise^2. chips: which of
-    the components count; None: all. left_out: of loads (n, 2) what the models leave out of dB there, each
-    (n, s, 3), T, for about 95 %; None: nothing.
+    the components count; None: all. left_out: what the models leave out, and what the inputs make; None:
+    nothing.
 
     Raises InputError if a number is not finite, the noise not positive, or a shape is another.
 
@@ -239,7 +256,7 @@ def invert(
 def _nothing_read() -> tuple[Array, ...]:
     none = np.zeros(0)
     no = none.astype(bool)
-    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, no, no, np.zeros((0, 2, 2)), no
+    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, no, no, np.zeros((0, 2, 2)), np.zeros((0, 2, 2)), no
 
 
 class _Whitening:
@@ -342,7 +359,12 @@ def _invert(
     J = J / largest
     covariance = _inverse(np.einsum("nki,nkj->nij", J, J))
     without = np.einsum("nk,nk->n", *[whitened(change).reshape(n, -1)] * 2)
-    by_better, model_covariance = _left_out(response, change, whitened, left_out, load, J, covariance)
+    known = np.where(np.isfinite(covariance), covariance, 0)
+    input_covariance = np.zeros((n, 2, 2))
+    for d in left_out.of_inputs(load) if left_out is not None and n else []:
+        shift = np.einsum("nij,nkj,nk->ni", known, J, whitened(d).reshape(n, -1))
+        input_covariance += np.einsum("ni,nj->nij", shift, shift)
+    by_better, model_covariance = _left_out(response, change, whitened, left_out, load, J, known)
     rest = np.minimum(cost, by_better(cost > special.chdtri(freedom, UNLIKELY))) if freedom > 0 else cost
     return (
         load,
@@ -353,24 +375,24 @@ def _invert(
         np.hypot(*load.T) > largest * (1 + 1e-9),
         converged & np.isfinite(load).all(axis=1),
         model_covariance,
+        input_covariance,
     )
 
 
 def _left_out(
     response: Response, change: Array, whitened: _Whitening, left_out: LeftOutOfLoads | None, load: Array, J: Array,
-    covariance: Array,
+    known: Array,
 ) -> tuple[Callable[[Array], Array], Array]:
     """chi squared by better models, of chosen rows (infinite of the others), and the covariance of the load by what
     the models leave out, (n, 2, 2).
 
     The true load p* has the reading by a better model, dB(p*) + d(p*) = dB(p): p* = p - G d(p*) with
-    G = (J^T V^-1 J)^-1 J^T V^-1. The parts of d are bounds: their shifts add up.
+    G = (J^T V^-1 J)^-1 J^T V^-1, known = (J^T V^-1 J)^-1. The parts of d are bounds: their shifts add up.
     """
     n = len(load)
-    known = np.where(np.isfinite(covariance), covariance, 0)
     shifts = np.zeros((n, 2, 0))
     for _ in range(_SHIFTS if n else 0):
-        parts = left_out(load - shifts.sum(axis=2)) if left_out is not None else []
+        parts = left_out.of_models(load - shifts.sum(axis=2)) if left_out is not None else []
         if not parts:
             break
         d = np.stack([whitened(part).reshape(n, -1) for part in parts], axis=-1)
@@ -382,7 +404,7 @@ def _left_out(
         result = np.full(n, np.inf)
         if left_out is not None and shifts.size and chosen.any():
             true = load[chosen] - shifts[chosen, :, 0]
-            off = response.change(true) + left_out(true)[0] - change[chosen]
+            off = response.change(true) + left_out.of_models(true)[0] - change[chosen]
             rest = whitened.rows(chosen)(off).reshape(chosen.sum(), -1)
             result[chosen] = np.einsum("nk,nk->n", rest, rest)
         return result

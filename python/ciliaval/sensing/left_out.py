@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +31,8 @@ class LeftOut:
     """The pair that is inverted held against the rod with corrected joints and the best quick field, and
     that one against joints as much softer as their correction is uncertain by.
 
+    inputs: of each [[input_uncertainty]] of the case the pair's response with the number lower and higher, and how many
+    standard uncertainties lie between.
     unknown: why there is no such thing; else empty. is_corrected: the pair's own joints. beyond: magnitude from which on the rod is bent further
     than the corrections are known.
     """
@@ -40,10 +43,22 @@ class LeftOut:
     unknown: str = ""
     is_corrected: bool = False
     beyond: float = math.inf
+    inputs: tuple[tuple[Response, Response, float], ...] = ()
 
     @staticmethod
     def of(case: Case, pair: Pair, shapes: Shapes, asked: Response, progress: Progress | None) -> LeftOut:
         """Of a response that was made from the shapes of a case."""
+
+        def response(core: Any) -> Response:
+            shifted = Case._of(core)
+            within = shapes_within(shifted, pair.mechanics, shapes.largest, progress)
+            return Response(shifted, pair.field, within, shifted.sensors)
+
+        inputs = tuple((response(low), response(high), width) for low, high, width in case._core.input_shifts())
+        return replace(LeftOut._of_models(case, pair, shapes, asked, progress), inputs=inputs)
+
+    @staticmethod
+    def _of_models(case: Case, pair: Pair, shapes: Shapes, asked: Response, progress: Progress | None) -> LeftOut:
         better = shapes
         if shapes.nodes[0].with_softer_joints is None:
             corrected, fault = with_joints(case, pair.mechanics, "corrected")
@@ -59,12 +74,22 @@ class LeftOut:
         outside = [m for s, m in zip(better.nodes, better.node_magnitudes) if "outside of the domain" in s.message]
         return LeftOut(asked, known, softer, "", better is shapes, min(outside, default=math.inf))
 
-    def changes(self, load: Array) -> list[Array]:
+    def of_models(self, load: Array) -> list[Array]:
         """dB of the better models less theirs, and of the softer joints less that, each (n, s, 3), T."""
         if self.better is None or self.softer is None:
             return []
-        most = min(r.largest for r in (self.asked, self.better, self.softer))
-        size = np.hypot(*load.T)
-        inside = load * np.minimum(1, most / np.where(size > 0, size, 1))[:, None]
-        dB = [r.change(inside) for r in (self.asked, self.better, self.softer)]
+        dB = _within([self.asked, self.better, self.softer], load)
         return [dB[1] - dB[0], dB[2] - dB[1]]
+
+    def of_inputs(self, load: Array) -> list[Array]:
+        """What one standard uncertainty of each input makes of dB, each (n, s, 3), T."""
+        each = [(_within([low, high], load), width) for low, high, width in self.inputs]
+        return [(dB[1] - dB[0]) / width for dB, width in each]
+
+
+def _within(responses: list[Response], load: Array) -> list[Array]:
+    """Each one's dB at the loads, or at the largest along them that all of them know."""
+    most = min(r.largest for r in responses)
+    size = np.hypot(*load.T)
+    inside = load * np.minimum(1, most / np.where(size > 0, size, 1))[:, None]
+    return [r.change(inside) for r in responses]

@@ -97,6 +97,7 @@ class Sensing:
             "magnitude": (self.unit, found.magnitude),
             "magnitude_interval": (self.unit, found.magnitude_interval),
             "model_interval": (self.unit, found.model_interval),
+            "input_interval": (self.unit, found.input_interval),
             "azimuth": ("rad", found.azimuth),
             "azimuth_interval": ("rad", found.azimuth_interval),
             "chi_squared": ("", found.chi_squared),
@@ -135,8 +136,9 @@ class Sensing:
         each: dict[str, Sequence[Any]] = {"sample": self.readings.names, "rows": self.readings.rows.tolist()}
         if self.readings.time is not None:
             each["time"] = self.readings.time.tolist()
-        for name in ("status", "load", "magnitude", "magnitude_interval", "noise_interval", "model_interval", "azimuth", "azimuth_interval",
-                     "covariance", "model_covariance", "chi_squared", "misfit_probability", "nothing_probability"):  # fmt: skip
+        for name in ("status", "load", "magnitude", "magnitude_interval", "noise_interval", "model_interval",
+                     "input_interval", "azimuth", "azimuth_interval",
+                     "covariance", "model_covariance", "input_covariance", "chi_squared", "misfit_probability", "nothing_probability"):  # fmt: skip
             each[name] = getattr(found, name).tolist()
         if self.flow:
             v, low, high = self.velocities()
@@ -202,21 +204,25 @@ class Sensing:
         return self.left_out.is_corrected
 
     def _of_intervals(self) -> str:
-        """What the intervals hold, and their largest share at the largest load found."""
+        """What the intervals hold, each part at the largest load found, and what they do not."""
         left_out, found = self.left_out, self.loads
-        text = "Intervals of 95 %, of the noise of reading, offset and background"
-        if left_out.unknown:
-            return f"{text} alone: what {self.pair} leaves out is not known ({left_out.unknown}).\n"
-        text += f" and what {self.pair}{' with corrected joints' if self.is_corrected else ''} leaves out"
+        parts = [("the noise of reading, offset and background", found.noise_interval)]
+        name = f"{self.pair}{' with corrected joints' if self.is_corrected else ''}"
+        if not left_out.unknown:
+            parts.append((f"what {name} leaves out", found.model_interval))
+        if left_out.inputs:
+            parts.append(("the inputs", found.input_interval))
+        unit, size = shown(self.unit)
         seen = np.flatnonzero((found.status == "found") & np.isfinite(found.magnitude_interval))
-        if len(seen):
-            unit, size = shown(self.unit)
-            i = seen[found.magnitude[seen].argmax()]
-            noise, model = found.noise_interval[i] / size, found.model_interval[i] / size
-            text += f": at {found.magnitude[i] / size:.3g} {unit} {noise:.2g} and {model:.2g} {unit}"
-            if found.magnitude[i] > left_out.beyond:
-                text += f", of which the second is not known beyond {left_out.beyond / size:.3g} {unit}"
-        return text + ".\n"
+        largest = seen[found.magnitude[seen].argmax()] if len(seen) else None
+        texts = [f"{what} ({width[largest] / size:.2g} {unit})" if largest is not None else what for what, width in parts]
+        at = f", at {found.magnitude[largest] / size:.3g} {unit}" if largest is not None else ""
+        text = f"Intervals of 95 %{at}: {', '.join(texts)}.\n"
+        if left_out.unknown:
+            text += f"What {name} leaves out is not known: {left_out.unknown}.\n"
+        elif largest is not None and found.magnitude[largest] > left_out.beyond:
+            text += f"Beyond {left_out.beyond / size:.3g} {unit} the corrections are not known to hold.\n"
+        return text
 
 
 def sense_readings(
@@ -238,7 +244,7 @@ def sense_readings(
     change = chips.in_case(readings.change)
     if not readings.measured_offset:
         change = change - response.undeformed
-    loads = invert(response, change, noise, readings.variance(), readings.background, chips, left_out.changes)
+    loads = invert(response, change, noise, readings.variance(), readings.background, chips, left_out)
     unit = case.loads[0].unit
     remarks = [*readings.remarks]
     remarks += _range_remark(shapes, largest, unit)
@@ -354,10 +360,10 @@ def sense(
     progress: Progress | None = None,
 ) -> Any:
     """The load of each reading: a pandas.DataFrame with a row for each, SI units, whose columns are sample,
-    status, load_x, load_y, magnitude, magnitude_interval, model_interval, azimuth, azimuth_interval,
-    chi_squared, misfit_probability, nothing_probability, of a flow velocity, velocity_low, velocity_high, and
-    time where it is known. Intervals of 95 %, by the noise and by what the models leave out, which model_interval
-    has alone.
+    status, load_x, load_y, magnitude, magnitude_interval, model_interval, input_interval, azimuth,
+    azimuth_interval, chi_squared, misfit_probability, nothing_probability, of a flow velocity, velocity_low, velocity_high, and
+    time where it is known. Intervals of 95 %, by the noise, what the models leave out, which model_interval has
+    alone, and the case's [[input_uncertainty]].
 
     case: a Case or its file; its sensors, its kind of load. readings: B, (n, 3) of one sensor or
     (n, sensors, 3), T; or a logger's file, to which map, unit, scale, average, temperature and skip belong

@@ -355,8 +355,9 @@ TEST(Chain, HasALinkForTheJoints) {
     const auto joints = stage.mechanics == "elastica"
                             ? options.of<analytic::elastica::ElasticaOptions>().joints
                             : options.of<fem::beam::BeamOptions>().joints;
-    if (stage.mechanics != "solid")  // which has no corrections
+    if (stage.mechanics != "solid") {  // which has no corrections
       EXPECT_EQ(joints == joints::Correction::corrected, stage.mechanics_name() != stage.mechanics);
+    }
   }
   EXPECT_THAT(
       names(chain_of(problem, {"solid", "mesh", "potential"}).stages),

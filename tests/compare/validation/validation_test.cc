@@ -11,7 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "compare/band/band.h"
+#include "compare/band/input_part.h"
 #include "compare/models/registry.h"
+#include "compare/output/results.h"
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
 #include "problem/error.h"
@@ -185,6 +188,45 @@ TEST(SlowToy, TakesItsOwnSensitivitiesIfAsked) {
     const double of_value = series.measurand().is_field() ? tesla * of_tip : of_tip;
     EXPECT_NEAR(series.points.back().contributions[0].value(), of_value, 1e-14) << series.model;
   }
+}
+
+// Oracle: by hand, x = a F + b E, the force known to 1 %, E to 5 kPa; dB_x = tesla x.
+TEST(InputParts, AreThoseOfTheToysFormula) {
+  input::Case c = measured_case();
+  c.measured.measurements.clear();
+  models::MechanicsEntry slow = toy("slow", 1.5);
+  slow.is_slow = true;
+  const std::vector<models::MechanicsEntry> mechanics{toy("toy", 1), slow};
+  const std::vector<models::FieldEntry> fields{lamp("lamp")};
+  c.mechanics = {"toy", "slow"};
+  c.fields = {"lamp"};
+  models::CaseResult result = models::run(c, mechanics, fields);
+  band::add_input_parts(result, mechanics, fields);
+  EXPECT_THAT(result.inputs,
+              testing::ElementsAre("load.force", "cilium.segment.base.young_modulus"));
+  for (const models::MechanicsRun& run :
+       result.mechanics)  // the slow one has those of the quick one
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto& parts = run.input_parts[i];
+      EXPECT_NEAR(parts[0]->tip.x(), 0.01 * a * forces.at(i), 1e-14);
+      EXPECT_NEAR(parts[1]->tip.x(), b * 5e3, 1e-14);
+      const band::Band tip = band::of_shape(run, i, band::ShapeQuantity::tip);
+      EXPECT_NEAR(tip.input.value(), std::hypot(0.01 * a * forces.at(i), b * 5e3), 1e-14);
+      EXPECT_FALSE(tip.total) << "the toy has no better model";
+    }
+  const auto field = band::of_field(result, result.fields[0], 1, true);
+  const double of_tip = std::hypot(0.01 * a * forces[1], b * 5e3);
+  EXPECT_NEAR(field.input.at(0)->x(), tesla * of_tip, 1e-14);
+  EXPECT_EQ(field.input.at(0)->y(), 0);
+  const auto json = nlohmann::json::parse(output::summary_json(result, {}, {}, ""));
+  EXPECT_EQ(json["inputs"].size(), 2U);
+  EXPECT_NEAR(json["steps"][1]["mechanics"]["toy"]["input_uncertainty"]["tip"].get<double>(),
+              of_tip, 1e-14);
+  const auto& of_inputs = json["steps"][1]["fields"]["toy/lamp"]["dB_input_contributions"];
+  EXPECT_NEAR(of_inputs[1][0][0].get<double>(), tesla * b * 5e3, 1e-14);
+  c.measured.inputs = {uncertain("load.farce", "1 %")};
+  result.problem = c;
+  EXPECT_THROW(band::add_input_parts(result, mechanics, fields), InputError);
 }
 
 TEST(ToyField, IsHeldAgainstAReadingOfASensor) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "compare/models/run.h"
+
+/// The ± of a number: numerical error, what a model leaves out, and what the inputs make
+/// (docs/theory/band.md).
+namespace ciliaval::compare::band {
+
+/// Standard uncertainties count so many times in a band of 95 %.
+inline constexpr double two_sided_95 = 1.959963984540054;
+
+/// The parts of a number's ±, in its unit; none where one is not known.
+struct Band {
+  std::optional<double> numerical;  ///< bound
+  std::optional<double> model;      ///< bound: what the model leaves out
+  std::optional<double> input;      ///< standard: of [[input_uncertainty]]; 0 if none is stated
+  std::optional<double> total;      ///< about 95 %
+};
+
+enum class ShapeQuantity { tip, tip_angle, applied_force, slip_off };
+Band of_shape(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity);
+
+/// Those of B or ΔB, of each sensor by components.
+struct FieldBands {
+  models::AtSensors model;
+  models::AtSensors input;
+  models::AtSensors total;
+};
+FieldBands of_field(const models::CaseResult& result, const models::FieldRun& run, std::size_t step,
+                    bool change);
+
+/// Sets the parts of all bands of a result: add_model_parts() and add_input_parts(). Throws
+/// InputError as the latter.
+void add_parts(models::CaseResult& result, std::span<const models::MechanicsEntry> mechanics,
+               std::span<const models::FieldEntry> fields, const Progress& progress = {});
+
+}  // namespace ciliaval::compare::band
