@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "analytic/elastica/environment/step.h"
-#include "compare/band/model_part.h"
+#include "compare/models/model_part.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "problem/cilium.h"
@@ -115,7 +115,7 @@ class Viewer {
         plain += fmt::format("{}[models.{}]", plain.empty() ? "" : ", ", entry.id);
     if (plain.empty()) return;
     CaseResult result{problem_, {run}, {}};
-    band::add_model_parts(result, mechanics_models(), field_models());
+    add_model_parts(result, mechanics_models(), field_models());
     const auto& part = result.mechanics.front().model_parts.at(step).tip;
     if (!part || part->difference <= largest_part * deflection) return;
     warn(

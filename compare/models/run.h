@@ -60,8 +60,8 @@ struct MechanicsRun {
   std::string model;       ///< id
   MechanicsResult result;  ///< one step for each load; if the model threw, all of them failed with
                            ///< its message
-  std::vector<ShapeModelParts> model_parts{};  ///< of each step, after band::add_parts()
-  /// [step][input] of CaseResult::inputs, after band::add_parts(); none: not known.
+  std::vector<ShapeModelParts> model_parts{};  ///< of each step, after add_model_parts()
+  /// [step][input] of CaseResult::inputs, after validation::add_input_parts(); none: not known.
   std::vector<std::vector<std::optional<ShapeShift>>> input_parts{};
 };
 
@@ -78,11 +78,12 @@ struct FieldStep {
   /// from the fields of its companions (problem/error_estimate.h). None where it is not known.
   std::vector<std::optional<double>> from_mechanics;
   std::vector<std::optional<double>> dB_from_mechanics;
-  /// What the two models leave out, after band::add_parts(); none where it is not known.
+  /// What the two models leave out, after add_model_parts(); none where it is not
+  /// known.
   std::vector<std::optional<ModelPart<Vector3>>> B_model_part;
   std::vector<std::optional<ModelPart<Vector3>>> dB_model_part;
   std::string model_part_unknown;  ///< why; else empty
-  /// Of each input at each sensor, after band::add_parts(); a list is empty, or a
+  /// Of each input at each sensor, after validation::add_input_parts(); a list is empty, or a
   /// vector none, where it is not known.
   std::vector<AtSensors> B_input_parts;
   std::vector<AtSensors> dB_input_parts;

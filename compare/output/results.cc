@@ -10,12 +10,12 @@
 #include <utility>
 #include <variant>
 
-#include "compare/band/band.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
 #include "compare/output/output_file.h"
 #include "compare/output/sweep.h"
+#include "compare/results/band.h"
 #include "compare/results/quantity.h"
 #include "problem/description/environment.h"
 
@@ -115,14 +115,14 @@ Json pull_in_json(const continuation::PullIn& pull_in) {
 
 /// The parts of the bands of a shape; null where one is not known.
 void add_bands(const models::MechanicsRun& run, std::size_t index, Json& json) {
-  using enum band::ShapeQuantity;
-  constexpr std::pair<const char*, band::ShapeQuantity> quantities[] = {
+  using enum results::ShapeQuantity;
+  constexpr std::pair<const char*, results::ShapeQuantity> quantities[] = {
       {"tip", tip},
       {"tip_angle", tip_angle},
       {"applied_force", applied_force},
       {"slip_off", slip_off}};
   for (const auto& [name, quantity] : quantities) {
-    const band::Band parts = band::of_shape(run, index, quantity);
+    const results::Band parts = results::shape_band(run, index, quantity);
     json["model_uncertainty"][name] = or_null(parts.model);
     if (!run.input_parts.empty()) json["input_uncertainty"][name] = or_null(parts.input);
     json["band"][name] = or_null(parts.total);
@@ -194,7 +194,7 @@ Json field_json(const models::CaseResult& result, const models::FieldRun& run, s
     json[fmt::format("{}uncertainty_of_field", prefix)] =
         rows(change ? step.dB_uncertainty : step.uncertainty);
     json[fmt::format("{}uncertainty_of_shape", prefix)] = numbers(of_shape);
-    const band::FieldBands bands = band::of_field(result, run, index, change);
+    const results::FieldBands bands = results::field_bands(result, run, index, change);
     json[fmt::format("{}model_uncertainty", prefix)] = rows(bands.model);
     json[fmt::format("{}band", prefix)] = rows(bands.total);
     const auto& inputs = change ? step.dB_input_parts : step.B_input_parts;

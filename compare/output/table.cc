@@ -9,11 +9,11 @@
 #include <numbers>
 #include <string_view>
 
-#include "compare/band/band.h"
 #include "compare/models/magnet_forces.h"
 #include "compare/output/results.h"
 #include "compare/output/sweep.h"
 #include "compare/output/text_table.h"
+#include "compare/results/band.h"
 #include "compare/results/quantity.h"
 #include "problem/types.h"
 
@@ -97,11 +97,12 @@ std::string mechanics_table(const models::CaseResult& result, std::size_t index)
     if (step.deformation) {
       const Centreline& centreline = step.deformation->centreline;
       const CentrelinePoint tip = centreline.at(centreline.length());
-      const band::Band tip_band = band::of_shape(run, index, band::ShapeQuantity::tip);
+      const results::Band tip_band = results::shape_band(run, index, results::ShapeQuantity::tip);
       const auto or_numerical = tip_band.total ? tip_band.total : tip_band.numerical;
       for (const double x : tip.position) row.push_back(cell_within(x, or_numerical, 1e-3, 4));
       row.push_back(band_cell(tip_band.total, tip_band.numerical));
-      const band::Band angle = band::of_shape(run, index, band::ShapeQuantity::tip_angle);
+      const results::Band angle =
+          results::shape_band(run, index, results::ShapeQuantity::tip_angle);
       row.push_back(
           cell_within(tip.theta(), angle.total ? angle.total : angle.numerical, degree, 3));
       row.push_back(number_cell(step.applied_force, 1e-3, "{:.5g}"));
@@ -175,7 +176,7 @@ std::string fields_table(const models::CaseResult& result,
     row.push_back(run.name());
     for (Eigen::Index i = 0; i < 3; ++i)
       row.push_back(number_cell(component(field.B[sensor], i), 1e-3, "{:.4f}"));
-    const auto of_sensor = band::of_field(result, run, step, true).total[sensor];
+    const auto of_sensor = results::field_bands(result, run, step, true).total[sensor];
     const auto band_of_dB = of_sensor ? std::optional(of_sensor->maxCoeff()) : std::nullopt;
     const auto numerical = models::change_uncertainty(result, run, step, sensor);
     for (Eigen::Index i = 0; i < 3; ++i)
@@ -289,20 +290,20 @@ std::string_view field_verdict(const std::vector<models::Comparison>& comparison
 
 /// " (+-11 %: model)" of a number: its band and the largest part of it; empty where it is not
 /// known.
-std::string band_words(const band::Band& of, double value) {
+std::string band_words(const results::Band& of, double value) {
   if (!of.total || value == 0) return {};
   const std::pair<double, const char*> parts[] = {
       {of.numerical.value_or(0), "numerical"},
       {of.model.value_or(0), "model"},
-      {band::two_sided_95 * of.input.value_or(0), "inputs"}};
+      {results::two_sided_95 * of.input.value_or(0), "inputs"}};
   return fmt::format(" (+-{:.2g} %: {})", 100 * *of.total / std::abs(value),
                      std::ranges::max(parts).second);
 }
 
 /// Of |ΔB|.
-band::Band norm_band(const models::CaseResult& result, const models::FieldRun& run,
-                     std::size_t step, std::size_t sensor) {
-  const band::FieldBands bands = band::of_field(result, run, step, true);
+results::Band norm_band(const models::CaseResult& result, const models::FieldRun& run,
+                        std::size_t step, std::size_t sensor) {
+  const results::FieldBands bands = results::field_bands(result, run, step, true);
   const auto norm = [](const std::optional<Vector3>& of) {
     return of ? std::optional(of->norm()) : std::nullopt;
   };
@@ -355,7 +356,7 @@ std::string meaning(const models::CaseResult& result,
       text += fmt::format(
           "  {} bends {} than {}{}: {}\n", run.model,
           more_or_less(deflection(run) / deflection(*best), "further", "less far"), best->model,
-          band_words(band::of_shape(run, step, band::ShapeQuantity::tip), deflection(run)),
+          band_words(results::shape_band(run, step, results::ShapeQuantity::tip), deflection(run)),
           to_string(tip->verdict));
     }
     for (std::size_t sensor = 0; sensor < shown_sensors(result.problem); ++sensor)

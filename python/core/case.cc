@@ -12,11 +12,10 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/band/band.h"
-#include "compare/band/model_part.h"
 #include "compare/input/case.h"
 #include "compare/input/units.h"
 #include "compare/models/errors.h"
+#include "compare/models/model_part.h"
 #include "compare/models/named_files.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
@@ -26,6 +25,7 @@
 #include "compare/output/text_table.h"
 #include "compare/study/case_number.h"
 #include "compare/validation/input_number.h"
+#include "compare/validation/input_part.h"
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
 #include "problem/error.h"
@@ -47,7 +47,8 @@ class CaseRun {
   CaseRun(const input::Case& problem, const Progress& shown)
       : result_(models::run(problem, models::mechanics_models(), models::field_models(), shown)),
         comparisons_(models::compare_models(result_)) {
-    band::add_parts(result_, models::mechanics_models(), models::field_models(), shown);
+    models::add_model_parts(result_, models::mechanics_models(), models::field_models(), shown);
+    validation::add_input_parts(result_, models::mechanics_models(), models::field_models(), shown);
     const auto measured =
         validation::validate(result_, models::mechanics_models(), models::field_models(), shown);
     files_ = output::result_files(result_, comparisons_, output::provenance("ciliaval.Case.run()"),
@@ -184,7 +185,7 @@ void bind_case(py::module_& module) {
           "corrected",
           [](input::Case problem, const Text& model) {
             const auto& entry = models::entry_of(models::mechanics_models(), text(model, "model"));
-            std::string fault = band::correct(entry, problem);
+            std::string fault = models::correct(entry, problem);
             return py::make_tuple(std::move(problem), std::move(fault));
           },
           py::arg("model"))

@@ -12,9 +12,9 @@
 #include "compare/app/commands/commands.h"
 #include "compare/app/python.h"
 #include "compare/app/terminal.h"
-#include "compare/band/band.h"
 #include "compare/models/errors.h"
 #include "compare/models/fingerprint.h"
+#include "compare/models/model_part.h"
 #include "compare/models/registry.h"
 #include "compare/models/run.h"
 #include "compare/output/field_grid.h"
@@ -25,6 +25,7 @@
 #include "compare/output/store/store.h"
 #include "compare/output/table.h"
 #include "compare/output/vtk/output.h"
+#include "compare/validation/input_part.h"
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
 #include "fem/parallel.h"
@@ -124,7 +125,8 @@ ExitCode run_one(Prepared& prepared, const RunOptions& options, const std::strin
   output::OutputFolder& folder = prepared.folder;
   models::CaseResult result = models::run(problem, models::mechanics_models(),
                                           models::field_models(), progress, prepared.checkpoints);
-  band::add_parts(result, models::mechanics_models(), models::field_models(), progress);
+  models::add_model_parts(result, models::mechanics_models(), models::field_models(), progress);
+  validation::add_input_parts(result, models::mechanics_models(), models::field_models(), progress);
   const std::vector<models::Comparison> comparisons = models::compare_models(result);
   const auto grid = output::field_grid(result, models::field_models(), progress);
   const std::optional<validation::Validation> measured =

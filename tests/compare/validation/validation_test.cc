@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "compare/band/band.h"
-#include "compare/band/input_part.h"
 #include "compare/models/registry.h"
 #include "compare/output/results.h"
+#include "compare/results/band.h"
+#include "compare/validation/input_part.h"
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
 #include "problem/error.h"
@@ -201,7 +201,7 @@ TEST(InputParts, AreThoseOfTheToysFormula) {
   c.mechanics = {"toy", "slow"};
   c.fields = {"lamp"};
   models::CaseResult result = models::run(c, mechanics, fields);
-  band::add_input_parts(result, mechanics, fields);
+  add_input_parts(result, mechanics, fields);
   EXPECT_THAT(result.inputs,
               testing::ElementsAre("load.force", "cilium.segment.base.young_modulus"));
   for (const models::MechanicsRun& run :
@@ -210,11 +210,11 @@ TEST(InputParts, AreThoseOfTheToysFormula) {
       const auto& parts = run.input_parts[i];
       EXPECT_NEAR(parts[0]->tip.x(), 0.01 * a * forces.at(i), 1e-14);
       EXPECT_NEAR(parts[1]->tip.x(), b * 5e3, 1e-14);
-      const band::Band tip = band::of_shape(run, i, band::ShapeQuantity::tip);
+      const results::Band tip = results::shape_band(run, i, results::ShapeQuantity::tip);
       EXPECT_NEAR(tip.input.value(), std::hypot(0.01 * a * forces.at(i), b * 5e3), 1e-14);
       EXPECT_FALSE(tip.total) << "the toy has no better model";
     }
-  const auto field = band::of_field(result, result.fields[0], 1, true);
+  const auto field = results::field_bands(result, result.fields[0], 1, true);
   const double of_tip = std::hypot(0.01 * a * forces[1], b * 5e3);
   EXPECT_NEAR(field.input.at(0)->x(), tesla * of_tip, 1e-14);
   EXPECT_EQ(field.input.at(0)->y(), 0);
@@ -226,7 +226,7 @@ TEST(InputParts, AreThoseOfTheToysFormula) {
   EXPECT_NEAR(of_inputs[1][0][0].get<double>(), tesla * b * 5e3, 1e-14);
   c.measured.inputs = {uncertain("load.farce", "1 %")};
   result.problem = c;
-  EXPECT_THROW(band::add_input_parts(result, mechanics, fields), InputError);
+  EXPECT_THROW(add_input_parts(result, mechanics, fields), InputError);
 }
 
 TEST(ToyField, IsHeldAgainstAReadingOfASensor) {

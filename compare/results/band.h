@@ -2,13 +2,12 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "compare/models/run.h"
 
 /// The ± of a number: numerical error, what a model leaves out, and what the inputs make
 /// (docs/theory/band.md).
-namespace ciliaval::compare::band {
+namespace ciliaval::compare::results {
 
 /// Standard uncertainties count so many times in a band of 95 %.
 inline constexpr double two_sided_95 = 1.959963984540054;
@@ -22,7 +21,7 @@ struct Band {
 };
 
 enum class ShapeQuantity { tip, tip_angle, applied_force, slip_off };
-Band of_shape(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity);
+Band shape_band(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity);
 
 /// Those of B or ΔB, of each sensor by components.
 struct FieldBands {
@@ -30,12 +29,7 @@ struct FieldBands {
   models::AtSensors input;
   models::AtSensors total;
 };
-FieldBands of_field(const models::CaseResult& result, const models::FieldRun& run, std::size_t step,
-                    bool change);
+FieldBands field_bands(const models::CaseResult& result, const models::FieldRun& run,
+                       std::size_t step, bool change);
 
-/// Sets the parts of all bands of a result: add_model_parts() and add_input_parts(). Throws
-/// InputError as the latter.
-void add_parts(models::CaseResult& result, std::span<const models::MechanicsEntry> mechanics,
-               std::span<const models::FieldEntry> fields, const Progress& progress = {});
-
-}  // namespace ciliaval::compare::band
+}  // namespace ciliaval::compare::results

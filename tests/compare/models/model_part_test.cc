@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/band/model_part.h"
+#include "compare/models/model_part.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "compare/band/band.h"
 #include "compare/models/registry.h"
 #include "compare/output/results.h"
+#include "compare/results/band.h"
 #include "tests/support/synthetic.h"
 
 namespace ciliaval::compare {
@@ -104,7 +104,7 @@ models::CaseResult run(const std::vector<models::MechanicsEntry>& mechanics,
   c.fields.clear();
   for (const auto& entry : fields) c.fields.push_back(entry.id);
   models::CaseResult result = models::run(c, mechanics, fields);
-  band::add_parts(result, mechanics, fields);
+  models::add_model_parts(result, mechanics, fields);
   return result;
 }
 
@@ -118,7 +118,7 @@ TEST(ModelPart, IsTheDifferenceFromTheCorrectedRodAndItsOwnError) {
   EXPECT_NEAR(parts.tip_angle.value().uncertainty(), 0.2e-3 + 0.02e-3, 1e-15);
   EXPECT_EQ(parts.applied_force.value().uncertainty(), 0);
   // dB of rod/one is 0.3 · 1.2 mm, of the better pair 0.5 · 1 mm, whose tip is known to 5 %.
-  const auto dB = band::of_field(result, result.fields[0], 0, true).model.at(0).value();
+  const auto dB = results::field_bands(result, result.fields[0], 0, true).model.at(0).value();
   const double own = 2e-9;  // of B and of the straight cilium's
   const auto of_shape = result.fields[0].steps[0]->dB_from_mechanics.at(0);
   EXPECT_FALSE(of_shape) << "the toy has no companions";
@@ -144,7 +144,7 @@ TEST(ModelPart, IsNotKnownWhereTheCorrectionsDoNotReach) {
   const auto unknown = [](const models::CaseResult& result) {
     EXPECT_FALSE(result.mechanics[0].model_parts.at(0).tip);
     if (!result.fields.empty() && result.fields[0].steps[0]) {
-      EXPECT_FALSE(band::of_field(result, result.fields[0], 0, true).total.at(0));
+      EXPECT_FALSE(results::field_bands(result, result.fields[0], 0, true).total.at(0));
       EXPECT_EQ(result.fields[0].steps[0]->model_part_unknown,
                 result.mechanics[0].model_parts.at(0).unknown);
     }

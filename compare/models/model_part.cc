@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/band/model_part.h"
+#include "compare/models/model_part.h"
 
 #include <fmt/format.h>
 
@@ -12,21 +12,19 @@
 #include "compare/models/registry.h"
 #include "problem/joints/companions.h"
 
-namespace ciliaval::compare::band {
+namespace ciliaval::compare::models {
 namespace {
 
 /// The better models on the case.
 struct Better {
-  std::optional<models::MechanicsRun>
-      shape;  ///< none: the corrections do not reach, says `unknown`
+  std::optional<MechanicsRun> shape;  ///< none: the corrections do not reach, says `unknown`
   std::string unknown;
-  std::optional<models::FieldRun> field;  ///< of that shape
+  std::optional<FieldRun> field;  ///< of that shape
 };
 
 /// The entry of a rod; null: the model is none.
-const models::MechanicsEntry* rod(std::span<const models::MechanicsEntry> entries,
-                                  const std::string& id) {
-  const auto found = std::ranges::find(entries, id, &models::MechanicsEntry::id);
+const MechanicsEntry* rod(std::span<const MechanicsEntry> entries, const std::string& id) {
+  const auto found = std::ranges::find(entries, id, &MechanicsEntry::id);
   return found != entries.end() && found->correct ? &*found : nullptr;
 }
 
@@ -34,17 +32,17 @@ std::string not_of_a_rod(const std::string& model) {
   return "what " + model + " leaves out is not known: only rods are held against a better model";
 }
 
-const models::FieldEntry* best_field(std::span<const models::FieldEntry> fields) {
-  const models::FieldEntry* best = nullptr;
-  for (const models::FieldEntry& entry : fields)
+const FieldEntry* best_field(std::span<const FieldEntry> fields) {
+  const FieldEntry* best = nullptr;
+  for (const FieldEntry& entry : fields)
     if (entry.is_quick()) best = &entry;
   return best;
 }
 
-Better better_models(const input::Case& problem, std::span<const models::MechanicsEntry> mechanics,
-                     std::span<const models::FieldEntry> fields, const Progress& progress) {
+Better better_models(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
+                     std::span<const FieldEntry> fields, const Progress& progress) {
   Better better;
-  for (const models::MechanicsEntry& entry : mechanics | std::views::reverse) {
+  for (const MechanicsEntry& entry : mechanics | std::views::reverse) {
     if (!entry.correct) continue;
     input::Case corrected = problem;
     const std::string fault = correct(entry, corrected);
@@ -54,11 +52,11 @@ Better better_models(const input::Case& problem, std::span<const models::Mechani
     }
     const Progress named = with_prefix(progress, "model part, ");
     better.unknown.clear();
-    better.shape = models::run_mechanics(entry, corrected, fields, named);
-    if (const models::FieldEntry* field = best_field(fields);
+    better.shape = run_mechanics(entry, corrected, fields, named);
+    if (const FieldEntry* field = best_field(fields);
         field != nullptr && !problem.sensors.empty() && !problem.fields.empty())
-      better.field = models::run_field(field->id, *field->make(problem.options), *better.shape,
-                                       corrected, named);
+      better.field =
+          run_field(field->id, *field->make(problem.options), *better.shape, corrected, named);
     return better;
   }
   return better;
@@ -66,7 +64,7 @@ Better better_models(const input::Case& problem, std::span<const models::Mechani
 
 /// Why the better shape does not tell the model's error at a step; empty: it does.
 std::string reason_against(const input::Case& problem, const MechanicsStep& step,
-                           const models::MechanicsRun& better, std::size_t index) {
+                           const MechanicsRun& better, std::size_t index) {
   const MechanicsStep& other = better.result.steps[index];
   if (other.status == Status::failed)
     return fmt::format("{} with corrected joints: {}", better.model, other.message);
@@ -84,16 +82,15 @@ std::string reason_against(const input::Case& problem, const MechanicsStep& step
   return {};
 }
 
-std::optional<models::ModelPart<double>> part_of(double difference,
-                                                 std::optional<double> of_the_better,
-                                                 bool is_corrected) {
+std::optional<ModelPart<double>> part_of(double difference, std::optional<double> of_the_better,
+                                         bool is_corrected) {
   if (!of_the_better) return std::nullopt;
-  return models::ModelPart<double>{std::abs(difference), *of_the_better, is_corrected};
+  return ModelPart<double>{std::abs(difference), *of_the_better, is_corrected};
 }
 
-models::ShapeModelParts shape_parts(const input::Case& problem, const models::MechanicsRun& run,
-                                    std::size_t index, bool corrected, const Better& better) {
-  models::ShapeModelParts parts;
+ShapeModelParts shape_parts(const input::Case& problem, const MechanicsRun& run, std::size_t index,
+                            bool corrected, const Better& better) {
+  ShapeModelParts parts;
   parts.unknown = better.unknown;
   if (!better.shape) return parts;
   const MechanicsStep& step = run.result.steps[index];
@@ -118,16 +115,15 @@ models::ShapeModelParts shape_parts(const input::Case& problem, const models::Me
 
 /// Of B, or of ΔB: values, the field model's uncertainty and what the shape's error makes.
 struct Members {
-  models::AtSensors models::FieldStep::*value;
-  models::AtSensors models::FieldStep::*uncertainty;
-  std::vector<std::optional<double>> models::FieldStep::*from_mechanics;
-  std::vector<std::optional<models::ModelPart<Vector3>>> models::FieldStep::*part;
+  AtSensors FieldStep::*value;
+  AtSensors FieldStep::*uncertainty;
+  std::vector<std::optional<double>> FieldStep::*from_mechanics;
+  std::vector<std::optional<ModelPart<Vector3>>> FieldStep::*part;
 };
 constexpr Members members[] = {
-    {&models::FieldStep::B, &models::FieldStep::uncertainty, &models::FieldStep::from_mechanics,
-     &models::FieldStep::B_model_part},
-    {&models::FieldStep::dB, &models::FieldStep::dB_uncertainty,
-     &models::FieldStep::dB_from_mechanics, &models::FieldStep::dB_model_part}};
+    {&FieldStep::B, &FieldStep::uncertainty, &FieldStep::from_mechanics, &FieldStep::B_model_part},
+    {&FieldStep::dB, &FieldStep::dB_uncertainty, &FieldStep::dB_from_mechanics,
+     &FieldStep::dB_model_part}};
 
 /// Of a sensor; none where there is no list: the straight cilium's ΔB has no error.
 template <class T>
@@ -137,8 +133,7 @@ std::optional<T> at(const std::vector<std::optional<T>>& values, std::size_t sen
 
 /// `own` has the values that the better ones are held against: the step's own, or those of the
 /// better field on the step's shape.
-void set_parts(models::FieldStep& step, const models::FieldStep& own,
-               const models::FieldStep& better, bool corrected) {
+void set_parts(FieldStep& step, const FieldStep& own, const FieldStep& better, bool corrected) {
   for (const Members& of : members) {
     auto& parts = step.*of.part;
     parts.resize(step.B.size());
@@ -148,50 +143,48 @@ void set_parts(models::FieldStep& step, const models::FieldStep& own,
       if (!a || !b) continue;
       const Vector3 field = at(better.*of.uncertainty, s).value_or(Vector3::Zero());
       const double shape = at(better.*of.from_mechanics, s).value_or(0);
-      parts[s] = models::ModelPart<Vector3>{
-          (*a - *b).cwiseAbs() + (corrected ? field : Vector3(0, 0, 0)),
-          shape + (corrected ? 0 : field.lpNorm<Eigen::Infinity>()), corrected};
+      parts[s] =
+          ModelPart<Vector3>{(*a - *b).cwiseAbs() + (corrected ? field : Vector3(0, 0, 0)),
+                             shape + (corrected ? 0 : field.lpNorm<Eigen::Infinity>()), corrected};
     }
   }
 }
 
 }  // namespace
 
-std::string correct(const models::MechanicsEntry& entry, input::Case& problem) {
+std::string correct(const MechanicsEntry& entry, input::Case& problem) {
   if (!entry.correct) return entry.id + " has no corrected joints";
   entry.correct(problem.options);
-  return models::fault_of(entry, problem);
+  return fault_of(entry, problem);
 }
 
-void add_model_parts(models::CaseResult& result, std::span<const models::MechanicsEntry> mechanics,
-                     std::span<const models::FieldEntry> fields, const Progress& progress) {
+void add_model_parts(CaseResult& result, std::span<const MechanicsEntry> mechanics,
+                     std::span<const FieldEntry> fields, const Progress& progress) {
   const input::Case& problem = result.problem;
   Better better;
-  if (std::ranges::any_of(result.mechanics, [&](const models::MechanicsRun& run) {
+  if (std::ranges::any_of(result.mechanics, [&](const MechanicsRun& run) {
         return rod(mechanics, run.model) != nullptr;
       }))
     better = better_models(problem, mechanics, fields, progress);
-  for (models::MechanicsRun& run : result.mechanics) {
-    const models::MechanicsEntry* entry = rod(mechanics, run.model);
+  for (MechanicsRun& run : result.mechanics) {
+    const MechanicsEntry* entry = rod(mechanics, run.model);
     for (std::size_t i = 0; i < run.result.steps.size(); ++i)
       run.model_parts.push_back(
           entry != nullptr
               ? shape_parts(problem, run, i, entry->is_corrected(problem.options), better)
-              : models::ShapeModelParts{{}, {}, {}, {}, not_of_a_rod(run.model)});
+              : ShapeModelParts{{}, {}, {}, {}, not_of_a_rod(run.model)});
   }
-  const models::FieldEntry* best = best_field(fields);
-  for (models::FieldRun& run : result.fields) {
+  const FieldEntry* best = best_field(fields);
+  for (FieldRun& run : result.fields) {
     if (run.measured) continue;
-    const models::MechanicsRun& shape = models::mechanics_of(run, result);
-    const models::MechanicsEntry* shape_entry = rod(mechanics, shape.model);
+    const MechanicsRun& shape = mechanics_of(run, result);
+    const MechanicsEntry* shape_entry = rod(mechanics, shape.model);
     const bool is_known = shape_entry != nullptr && better.field;
-    const auto entry = std::ranges::find(fields, run.field, &models::FieldEntry::id);
-    std::optional<models::FieldRun>
-        own;  // where the field itself is beyond what the better one knows
+    const auto entry = std::ranges::find(fields, run.field, &FieldEntry::id);
+    std::optional<FieldRun> own;  // where the field itself is beyond what the better one knows
     if (is_known && !entry->is_quick())
-      own = models::run_field(best->id, *best->make(problem.options), shape, problem);
-    const auto set = [&](models::FieldStep& step, const models::FieldStep* of_own,
-                         const models::FieldStep* of_better) {
+      own = run_field(best->id, *best->make(problem.options), shape, problem);
+    const auto set = [&](FieldStep& step, const FieldStep* of_own, const FieldStep* of_better) {
       if (of_own != nullptr && of_better != nullptr)
         set_parts(step, *of_own, *of_better, shape_entry->is_corrected(problem.options));
     };
@@ -199,7 +192,7 @@ void add_model_parts(models::CaseResult& result, std::span<const models::Mechani
       set(run.undeformed, own ? &own->undeformed : &run.undeformed, &better.field->undeformed);
     for (std::size_t i = 0; i < run.steps.size(); ++i) {
       if (!run.steps[i]) continue;
-      models::FieldStep& step = *run.steps[i];
+      FieldStep& step = *run.steps[i];
       step.model_part_unknown = shape.model_parts[i].unknown;
       if (!is_known || !step.model_part_unknown.empty()) continue;
       const auto& own_step = own ? own->steps[i] : run.steps[i];
@@ -209,4 +202,4 @@ void add_model_parts(models::CaseResult& result, std::span<const models::Mechani
   }
 }
 
-}  // namespace ciliaval::compare::band
+}  // namespace ciliaval::compare::models

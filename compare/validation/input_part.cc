@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/band/input_part.h"
+#include "compare/validation/input_part.h"
 
 #include <fmt/format.h>
 
@@ -14,10 +14,10 @@
 #include "compare/validation/input_number.h"
 #include "compare/validation/sensitivity.h"
 
-namespace ciliaval::compare::band {
+namespace ciliaval::compare::validation {
 namespace {
 
-/// A pair's results on the two validation::shifted cases. `field` is none for the shape alone.
+/// A pair's results on the two shifted cases. `field` is none for the shape alone.
 struct Sides {
   std::array<models::MechanicsRun, 2> shape;
   std::map<std::string, std::array<models::FieldRun, 2>> fields{};
@@ -57,14 +57,13 @@ models::AtSensors shift_of(const std::array<models::FieldRun, 2>& sides, std::si
 void add_input_parts(models::CaseResult& result, std::span<const models::MechanicsEntry> mechanics,
                      std::span<const models::FieldEntry> fields, const Progress& progress) {
   const input::Case& problem = result.problem;
-  const std::vector<validation::Input> inputs = validation::read_inputs(problem);
-  for (const validation::Input& input : inputs) result.inputs.push_back(input.number.path);
+  const std::vector<Input> inputs = read_inputs(problem);
+  for (const Input& input : inputs) result.inputs.push_back(input.number.path);
   if (inputs.empty()) return;
   // What stands for which run, and what is to be solved.
   std::map<std::string, std::vector<std::string>> solved;  // mechanics: their fields
   const auto stand = [&](const std::string& shape, const std::string& field) {
-    return validation::stand_in(shape, field, validation::Sensitivities::quick, problem, mechanics,
-                                fields);
+    return stand_in(shape, field, Sensitivities::quick, problem, mechanics, fields);
   };
   for (const models::MechanicsRun& run : result.mechanics)
     if (const auto by = stand(run.model, "")) solved[by->mechanics];
@@ -84,10 +83,10 @@ void add_input_parts(models::CaseResult& result, std::span<const models::Mechani
       }
   std::size_t done = 0;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
-    const validation::Input& input = inputs[k];
+    const Input& input = inputs[k];
     const double width = 2 * input.step;
-    const std::array<input::Case, 2> cases{validation::shifted(problem, input, -input.step),
-                                           validation::shifted(problem, input, input.step)};
+    const std::array<input::Case, 2> cases{shifted(problem, input, -input.step),
+                                           shifted(problem, input, input.step)};
     std::map<std::string, Sides> sides;
     for (const auto& [id, its_fields] : solved) {
       if (progress)
@@ -120,4 +119,4 @@ void add_input_parts(models::CaseResult& result, std::span<const models::Mechani
   }
 }
 
-}  // namespace ciliaval::compare::band
+}  // namespace ciliaval::compare::validation

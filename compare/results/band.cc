@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "compare/band/band.h"
+#include "compare/results/band.h"
 
 #include <cmath>
 
-#include "compare/band/input_part.h"
-#include "compare/band/model_part.h"
 #include "compare/models/errors.h"
 #include "compare/results/quantity.h"
 
-namespace ciliaval::compare::band {
+namespace ciliaval::compare::results {
 namespace {
 
 std::optional<double> numerical_of(const MechanicsStep& step, ShapeQuantity quantity) {
@@ -74,7 +72,7 @@ std::optional<Vector3> input_of(const std::vector<models::AtSensors>& parts, std
 
 }  // namespace
 
-Band of_shape(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity) {
+Band shape_band(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity) {
   Band result;
   result.numerical = numerical_of(run.result.steps[step], quantity);
   result.input = input_of(run, step, quantity);
@@ -87,16 +85,16 @@ Band of_shape(const models::MechanicsRun& run, std::size_t step, ShapeQuantity q
   return result;
 }
 
-FieldBands of_field(const models::CaseResult& result, const models::FieldRun& run, std::size_t step,
-                    bool change) {
+FieldBands field_bands(const models::CaseResult& result, const models::FieldRun& run,
+                       std::size_t step, bool change) {
   FieldBands all;
   const models::FieldStep& fields = run.steps[step].value();
   const auto& parts = change ? fields.dB_model_part : fields.B_model_part;
   for (std::size_t s = 0; s < fields.B.size(); ++s) {
     const auto numerical = models::uncertainties(result, run, step, s, change);
-    const auto model = s < parts.size() ? parts[s] : std::nullopt;
+    const models::ModelPart<Vector3>* model = s < parts.size() && parts[s] ? &*parts[s] : nullptr;
     const auto input = input_of(change ? fields.dB_input_parts : fields.B_input_parts, s);
-    all.model.push_back(model ? std::optional(model->uncertainty()) : std::nullopt);
+    all.model.push_back(model != nullptr ? std::optional(model->uncertainty()) : std::nullopt);
     all.input.push_back(input);
     all.total.push_back(
         model && numerical && input
@@ -106,10 +104,4 @@ FieldBands of_field(const models::CaseResult& result, const models::FieldRun& ru
   return all;
 }
 
-void add_parts(models::CaseResult& result, std::span<const models::MechanicsEntry> mechanics,
-               std::span<const models::FieldEntry> fields, const Progress& progress) {
-  add_model_parts(result, mechanics, fields, progress);
-  add_input_parts(result, mechanics, fields, progress);
-}
-
-}  // namespace ciliaval::compare::band
+}  // namespace ciliaval::compare::results
