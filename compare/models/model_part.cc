@@ -125,10 +125,16 @@ constexpr Members members[] = {
     {&FieldStep::dB, &FieldStep::dB_uncertainty, &FieldStep::dB_from_mechanics,
      &FieldStep::dB_model_part}};
 
-/// Of a sensor; none where there is no list: the straight cilium's ΔB has no error.
+/// Of a sensor; none where there is no list.
 template <class T>
 std::optional<T> at(const std::vector<std::optional<T>>& values, std::size_t sensor) {
   return sensor < values.size() ? values[sensor] : std::nullopt;
+}
+
+/// An error at a sensor; where there is no list there is no error: ΔB of the straight cilium.
+template <class T>
+std::optional<T> known(const std::vector<std::optional<T>>& errors, std::size_t sensor, T none) {
+  return errors.empty() ? std::optional<T>(none) : at(errors, sensor);
 }
 
 /// `own` has the values that the better ones are held against: the step's own, or those of the
@@ -141,11 +147,12 @@ void set_parts(FieldStep& step, const FieldStep& own, const FieldStep& better, b
       const auto a = at(own.*of.value, s);
       const auto b = at(better.*of.value, s);
       if (!a || !b) continue;
-      const Vector3 field = at(better.*of.uncertainty, s).value_or(Vector3::Zero());
-      const double shape = at(better.*of.from_mechanics, s).value_or(0);
-      parts[s] =
-          ModelPart<Vector3>{(*a - *b).cwiseAbs() + (corrected ? field : Vector3(0, 0, 0)),
-                             shape + (corrected ? 0 : field.lpNorm<Eigen::Infinity>()), corrected};
+      const auto field = known(better.*of.uncertainty, s, Vector3(0, 0, 0));
+      const auto shape = known(better.*of.from_mechanics, s, 0.0);
+      if (!field || !shape) continue;
+      parts[s] = ModelPart<Vector3>{(*a - *b).cwiseAbs() + (corrected ? *field : Vector3(0, 0, 0)),
+                                    *shape + (corrected ? 0 : field->lpNorm<Eigen::Infinity>()),
+                                    corrected};
     }
   }
 }

@@ -106,18 +106,32 @@ class Viewer {
     }
   }
 
-  /// `run` is of a rod of the case, which is off by as much as its joints are stiffer.
-  void look_at_joints(const MechanicsRun& run, std::size_t step, double deflection) {
+  /// How far plain rods of the case are off at the step that bends most.
+  void look_at_joints(std::size_t step) {
+    const MechanicsEntry* first = nullptr;
     std::string plain;
-    for (const MechanicsEntry& entry : mechanics_models())
-      if (entry.correct && !entry.is_corrected(problem_.options) &&
-          std::ranges::find(problem_.mechanics, entry.id) != problem_.mechanics.end())
-        plain += fmt::format("{}[models.{}]", plain.empty() ? "" : ", ", entry.id);
-    if (plain.empty()) return;
-    CaseResult result{problem_, {run}, {}};
+    for (const MechanicsEntry& entry : mechanics_models()) {
+      if (!entry.correct || entry.is_corrected(problem_.options) ||
+          std::ranges::find(problem_.mechanics, entry.id) == problem_.mechanics.end())
+        continue;
+      if (first == nullptr) first = &entry;
+      plain += fmt::format("{}[models.{}]", plain.empty() ? "" : ", ", entry.id);
+    }
+    if (first == nullptr || !fault_of(*first, problem_).empty()) return;
+    input::Case one = problem_;
+    one.load_path = {problem_.load_path[step]};
+    one.stated_by.clear();
+    one.sensors.clear();
+    one.fields.clear();
+    CaseResult result{one, {run_mechanics(*first, one, field_models())}, {}};
     add_model_parts(result, mechanics_models(), field_models());
-    const auto& part = result.mechanics.front().model_parts.at(step).tip;
-    if (!part || part->difference <= largest_part * deflection) return;
+    const MechanicsRun& run = result.mechanics.front();
+    const auto& part = run.model_parts.front().tip;
+    if (!part) return;
+    const Vector3 tip =
+        run.result.steps.front().deformation->centreline.at(one.cilium.length()).position;
+    const double deflection = std::hypot(tip.x(), tip.y());
+    if (part->difference <= largest_part * deflection) return;
     warn(
         fmt::format("rods are off by about {:.2g} % here, because bonded ends are stiffer than "
                     "theirs: state joints = \"corrected\" in {}, unless you want the paper's",
@@ -152,7 +166,7 @@ class Viewer {
     warn_of_steps(run);
     if (!largest) return;
     const MechanicsStep& step = run.result.steps[*largest];
-    look_at_joints(run, *largest, deflection);
+    if (!problem_.load_path.front().is<SweepLoad>()) look_at_joints(*largest);
     const double angle =
         step.deformation->centreline.at(problem_.cilium.length()).theta() * 180 / std::numbers::pi;
     preview_.signal.push_back(

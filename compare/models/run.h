@@ -49,10 +49,10 @@ struct ShapeModelParts {
 
 /// What one standard uncertainty of an input makes of a shape.
 struct ShapeShift {
-  Vector3 tip = Vector3::Zero();   ///< m
-  double tip_angle = 0;            ///< rad
-  double applied_force = 0;        ///< N
-  std::optional<double> slip_off;  ///< slip_off_limit()
+  std::optional<Vector3> tip;           ///< m
+  std::optional<double> tip_angle;      ///< rad
+  std::optional<double> applied_force;  ///< N
+  std::optional<double> slip_off;       ///< slip_off_limit()
 };
 
 /// What one mechanics model made of the load path.
@@ -61,8 +61,8 @@ struct MechanicsRun {
   MechanicsResult result;  ///< one step for each load; if the model threw, all of them failed with
                            ///< its message
   std::vector<ShapeModelParts> model_parts{};  ///< of each step, after add_model_parts()
-  /// [step][input] of CaseResult::inputs, after validation::add_input_parts(); none: not known.
-  std::vector<std::vector<std::optional<ShapeShift>>> input_parts{};
+  /// [step][input] of CaseResult::inputs, after validation::add_input_parts().
+  std::vector<std::vector<ShapeShift>> input_parts{};
 };
 
 /// A vector at each sensor, T; none where it is undefined or unknown.

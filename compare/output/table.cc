@@ -182,7 +182,9 @@ std::string fields_table(const models::CaseResult& result,
     for (Eigen::Index i = 0; i < 3; ++i)
       row.push_back(cell_within(component(field.dB[sensor], i), band_of_dB ? band_of_dB : numerical,
                                 1e-6, 2));
-    row.push_back(field.dB[sensor] ? band_cell(band_of_dB, numerical) : "-");
+    // Readings leave nothing out: their uncertainty is all there is.
+    row.push_back(field.dB[sensor] ? band_cell(run.measured ? numerical : band_of_dB, numerical)
+                                   : "-");
     const models::Comparison* largest = nullptr;
     for (const char* axis : axis_names) {
       const auto* c =
@@ -380,7 +382,8 @@ constexpr const char* mechanics_legend =
     "    difference of the tips is larger than the numerical uncertainty of the two.\n";
 constexpr const char* fields_legend =
     "+-dB: 95 % band of dB in uT, largest component: the numerical errors of field and shape,\n"
-    "    and what the two models leave out; >3: the numerical errors, the rest is not known;\n"
+    "    what the two models leave out, and inputs; >3: the numerical errors, the rest is not "
+    "known;\n"
     "    ?: neither is known.\n"
     "(2) largest error of a component of dB = B - B(undeformed), divided by the largest |dB| of\n"
     "    the reference (ref.) over the load path.\n"

@@ -38,10 +38,10 @@ const std::optional<models::ModelPart<double>>& model_of(const models::ShapeMode
   return parts.slip_off;
 }
 
-double size_of(const models::ShapeShift& shift, ShapeQuantity quantity) {
+std::optional<double> size_of(const models::ShapeShift& shift, ShapeQuantity quantity) {
   switch (quantity) {
     case ShapeQuantity::tip:
-      return shift.tip.norm();
+      return shift.tip ? std::optional(shift.tip->norm()) : std::nullopt;
     case ShapeQuantity::tip_angle:
       return shift.tip_angle;
     case ShapeQuantity::applied_force:
@@ -49,16 +49,19 @@ double size_of(const models::ShapeShift& shift, ShapeQuantity quantity) {
     case ShapeQuantity::slip_off:
       break;
   }
-  return shift.slip_off.value_or(std::nan(""));
+  return shift.slip_off;
 }
 
 std::optional<double> input_of(const models::MechanicsRun& run, std::size_t step,
                                ShapeQuantity quantity) {
   double variance = 0;
   if (!run.input_parts.empty())
-    for (const std::optional<models::ShapeShift>& shift : run.input_parts[step])
-      variance += shift ? std::pow(size_of(*shift, quantity), 2) : std::nan("");
-  return std::isfinite(variance) ? std::optional(std::sqrt(variance)) : std::nullopt;
+    for (const models::ShapeShift& shift : run.input_parts[step]) {
+      const std::optional<double> size = size_of(shift, quantity);
+      if (!size) return std::nullopt;
+      variance += *size * *size;
+    }
+  return std::sqrt(variance);
 }
 
 std::optional<Vector3> input_of(const std::vector<models::AtSensors>& parts, std::size_t sensor) {

@@ -23,19 +23,19 @@ struct Sides {
   std::map<std::string, std::array<models::FieldRun, 2>> fields{};
 };
 
-std::optional<models::ShapeShift> shift_of(const Sides& sides, std::size_t step, double width) {
+models::ShapeShift shift_of(const Sides& sides, std::size_t step, double width) {
   const MechanicsStep& a = sides.shape[0].result.steps[step];
   const MechanicsStep& b = sides.shape[1].result.steps[step];
-  if (!a.deformation || !b.deformation) return std::nullopt;
+  models::ShapeShift shift;
+  const auto limits = std::array{slip_off_limit(a), slip_off_limit(b)};
+  if (limits[0] && limits[1]) shift.slip_off = (*limits[1] - *limits[0]) / width;
+  if (!a.deformation || !b.deformation) return shift;
   const auto tip = [](const MechanicsStep& of) {
     return of.deformation->centreline.at(of.deformation->centreline.length());
   };
-  models::ShapeShift shift;
   shift.tip = (tip(b).position - tip(a).position) / width;
   shift.tip_angle = (tip(b).theta() - tip(a).theta()) / width;
   shift.applied_force = (b.applied_force - a.applied_force) / width;
-  const auto limits = std::array{slip_off_limit(a), slip_off_limit(b)};
-  if (limits[0] && limits[1]) shift.slip_off = (*limits[1] - *limits[0]) / width;
   return shift;
 }
 
@@ -62,7 +62,11 @@ void add_input_parts(models::CaseResult& result, std::span<const models::Mechani
   if (inputs.empty()) return;
   // What stands for which run, and what is to be solved.
   std::map<std::string, std::vector<std::string>> solved;  // mechanics: their fields
-  const auto stand = [&](const std::string& shape, const std::string& field) {
+  const auto stand = [&](const std::string& shape,
+                         const std::string& field) -> std::optional<Stand> {
+    // What was measured or computed elsewhere does not follow the case's numbers.
+    if (std::ranges::find(mechanics, shape, &models::MechanicsEntry::id) == mechanics.end())
+      return std::nullopt;
     return stand_in(shape, field, Sensitivities::quick, problem, mechanics, fields);
   };
   for (const models::MechanicsRun& run : result.mechanics)
@@ -74,7 +78,7 @@ void add_input_parts(models::CaseResult& result, std::span<const models::Mechani
     }
   const std::size_t steps = problem.load_path.size();
   for (models::MechanicsRun& run : result.mechanics)
-    run.input_parts.assign(steps, std::vector<std::optional<models::ShapeShift>>(inputs.size()));
+    run.input_parts.assign(steps, std::vector<models::ShapeShift>(inputs.size()));
   for (models::FieldRun& run : result.fields)
     for (auto& step : run.steps)
       if (step) {

@@ -262,7 +262,7 @@ class Result:
 
     def dB_covariance(self, pair: str) -> Array:
         """Of all components of dB by the inputs, whose errors all steps and sensors share: (steps * sensors * 3,) * 2,
-        T^2, rows as dB(pair).ravel() has them. NaN where it is not known."""
+        T^2, rows as dB(pair).ravel() has them. NaN where it is not known; 0 if no input is stated."""
         inputs = self.summary.get("inputs", [])
         shape = (len(self.steps), len(self.sensors), 3)
         J = np.full((len(inputs), *shape), np.nan)

@@ -278,7 +278,7 @@ class Report(Results):
         program = (
             "import sys, ciliaval as cv\nfrom ciliaval import plot, report\nfrom ciliaval.plot.__main__ import main_figure\n"
             "report.write(sys.argv[1])\nresult = cv.load(sys.argv[1] + '/one')\n"
-            "plot.setup(result), main_figure(result), plot.curves(cv.load(sys.argv[1] + '/two/study.json'), 'dB_norm')\n"
+            "plot.setup(result), main_figure(result), plot.curves(cv.load_study(sys.argv[1] + '/two'), 'dB_norm')\n"
             "loaded = [name for name in sys.modules if name.startswith('ciliaval')]\nassert 'ciliaval._core' not in loaded, loaded\n"
         )
         done = subprocess.run([sys.executable, "-c", program, str(self.folder)], capture_output=True, text=True)

@@ -29,6 +29,7 @@
 #include "compare/validation/report.h"
 #include "compare/validation/validation.h"
 #include "fem/parallel.h"
+#include "problem/error.h"
 
 namespace ciliaval::compare::app::commands {
 namespace {
@@ -173,6 +174,8 @@ void take_part(input::Case problem) {
 /// Checks all case files, output folders and stores before anything runs. Then runs each case,
 /// from its store if there is one, and writes its results to DIRECTORY/name.
 ExitCode execute_run(const RunOptions& options, const std::string& words) {
+  if (options.own_sensitivities && fem::rank_count() > 1)
+    throw InputError("--own-sensitivities: of one process alone, without mpirun");
   const std::vector<input::Case> cases = read_cases(options.files);
   if (fem::rank() > 0) {
     for (const input::Case& problem : cases) take_part(problem);

@@ -65,7 +65,7 @@ def signal(result: Result, sensor: int | str = 0, quantity_name: str = "dB") -> 
     """ΔB ("dB") or B ("B") at a sensor, by its number or name, by components and in magnitude, over
     the load.
 
-    Bands are those of dB at 95 %, numerical error and what the models leave out; a pair of which the
+    Bands are those of dB at 95 %: numerical error, what the models leave out, inputs; a pair of which the
     second is not known has none, which the legend says, as where it is thinner than the line. A curve of ΔB begins where there is no load,
     unless the load is a sweep's travel. Samples between which a model jumps are shaded.
     """

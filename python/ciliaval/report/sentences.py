@@ -156,12 +156,16 @@ def _of_the_tip(result: Result, model: str, step: int) -> list[str]:
     size = float(np.hypot(x, y))
     if size == 0:
         return []
-    u, left_out, band = (
-        values[step] for values in (result.tip_uncertainty(model), result.model_uncertainty(model), result.band(model))
-    )
+    u, left_out, inputs, band = (
+        float(values[step])
+        for values in (result.tip_uncertainty(model), result.model_uncertainty(model), result.input_uncertainty(model),
+                       result.band(model))
+    )  # fmt: skip
     text = f"the tip of the {model} is known to"
     if np.isfinite(band):
-        share = "what the rod leaves out" if left_out > u else "its numerical error"
+        # A corrected rod's numerical error has what its corrections are uncertain by, so its model part is the first.
+        parts = {"what the rod leaves out": left_out, "its inputs": 1.96 * float(np.nan_to_num(inputs)), "its numerical error": u}
+        share = max(parts, key=lambda part: parts[part])
         return [f"{text} ± {percent(band / size, 2)} of its deflection at 95 %, most of it {share}"]
     if np.isnan(u):
         return [f"the numerical error of the {model} is not known"]

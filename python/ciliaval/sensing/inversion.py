@@ -49,7 +49,7 @@ class SensedLoads:
     chi_squared: (n,), (dB - reading)^T V^-1 (dB - reading), whose degrees of freedom are the components that are
     read less 2. model_covariance, input_covariance: (n, 2, 2), of the load, by what the models leave out and by the
     case's [[input_uncertainty]].
-    misfit_probability: of a larger one by noise and what the models leave out. nothing_probability: of a larger
+    misfit_probability: of a larger one by noise, inputs and what the models leave out. nothing_probability: of a larger
     chi_squared(0) - chi_squared by noise alone, without a load. is_beyond: the load is larger than the
     largest computed. is_ambiguous: another load explains the reading as well, within chi squared of 3.84; it is
     looked for where a chip does not read all components. converged: (n,).
@@ -361,11 +361,19 @@ def _invert(
     without = np.einsum("nk,nk->n", *[whitened(change).reshape(n, -1)] * 2)
     known = np.where(np.isfinite(covariance), covariance, 0)
     input_covariance = np.zeros((n, 2, 2))
-    for d in left_out.of_inputs(load) if left_out is not None and n else []:
-        shift = np.einsum("nij,nkj,nk->ni", known, J, whitened(d).reshape(n, -1))
-        input_covariance += np.einsum("ni,nj->nij", shift, shift)
+    explained = np.zeros(n)  # of chi squared by V + sum d d^T, d of the inputs
+    inputs = [whitened(d).reshape(n, -1) for d in left_out.of_inputs(load)] if left_out is not None and n else []
+    if inputs:
+        d = np.stack(inputs, axis=-1)
+        shift = np.einsum("nij,nkj,nkd->nid", known, J, d)
+        input_covariance = np.einsum("nid,njd->nij", shift, shift)
+        along = np.einsum("nk,nkd->nd", r, d)
+        inner = np.eye(len(inputs)) + np.einsum("nkd,nke->nde", d, d)
+        explained = np.einsum("nd,nd->n", along, np.linalg.solve(inner, along[..., None])[..., 0])
     by_better, model_covariance = _left_out(response, change, whitened, left_out, load, J, known)
-    rest = np.minimum(cost, by_better(cost > special.chdtri(freedom, UNLIKELY))) if freedom > 0 else cost
+    rest = cost - explained
+    if freedom > 0:
+        rest = np.minimum(rest, by_better(rest > special.chdtri(freedom, UNLIKELY)))
     return (
         load,
         covariance,

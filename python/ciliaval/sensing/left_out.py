@@ -33,6 +33,7 @@ class LeftOut:
 
     inputs: of each [[input_uncertainty]] of the case the pair's response with the number lower and higher, and how many
     standard uncertainties lie between.
+    with_offset: B of the straight cilium is the model's, so that its error counts too.
     unknown: why there is no such thing; else empty. is_corrected: the pair's own joints. beyond: magnitude from which on the rod is bent further
     than the corrections are known.
     """
@@ -44,6 +45,7 @@ class LeftOut:
     is_corrected: bool = False
     beyond: float = math.inf
     inputs: tuple[tuple[Response, Response, float], ...] = ()
+    with_offset: bool = False
 
     @staticmethod
     def of(case: Case, pair: Pair, shapes: Shapes, asked: Response, progress: Progress | None) -> LeftOut:
@@ -78,18 +80,17 @@ class LeftOut:
         """dB of the better models less theirs, and of the softer joints less that, each (n, s, 3), T."""
         if self.better is None or self.softer is None:
             return []
-        dB = _within([self.asked, self.better, self.softer], load)
+        dB = self._within([self.asked, self.better, self.softer], load)
         return [dB[1] - dB[0], dB[2] - dB[1]]
 
     def of_inputs(self, load: Array) -> list[Array]:
         """What one standard uncertainty of each input makes of dB, each (n, s, 3), T."""
-        each = [(_within([low, high], load), width) for low, high, width in self.inputs]
+        each = [(self._within([low, high], load), width) for low, high, width in self.inputs]
         return [(dB[1] - dB[0]) / width for dB, width in each]
 
-
-def _within(responses: list[Response], load: Array) -> list[Array]:
-    """Each one's dB at the loads, or at the largest along them that all of them know."""
-    most = min(r.largest for r in responses)
-    size = np.hypot(*load.T)
-    inside = load * np.minimum(1, most / np.where(size > 0, size, 1))[:, None]
-    return [r.change(inside) for r in responses]
+    def _within(self, responses: list[Response], load: Array) -> list[Array]:
+        """Each one's dB, or B, at the loads, or at the largest along them that all of them know."""
+        most = min(r.largest for r in responses)
+        size = np.hypot(*load.T)
+        inside = load * np.minimum(1, most / np.where(size > 0, size, 1))[:, None]
+        return [r.change(inside) + (r.undeformed if self.with_offset else 0.0) for r in responses]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from ..arrays import Array
 from ..errors import InputError
 from ..model import Case
 from ..units import shown
-from .inversion import STATUSES, UNLIKELY, Chips, SensedLoads, invert
+from .inversion import STATUSES, TWO_SIDED_95, UNLIKELY, Chips, SensedLoads, invert
 from .left_out import JOINTS, LeftOut, with_joints
 from .readings import Option, ReadingOptions, Readings, read_readings
 from .response import Pair, Progress, Response, Shapes, require_load_to_sense, shapes_within
@@ -49,7 +49,10 @@ class FlowLaw:
         """The law of a case whose flow is given by its velocity."""
         if not case._core.stated("velocity"):
             return None
-        density, C_d, viscosity = (case._core.stated(key)[0] for key in ("density", "drag_coefficient", "viscosity"))
+        stated = {key: case._core.stated(key) for key in ("density", "drag_coefficient", "viscosity")}
+        if differing := [key for key, values in stated.items() if len(set(values)) > 1]:
+            raise InputError(f"a speed is found by one law: list one {' and one '.join(differing)} for all load steps")
+        density, C_d, viscosity = (values[0] for values in stated.values())
         return FlowLaw(density, C_d, case.cilium.diameter, viscosity)
 
     def velocity(self, q: npt.ArrayLike) -> Array:
@@ -78,13 +81,18 @@ class Sensing:
     loads: SensedLoads
     flow: FlowLaw | None
     left_out: LeftOut
+    flow_shifts: list[tuple[FlowLaw, FlowLaw, float]]  # of each input, and the deviations between
     remarks: list[str] = field(default_factory=list)
 
     def velocities(self) -> tuple[Array, Array, Array]:
         """Of q, and at the ends of its interval, m/s, each (n,)."""
         q, width = self.loads.magnitude, self.loads.magnitude_interval
         assert self.flow is not None
-        return self.flow.velocity(q), self.flow.velocity(q - width), self.flow.velocity(q + width)
+        v, low, high = (self.flow.velocity(value) for value in (q, q - width, q + width))
+        of_law = np.zeros(len(q))  # squares: of fluid and drag, beside those of q
+        for lower, upper, deviations in self.flow_shifts:
+            of_law += (TWO_SIDED_95 * (upper.velocity(q) - lower.velocity(q)) / deviations) ** 2
+        return v, np.maximum(0, v - np.sqrt((v - low) ** 2 + of_law)), v + np.sqrt((high - v) ** 2 + of_law)
 
     def columns(self) -> dict[str, tuple[str, Any]]:
         """Of each column of a table its unit and values, (n,)."""
@@ -240,6 +248,7 @@ def sense_readings(
     shapes = shapes_within(case, pair.mechanics, largest, progress)
     response = Response(case, pair.field, shapes, case.sensors)
     left_out = LeftOut.of(case, pair, shapes, response, progress)
+    left_out = replace(left_out, with_offset=not readings.measured_offset)
     chips = Chips.of(case)
     change = chips.in_case(readings.change)
     if not readings.measured_offset:
@@ -250,7 +259,10 @@ def sense_readings(
     remarks += _range_remark(shapes, largest, unit)
     remarks += _scatter_remark(readings, noise)
     remarks += _axes_remark(readings, response, chips)
-    return Sensing(case.name, pair, noise, unit, response, readings, loads, FlowLaw.of(case), left_out, remarks)
+    flow = FlowLaw.of(case)
+    laws = [(FlowLaw.of(Case._of(a)), FlowLaw.of(Case._of(b)), width) for a, b, width in case._core.input_shifts()]
+    shifts = [(a, b, width) for a, b, width in laws if a is not None and b is not None]
+    return Sensing(case.name, pair, noise, unit, response, readings, loads, flow, left_out, shifts, remarks)
 
 
 def _range_remark(shapes: Shapes, asked: float, unit: str) -> list[str]:
