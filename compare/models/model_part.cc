@@ -68,10 +68,10 @@ std::string reason_against(const input::Case& problem, const MechanicsStep& step
   const MechanicsStep& other = better.result.steps[index];
   if (other.status == Status::failed)
     return fmt::format("{} with corrected joints: {}", better.model, other.message);
+  if (step.status == Status::failed) return "it has no shape";
   if (step.status != other.status)
-    return fmt::format(
-        "{} with corrected joints {} at this load", better.model,
-        other.status == Status::converged ? "does not slip off" : "has no equilibrium");
+    return fmt::format("{} with corrected joints has {} equilibrium at this load", better.model,
+                       other.status == Status::converged ? "an" : "no");
   if (step.status != Status::converged) return {};
   const std::vector<double> strains =
       joints::strains(problem.cilium, other.deformation->centreline);

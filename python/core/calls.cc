@@ -51,6 +51,8 @@ void begin_anew_in_forked_processes() {
 }  // namespace
 
 Call::Call() {
+  // One that came while Python's numbers were read, which a long array takes a second of.
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   const std::lock_guard lock(guard);
   if (python_ends && std::this_thread::get_id() != ending_thread) throw PythonEnds();
   ++running;
