@@ -68,7 +68,7 @@ TEST_F(ToyQuantity, IsInTheSummary) {
 }
 
 TEST_F(ToyQuantity, IsSaidOnTheTerminal) {
-  EXPECT_THAT(output::table(result, {}, output::Footnotes::reference),
+  EXPECT_THAT(output::table(result, {}, output::Footnotes::reference, output::Steps::all),
               testing::HasSubstr(fmt::format("  beam: leans by {:.4g}\n",
                                              lean_of(result.mechanics[1].result.steps[1]))));
 }
