@@ -208,10 +208,21 @@ std::string failures(const models::CaseResult& result, std::size_t step) {
   return text;
 }
 
+/// The last step at which a model has a shape, or the last one of all.
+std::size_t last_with_a_shape(const models::CaseResult& result) {
+  const std::size_t count = result.problem.load_path.size();
+  for (std::size_t step = count; step-- > 0;)
+    for (const models::MechanicsRun& run : result.mechanics)
+      if (run.result.steps[step].deformation) return step;
+  return count - 1;
+}
+
 /// What is not as it should be at the steps whose tables are not shown.
-std::string troubles(const models::CaseResult& result, std::size_t steps) {
+std::string troubles(const models::CaseResult& result, std::size_t shown) {
   std::string text;
+  const std::size_t steps = result.problem.load_path.size();
   for (std::size_t step = 0; step < steps; ++step) {
+    if (step == shown) continue;
     std::string of_step;
     for (const models::MechanicsRun& run : result.mechanics) {
       const MechanicsStep& at = run.result.steps[step];
@@ -220,7 +231,7 @@ std::string troubles(const models::CaseResult& result, std::size_t steps) {
                                at.message.empty() ? "" : ": ", at.message);
     }
     of_step += failures(result, step);
-    if (!of_step.empty()) text += fmt::format("Step {} of {}:\n{}", step + 1, steps + 1, of_step);
+    if (!of_step.empty()) text += fmt::format("Step {} of {}:\n{}", step + 1, steps, of_step);
   }
   return text;
 }
@@ -444,7 +455,9 @@ std::string table(const models::CaseResult& result,
   } else {
     text += meaning(result, comparisons);
     const std::size_t count = problem.load_path.size();
-    for (std::size_t step = steps == Steps::all ? 0 : count - 1; step < count; ++step) {
+    const std::size_t shown = last_with_a_shape(result);
+    for (std::size_t step = 0; step < count; ++step) {
+      if (steps == Steps::last && step != shown) continue;
       text +=
           fmt::format("\nStep {} of {}: {}\n", step + 1, count, describe(problem.load_path[step]));
       text += mechanics_table(result, step);
@@ -457,7 +470,7 @@ std::string table(const models::CaseResult& result,
     }
     text += of_path();
     if (steps == Steps::last && count > 1)
-      text += fmt::format("\n{}The steps before: --all\n", troubles(result, count - 1));
+      text += fmt::format("\n{}The other steps: --all\n", troubles(result, shown));
   }
   if (!result.fields.empty() && sensors > 0) legend += fields_legend;
   text += '\n' + footnotes(which, legend);

@@ -24,10 +24,10 @@ std::string footnotes(Footnotes which, std::string_view text);
 
 enum class Steps { last, all };
 
-/// The results for a terminal: what they mean, for the last step or all of them what every model
-/// gives and what separates it from its reference, over the path the RRMSE; the footnotes say what
-/// is divided by what. Lengths in mm, angles in degrees, forces in mN, B in mT and dB in uT, of
-/// each sensor; of very many the first.
+/// The results for a terminal: what they mean, for the last step with a shape or all of them what
+/// every model gives and what separates it from its reference, over the path the RRMSE; the
+/// footnotes say what is divided by what. Lengths in mm, angles in degrees, forces in mN, B in mT
+/// and dB in uT, of each sensor; of very many the first.
 std::string table(const models::CaseResult& result,
                   const std::vector<models::Comparison>& comparisons, Footnotes which,
                   Steps steps = Steps::last);
