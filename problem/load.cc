@@ -46,6 +46,28 @@ LoadParameter azimuth_parameter() {
                        0, "0 deg");
 }
 
+description::Field<Load> slip_off_key() {
+  constexpr std::string_view axis = "axis";
+  constexpr std::string_view rim = "rim";
+  description::Field<Load> key;
+  key.name = "slip_off";
+  key.doc =
+      "`contact`, `probe`: a rod lets go where the tip of its `axis` comes down to the height, or "
+      "where the `rim` of its end face comes down to the height + `models.solid.kernel_width`, as "
+      "a solid always does.";
+  key.choices = {axis, rim};
+  key.absence = description::Key::Absence::nothing;
+  key.initial = std::string(axis);
+  key.get = [=](const Load& load) {
+    return description::Value(std::string(load.slip_off_point() == SlipOffPoint::rim ? rim : axis));
+  };
+  key.set = [=](Load& load, const description::Value& value) {
+    load.set_slip_off_point(std::get<std::string>(value) == rim ? SlipOffPoint::rim
+                                                                : SlipOffPoint::axis);
+  };
+  return key;
+}
+
 /// One of the values of a statement.
 description::Field<LoadStatement::Values> stated(std::size_t place, std::string_view name,
                                                  const Quantity& quantity, const Range& range,
@@ -174,10 +196,12 @@ LoadParameter load_parameter(std::string_view name, const Quantity& quantity, co
 LoadType::LoadType(std::string_view its_name, std::string_view its_description,
                    std::vector<LoadParameter> its_parameters,
                    std::optional<LoadStatement> its_statement,
-                   std::optional<std::pair<std::string_view, std::string_view>> its_result)
+                   std::optional<std::pair<std::string_view, std::string_view>> its_result,
+                   description::Fields<Load> its_settings)
     : name(its_name),
       description(its_description),
       parameters(std::move(its_parameters)),
+      settings(std::move(its_settings)),
       statement(std::move(its_statement)),
       result(std::move(its_result)) {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -189,14 +213,19 @@ LoadType::LoadType(std::string_view its_name, std::string_view its_description,
 }
 
 description::Fields<Load> LoadType::keys(bool with_magnitude) const {
-  return {parameters.begin() + (with_magnitude ? 0 : 1), parameters.end()};
+  description::Fields<Load> keys(parameters.begin() + (with_magnitude ? 0 : 1), parameters.end());
+  keys.insert(keys.end(), settings.begin(), settings.end());
+  return keys;
 }
 
 const LoadType& ContactLoad::type() {
   static const LoadType type{
       "contact",
       "horizontal force that stays at a height while the cilium slides under it",
-      {force_parameter(), contact_height_parameter(), azimuth_parameter()}};
+      {force_parameter(), contact_height_parameter(), azimuth_parameter()},
+      {},
+      {},
+      {slip_off_key()}};
   return type;
 }
 
@@ -257,7 +286,8 @@ const LoadType& ProbeLoad::type() {
       std::nullopt,
       {{"force",
         "'force' is a result of the load type 'probe', whose 'displacement' is given: leave it out "
-        "or use the type 'contact'"}}};
+        "or use the type 'contact'"}},
+      {slip_off_key()}};
   return type;
 }
 
@@ -402,7 +432,8 @@ Load interpolate(const Load& from, const Load& to, double t) {
 
 bool operator==(const Load& a, const Load& b) {
   return &a.type() == &b.type() && std::ranges::equal(a.values(), b.values()) &&
-         a.surface() == b.surface() && a.environment() == b.environment();
+         a.slip_off_point() == b.slip_off_point() && a.surface() == b.surface() &&
+         a.environment() == b.environment();
 }
 
 void refuse_type(const Load& load, std::string_view model) {

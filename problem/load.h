@@ -55,20 +55,29 @@ struct LoadStatement {
   double (*magnitude)(const Values& values, const Cilium& cilium) = nullptr;
 };
 
+/// What of the tip comes down to the contact height where the cilium lets go of what pushes it.
+enum class SlipOffPoint {
+  axis,  ///< the end of the centreline, as in the paper
+  rim    ///< the lowest point of the end face, to the upper edge of a contact that has a height: so
+         ///< does a solid
+};
+
 /// Name, description and parameters of a load type: the one declaration from which case files,
 /// results, studies, tables and checkpoints take them.
 struct LoadType {
   std::string_view name;
   std::string_view description;           ///< a line of `ciliaval list`
   std::vector<LoadParameter> parameters;  ///< the magnitude first, the azimuth last
+  description::Fields<Load> settings;     ///< keys of [load] that are no numbers
   std::optional<LoadStatement> statement;
   /// A key that [load] must not have, and why.
   std::optional<std::pair<std::string_view, std::string_view>> result;
 
   LoadType(std::string_view name, std::string_view description,
            std::vector<LoadParameter> parameters, std::optional<LoadStatement> statement = {},
-           std::optional<std::pair<std::string_view, std::string_view>> result = {});
-  /// The parameters as keys, or all but the magnitude.
+           std::optional<std::pair<std::string_view, std::string_view>> result = {},
+           description::Fields<Load> settings = {});
+  /// Parameters and settings as keys, or all but the magnitude.
   description::Fields<Load> keys(bool with_magnitude = true) const;
 };
 
@@ -174,6 +183,9 @@ class Load {
   void set_surface(std::shared_ptr<const surroundings::Surface> surface) {
     surface_ = std::move(surface);
   }
+  /// Of a contact or a probe.
+  SlipOffPoint slip_off_point() const { return slip_off_point_; }
+  void set_slip_off_point(SlipOffPoint point) { slip_off_point_ = point; }
   /// What surrounds the cilium; see acting_environment() for what acts on it.
   const surroundings::Environment& environment() const { return environment_; }
   void set_environment(const surroundings::Environment& environment) { environment_ = environment; }
@@ -197,6 +209,7 @@ class Load {
   const LoadType* type_;
   std::array<double, most_parameters> values_{};
   std::shared_ptr<const surroundings::Surface> surface_;
+  SlipOffPoint slip_off_point_ = SlipOffPoint::axis;
   surroundings::Environment environment_;
 };
 
@@ -237,7 +250,7 @@ Load nothing_of(const Load& load);
 /// (1−t)·from + t·to in every parameter and in the environment, for load stepping. Throws
 /// InputError if the types differ.
 Load interpolate(const Load& from, const Load& to, double t);
-/// Whether type, values, surface and environment are the same.
+/// Whether type, values, settings, surface and environment are the same.
 bool operator==(const Load& a, const Load& b);
 
 /// Throws the InputError of a model that does not know the load's type.

@@ -54,6 +54,7 @@ struct MechanicsStep {
                                                 ///< point, m, if the model found it
   std::optional<double> slip_off_uncertainty;   ///< of the slip-off force, N, or of a probe's
                                                 ///< displacement, m, if the model knows it
+  SlipOffPoint slip_off_point = SlipOffPoint::axis;  ///< by which the model judges it
   std::optional<double> contact_arclength;  ///< contact, probe: S of the material point at z = h, m
   std::optional<SurfaceContact> contact;    ///< sweep
   // Estimates of the numerical error, if the model has one.

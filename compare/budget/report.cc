@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compare/output/csv_writer.h"
 #include "compare/output/json_file.h"
@@ -56,15 +59,21 @@ std::string column_name(const BudgetRow& row) {
   return row.component.empty() ? name : fmt::format("{} {}", name, row.component);
 }
 
-/// |link| over |best|, as vectors.
-std::string percent(const Group& group, const std::vector<const BudgetLink*>& links) {
+/// |link| over |best|, as vectors, in %; none where the best is zero.
+std::optional<double> percent_of(const Group& group, const std::vector<const BudgetLink*>& links) {
   double link = 0;
   double best = 0;
   for (std::size_t i = 0; i < group.size(); ++i) {
     link += std::pow(links[i]->value, 2);
     best += std::pow(group[i]->best, 2);
   }
-  return best > 0 ? fmt::format("{:.3g}", 100 * std::sqrt(link / best)) : "-";
+  if (best == 0) return std::nullopt;
+  return 100 * std::sqrt(link / best);
+}
+
+std::string percent(const Group& group, const std::vector<const BudgetLink*>& links) {
+  const auto value = percent_of(group, links);
+  return value ? fmt::format("{:.3g}", *value) : "-";
 }
 
 /// The paper's values, the links, their total, the best values, the model beside.
@@ -138,6 +147,35 @@ std::string chain_text(const Budget& budget) {
                      budget.case_name, output::text_table(rows, "<"));
 }
 
+/// The assumptions that change dB at the first sensor most, at the last step that has it; without
+/// fields the tip.
+std::string largest_links(const Budget& budget) {
+  constexpr std::size_t most = 3;
+  for (const std::string_view quantity : {"dB", "tip"})
+    for (std::size_t step = budget.load_path.size(); step-- > 0;) {
+      Group group;
+      for (const BudgetRow& row : budget.rows)
+        if (row.step == step && row.quantity == quantity && row.sensor.value_or(0) == 0)
+          group.push_back(&row);
+      if (group.empty()) continue;
+      std::vector<std::pair<double, const BudgetLink*>> links;
+      for (std::size_t i = 0; i < group.front()->links.size(); ++i) {
+        std::vector<const BudgetLink*> components;
+        for (const BudgetRow* row : group) components.push_back(&row->links[i]);
+        if (const auto percent = percent_of(group, components))
+          links.emplace_back(*percent, components.front());
+      }
+      std::ranges::stable_sort(links, std::greater{}, &std::pair<double, const BudgetLink*>::first);
+      if (links.empty()) continue;
+      std::string text =
+          fmt::format("\nWhat changes {} most at step {}, in % of it:\n", quantity, step + 1);
+      for (std::size_t i = 0; i < std::min(most, links.size()); ++i)
+        text += fmt::format("  {:>6.2g}  {}\n", links[i].first, links[i].second->physics);
+      return text;
+    }
+  return {};
+}
+
 constexpr const char* legend =
     "Each line is next - previous model, +- its numerical uncertainty: discretisation, "
     "quadrature,\n"
@@ -172,7 +210,7 @@ Json row_json(const BudgetRow& row) {
 }  // namespace
 
 std::string budget_text(const Budget& budget, output::Footnotes which) {
-  std::string text = chain_text(budget);
+  std::string text = chain_text(budget) + largest_links(budget);
   for (std::size_t step = 0; step < budget.load_path.size(); ++step)
     text += step_text(budget, step);
   if (budget.rows.empty()) return text + "\nThere is no difference to split.\n";

@@ -222,6 +222,44 @@ std::string describe(const Judgement& judgement) {
   return text;
 }
 
+/// What a person asks: how well tip and dB are known, and whether to refine.
+std::string in_words(const RefinementStudy& study) {
+  constexpr double enough = 0.01;
+  const auto own = std::ranges::find(study.settings, study.own_setting);
+  std::vector<std::string> known;
+  std::vector<std::string> away;
+  double farthest = 0;
+  for (const bool is_field : {false, true}) {
+    std::optional<double> interval;
+    double distance = 0;
+    for (const ConvergedQuantity& quantity : study.quantities) {
+      const results::Observation& finest = quantity.finest;
+      const double size = finest.size();
+      if (!finest.is_looked_at || !quantity.extrapolation.conclusive || size == 0 ||
+          finest.field.empty() == is_field)
+        continue;
+      interval = std::max(interval.value_or(0), quantity.extrapolation.uncertainty / size);
+      if (own == study.settings.end()) continue;
+      const double value =
+          quantity.levels[static_cast<std::size_t>(own - study.settings.begin())].value;
+      distance = std::max(distance, std::abs(value - quantity.extrapolation.limit) / size);
+    }
+    if (!interval) continue;
+    const char* name = is_field ? "dB" : "tip";
+    known.push_back(fmt::format("{} known to {:.1g} %", name, 100 * *interval));
+    away.push_back(fmt::format("{} {:.1g} %", name, 100 * distance));
+    farthest = std::max(farthest, distance);
+  }
+  if (known.empty()) return {};
+  const std::string text = fmt::format("  {} on the finest level\n", fmt::join(known, ", "));
+  if (own == study.settings.end())
+    return text + fmt::format("  the case's own {} {:g} is none of the levels\n", study.option,
+                              study.own_setting);
+  return text + fmt::format("  the case's {} {:g}: {} from the limit; {} for 1 %\n", study.option,
+                            study.own_setting, fmt::join(away, ", "),
+                            farthest <= enough ? "nothing to refine" : "refine it");
+}
+
 std::string verdict(const Judgement& all) {
   std::string_view word = "converged";
   if (all.conclusive < all.numbers) word = "converged in part";
@@ -286,6 +324,7 @@ RefinementStudy refinement_study(const input::Case& problem, const ModelRefineme
   study.model = refinement.model;
   study.option = refinement.option.name;
   study.size_name = refinement.sequence.size_name;
+  study.own_setting = refinement.option.number(problem.options);
   if (count < 3)
     throw InputError(fmt::format("a study needs 3 levels of refinement or more, not {}", count));
   const auto values = std::span(refinement.sequence.values)
@@ -318,6 +357,7 @@ std::string study_text(const std::vector<RefinementStudy>& studies, bool list) {
     const Judgement judgement = judge(study);
     text += study.failure.empty() ? fmt::format("  {}\n", describe(judgement))
                                   : fmt::format("  inconclusive: {}\n", study.failure);
+    text += in_words(study);
     if (judgement.conclusive == 0 && !study.quantities.empty())
       text += fmt::format("  {}\n", study.quantities.front().extrapolation.reason);
     if (list && study.failure.empty()) text += quantity_table(study);

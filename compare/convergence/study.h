@@ -39,6 +39,7 @@ struct RefinementStudy {
   std::string option;
   std::string size_name;
   std::vector<double> settings;  ///< of the option, finest first
+  double own_setting = 0;        ///< the case's
   std::vector<double> seconds;   ///< wall time of each
   std::vector<ConvergedQuantity> quantities;
   std::string failure;  ///< why there is no study; else empty
@@ -53,7 +54,8 @@ RefinementStudy refinement_study(const input::Case& problem, const ModelRefineme
                                  unsigned int count, const Progress& progress = {});
 
 /// For people: a line for each model, how many numbers have an interval and the largest of these
-/// over its scale, or a failure; with `list` the tip, its angle and the field components with what
+/// over its scale, how far tip and dB by the case's own setting are from the limit, or a failure;
+/// with `list` the tip, its angle and the field components with what
 /// the levels say; then the verdict on all.
 std::string study_text(const std::vector<RefinementStudy>& studies, bool list);
 /// {"schema": 1, "case", "provenance", "studies": [{"model", "option", "size_name", "settings",

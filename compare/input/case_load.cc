@@ -50,7 +50,7 @@ void read_any_type(Section& table, PathLength& length) {
     if (node != nullptr) read_values(*node, key, length, table.faults());
   };
   for (const LoadType* type : load_types()) {
-    for (const LoadParameter& parameter : type->parameters) read_one(parameter);
+    for (const description::Key& key : type->keys()) read_one(key);
     if (type->statement)
       for (const auto& parameter : type->statement->parameters) read_one(parameter);
   }

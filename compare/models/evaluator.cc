@@ -11,6 +11,8 @@
 
 #include "compare/models/errors.h"
 #include "compare/models/run.h"
+#include "fem/solid/solid_options.h"
+#include "problem/continuation/slip_off.h"
 #include "problem/error.h"
 
 namespace ciliaval::compare::models {
@@ -115,9 +117,12 @@ MechanicsResult Evaluator::solve_from(const Cilium& cilium, const LoadPath& path
   const ErrorLimit limit =
       entry_.error_limit ? entry_.error_limit(problem.options) : input::ErrorLimit{};
   if (limit.percent == 0) {
-    MechanicsResult result =
-        entry_.make(problem.options)->solve_from(cilium, path, checkpoint, progress);
+    const auto model = entry_.make(problem.options);
+    MechanicsResult result = model->solve_from(cilium, path, checkpoint, progress);
     for (MechanicsStep& step : result.steps) fail_unless_finite(step);
+    if (!entry_.has_body)
+      continuation::let_go_at_rim(
+          *model, cilium, problem.options.of<fem::solid::SolidOptions>().kernel_width, result);
     return result;
   }
 

@@ -17,9 +17,13 @@ namespace {
 
 /// The better models on the case.
 struct Better {
+  const MechanicsEntry* entry = nullptr;
+  input::Case corrected;
   std::optional<MechanicsRun> shape;  ///< none: the corrections do not reach, says `unknown`
   std::string unknown;
   std::optional<FieldRun> field;  ///< of that shape
+  /// Steps that state a slip-off limit, each by its load of magnitude 0; sought when asked for.
+  std::vector<std::pair<Load, MechanicsStep>> limits{};
 };
 
 /// The entry of a rod; null: the model is none.
@@ -52,6 +56,8 @@ Better better_models(const input::Case& problem, std::span<const MechanicsEntry>
     }
     const Progress named = with_prefix(progress, "model part, ");
     better.unknown.clear();
+    better.entry = &entry;
+    better.corrected = corrected;
     better.shape = run_mechanics(entry, corrected, fields, named);
     if (const FieldEntry* field = best_field(fields);
         field != nullptr && !problem.sensors.empty() && !problem.fields.empty())
@@ -88,17 +94,37 @@ std::optional<ModelPart<double>> part_of(double difference, std::optional<double
   return ModelPart<double>{std::abs(difference), *of_the_better, is_corrected};
 }
 
+/// The better model's step that states the limit of a step's load, where another states `limit`. A
+/// beam looks for its limit only under a larger load.
+const MechanicsStep& limit_of(Better& better, const MechanicsStep& step, const MechanicsStep& other,
+                              double limit) {
+  if (slip_off_limit(other)) return other;
+  constexpr double beyond = 1.5;
+  const Load kind = with_magnitude(step.load, 0);
+  auto known = std::ranges::find(better.limits, kind, &std::pair<Load, MechanicsStep>::first);
+  if (known == better.limits.end()) {
+    input::Case larger = better.corrected;
+    larger.load_path = {with_magnitude(kind, beyond * limit)};
+    larger.stated_by.clear();
+    MechanicsRun run = run_mechanics(*better.entry, larger, {});
+    known = better.limits.insert(known, {kind, std::move(run.result.steps.front())});
+  }
+  return known->second;
+}
+
 ShapeModelParts shape_parts(const input::Case& problem, const MechanicsRun& run, std::size_t index,
-                            bool corrected, const Better& better) {
+                            bool corrected, Better& better) {
   ShapeModelParts parts;
   parts.unknown = better.unknown;
   if (!better.shape) return parts;
   const MechanicsStep& step = run.result.steps[index];
   const MechanicsStep& other = better.shape->result.steps[index];
   const auto limit = slip_off_limit(step);
-  const auto other_limit = slip_off_limit(other);
-  if (limit && other_limit)
-    parts.slip_off = part_of(*limit - *other_limit, other.slip_off_uncertainty, corrected);
+  if (limit) {
+    const MechanicsStep& at_limit = limit_of(better, step, other, *limit);
+    if (const auto better_limit = slip_off_limit(at_limit))
+      parts.slip_off = part_of(*limit - *better_limit, at_limit.slip_off_uncertainty, corrected);
+  }
   parts.unknown = reason_against(problem, step, *better.shape, index);
   if (!parts.unknown.empty() || step.status != Status::converged) return parts;
   const auto tip = [](const MechanicsStep& of) {

@@ -25,6 +25,7 @@ constexpr double near_magnet = 0.1;      ///< distance of a sensor, in d
 constexpr double least_signal = 0.1e-6;  ///< T: below what Hall sensors resolve
 constexpr double largest_signal = 1;     ///< T
 constexpr double largest_part = 0.02;    ///< of the tip's deflection, that a rod leaves out
+constexpr double part_of_range = 0.8;    ///< of the largest load that is borne
 constexpr double most_buckling = 20;     ///< buckling loads over the environment: more are not told
 
 /// What is usual of cilia and their rubbers.
@@ -114,6 +115,8 @@ class Viewer {
       if (!entry.correct || entry.is_corrected(problem_.options) ||
           std::ranges::find(problem_.mechanics, entry.id) == problem_.mechanics.end())
         continue;
+      input::Case corrected = problem_;
+      if (!correct(entry, corrected).empty()) continue;  // its corrections do not reach
       if (first == nullptr) first = &entry;
       plain += fmt::format("{}[models.{}]", plain.empty() ? "" : ", ", entry.id);
     }
@@ -136,6 +139,26 @@ class Viewer {
         fmt::format("rods are off by about {:.2g} % here, because bonded ends are stiffer than "
                     "theirs: state joints = \"corrected\" in {}, unless you want the paper's",
                     100 * part->difference / deflection, plain));
+  }
+
+  /// Whether a load is so large that it matters by what a model judges that the contact slips off.
+  void look_at_slip_off(const MechanicsRun& run) {
+    const auto asks_for = [&](bool has_body) {
+      return std::ranges::any_of(mechanics_models(), [&](const MechanicsEntry& entry) {
+        return entry.has_body == has_body &&
+               std::ranges::find(problem_.mechanics, entry.id) != problem_.mechanics.end();
+      });
+    };
+    const bool is_near = std::ranges::any_of(run.result.steps, [](const MechanicsStep& step) {
+      const auto limit = slip_off_limit(step);
+      return limit && step.load.slip_off_point() == SlipOffPoint::axis &&
+             magnitude(step.load) > part_of_range * *limit;
+    });
+    if (is_near && asks_for(true) && asks_for(false))
+      warn(
+          "the largest load is near the end of the range, where rods let go by the tip of their "
+          "axis and the solid by the rim of its end face, which comes down first: slip_off = "
+          "\"rim\" in [load] has both judge by the rim");
   }
 
   void look_at_signal() {
@@ -164,6 +187,7 @@ class Viewer {
       largest = i;
     }
     warn_of_steps(run);
+    look_at_slip_off(run);
     if (!largest) return;
     const MechanicsStep& step = run.result.steps[*largest];
     if (!problem_.load_path.front().is<SweepLoad>()) look_at_joints(*largest);

@@ -49,7 +49,7 @@ struct ShapeModelParts {
 
 /// What one standard uncertainty of an input makes of a shape.
 struct ShapeShift {
-  std::optional<Vector3> tip;           ///< m
+  std::optional<double> tip;            ///< the distance, m
   std::optional<double> tip_angle;      ///< rad
   std::optional<double> applied_force;  ///< N
   std::optional<double> slip_off;       ///< slip_off_limit()

@@ -62,6 +62,8 @@ Json load_json(const Load& load) {
   Json json{{"type", type(load)}};
   for (std::size_t i = 0; i < load.values().size(); ++i)
     json[std::string(load.type().parameters[i].name)] = load.values()[i];
+  for (const auto& setting : load.type().settings)
+    if (setting.get(load) != setting.initial) json[std::string(setting.name)] = value(setting.get(load));
   return json;
 }
 
@@ -115,14 +117,10 @@ Json pull_in_json(const continuation::PullIn& pull_in) {
 
 /// The parts of the bands of a shape; null where one is not known.
 void add_bands(const models::MechanicsRun& run, std::size_t index, Json& json) {
-  using enum results::ShapeQuantity;
-  constexpr std::pair<const char*, results::ShapeQuantity> quantities[] = {
-      {"tip", tip},
-      {"tip_angle", tip_angle},
-      {"applied_force", applied_force},
-      {"slip_off", slip_off}};
-  for (const auto& [name, quantity] : quantities) {
-    const results::Band parts = results::shape_band(run, index, quantity);
+  for (std::size_t i = 0; i < results::shape_quantities.size(); ++i) {
+    const char* name = results::shape_quantities[i];
+    const results::Band parts =
+        results::shape_band(run, index, static_cast<results::ShapeQuantity>(i));
     json["model_uncertainty"][name] = or_null(parts.model);
     if (!run.input_parts.empty()) json["input_uncertainty"][name] = or_null(parts.input);
     json["band"][name] = or_null(parts.total);
@@ -145,6 +143,8 @@ Json mechanics_json(const models::MechanicsRun& run, std::size_t index) {
     else
       number = values;
   }
+  if (slip_off_limit(step))
+    json["slip_off_at"] = step.slip_off_point == SlipOffPoint::rim ? "rim" : "axis";
   if (!run.model_parts.empty() || !run.input_parts.empty()) add_bands(run, index, json);
   if (step.contact) json["contact"] = contact_json(*step.contact);
   if (step.contact && step.contact->energy_lost)

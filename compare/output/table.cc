@@ -70,10 +70,10 @@ std::string sentences(const std::string& model, const MechanicsStep& step) {
   return text;
 }
 
-/// The band, or ">3", the numerical error alone, where it is not known what the model leaves out.
-std::string band_cell(std::optional<double> band, std::optional<double> numerical) {
+/// The band, or ">3", what is known of it, where it is not known what the model leaves out.
+std::string band_cell(std::optional<double> band, std::optional<double> known) {
   constexpr double unit = 1e-6;
-  const std::optional<double> shown = band ? band : numerical;
+  const std::optional<double> shown = band ? band : known;
   if (!shown) return "?";
   return (band ? "" : ">") + number_cell(shown, unit, *shown >= 10 * unit ? "{:.0f}" : "{:.2g}");
 }
@@ -98,13 +98,11 @@ std::string mechanics_table(const models::CaseResult& result, std::size_t index)
       const Centreline& centreline = step.deformation->centreline;
       const CentrelinePoint tip = centreline.at(centreline.length());
       const results::Band tip_band = results::shape_band(run, index, results::ShapeQuantity::tip);
-      const auto or_numerical = tip_band.total ? tip_band.total : tip_band.numerical;
-      for (const double x : tip.position) row.push_back(cell_within(x, or_numerical, 1e-3, 4));
-      row.push_back(band_cell(tip_band.total, tip_band.numerical));
+      for (const double x : tip.position) row.push_back(cell_within(x, tip_band.known(), 1e-3, 4));
+      row.push_back(band_cell(tip_band.total, tip_band.known()));
       const results::Band angle =
           results::shape_band(run, index, results::ShapeQuantity::tip_angle);
-      row.push_back(
-          cell_within(tip.theta(), angle.total ? angle.total : angle.numerical, degree, 3));
+      row.push_back(cell_within(tip.theta(), angle.known(), degree, 3));
       row.push_back(number_cell(step.applied_force, 1e-3, "{:.5g}"));
     } else {
       row.insert(row.end(), 6, "-");
@@ -176,15 +174,17 @@ std::string fields_table(const models::CaseResult& result,
     row.push_back(run.name());
     for (Eigen::Index i = 0; i < 3; ++i)
       row.push_back(number_cell(component(field.B[sensor], i), 1e-3, "{:.4f}"));
-    const auto of_sensor = results::field_bands(result, run, step, true).total[sensor];
-    const auto band_of_dB = of_sensor ? std::optional(of_sensor->maxCoeff()) : std::nullopt;
-    const auto numerical = models::change_uncertainty(result, run, step, sensor);
-    for (Eigen::Index i = 0; i < 3; ++i)
-      row.push_back(cell_within(component(field.dB[sensor], i), band_of_dB ? band_of_dB : numerical,
-                                1e-6, 2));
+    const results::FieldBands bands = results::field_bands(result, run, step, true);
+    const auto largest_of = [](const std::optional<Vector3>& of) {
+      return of ? std::optional(of->maxCoeff()) : std::nullopt;
+    };
     // Readings leave nothing out: their uncertainty is all there is.
-    row.push_back(field.dB[sensor] ? band_cell(run.measured ? numerical : band_of_dB, numerical)
-                                   : "-");
+    const auto numerical = models::change_uncertainty(result, run, step, sensor);
+    const auto total = run.measured ? numerical : largest_of(bands.total[sensor]);
+    const auto known = results::Band{numerical, {}, largest_of(bands.input[sensor]), total}.known();
+    for (Eigen::Index i = 0; i < 3; ++i)
+      row.push_back(cell_within(component(field.dB[sensor], i), known, 1e-6, 2));
+    row.push_back(field.dB[sensor] ? band_cell(total, known) : "-");
     const models::Comparison* largest = nullptr;
     for (const char* axis : axis_names) {
       const auto* c =
@@ -305,12 +305,15 @@ std::string_view field_verdict(const std::vector<models::Comparison>& comparison
 /// known.
 std::string band_words(const results::Band& of, double value) {
   if (!of.total || value == 0) return {};
+  // The numerical error of a corrected rod has what its corrections are uncertain by: the model's.
+  constexpr double nearly = 0.9;
   const std::pair<double, const char*> parts[] = {
-      {of.numerical.value_or(0), "numerical"},
       {of.model.value_or(0), "model"},
+      {nearly * of.numerical.value_or(0), "numerical"},
       {results::two_sided_95 * of.input.value_or(0), "inputs"}};
-  return fmt::format(" (+-{:.2g} %: {})", 100 * *of.total / std::abs(value),
-                     std::ranges::max(parts).second);
+  const auto& largest =
+      *std::ranges::max_element(parts, {}, &std::pair<double, const char*>::first);
+  return fmt::format(" (+-{:.2g} %: {})", 100 * *of.total / std::abs(value), largest.second);
 }
 
 /// Of |ΔB|.

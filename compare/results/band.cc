@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "compare/results/band.h"
 
+#include <array>
 #include <cmath>
 
 #include "compare/models/errors.h"
@@ -9,57 +10,31 @@
 namespace ciliaval::compare::results {
 namespace {
 
-std::optional<double> numerical_of(const MechanicsStep& step, ShapeQuantity quantity) {
-  switch (quantity) {
-    case ShapeQuantity::tip:
-      return step.tip_uncertainty;
-    case ShapeQuantity::tip_angle:
-      return step.deformation ? results::tip_angle_uncertainty(step) : std::nullopt;
-    case ShapeQuantity::applied_force:
-      return step.applied_force_uncertainty;
-    case ShapeQuantity::slip_off:
-      break;
-  }
-  return step.slip_off_uncertainty;
-}
+/// Where the parts of a quantity are.
+struct Parts {
+  std::optional<double> (*numerical)(const MechanicsStep& step);
+  std::optional<models::ModelPart<double>> models::ShapeModelParts::*model;
+  std::optional<double> models::ShapeShift::*input;
+};
 
-const std::optional<models::ModelPart<double>>& model_of(const models::ShapeModelParts& parts,
-                                                         ShapeQuantity quantity) {
-  switch (quantity) {
-    case ShapeQuantity::tip:
-      return parts.tip;
-    case ShapeQuantity::tip_angle:
-      return parts.tip_angle;
-    case ShapeQuantity::applied_force:
-      return parts.applied_force;
-    case ShapeQuantity::slip_off:
-      break;
-  }
-  return parts.slip_off;
-}
-
-std::optional<double> size_of(const models::ShapeShift& shift, ShapeQuantity quantity) {
-  switch (quantity) {
-    case ShapeQuantity::tip:
-      return shift.tip ? std::optional(shift.tip->norm()) : std::nullopt;
-    case ShapeQuantity::tip_angle:
-      return shift.tip_angle;
-    case ShapeQuantity::applied_force:
-      return shift.applied_force;
-    case ShapeQuantity::slip_off:
-      break;
-  }
-  return shift.slip_off;
-}
+/// In the order of ShapeQuantity.
+constexpr std::array<Parts, shape_quantities.size()> all_parts{
+    {{[](const MechanicsStep& step) { return step.tip_uncertainty; }, &models::ShapeModelParts::tip,
+      &models::ShapeShift::tip},
+     {results::tip_angle_uncertainty, &models::ShapeModelParts::tip_angle,
+      &models::ShapeShift::tip_angle},
+     {[](const MechanicsStep& step) { return step.applied_force_uncertainty; },
+      &models::ShapeModelParts::applied_force, &models::ShapeShift::applied_force},
+     {[](const MechanicsStep& step) { return step.slip_off_uncertainty; },
+      &models::ShapeModelParts::slip_off, &models::ShapeShift::slip_off}}};
 
 std::optional<double> input_of(const models::MechanicsRun& run, std::size_t step,
-                               ShapeQuantity quantity) {
+                               std::optional<double> models::ShapeShift::*member) {
   double variance = 0;
   if (!run.input_parts.empty())
     for (const models::ShapeShift& shift : run.input_parts[step]) {
-      const std::optional<double> size = size_of(shift, quantity);
-      if (!size) return std::nullopt;
-      variance += *size * *size;
+      if (!(shift.*member)) return std::nullopt;
+      variance += std::pow(*(shift.*member), 2);
     }
   return std::sqrt(variance);
 }
@@ -76,11 +51,12 @@ std::optional<Vector3> input_of(const std::vector<models::AtSensors>& parts, std
 }  // namespace
 
 Band shape_band(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity) {
+  const Parts& parts = all_parts.at(static_cast<std::size_t>(quantity));
   Band result;
-  result.numerical = numerical_of(run.result.steps[step], quantity);
-  result.input = input_of(run, step, quantity);
+  result.numerical = parts.numerical(run.result.steps[step]);
+  result.input = input_of(run, step, parts.input);
   if (run.model_parts.empty()) return result;
-  const auto& model = model_of(run.model_parts[step], quantity);
+  const auto& model = run.model_parts[step].*parts.model;
   if (!model) return result;
   result.model = model->uncertainty();
   if (result.numerical && result.input)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "compare/models/run.h"
@@ -18,9 +19,18 @@ struct Band {
   std::optional<double> model;      ///< bound: what the model leaves out
   std::optional<double> input;      ///< standard: of [[input_uncertainty]]; 0 if none is stated
   std::optional<double> total;      ///< about 95 %
+
+  /// The total, or its parts that are known, of which the numerical one is.
+  std::optional<double> known() const {
+    if (total || !numerical) return total;
+    return *numerical + two_sided_95 * input.value_or(0);
+  }
 };
 
 enum class ShapeQuantity { tip, tip_angle, applied_force, slip_off };
+/// In that order, as summary.json names them.
+inline constexpr std::array<const char*, 4> shape_quantities{"tip", "tip_angle", "applied_force",
+                                                             "slip_off"};
 Band shape_band(const models::MechanicsRun& run, std::size_t step, ShapeQuantity quantity);
 
 /// Those of B or ΔB, of each sensor by components.

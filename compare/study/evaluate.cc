@@ -14,6 +14,7 @@
 #include "compare/budget/sensitivity.h"
 #include "compare/models/errors.h"
 #include "compare/models/evaluator.h"
+#include "compare/models/model_part.h"
 #include "compare/models/run.h"
 #include "problem/error.h"
 
@@ -120,6 +121,22 @@ void add_range(const Study& study, const input::Case& c, const MechanicsModel& m
   }
 }
 
+/// What the models leave out, into the results of the runs, which are in their order.
+void add_model_uncertainties(const MechanicsStep& step, std::size_t index, models::CaseResult runs,
+                             std::span<const models::MechanicsEntry> mechanics_models,
+                             std::span<const models::FieldEntry> field_models,
+                             std::vector<PairResult>& results) {
+  models::add_model_parts(runs, mechanics_models, field_models);
+  const auto& range = runs.mechanics.front().model_parts[index].slip_off;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (range && slip_off_limit(step)) results[i].range_model_uncertainty = range->uncertainty();
+    if (i >= runs.fields.size() || !runs.fields[i].steps[index]) continue;
+    const auto& parts = runs.fields[i].steps[index]->dB_model_part;
+    if (!parts.empty() && parts.front())
+      results[i].model_uncertainty = parts.front()->uncertainty().maxCoeff();
+  }
+}
+
 }  // namespace
 
 LargestLoad slip_off(const MechanicsModel& model, const Cilium& cilium, const MechanicsStep& step,
@@ -199,6 +216,7 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
   const models::MechanicsRun run = models::run_mechanics(entry, c, field_models, progress);
   const MechanicsStep& step = run.result.steps[path.step.front()];
   std::vector<PairResult> results;
+  models::CaseResult runs{c, {run}, {}};
   for (const models::ModelPair& pair : study.pairs) {
     if (pair.mechanics != mechanics) continue;
     if (step.status != Status::converged) {
@@ -209,7 +227,11 @@ std::vector<PairResult> evaluate(const Study& study, input::Case c, const std::s
     const models::FieldRun fields = models::run_field(pair.field, *field, run, c, progress);
     results.push_back(result_of(study, step, fields, path));
     results.back().uncertainty = models::change_uncertainty(run, fields, path.step.front(), 0);
+    runs.fields.push_back(fields);
   }
+  if (study.has_model_uncertainty && entry.correct)
+    add_model_uncertainties(step, path.step.front(), std::move(runs), mechanics_models,
+                            field_models, results);
   // A root is sought on one mesh: within an error limit each trial would choose its own.
   for (const input::Refinement& refinement : entry.refinements)
     if (entry.error_limit && refinement.also) refinement.also(c.options);

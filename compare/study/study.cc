@@ -247,6 +247,7 @@ support::Fingerprint fingerprint(const Study& study) {
   all.emplace_back("outputs", fmt::format("{}", fmt::join(names, " ")));
   if (study.optimisation) append_optimisation(*study.optimisation, all);
   if (study.noise) all.emplace_back("noise", fmt::to_string(*study.noise));
+  if (study.has_model_uncertainty) all.emplace_back("model_uncertainty", "true");
   if (study.rotation) all.emplace_back("rotation", fmt::to_string(*study.rotation));
   return all;
 }

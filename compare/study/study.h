@@ -97,7 +97,10 @@ struct Study {
   std::vector<Tolerance> tolerances;
   std::optional<Optimisation> optimisation;  ///< in place of parameters and tolerances; the first
                                              ///< pair searches
-  std::optional<double> noise;     ///< standard deviation of a reading, T, for `resolution`
+  std::optional<double> noise;  ///< standard deviation of a reading, T, for `resolution`
+  /// Whether rods are held against the corrected one at each point, or of [optimise] at the designs
+  /// that are told (models::add_model_parts()): 25 ms and more.
+  bool has_model_uncertainty = false;
   std::optional<double> rotation;  ///< rad, for the `range` of a load that has no slip-off
 
   const Load& load() const { return base.load_path.front(); }

@@ -38,8 +38,9 @@ std::string to_bytes(const std::vector<PairResult>& results) {
     Json values = Json::array();
     for (const auto& value : result.values) values.push_back(output::or_null(value));
     pairs.push_back({static_cast<int>(result.status), result.message, std::move(values),
-                     output::or_null(result.uncertainty),
-                     output::or_null(result.range_uncertainty)});
+                     output::or_null(result.uncertainty), output::or_null(result.range_uncertainty),
+                     output::or_null(result.model_uncertainty),
+                     output::or_null(result.range_model_uncertainty)});
   }
   return pairs.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -53,6 +54,8 @@ std::vector<PairResult> from_bytes(const std::string& bytes) {
     for (const Json& value : pair.at(2)) result.values.push_back(output::number_or_none(value));
     result.uncertainty = output::number_or_none(pair.at(3));
     result.range_uncertainty = output::number_or_none(pair.at(4));
+    result.model_uncertainty = output::number_or_none(pair.at(5));
+    result.range_model_uncertainty = output::number_or_none(pair.at(6));
   }
   return results;
 }

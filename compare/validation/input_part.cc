@@ -33,7 +33,7 @@ models::ShapeShift shift_of(const Sides& sides, std::size_t step, double width) 
   const auto tip = [](const MechanicsStep& of) {
     return of.deformation->centreline.at(of.deformation->centreline.length());
   };
-  shift.tip = (tip(b).position - tip(a).position) / width;
+  shift.tip = (tip(b).position - tip(a).position).norm() / width;
   shift.tip_angle = (tip(b).theta() - tip(a).theta()) / width;
   shift.applied_force = (b.applied_force - a.applied_force) / width;
   return shift;

@@ -88,6 +88,7 @@ MechanicsStep finished(const LoadPathOutcome& outcome, const Load& load, double 
   step.message = outcome.message;
   step.slip_off_force = outcome.slip_off_force;
   step.slip_off_displacement = outcome.slip_off_displacement;
+  step.slip_off_point = SlipOffPoint::rim;
   step.iterations = outcome.iterations;
   step.unknowns = finest.unknowns();
   if (outcome.status != Status::converged) return step;

@@ -56,6 +56,9 @@ void serialize(Archive& archive, ciliaval::Load& load, unsigned int /*version*/)
     archive& value;
     load.set_value(i, value);
   }
+  ciliaval::SlipOffPoint slip_off_point = load.slip_off_point();
+  archive& slip_off_point;
+  load.set_slip_off_point(slip_off_point);
   ciliaval::surroundings::Environment environment = load.environment();
   archive& environment;
   load.set_environment(environment);
@@ -93,17 +96,17 @@ void serialize(Archive& archive, ciliaval::continuation::PullIn& pull_in,
 template <class Archive>
 void serialize(Archive& archive, ciliaval::MechanicsStep& step, unsigned int /*version*/) {
   auto& [load, status, message, deformation, applied_force, slip_off_force, slip_off_displacement,
-         slip_off_uncertainty, contact_arclength, contact, tip_uncertainty, tip_angle_uncertainty,
-         applied_force_uncertainty, unstable_modes, smallest_eigenvalue, pull_in, unknowns,
-         iterations, seconds] = step;
+         slip_off_uncertainty, slip_off_point, contact_arclength, contact, tip_uncertainty,
+         tip_angle_uncertainty, applied_force_uncertainty, unstable_modes, smallest_eigenvalue,
+         pull_in, unknowns, iterations, seconds] = step;
   static_cast<void>(deformation);  // rebuilt from the state
   // Estimated anew.
   static_cast<void>(tip_uncertainty);
   static_cast<void>(tip_angle_uncertainty);
   static_cast<void>(applied_force_uncertainty);
   archive& load& status& message& applied_force& slip_off_force& slip_off_displacement&
-      slip_off_uncertainty& contact_arclength& contact& unstable_modes& smallest_eigenvalue&
-          pull_in& unknowns& iterations& seconds;
+      slip_off_uncertainty& slip_off_point& contact_arclength& contact& unstable_modes&
+          smallest_eigenvalue& pull_in& unknowns& iterations& seconds;
 }
 
 }  // namespace boost::serialization

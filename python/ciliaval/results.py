@@ -6,14 +6,28 @@ from __future__ import annotations
 import csv
 import json
 from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .arrays import Array
 from .errors import FileError, InputError
 from .files import DAMAGE, content, text_of, within
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# Numbers of a shape in summary.json: quantity, unit, name of its uncertainty and band.
+_SHAPE_COLUMNS = (
+    ("tip", "m", "tip"),
+    ("tip_angle", "rad", "tip_angle"),
+    ("applied_force", "N", "applied_force"),
+    ("contact_arclength", "m", None),
+    ("slip_off_force", "N", "slip_off"),
+    ("slip_off_displacement", "m", "slip_off"),
+)
 
 # The words of a comparison, docs/guide/results.md.
 _WORDS = {
@@ -276,6 +290,35 @@ class Result:
     def dB_band(self, pair: str) -> Array:
         """The 95 % band of dB: numerical + model + 1.96 input, (steps, sensors, 3), T; NaN where one is not known."""
         return self._field(pair, "dB_band")
+
+    def table(self) -> pd.DataFrame:
+        """All numbers of the steps as a pandas frame, one a row: step (from 0), load (its magnitude), model (of a field
+        the pair), sensor (its name), quantity, component, unit (SI), value, uncertainty (numerical) and band (95 %);
+        NaN where one is not known.
+
+        >>> result.table().query("quantity == 'dB' and component == 'x'")  # doctest: +SKIP
+        """
+        import pandas as pd
+
+        rows: list[tuple[Any, ...]] = []
+        for i, step in enumerate(self.steps):
+            load = next((v for v in self.loads[i].values() if _is_number(v)), None)
+            for model, entry in step["mechanics"].items():
+                band = entry.get("band") or {}
+                for quantity, unit, key in _SHAPE_COLUMNS:
+                    value = entry.get(quantity)
+                    each = zip("xyz", value) if isinstance(value, list) else [(None, value)]
+                    for component, number in each if value is not None else ():
+                        rows.append((i, load, model, None, quantity, component, unit, number,
+                                     entry.get(f"{key}_uncertainty"), band.get(key)))  # fmt: skip
+            for pair, entry in step["fields"].items():
+                for quantity, prefix in (("B", ""), ("dB", "dB_")):
+                    parts = [entry.get(key) or [] for key in (quantity, f"{prefix}uncertainty", f"{prefix}band")]
+                    for s, vectors in enumerate(zip_longest(*parts)):
+                        each = zip_longest("xyz", *(vector or [None] * 3 for vector in vectors))
+                        rows += [(i, load, pair, self.sensor_names[s], quantity, c, "T", *xs) for c, *xs in each]
+        names = ["step", "load", "model", "sensor", "quantity", "component", "unit", "value", "uncertainty", "band"]
+        return pd.DataFrame(rows, columns=names).astype({name: float for name in ("load", *names[-3:])})
 
     @property
     def comparisons(self) -> list[Comparison]:

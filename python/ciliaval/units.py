@@ -73,7 +73,7 @@ def describe_load(load: dict[str, Any], environment: dict[str, Any] | None = Non
     parameters = declared()["loads"].get(load["type"], {})
     parts = []
     for name, value in load.items():
-        if name == "type" or value is None:
+        if value is None or isinstance(value, str):  # its type, a setting
             continue
         if name == "scale":  # of the environment, which is said below
             parts += [f"{number(value)} times"] if value != 1 else []

@@ -39,6 +39,20 @@ description::Value parameter_value(py::handle value, const LoadParameter& parame
   return number(value, parameter.name, parameter.quantity);
 }
 
+/// Sets a parameter or a setting; false if the load has none of this name.
+bool set_key(Load& load, std::string_view name, py::handle value) {
+  const LoadType& type = load.type();
+  const auto parameter = std::ranges::find(type.parameters, name, &LoadParameter::name);
+  if (parameter != type.parameters.end()) {
+    parameter->set(load, parameter_value(value, *parameter));
+    return true;
+  }
+  const auto setting = std::ranges::find(type.settings, name, &description::Key::name);
+  if (setting == type.settings.end()) return false;
+  setting->set(load, value_of(value, *setting));
+  return true;
+}
+
 Load load(const Text& type_name, const py::kwargs& parameters) {
   const std::string type = text(type_name, "type");
   const LoadType* found = find_load_type(type);
@@ -52,13 +66,12 @@ Load load(const Text& type_name, const py::kwargs& parameters) {
   for (const LoadParameter& parameter : found->parameters)
     expected += fmt::format("{}{} [{}]", expected.empty() ? "" : ", ", parameter.name,
                             parameter.quantity.unit);
+  for (const auto& setting : found->settings) expected += fmt::format(", {}", setting.name);
   for (const auto& [key, value] : parameters) {
     const auto name = key.cast<std::string>();
-    const auto at = std::ranges::find(found->parameters, name, &LoadParameter::name);
-    if (at == found->parameters.end())
+    if (!set_key(result, name, value))
       throw InputError(
           fmt::format("a load of type `{}` has no `{}`; it has: {}", type, name, expected));
-    at->set(result, parameter_value(value, *at));
   }
   for (const LoadParameter& parameter : found->parameters)
     if (parameter.fallback.empty() && !parameters.contains(py::str(std::string(parameter.name))))
@@ -110,6 +123,9 @@ std::string representation(const Load& load) {
   std::string parameters;
   for (std::size_t i = 0; i < load.values().size(); ++i)
     parameters += fmt::format(", {}={:.6g}", load.type().parameters[i].name, load.values()[i]);
+  for (const auto& setting : load.type().settings)
+    parameters += fmt::format(", {}={}", setting.name,
+                              std::string(py::str(to_python(setting, setting.get(load)))));
   const std::string around = surroundings::is_empty(load.environment())
                                  ? ""
                                  : fmt::format(" in {}", representation(load.environment()));
@@ -119,14 +135,10 @@ std::string representation(const Load& load) {
 Load changed(Load load, const py::kwargs& values) {
   for (const auto& [key, value] : values) {
     const auto name = key.cast<std::string>();
-    const auto& parameters = load.type().parameters;
-    const auto found = std::ranges::find(parameters, name, &LoadParameter::name);
-    if (name == "magnitude")
-      load = with_magnitude(load, value.cast<double>());
-    else if (found == parameters.end())
+    const std::string_view parameter =
+        name == "magnitude" ? load.type().parameters.front().name : std::string_view(name);
+    if (!set_key(load, parameter, value))
       throw InputError(fmt::format("a {} has no `{}`", load.type().name, name));
-    else
-      load.set_value(static_cast<std::size_t>(found - parameters.begin()), value.cast<double>());
   }
   return load;
 }
@@ -275,14 +287,16 @@ void bind_problem(py::module_& module) {
                    "Load('contact', force=1e-3, height=13e-3, azimuth=0). load_types() names all.")
       .def(py::init(&load), py::arg("type"))
       .def_property_readonly("type", [](const Load& of) { return std::string(of.type().name); })
-      .def_property_readonly("parameters",
-                             [](const Load& of) {
-                               py::dict result;
-                               for (std::size_t i = 0; i < of.values().size(); ++i)
-                                 result[py::str(std::string(of.type().parameters[i].name))] =
-                                     of.values()[i];
-                               return result;
-                             })
+      .def_property_readonly(
+          "parameters",
+          [](const Load& of) {
+            py::dict result;
+            for (std::size_t i = 0; i < of.values().size(); ++i)
+              result[py::str(std::string(of.type().parameters[i].name))] = of.values()[i];
+            for (const auto& setting : of.type().settings)
+              result[py::str(std::string(setting.name))] = to_python(setting, setting.get(of));
+            return result;
+          })
       .def_property_readonly(
           "magnitude", [](const Load& of) { return magnitude(of); },
           "What a load path varies: a contact's force, a flow's force per length, a probe's "
@@ -315,6 +329,8 @@ void bind_problem(py::module_& module) {
             parameters[py::str(std::string(parameter.name))] =
                 fmt::format("{}{}{}", parameter.doc, parameter.quantity.unit.empty() ? "" : ", ",
                             parameter.quantity.unit);
+          for (const auto& setting : type->settings)
+            parameters[py::str(std::string(setting.name))] = std::string(setting.doc);
           result[py::str(std::string(type->name))] = parameters;
         }
         return result;

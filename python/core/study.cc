@@ -59,7 +59,8 @@ py::str to_text(std::string_view bytes) {
 /// As ciliaval/design/summary.py has it: status, message, values, uncertainties.
 py::tuple to_python(const study::PairResult& result) {
   return py::make_tuple(output::to_string(result.status), to_text(result.message), result.values,
-                        result.uncertainty, result.range_uncertainty);
+                        result.uncertainty, result.range_uncertainty, result.model_uncertainty,
+                        result.range_model_uncertainty);
 }
 
 /// An output as people and files know it.
@@ -101,6 +102,7 @@ std::vector<LimitColumn> limits(const study::Study& of) {
 /// The study's first pair with these outputs alone.
 study::Study searched(study::Study of, const std::vector<std::string>& outputs) {
   of.pairs.resize(1);
+  of.has_model_uncertainty = false;
   of.outputs.clear();
   for (const std::string& name : outputs)
     for (const study::Output output : study::all_outputs())

@@ -78,6 +78,21 @@ class Results(unittest.TestCase):
         with self.assertRaisesRegex(cv.InputError, "slip_off"):
             result.band("beam", "tip.x")
 
+    def test_are_a_table(self):
+        result = self.result
+        table = result.table()
+        pair = result.pairs[-1]
+        dB = table.query("quantity == 'dB' and model == @pair")
+        shape = (len(result.steps), len(result.sensors), 3)
+        np.testing.assert_array_equal(dB["value"].to_numpy().reshape(shape), result.dB(pair))
+        np.testing.assert_array_equal(dB["band"].to_numpy().reshape(shape), result.dB_band(pair))
+        np.testing.assert_array_equal(dB["uncertainty"].to_numpy().reshape(shape), result.dB_uncertainty(pair))
+        model = result.models[0]
+        tip = table.query("quantity == 'tip' and model == @model")
+        np.testing.assert_array_equal(tip["value"].to_numpy().reshape(-1, 3), result.tip(model))
+        self.assertEqual(list(tip["component"][:3]), ["x", "y", "z"])
+        self.assertEqual(set(table["unit"]), {"m", "rad", "N", "T"})
+
     def test_have_verdicts_and_intervals(self):
         (tip,) = self.result.compare(quantity="tip", statistic="value", step=3, model="elastica")
         deflection = np.linalg.norm(self.result.tip("elastica")[3] - self.result.tip("beam")[3])

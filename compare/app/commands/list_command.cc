@@ -49,7 +49,9 @@ std::string list_of_cases() {
 }
 
 ExitCode list(const ListOptions&, const std::string&) {
-  std::string text = "Mechanics models (in a comparison the later one is the reference)\n";
+  std::string text =
+      "Mechanics models (in a comparison the later one is the reference,\nof rods the one with "
+      "corrected joints)\n";
   const auto add = [&](const auto& entries) {
     for (const auto& entry : entries)
       text += fmt::format("  {:<10} {}{}\n", entry.id, entry.description,

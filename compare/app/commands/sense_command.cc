@@ -23,7 +23,7 @@ and which error of the sensor makes them.
 
 Of a case with the load `sweep`: the levels of the surface, in the order of the rows.
 The load found is the least-squares solution with the chosen pair of models, its interval that of
-the noise. `nothing`: noise alone makes such a load; `misfit`: no load explains the reading; `beyond
+the noise, of what the models leave out and of uncertain inputs. `nothing`: noise alone makes such a load; `misfit`: no load explains the reading; `beyond
 range`: see --largest (docs/guide/sensing.md).)";
 
 struct SenseOptions {

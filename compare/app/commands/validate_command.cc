@@ -59,8 +59,8 @@ ExitCode validate(const ValidateOptions& options, const std::string&) {
 void add_validate(CommandLine& line) {
   const auto options = std::make_shared<ValidateOptions>();
   line.add("validate",
-           "Read and check case files, and say what to expect of them: the signal by the paper's "
-           "elastica, and what is odd",
+           "Read and check case files, and say what to expect of them: the signal by the elastica "
+           "of the case, and what is odd",
            options, validate)
       ->add_option("CASE", options->files, "Case, study and test bench files (TOML)")
       ->required()

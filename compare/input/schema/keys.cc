@@ -116,6 +116,7 @@ void add_load(std::vector<Key>& all) {
   for (const bool last : {false, true})
     for (const LoadType* type : load_types()) {
       add(type->parameters, type->name, last);
+      add(type->settings, type->name, last);
       if (type->statement) add(type->statement->parameters, type->name, last);
     }
   all.push_back(only_with({SweepLoad::type().name}, of_key("load", samples)));

@@ -93,6 +93,7 @@ std::string load_table(const LoadType& load) {
       fmt::format("type = \"{}\"", load.name), load.description, fmt::join(others, ", "));
   for (const LoadParameter& parameter : load.parameters)
     text += line(parameter, &parameter != &load.parameters.front() && !parameter.fallback.empty());
+  for (const auto& setting : load.settings) text += line(setting, true);
   if (load.statement)
     for (const auto& parameter : load.statement->parameters) text += line(parameter, true);
   return text;

@@ -56,6 +56,7 @@ input::MechanicsEntry beam() {
       .takes_sections = true,
       .check =
           [](const input::CaseCheck& check) {
+            check_rim(check);
             check_joints(check, "beam", check.problem.options.of<BeamOptions>().joints);
           },
       .budget_stages = budget_stages,

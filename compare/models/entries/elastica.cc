@@ -83,6 +83,7 @@ void check_elastica(const input::CaseCheck& check) {
   if (!check.is_asked_for || !check.load_is_right) return;
   if (!check.problem.load_path.front().environment().magnets.empty()) return refuse_magnets(check);
   check_plane(check);
+  check_rim(check);
   if (check.problem.options.of<ElasticaOptions>().form == ElasticaOptions::Form::height)
     check_height_form(check);
   check_corrected(check);

@@ -18,6 +18,9 @@ inline input::Choices<joints::Correction> corrections() {
   return {{"none", joints::Correction::none}, {"corrected", joints::Correction::corrected}};
 }
 
+/// Reports a contact whose upper edge, to which the rim comes down, is not below the tip.
+void check_rim(const input::CaseCheck& check);
+
 /// Reports, at the option of the model, what the corrections do not reach: the cilium, or a sweep.
 void check_joints(const input::CaseCheck& check, std::string_view model,
                   joints::Correction correction);

@@ -26,6 +26,7 @@
 
 #include "compare/output/results.h"
 #include "compare/output/vtk/files.h"
+#include "compare/results/band.h"
 #include "meshes/boundary_ids.h"
 #include "problem/cilium.h"
 
@@ -359,6 +360,8 @@ vtkSmartPointer<vtkPolyData> sensors(const models::CaseResult& result, std::size
     const std::string pair = run.mechanics + "_" + run.field;
     attach_masked(*data, "B_" + pair, run.steps[step]->B);
     attach_masked(*data, "dB_" + pair, run.steps[step]->dB);
+    if (!run.steps[step]->dB_model_part.empty())
+      attach_masked(*data, "band_dB_" + pair, results::field_bands(result, run, step, true).total);
   }
   return data;
 }

@@ -34,7 +34,8 @@ vtkSmartPointer<vtkPolyData> dipoles(const Cilium& cilium, const Centreline& cen
                                      analytic::sources::PushForward push_forward);
 
 /// The sensors as vertices with `B` and `dB` of every pair of models at a step, named
-/// `B_elastica_line`, and a mask `valid_B_elastica_line` that is 0 where there is no value.
+/// `B_elastica_line`, and a mask `valid_B_elastica_line` that is 0 where there is no value; of rods
+/// `band_dB_elastica_line` too, the ± of ΔB (results::field_bands()).
 vtkSmartPointer<vtkPolyData> sensors(const models::CaseResult& result, std::size_t step);
 
 /// The surface of a sweep around the cilium as quadrilaterals, three diameters wide, where it

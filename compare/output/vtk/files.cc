@@ -40,19 +40,19 @@ void add_vector(vtkDataSet& data, const char* name, const Vector3& vector) {
   data.GetFieldData()->AddArray(array);
 }
 
-void add_number(vtkDataSet& data, const char* name, double number) {
-  const vtkNew<vtkDoubleArray> array;
-  array->SetName(name);
-  array->InsertNextValue(number);
-  data.GetFieldData()->AddArray(array);
-}
-
 }  // namespace
 
 void add_strings(vtkDataSet& data, const char* name, const std::vector<std::string>& values) {
   const vtkNew<vtkStringArray> array;
   array->SetName(name);
   for (const std::string& value : values) array->InsertNextValue(value);
+  data.GetFieldData()->AddArray(array);
+}
+
+void add_number(vtkDataSet& data, const char* name, double number) {
+  const vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->InsertNextValue(number);
   data.GetFieldData()->AddArray(array);
 }
 

@@ -18,6 +18,9 @@ std::string extension(const vtkDataSet& data);
 /// Adds texts under a name to the field data.
 void add_strings(vtkDataSet& data, const char* name, const std::vector<std::string>& values);
 
+/// Adds a number under a name to the field data.
+void add_number(vtkDataSet& data, const char* name, double number);
+
 /// Adds where the data come from and the load (N, N/m or m) to the field data: `provenance`,
 /// `load`, `load_unit`.
 void add_provenance(vtkDataSet& data, const Provenance& provenance, const Load& load);

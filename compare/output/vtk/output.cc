@@ -15,6 +15,7 @@
 #include <mutex>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "analytic/rod/field_models.h"
@@ -24,11 +25,17 @@
 #include "compare/output/text_table.h"
 #include "compare/output/vtk/datasets.h"
 #include "compare/output/vtk/files.h"
+#include "compare/results/band.h"
 #include "problem/error.h"
 #include "problem/support/evenly.h"
 
 namespace ciliaval::compare::output::vtk {
 namespace {
+
+/// ± of a rod's shape, in the field data of its centreline.
+constexpr std::pair<const char*, results::ShapeQuantity> banded[]{
+    {"tip_band", results::ShapeQuantity::tip},
+    {"tip_angle_band", results::ShapeQuantity::tip_angle}};
 
 /// The files of a folder, each part of a series. Several threads may add files.
 class Output {
@@ -129,8 +136,12 @@ void write_vtk(const models::CaseResult& result, const std::optional<FieldGrid>&
     for (const models::MechanicsRun& run : result.mechanics) {
       const auto& deformation = run.result.steps[step].deformation;
       if (!deformation) continue;
-      add("centreline_" + run.model, step, [&problem, &centreline = deformation->centreline] {
-        return rod_polyline(problem.cilium, centreline);
+      add("centreline_" + run.model, step, [&problem, &run, step] {
+        auto data = rod_polyline(problem.cilium, run.result.steps[step].deformation->centreline);
+        for (const auto& [name, quantity] : banded)
+          if (const auto band = results::shape_band(run, step, quantity).total)
+            add_number(*data, name, *band);
+        return data;
       });
       add("dipoles_" + run.model, step, [&problem, &centreline = deformation->centreline] {
         return dipoles(problem.cilium, centreline,

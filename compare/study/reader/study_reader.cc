@@ -17,6 +17,7 @@
 
 #include "compare/input/case_sections.h"
 #include "compare/input/case_syntax.h"
+#include "compare/input/described.h"
 #include "compare/input/external/background.h"
 #include "compare/models/named_files.h"
 #include "compare/models/registry.h"
@@ -264,6 +265,13 @@ void read_study_table(input::Section& table, Reading& reading) {
   read_outputs(table, study);
   study.noise = read_companion(table, "noise", quantity::flux_density, noise_range,
                                study.asks_for(Output::resolution), "the output 'resolution'");
+  description::Key model_uncertainty;
+  model_uncertainty.name = "model_uncertainty";
+  model_uncertainty.initial = study.optimisation.has_value();
+  study.has_model_uncertainty = std::get<bool>(model_uncertainty.initial);
+  if (const toml::node* node = table.find(model_uncertainty.name))
+    if (const auto value = input::read_value(*node, model_uncertainty, faults))
+      study.has_model_uncertainty = std::get<bool>(*value);
   if (reading.numbers.empty()) {  // there is no case
     for (const std::string_view key : {"sensor", "rotation"}) table.find(key);
     return;

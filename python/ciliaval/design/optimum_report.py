@@ -22,17 +22,31 @@ from .summary import (
 )
 
 
+def _band(output: str, result: Result) -> float | None:
+    """Of |dB| (its components' errors are bounds), a component, or a range by slip-off."""
+    if output == "range":
+        parts, times = (result.range_uncertainty, result.range_model_uncertainty), 1.0
+    else:
+        parts, times = (result.uncertainty, result.model_uncertainty), math.sqrt(3) if output == "dB_norm" else 1.0
+    if output not in ("range", "dB_norm", "dB_x", "dB_y", "dB_z") or None in parts:
+        return None
+    return times * sum(part for part in parts if part is not None)
+
+
 def limit_states(study: StudyFile, result: Result) -> list[dict[str, Any]]:
     """Whether a pair keeps each limit that the study states: [{"output", "status": "kept", "missed" or
     "unknown" (the pair has no such value), "value": the output's magnitude (SI units), "by": what is
-    missing, in parts of the limit; negative: to spare}]."""
+    missing, in parts of the limit; negative: to spare, "band": how uncertain the value is, numerically and
+    by what the models leave out, in parts of the limit; None: not known}]."""
     values = {o.id: abs(x) for o, x in zip(study.outputs, result.values) if x is not None}
     states = []
     for limit in limits_of(study):
         value = values.get(limit.output.id)
         by = (1 if limit.is_lower else -1) * (limit.value - value) / limit.value if value is not None else None
         status = "unknown" if by is None else "missed" if by > 2 * FEASIBILITY else "kept"
-        states.append({"output": limit.output.id, "status": status, "value": value, "by": by})
+        band = _band(limit.output.id, result)
+        band = band / limit.value if band is not None else None
+        states.append({"output": limit.output.id, "status": status, "value": value, "by": by, "band": band})
     return states
 
 
@@ -112,7 +126,9 @@ def _result_table(study: StudyFile, optimum: Optimum, width: int) -> str:
     for design in optimum.designs:
         for pair, result in design.results.items():
             row = [design.name, pair, *(cell(result, i, output) for i, output in enumerate(study.outputs))]
-            row.append("-" if result.uncertainty is None else f"{result.uncertainty / 1e-6:.1g}")
+            parts = (result.uncertainty, result.model_uncertainty)
+            known = sum(part for part in parts if part is not None)
+            row.append("-" if parts == (None, None) else f"{'' if None not in parts else '>'}{known / 1e-6:.1g}")
             before, now = magnitude(optimum.designs[0].results.get(pair)), magnitude(result)
             row.append(f"{now / before:.4g}" if before and now is not None else "-")
             rows.append([*row, _limits_text(study, result)])
@@ -120,16 +136,18 @@ def _result_table(study: StudyFile, optimum: Optimum, width: int) -> str:
 
 
 def _limits_text(study: StudyFile, result: Result) -> str:
-    """Which of the study's limits a pair misses, in per cent of the limit."""
+    """Which of the study's limits a pair misses, or keeps by less than it is uncertain; in per cent of the limit."""
     states = limit_states(study, result)
     if not states:
         return "-"
-    missed = [
-        f"{s['output']} unknown" if s["status"] == "unknown" else f"{s['output']} missed by {100 * s['by']:.2g} %"
-        for s in states
-        if s["status"] != "kept"
-    ]
-    return ", ".join(missed) or "kept"
+    texts = []
+    for s in states:
+        if s["status"] == "unknown":
+            texts.append(f"{s['output']} unknown")
+        elif s["status"] == "missed" or (s["band"] is not None and -s["by"] < s["band"]):
+            band = "" if s["band"] is None else f" +-{100 * s['band']:.2g}"
+            texts.append(f"{s['output']} {s['status']} by {100 * abs(s['by']):.2g}{band} %")
+    return ", ".join(texts) or "kept"
 
 
 def _messages(optimum: Optimum) -> str:

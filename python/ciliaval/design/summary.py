@@ -27,6 +27,8 @@ class Result(NamedTuple):
     values: Sequence[float | None]  # of the study's outputs, in their order
     uncertainty: float | None = None  # numerical, of the components of dB, T
     range_uncertainty: float | None = None  # numerical, in the range's unit
+    model_uncertainty: float | None = None  # what the models leave out, of the components of dB, T
+    range_model_uncertainty: float | None = None  # likewise of a range by slip-off
 
 
 Points = Sequence[Sequence[Result]]  # of each point, in the order of the pairs
@@ -178,13 +180,18 @@ def parameter_json(parameter: StudyParameter, values: dict[str, Any]) -> dict[st
 
 
 def pair_json(study: StudyFile, result: Result) -> dict[str, Any]:
-    """What a pair made of a point: status, message, outputs, dB_uncertainty, range_uncertainty if known."""
+    """What a pair made of a point: status, message, outputs, dB_uncertainty; range_uncertainty and the
+    models' parts of both if known."""
     document: dict[str, Any] = {"status": result.status, "message": result.message}
     for output, value in zip(study.outputs, result.values):
         document[output.id] = number_json(value)
     document["dB_uncertainty"] = number_json(result.uncertainty)
     if result.range_uncertainty is not None:
         document["range_uncertainty"] = number_json(result.range_uncertainty)
+    if result.model_uncertainty is not None:
+        document["dB_model_uncertainty"] = number_json(result.model_uncertainty)
+    if result.range_model_uncertainty is not None:
+        document["range_model_uncertainty"] = number_json(result.range_model_uncertainty)
     return document
 
 

@@ -84,7 +84,7 @@ def _figures(result: Result) -> list[Image]:
     if result.pairs:
         for sensor, name in enumerate(result.sensor_names):
             title = f"Signal at sensor {name}"
-            text = "Colour: bending model; line: field model; band: numerical error of the field."
+            text = "Colour: bending model; line: field model; band: ± of ΔB at 95 %."
             drawn.append(image(title, text, lambda: plot.signal(result, sensor)))
     if result.loads[0]["type"] == "sweep":
         text = "Contact along the way; shaded: between two samples a model jumps."

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 from typing import Any
@@ -71,7 +72,7 @@ def _range(result: Result) -> str:
             largest = max(float(load.get("force") or 0) for load in result.loads)
             if largest:
                 text += f", {number(known[-1] / largest, 1, 3)} times the largest load here"
-            return text + "."
+            return f"{text}.{_slip_off_points(result)}"
     if result.loads[0]["type"] == "sweep":
         jumps = {m: sum("jump" in s["mechanics"].get(m, {}) for s in result.steps) for m in result.models}
         each = ", ".join(f"{count} by the {m}" for m, count in jumps.items())
@@ -83,6 +84,20 @@ def _range(result: Result) -> str:
     return f"{count * len(result.models) - solved} of the models' load steps have no equilibrium."
 
 
+
+
+def _slip_off_points(result: Result) -> str:
+    """Where the models do not judge by one point of the tip."""
+    points: dict[str, str] = {}
+    for step in result.steps:
+        points |= {m: at for m, entry in step["mechanics"].items() if (at := entry.get("slip_off_at"))}
+    if len(set(points.values())) < 2:
+        return ""
+    by = {at: ", ".join(m for m in points if points[m] == at) for at in sorted(set(points.values()))}
+    return (
+        f" It is where the tip of the axis comes down to the contact height for {by['axis']}, and where the rim of the "
+        f"end face does for {by['rim']}: ranges to compare need slip_off = \"rim\" in [load]."
+    )
 
 
 def _paper(result: Result) -> str:
@@ -138,7 +153,7 @@ def _trust(result: Result) -> str:
     step = _last(result, model)
     parts = []
     if step is not None:
-        parts += _of_the_tip(result, model, step)
+        parts += _of_the_tip(result, model, step) + _of_the_signal(result, step)
     total = sum(verdicts.values())
     if total:
         parts.append(
@@ -146,8 +161,7 @@ def _trust(result: Result) -> str:
             f"numerical errors, {verdicts['below_uncertainty']} smaller, and for "
             f"{verdicts['inconclusive']} the error is not known"
         )
-    text = " and ".join(parts)
-    return f"{text[:1].upper()}{text[1:]}." if text else ""
+    return " ".join(f"{part[:1].upper()}{part[1:]}." for part in parts)
 
 
 def _of_the_tip(result: Result, model: str, step: int) -> list[str]:
@@ -170,6 +184,26 @@ def _of_the_tip(result: Result, model: str, step: int) -> list[str]:
     if np.isnan(u):
         return [f"the numerical error of the {model} is not known"]
     return [f"{text} {percent(u / size, 2)} of its deflection but for what the model leaves out, which is not known"]
+
+
+def _of_the_signal(result: Result, step: int) -> list[str]:
+    """The largest component of dB by the best pair, its band and what makes most of it."""
+    pair = next(iter(best_first(result.pairs)), "")
+    if not pair or not np.isfinite(result.dB_band(pair)[step]).any():
+        return []
+    dB, band = result.dB(pair)[step], result.dB_band(pair)[step]
+    at = np.unravel_index(np.argmax(np.where(np.isfinite(band), np.abs(dB), -1)), dB.shape)
+    inputs = result.steps[step]["fields"][pair].get("dB_input_contributions", [])
+    parts = {
+        "what the models leave out": float(result.dB_model_uncertainty(pair)[step][at]),
+        "numerical errors": float(result.dB_uncertainty(pair)[step][at]),
+        **{path: 1.96 * abs(rows[at[0]][at[1]]) for path, rows in zip(result.summary.get("inputs", []), inputs)},
+    }
+    share = max(parts, key=lambda part: parts[part])
+    sensor = f" at sensor {result.sensor_names[at[0]]}" if len(dB) > 1 else ""
+    places = max(0, 1 - math.floor(math.log10(max(1e6 * band[at], 1e-12))))  # two digits of the band
+    value, spread, most = (f"{1e6 * x:.{places}f}" for x in (float(dB[at]), float(band[at]), parts[share]))
+    return [f"ΔB_{'xyz'[at[1]]}{sensor} is {value} ± {spread} µT at 95 % ({pair}), {most} of it from {share}"]
 
 
 def _deflections(result: Result, step: int) -> dict[str, float]:

@@ -9,7 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -493,6 +495,27 @@ TEST(BudgetReport, TheTableIsInReadableUnitsAndMarksWhatIsNotResolved) {
               testing::ContainsRegex("-> beam/line +0.799 "));  // 200 (sin 0.044 − sin 0.04)
   EXPECT_THAT(text, testing::ContainsRegex("-> solid/potential mu_r = 1 +0.000 +.- +4e-06 ~"));
   EXPECT_THAT(text, HasSubstr("one dipole at its centroid; not in the sum"));
+}
+
+// The table of the same step has each link's part of dB, in its last column.
+TEST(BudgetReport, BeginsWithTheThreeLinksThatChangeTheSignalMost) {
+  const std::string text = budget::budget_text(World{}.budget({2e-3}), output::Footnotes::text);
+  const std::string table = text.substr(text.find("\ndB at sensor"));
+  std::vector<double> percent;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line) && !line.starts_with("total");)
+    if (line.starts_with("->")) percent.push_back(std::stod(line.substr(line.rfind(' '))));
+  ASSERT_GT(percent.size(), 3U);
+  std::ranges::sort(percent, std::greater{});
+  const std::string head = text.substr(text.find("What changes dB most at step 1, in % of it:\n"));
+  std::istringstream first(head);
+  std::string line;
+  std::getline(first, line);
+  for (int i = 0; i < 3; ++i) {
+    std::getline(first, line);
+    EXPECT_NEAR(std::stod(line) / percent[i], 1, 0.06) << line;
+    EXPECT_GT(line.size(), 12U) << line;  // and the assumption
+  }
 }
 
 // The paper's cilium by the rods. Oracle of dB/dF: the derivative of the polynomial through

@@ -62,6 +62,9 @@ TEST(Converge, ABeamOfDegreeTwoConvergesWithOrderFourToTheBeamOfDegreeSix) {
   // The verdict counts what the JSON has; the list is there on request.
   const std::string brief = read_text(folder.path() / "out.txt");
   EXPECT_THAT(brief, HasSubstr("numbers have an interval, the widest +-"));
+  EXPECT_THAT(brief,
+              testing::ContainsRegex("tip known to [0-9e.-]+ %, dB known to [0-9e.-]+ % on"));
+  EXPECT_THAT(brief, HasSubstr(" from the limit; nothing to refine for 1 %"));
   EXPECT_THAT(brief, testing::ContainsRegex("Verdict: converged( in part)?: "));
   EXPECT_THAT(brief, testing::Not(HasSubstr("extrapolated")));
   ASSERT_EQ(ciliaval(folder.path(), "converge one.toml --all --json six.json"), 0);

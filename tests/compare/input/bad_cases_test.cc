@@ -74,7 +74,8 @@ const PlantedFault keys[]{
     {"UnknownKeyInLoad", "azimuth", "azimut", "25:1",
      "unknown key 'azimut' in [load] of type 'contact'", "did you mean 'azimuth'?"},
     {"KeyOfAnotherLoadType", "azimuth = \"30 deg\"", "velocity = \"1 m/s\"", "25:1",
-     "unknown key 'velocity' in [load] of type 'contact' (valid: type, force, height, azimuth)"},
+     "unknown key 'velocity' in [load] of type 'contact' (valid: type, force, height, azimuth, "
+     "slip_off)"},
     {"UnknownKeyInModels", "[models.solid]", "[models.sold]", "34:9",
      "unknown key 'sold' in [models]", "did you mean 'solid'?"},
     {"UnknownOption", "refinement", "refinment", "35:1",
@@ -348,10 +349,11 @@ const PlantedFault probe[]{
      "'displacement'"},
     {"DisplacementOfAContact", "azimuth = \"30 deg\"", "displacement = \"1 mm\"", "25:1",
      "unknown key 'displacement' in [load] of type 'contact' (valid: type, force, height, "
-     "azimuth)"},
+     "azimuth, slip_off)"},
     {"UnknownKey", contact_load,
      "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"16 mm\"\nspeed = \"1 m/s\"", "25:1",
-     "unknown key 'speed' in [load] of type 'probe' (valid: type, displacement, height, azimuth)"},
+     "unknown key 'speed' in [load] of type 'probe' (valid: type, displacement, height, azimuth, "
+     "slip_off)"},
     {"KernelAboveTheTip", contact_load,
      "type = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"19.6 mm\"", "24:10",
      "the solid's contact kernel"},
@@ -371,6 +373,22 @@ TEST(BadCaseSize, MoreResultsThanAMachineHoldsAreRefused) {
               StartsWith("bad.toml:28:12: 179 sensor points, 3 steps and 10 pairs of mechanics and "
                          "field model with 45 comparisons among them make 200525 rows of results, "
                          "more than 200000: list fewer points, steps or models"));
+}
+
+// The solid asks for its kernel below the tip anyway; rods ask for it where they let go by the rim.
+TEST(BadCaseFile, ARimNeedsTheContactsEdgeBelowTheTip) {
+  const auto with = [](const std::string& slip_off) {
+    return faults_of(replaced(
+        replaced(replaced(good_case, "\"16 mm\"", "\"19.6 mm\"\nslip_off = \"" + slip_off + "\""),
+                 ", \"solid\"", ""),
+        ", \"mesh\"", ""));
+  };
+  EXPECT_EQ(with("axis"), "");
+  EXPECT_THAT(with("rim"),
+              StartsWith("bad.toml:24:10: with slip_off = 'rim' the contact's upper edge, 0.0005 m "
+                         "above the height 0.0196 m, must lie below the tip at 0.02 m"));
+  EXPECT_THAT(with("rin"),
+              HasSubstr("'slip_off' cannot be 'rin' (valid: axis, rim); did you mean 'rim'?"));
 }
 
 TEST(BadCaseSize, OneFieldModelIsBoundedToo) {

@@ -100,7 +100,8 @@ std::vector<std::string> texts(const test::TemporaryFolder& folder) {
           "[load]\ntype = \"flow\"\nvelocity = \"0.5 m/s\"\ndensity = \"900 kg/m3\"\n"
           "drag_coefficient = 1.2\n[models]\nmechanics = [\"solid\"]\n",
       rod(round_section) +
-          "[load]\ntype = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"15 mm\"\n" +
+          "[load]\ntype = \"probe\"\ndisplacement = \"1 mm\"\nheight = \"15 mm\"\nslip_off = "
+          "\"rim\"\n" +
           "[models]\nmechanics = [\"solid\"]\n",
       rod(round_section) + "[load]\ntype = \"environment\"\nscale = 0.5\nazimuth = \"0 deg\"\n" +
           magnet +

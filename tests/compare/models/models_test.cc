@@ -21,7 +21,7 @@ namespace {
 
 const double contact_height = 16e-3;
 
-Cilium paper() {
+Cilium stub() {
   return {3e-3, {{"base", 3e-3, 1e5, 0.49, 0}, {"magnet", 17e-3, 3e6, 0.49, 75e3}}};
 }
 
@@ -47,7 +47,7 @@ double tip_deflection(const Centreline& line) {
 }
 
 /// Solves one load and returns the centreline.
-Centreline solved(const MechanicsModel& model, const Cilium& cilium, const Load& load) {
+Centreline centreline_of(const MechanicsModel& model, const Cilium& cilium, const Load& load) {
   const MechanicsResult result = model.solve(cilium, {load});
   EXPECT_EQ(result.steps.at(0).status, Status::converged) << result.steps.at(0).message;
   return result.steps.at(0).deformation.value().centreline;
@@ -58,10 +58,10 @@ class EveryLoad : public testing::TestWithParam<Load> {};
 // Oracle: without shear and extension, Simo–Reissner's beam is the elastica. Measured: 5e-11 of the
 // length (flow; the beam's interpolation between its nodes) and 1e-15 in the tip angle.
 TEST_P(EveryLoad, ShearRigidBeamIsTheElastica) {
-  const Centreline elastica = solved(analytic::elastica::Elastica(), paper(), GetParam());
-  const Centreline beam = solved(shear_rigid_beam(), paper(), GetParam());
+  const Centreline elastica = centreline_of(analytic::elastica::Elastica(), stub(), GetParam());
+  const Centreline beam = centreline_of(shear_rigid_beam(), stub(), GetParam());
   EXPECT_GT(tip_deflection(elastica), 1e-3);  // not the straight cilium
-  EXPECT_LT(largest_distance(elastica, beam), 2e-10 * paper().length());
+  EXPECT_LT(largest_distance(elastica, beam), 2e-10 * stub().length());
   EXPECT_NEAR(elastica.at(20e-3).theta(), beam.at(20e-3).theta(), 1e-13);
 }
 
@@ -77,8 +77,8 @@ INSTANTIATE_TEST_SUITE_P(Models, EveryLoad,
 // to 5e-16.
 TEST(Models, ElasticaAndShearRigidBeamSlipOffAtTheSameForce) {
   const LoadPath path{ContactLoad{7e-3, contact_height, 0.0}};
-  const MechanicsStep elastica = analytic::elastica::Elastica().solve(paper(), path).steps.at(0);
-  const MechanicsStep beam = shear_rigid_beam().solve(paper(), path).steps.at(0);
+  const MechanicsStep elastica = analytic::elastica::Elastica().solve(stub(), path).steps.at(0);
+  const MechanicsStep beam = shear_rigid_beam().solve(stub(), path).steps.at(0);
   EXPECT_EQ(elastica.status, Status::slipped_off);
   EXPECT_EQ(beam.status, Status::slipped_off);
   EXPECT_NEAR(elastica.slip_off_force.value(), 5.862e-3, 0.5e-6);
@@ -98,8 +98,8 @@ TEST(Models, ElasticaAndShearRigidBeamFindTheSameForceForADisplacement) {
     for (const double part : {0.01, 0.3, 0.6, 0.8})
       path.push_back(ProbeLoad{part * 11e-3, height, 1});
     path.push_back(ProbeLoad{20e-3, height, 1});
-    const MechanicsResult elastica = analytic::elastica::Elastica().solve(paper(), path);
-    const MechanicsResult beam = fem::beam::Beam(fine).solve(paper(), path);
+    const MechanicsResult elastica = analytic::elastica::Elastica().solve(stub(), path);
+    const MechanicsResult beam = fem::beam::Beam(fine).solve(stub(), path);
     for (std::size_t i = 0; i < path.size(); ++i) {
       const MechanicsStep& a = elastica.steps[i];
       const MechanicsStep& b = beam.steps[i];
@@ -123,13 +123,13 @@ TEST(Models, ElasticaAndShearRigidBeamFindTheSameForceForADisplacement) {
 TEST(Models, AgreeToHalfAPercentForASlenderCilium) {
   const std::string file = CILIAVAL_SOURCE_DIR "/cases/verification/slender.toml";
   const compare::input::Case c = compare::input::read_case(file, compare::models::known());
-  const Centreline elastica =
-      solved(analytic::elastica::Elastica(c.options.of<analytic::elastica::ElasticaOptions>()),
-             c.cilium, c.load_path.back());
-  const Centreline beam =
-      solved(fem::beam::Beam(c.options.of<fem::beam::BeamOptions>()), c.cilium, c.load_path.back());
-  const Centreline solid = solved(fem::solid::Solid(c.options.of<fem::solid::SolidOptions>()),
-                                  c.cilium, c.load_path.back());
+  const Centreline elastica = centreline_of(
+      analytic::elastica::Elastica(c.options.of<analytic::elastica::ElasticaOptions>()), c.cilium,
+      c.load_path.back());
+  const Centreline beam = centreline_of(fem::beam::Beam(c.options.of<fem::beam::BeamOptions>()),
+                                        c.cilium, c.load_path.back());
+  const Centreline solid = centreline_of(
+      fem::solid::Solid(c.options.of<fem::solid::SolidOptions>()), c.cilium, c.load_path.back());
   const double deflection = tip_deflection(solid);
   EXPECT_GT(deflection, 0.3 * c.cilium.length());  // a large deflection
   EXPECT_LT(largest_distance(elastica, solid), 5e-3 * deflection);
@@ -160,11 +160,11 @@ TEST(Models, ProbesOfASlenderCiliumTakeTheSameForce) {
 TEST(Models, FieldsOfElasticaAndShearRigidBeamAgree) {
   const Load load = ContactLoad{4e-3, contact_height, 0.5};
   const std::vector<Vector3> sensor{{-0.1e-3, 0.2e-3, -1.55e-3}};
-  const Deformation elastica{solved(analytic::elastica::Elastica(), paper(), load), nullptr};
-  const Deformation beam{solved(shear_rigid_beam(), paper(), load), nullptr};
+  const Deformation elastica{centreline_of(analytic::elastica::Elastica(), stub(), load), nullptr};
+  const Deformation beam{centreline_of(shear_rigid_beam(), stub(), load), nullptr};
   const auto compare = [&](const FieldModel& model) {
-    const Vector3 a = model.field(paper(), elastica, sensor).B[0];
-    const Vector3 b = model.field(paper(), beam, sensor).B[0];
+    const Vector3 a = model.field(stub(), elastica, sensor).B[0];
+    const Vector3 b = model.field(stub(), beam, sensor).B[0];
     EXPECT_LT((a - b).norm(), 1e-13 * a.norm());
   };
   compare(analytic::rod::DipoleField());
@@ -176,11 +176,11 @@ TEST(Models, FieldsOfElasticaAndShearRigidBeamAgree) {
 // What is left is the mesh's
 // geometry: 2e-8 measured.
 TEST(Models, FieldOfTheUndeformedSolidIsThatOfTheStraightMagnet) {
-  const MechanicsResult solid = fem::solid::Solid().solve(paper(), {DeadLoad{0, 0}});
-  const Deformation straight{straight_centreline(paper().interfaces()), nullptr};
+  const MechanicsResult solid = fem::solid::Solid().solve(stub(), {DeadLoad{0, 0}});
+  const Deformation straight{straight_centreline(stub().interfaces()), nullptr};
   const std::vector<Vector3> sensor{{-0.1e-3, 0.2e-3, -1.55e-3}};
-  const Vector3 mesh = analytic::body::MeshField().field(paper(), solid.undeformed, sensor).B[0];
-  const Vector3 volume = analytic::rod::VolumeField().field(paper(), straight, sensor).B[0];
+  const Vector3 mesh = analytic::body::MeshField().field(stub(), solid.undeformed, sensor).B[0];
+  const Vector3 volume = analytic::rod::VolumeField().field(stub(), straight, sensor).B[0];
   EXPECT_LT((mesh - volume).norm(), 1e-7 * volume.norm());
 }
 

@@ -32,6 +32,18 @@ TEST(Preview, HasNothingToWarnOfInThePapersCase) {
   EXPECT_THAT(seen.signal, Contains(HasSubstr("sensor 0: |B|")));
 }
 
+TEST(Preview, WarnsOfTwoCriteriaNearTheEndOfTheRange) {
+  input::Case problem = paper_case({5.7e-3});
+  const auto warns = Contains(HasSubstr("slip_off = \"rim\" in [load] has both judge by the rim"));
+  EXPECT_THAT(warnings(problem), Not(warns));
+  problem.mechanics = {"elastica", "solid"};
+  EXPECT_THAT(warnings(problem), warns);
+  problem.load_path.front().set_slip_off_point(SlipOffPoint::rim);
+  EXPECT_THAT(warnings(problem), Not(warns));
+  problem.load_path = {ContactLoad{1e-3, 16e-3, 0}};
+  EXPECT_THAT(warnings(problem), Not(warns));
+}
+
 TEST(Preview, TakesTheBeamBesideMagnets) {
   input::Case problem = paper_case({0.5e-3});
   surroundings::Environment around;

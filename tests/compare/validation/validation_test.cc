@@ -208,8 +208,8 @@ TEST(InputParts, AreThoseOfTheToysFormula) {
        result.mechanics)  // the slow one has those of the quick one
     for (std::size_t i = 0; i < 2; ++i) {
       const auto& parts = run.input_parts[i];
-      EXPECT_NEAR(parts[0].tip->x(), 0.01 * a * forces.at(i), 1e-14);
-      EXPECT_NEAR(parts[1].tip->x(), b * 5e3, 1e-14);
+      EXPECT_NEAR(parts[0].tip.value(), 0.01 * a * forces.at(i), 1e-14);
+      EXPECT_NEAR(parts[1].tip.value(), b * 5e3, 1e-14);
       const results::Band tip = results::shape_band(run, i, results::ShapeQuantity::tip);
       EXPECT_NEAR(tip.input.value(), std::hypot(0.01 * a * forces.at(i), b * 5e3), 1e-14);
       EXPECT_FALSE(tip.total) << "the toy has no better model";
