@@ -35,5 +35,5 @@ right.set(xlabel="force in mN", ylabel="ΔB$_x$ at the sensor in µT")
 for axes in (left, right):
     axes.set(xlim=(0, 4.2), ylim=(0, None))
     axes.grid(alpha=0.3)
-    axes.legend(loc="lower right")
+    axes.legend(loc="lower right", fontsize=8)
 figure.savefig("models.png", dpi=100)
