@@ -4,7 +4,7 @@ From where was the cilium touched? Two sensors
 ==============================================
 
 You see the horizontal signal of two sensors while a contact of 1 mN walks round the cilium.
-Under the axis the signal's direction is the load's; 2 mm beside it the two differ by up to 23°, which the models know and a mere arctangent does not.
+Under the axis the signal's direction is the load's; 2 mm beside it the two differ by up to 21°, which the models know and a mere arctangent does not.
 """
 import matplotlib.pyplot as plt
 import numpy as np
@@ -18,7 +18,7 @@ sensors = {"on the axis": [0, 0, -1.55e-3], "2 mm aside": [2e-3, 0, -1.55e-3]}
 
 azimuths = np.radians(np.arange(0, 361, 10))
 loads = [cv.Load("contact", force=1e-3, height=16e-3, azimuth=a) for a in azimuths]
-dB = np.array([shape.dB(list(sensors.values())) for shape in cv.bend(cilium, loads)])
+dB = np.array([shape.dB(list(sensors.values())) for shape in cv.bend(cilium, loads, joints="corrected")])
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
 for i, name in enumerate(sensors):

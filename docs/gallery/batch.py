@@ -22,7 +22,7 @@ cilia = [
     for d, b, e in zip(diameter, base, stiffness)
 ]
 loads = [cv.Load("contact", force=f, height=16e-3) for f in (0.0, 1e-3)]
-straight, bent = (cv.bend_batch(cilia, [load] * n, [[0, 0, -1.55e-3]]) for load in loads)
+straight, bent = (cv.bend_batch(cilia, [load] * n, [[0, 0, -1.55e-3]], joints="corrected") for load in loads)
 
 signal = 1e6 * (bent["B"] - straight["B"])[:, 0, 0]
 largest = 1e3 * bent["slip_off"]

@@ -15,7 +15,7 @@ import ciliaval as cv
 base = cv.Segment(length=3e-3, young_modulus=0.1e6)
 magnet = cv.Segment(length=17e-3, young_modulus=3e6, magnetization=75e3)
 cilium = cv.Cilium(diameter=3e-3, segments=[base, magnet])
-shape = cv.bend(cilium, cv.Load("contact", force=4e-3, height=16e-3))
+shape = cv.bend(cilium, cv.Load("contact", force=4e-3, height=16e-3), joints="corrected")
 
 x, z = np.linspace(-12e-3, 20e-3, 64), np.linspace(-8e-3, 26e-3, 68)
 grid = np.stack(np.meshgrid(x, 0, z, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -14,7 +14,7 @@ import ciliaval as cv
 base = cv.Segment(length=3e-3, young_modulus=0.1e6)
 magnet = cv.Segment(length=17e-3, young_modulus=3e6, magnetization=75e3)
 cilium = cv.Cilium(diameter=3e-3, segments=[base, magnet])
-shape = cv.bend(cilium, cv.Load("contact", force=1e-3, height=16e-3))
+shape = cv.bend(cilium, cv.Load("contact", force=1e-3, height=16e-3), joints="corrected")
 
 z = np.linspace(-0.5e-3, -10e-3, 100)
 points = np.column_stack([np.zeros_like(z), np.zeros_like(z), z])

@@ -3,7 +3,7 @@
 What do weight, water and the earth's field do to a reading?
 ============================================================
 
-You see by how much the tip and the signal of 1 mN change where the cilium stands, hangs or lies, against the paper's model, which leaves all of it out.
+You see by how much the tip and the signal of 1 mN change where the cilium stands, hangs or lies, by the beam with corrected joints, against the same cilium without all of this, as in the paper.
 The signal is the reading under the load less the reading without it, as a user zeroes the sensor.
 """
 import matplotlib.pyplot as plt
@@ -26,15 +26,15 @@ places = {  # where the ground is, seen from the cilium
 
 def response(environment):
     """Deflection of the tip along the load, m, and signal, T, both against no load; signal of no load."""
-    bent = cv.bend(cilium, load, environment=environment)
-    free = cv.bend(cilium, environment=environment) if environment else None
+    bent = cv.bend(cilium, load, "beam", environment=environment, joints="corrected")
+    free = cv.bend(cilium, None, "beam", environment=environment, joints="corrected") if environment else None
     tip = bent.tip @ e - (free.tip @ e if free else 0)
     rest = free.dB(sensor)[0] if free else np.zeros(3)
     return tip, np.linalg.norm(bent.dB(sensor)[0] - rest), np.linalg.norm(rest)
 
 
 tip0, signal0, _ = response(None)
-print(f"paper's model: tip {1e3 * tip0:.4f} mm, signal {1e6 * signal0:.3f} uT")
+print(f"nothing around it: tip {1e3 * tip0:.4f} mm, signal {1e6 * signal0:.3f} uT")
 kinds = ("weight in air", "weight in water", "earth's field", "all, in air")
 changes = {kind: [] for kind in kinds}
 for place, down in places.items():

@@ -4,7 +4,7 @@ What does a sweep over a step look like in the signal?
 ======================================================
 
 You see the height of the tip, the change of B, and the same as a logger with noise and a high-pass filter records it.
-The tip climbs a flank steadily and springs off the next one in a jump, which the filter turns into a pulse.
+The rod is plain: corrected joints do not reach sweeps. A flank presses the tip down steadily; off the next one it springs up in a jump, which the filter turns into a pulse.
 """
 import tempfile
 from pathlib import Path

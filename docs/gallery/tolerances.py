@@ -29,6 +29,8 @@ position = ["0 mm", "0 mm", "-1.55 mm"]
 [models]
 mechanics = ["beam"]
 fields = ["volume"]
+[models.beam]
+joints = "corrected"
 """
 STUDY = """
 [study]
