@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <ranges>
 #include <utility>
 
 #include "compare/models/errors.h"
 #include "compare/models/registry.h"
+#include "fem/solid/solid_options.h"
 #include "problem/joints/companions.h"
 
 namespace ciliaval::compare::models {
@@ -24,6 +26,9 @@ struct Better {
   std::optional<FieldRun> field;  ///< of that shape
   /// Steps that state a slip-off limit, each by its load of magnitude 0; sought when asked for.
   std::vector<std::pair<Load, MechanicsStep>> limits{};
+  /// Of a contact: the path as it is, and with the contact a standard deviation of the solid's
+  /// kernel lower and higher; by the simplest rod with corrected joints.
+  std::vector<MechanicsRun> across{};
 };
 
 /// The entry of a rod; null: the model is none.
@@ -41,6 +46,40 @@ const FieldEntry* best_field(std::span<const FieldEntry> fields) {
   for (const FieldEntry& entry : fields)
     if (entry.is_quick()) best = &entry;
   return best;
+}
+
+/// Standard deviation of the height in the kernel k(s) = (1 + cos(πs/w))/(2w).
+double kernel_deviation(const input::Case& problem) {
+  const double w = problem.options.of<fem::solid::SolidOptions>().kernel_width;
+  return w * std::sqrt(1.0 / 3 - 2 / (std::numbers::pi * std::numbers::pi));
+}
+
+/// The load with its contact higher by `rise`, m.
+Load raised(Load load, double rise) {
+  const auto& parameters = load.type().parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].site == LoadParameter::Site::height)
+      load.set_value(i, load.values()[i] + rise);
+  return load;
+}
+
+/// Better::across; empty: there is no contact.
+std::vector<MechanicsRun> runs_across_the_contact(const input::Case& problem,
+                                                  std::span<const MechanicsEntry> mechanics) {
+  if (problem.load_path.empty() || !contact_height(problem.load_path.front())) return {};
+  for (const MechanicsEntry& entry : mechanics) {
+    input::Case corrected = problem;
+    if (!correct(entry, corrected).empty()) continue;
+    if (entry.hasten) entry.hasten(corrected.options);
+    std::vector<MechanicsRun> runs;
+    for (const double rise : {0.0, -kernel_deviation(problem), kernel_deviation(problem)}) {
+      input::Case moved = corrected;
+      for (Load& load : moved.load_path) load = raised(load, rise);
+      runs.push_back(run_mechanics(entry, moved, {}));
+    }
+    return runs;
+  }
+  return {};
 }
 
 Better better_models(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
@@ -63,6 +102,7 @@ Better better_models(const input::Case& problem, std::span<const MechanicsEntry>
         field != nullptr && !problem.sensors.empty() && !problem.fields.empty())
       better.field =
           run_field(field->id, *field->make(problem.options), *better.shape, corrected, named);
+    better.across = runs_across_the_contact(problem, mechanics);
     return better;
   }
   return better;
@@ -88,10 +128,33 @@ std::string reason_against(const input::Case& problem, const MechanicsStep& step
   return {};
 }
 
-std::optional<ModelPart<double>> part_of(double difference, std::optional<double> of_the_better,
-                                         bool is_corrected) {
-  if (!of_the_better) return std::nullopt;
-  return ModelPart<double>{std::abs(difference), *of_the_better, is_corrected};
+/// `across` is what the contact's width makes.
+std::optional<ModelPart<double>> part_of(double difference, std::optional<double> across,
+                                         std::optional<double> of_the_better, bool is_corrected) {
+  if (!of_the_better || !across) return std::nullopt;
+  return ModelPart<double>{std::abs(difference) + *across, *of_the_better, is_corrected};
+}
+
+double size_of(double value) {
+  return std::abs(value);
+}
+double size_of(const Vector3& value) {
+  return value.norm();
+}
+
+/// What a contact of some width makes of a number of a step, to second order:
+/// |Q(h + σ) + Q(h − σ) − 2 Q(h)|/2. At the end of the range, where one of the two has no such
+/// number, |Q(h ± σ) − Q(h)|, which is more. None where there is none of them.
+template <class Number>
+std::optional<double> width_part(const Better& better, std::size_t step, const Number& number) {
+  if (better.across.empty()) return 0;
+  const auto at = [&](std::size_t i) { return number(better.across[i].result.steps[step]); };
+  const auto middle = at(0);
+  const auto lower = at(1);
+  const auto higher = at(2);
+  if (!middle || (!lower && !higher)) return std::nullopt;
+  if (lower && higher) return size_of(*lower + *higher - 2 * *middle) / 2;
+  return size_of((lower ? *lower : *higher) - *middle);
 }
 
 /// The better model's step that states the limit of a step's load, where another states `limit`. A
@@ -123,19 +186,30 @@ ShapeModelParts shape_parts(const input::Case& problem, const MechanicsRun& run,
   if (limit) {
     const MechanicsStep& at_limit = limit_of(better, step, other, *limit);
     if (const auto better_limit = slip_off_limit(at_limit))
-      parts.slip_off = part_of(*limit - *better_limit, at_limit.slip_off_uncertainty, corrected);
+      parts.slip_off = part_of(*limit - *better_limit, width_part(better, index, slip_off_limit),
+                               at_limit.slip_off_uncertainty, corrected);
   }
   parts.unknown = reason_against(problem, step, *better.shape, index);
   if (!parts.unknown.empty() || step.status != Status::converged) return parts;
+  const auto of_shape = [](const auto& number) {
+    return [number](const MechanicsStep& of) -> std::optional<decltype(number(of))> {
+      if (!of.deformation) return std::nullopt;
+      return number(of);
+    };
+  };
   const auto tip = [](const MechanicsStep& of) {
     return of.deformation->centreline.at(of.deformation->centreline.length());
   };
-  parts.tip =
-      part_of((tip(step).position - tip(other).position).norm(), other.tip_uncertainty, corrected);
-  parts.tip_angle =
-      part_of(tip(step).theta() - tip(other).theta(), other.tip_angle_uncertainty, corrected);
-  parts.applied_force =
-      part_of(step.applied_force - other.applied_force, other.applied_force_uncertainty, corrected);
+  const auto position = [&](const MechanicsStep& of) { return tip(of).position; };
+  const auto angle = [&](const MechanicsStep& of) { return tip(of).theta(); };
+  const auto force = [](const MechanicsStep& of) { return of.applied_force; };
+  const auto part = [&](const auto& number, std::optional<double> of_the_better) {
+    return part_of(size_of(number(step) - number(other)),
+                   width_part(better, index, of_shape(number)), of_the_better, corrected);
+  };
+  parts.tip = part(position, other.tip_uncertainty);
+  parts.tip_angle = part(angle, other.tip_angle_uncertainty);
+  parts.applied_force = part(force, other.applied_force_uncertainty);
   return parts;
 }
 

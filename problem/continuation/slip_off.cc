@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iomanip>
-#include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -57,14 +56,15 @@ class RimSearch {
     if (edge(load) >= cilium_.length())
       throw InputError(
           "slip_off = \"rim\": the contact's upper edge must lie below the tip of the cilium");
-    const double beyond = std::min(slip_off_limit(step).value_or(magnitude(load)),
-                                   step.status == Status::converged && clearance(step) < 0
-                                       ? magnitude(load)
-                                       : std::numeric_limits<double>::infinity());
+    // Where the axis has come down there is no shape to look at, or hardly one.
+    const bool is_below = step.status == Status::converged && clearance(step) < 0;
+    const double beyond =
+        is_below ? magnitude(load) : slip_off_limit(step).value_or(magnitude(load));
+    const double at_beyond = is_below ? clearance(step) : clearance_of_no_shape();
     const auto clearance_at = [&](double m) { return clearance_under(load, m).first; };
     std::uintmax_t trials = patience;
     const auto [borne, fallen] = boost::math::tools::toms748_solve(
-        clearance_at, 0.0, beyond, cilium_.length() - edge(load), clearance_at(beyond),
+        clearance_at, 0.0, beyond, cilium_.length() - edge(load), at_beyond,
         [](double a, double b) { return b - a <= tolerance * b; }, trials);
     const auto [at_limit, state] = clearance_under(load, borne);
     const double rate = (at_limit - clearance_at(borne * (1 - difference))) / (borne * difference);
@@ -80,13 +80,15 @@ class RimSearch {
  private:
   double edge(const Load& load) const { return contact_height(load).value() + half_width_; }
 
-  /// Where even the axis has come down there is no shape; the rim is below the edge all the more.
+  /// Where even the axis has come down to the height the rim is at most so far below the edge.
+  double clearance_of_no_shape() const { return -half_width_ - cilium_.radius(); }
+
   std::pair<double, MechanicsStep> clearance_under(const Load& load, double m) const {
     MechanicsResult result = rod_.solve(cilium_, {with_magnitude(load, m)});
     MechanicsStep& step = result.steps.at(0);
     if (step.status == Status::failed)
       throw SolverError("the largest load that is borne is not known: " + step.message);
-    const double value = step.deformation ? clearance(step) : -half_width_ - cilium_.radius();
+    const double value = step.deformation ? clearance(step) : clearance_of_no_shape();
     return {value, std::move(step)};
   }
 
@@ -142,9 +144,12 @@ void let_go_at_rim(const MechanicsModel& rod, const Cilium& cilium, double half_
       if (step.load.is<ProbeLoad>()) step.slip_off_displacement = limit.magnitude;
       step.slip_off_uncertainty = limit.uncertainty;
     } catch (const SolverError& error) {
-      step.status = Status::failed;
-      step.message = error.what();
-      step.deformation.reset();
+      step.slip_off_force.reset();
+      step.slip_off_displacement.reset();
+      step.slip_off_uncertainty.reset();
+      step.message += (step.message.empty() ? "" : "; ") + std::string(error.what());
+      if (is_beyond) step.status = Status::failed;
+      if (is_beyond) step.deformation.reset();
     }
     step.slip_off_point = SlipOffPoint::rim;
     step.seconds =

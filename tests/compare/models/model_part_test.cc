@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -74,6 +76,27 @@ class Rod : public MechanicsModel {
   double softness_;
   bool is_corrected_;
   double slips_off_at_;
+};
+
+/// The same, softer the higher its contact.
+class RodAtHeight : public MechanicsModel {
+ public:
+  explicit RodAtHeight(bool is_corrected) : is_corrected_(is_corrected) {}
+  MechanicsResult solve(const Cilium& cilium, const LoadPath& path,
+                        const Progress& progress) const override {
+    MechanicsResult result;
+    for (const Load& load : path) {
+      const double h = contact_height(load).value() / cilium.length();
+      const Load larger = with_magnitude(load, (1 + h * h) * magnitude(load));
+      MechanicsResult one = Rod(1, is_corrected_, 1).solve(cilium, {larger}, progress);
+      result.undeformed = one.undeformed;
+      result.steps.push_back(one.steps.front());
+    }
+    return result;
+  }
+
+ private:
+  bool is_corrected_;
 };
 
 models::MechanicsEntry rod(std::string id, double softness, double slips_off_at = 1,
@@ -170,6 +193,20 @@ TEST(ModelPart, OfTheRangeIsThatOfTheTwoLimits) {
   const models::CaseResult result = run({rod("rod", 1.2, 0.9e-3, 0.8e-3)}, {});
   const auto part = result.mechanics[0].model_parts.at(0).slip_off.value();
   EXPECT_NEAR(part.uncertainty(), 0.1e-3 + 1e-5, 1e-15);
+}
+
+// Its tip goes by (1 + (h/L)²) F aside; the kernel's variance is w² (1/3 − 2/π²), w = 0.5 mm.
+TEST(ModelPart, HasWhatAContactOfSomeWidthMakes) {
+  models::MechanicsEntry at_height = rod("rod", 1);
+  at_height.make = [](const input::ModelOptions& options) {
+    const bool corrected = options.of<RodOptions>().is_corrected;
+    return std::make_unique<RodAtHeight>(corrected);
+  };
+  const models::CaseResult result = run({at_height}, {});
+  const double variance = std::pow(0.5e-3, 2) * (1.0 / 3 - 2 / std::pow(std::numbers::pi, 2));
+  const double F = 1e-3;
+  EXPECT_NEAR(result.mechanics[0].model_parts.at(0).tip.value().difference,
+              F * variance / std::pow(test::L, 2), 1e-12);
 }
 
 // The better model of all is the last rod that takes the case, corrected.
