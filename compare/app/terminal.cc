@@ -23,6 +23,23 @@ namespace {
 
 bool is_silent = false;
 
+/// 0: no terminal.
+std::size_t columns_of(int stream) {
+  winsize size{};
+  if (isatty(stream) == 0 || ioctl(stream, TIOCGWINSZ, &size) != 0) return 0;
+  return size.ws_col;
+}
+
+/// The text without what is behind so many characters of UTF-8.
+std::string_view first_characters(std::string_view text, std::size_t count) {
+  std::size_t byte = 0;
+  for (; byte < text.size(); ++byte) {
+    const bool starts = (static_cast<unsigned char>(text[byte]) & 0xC0U) != 0x80U;
+    if (starts && count-- == 0) break;
+  }
+  return text.substr(0, byte);
+}
+
 }  // namespace
 
 ProgressLine::~ProgressLine() {
@@ -59,10 +76,11 @@ std::string ProgressLine::times(Clock::time_point now) const {
   text = fmt::format("{} %, {}", 100 * work_.done / work_.parts, text);
   const std::size_t here = work_.done - work_.done_before;
   if (here > 0 && work_.done < work_.parts)
-    text += fmt::format(
-        ", about {} to go",
-        duration_text(seconds(work_.start) * static_cast<double>(work_.parts - work_.done) /
-                      static_cast<double>(here)));
+    text +=
+        fmt::format(", about {} to go",
+                    duration_text(std::max(1.0, seconds(work_.start) *
+                                                    static_cast<double>(work_.parts - work_.done) /
+                                                    static_cast<double>(here))));
   return text;
 }
 
@@ -81,8 +99,13 @@ void ProgressLine::show(const ProgressReport& report) {
     last_line_ = now;
     shown_ = false;
   } else if (is_terminal && now - last_ >= 100ms) {
-    fmt::print(stderr, "\r\033[K{}",
-               support::printable(fmt::format("{} ({})", report.text, times(now)), ""));
+    // A line that wraps could not be overwritten. The times stay.
+    const std::string when = fmt::format(" ({})", times(now));
+    const std::string text = support::printable(report.text, "");
+    const std::size_t columns = columns_of(STDERR_FILENO);
+    fmt::print(stderr, "\r\033[K{}{}",
+               columns > when.size() ? first_characters(text, columns - 1 - when.size()) : text,
+               when);
     last_ = now;
     shown_ = true;
   } else {
@@ -112,9 +135,7 @@ std::string duration_text(double seconds) {
 }
 
 std::size_t terminal_columns() {
-  winsize size{};
-  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;
-  return size.ws_col;
+  return columns_of(STDOUT_FILENO);
 }
 
 void print(const std::string& text) {

@@ -92,13 +92,25 @@ bool is_letter(char c) {
          static_cast<unsigned char>(c) >= 0x80U;
 }
 
-/// The line's text from the start of the value that the column stands in or behind; empty if there
-/// is none or it lies in a string.
-std::string_view value_at(std::string_view line, std::size_t column) {
+/// The byte at which the character of this column begins, or the line's end.
+std::size_t byte_at(std::string_view line, std::size_t column) {
   std::size_t byte = 0;
   for (std::size_t character = 0; byte < line.size(); ++byte)
     if (starts_character(line[byte]) && ++character == column) break;
-  const std::string_view before = line.substr(0, byte);
+  return byte;
+}
+
+/// Whether the last comma up to the column stands between two digits, "0,49".
+bool is_behind_decimal_comma(std::string_view line, std::size_t column) {
+  const std::size_t comma = line.find_last_of(',', byte_at(line, column));
+  return comma != none && comma > 0 && comma + 1 < line.size() && is_digit(line[comma - 1]) &&
+         is_digit(line[comma + 1]);
+}
+
+/// The line's text from the start of the value that the column stands in or behind; empty if there
+/// is none or it lies in a string.
+std::string_view value_at(std::string_view line, std::size_t column) {
+  const std::string_view before = line.substr(0, byte_at(line, column));
   const std::size_t separator = before.find_last_of("=,[");
   if (separator == none || std::count(before.begin(), before.end(), '"') % 2 != 0 ||
       std::count(before.begin(), before.end(), '\'') % 2 != 0)
@@ -146,9 +158,11 @@ toml::table parse_toml(std::string_view text, std::string_view file) {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
     const toml::source_position& where = error.source().begin;
-    const std::string_view value = value_at(line_of(text, where.line), where.column);
-    throw InputError(fmt::format("{}:{}:{}: {}{}", file, where.line, where.column,
-                                 error.description(), advice(value)));
+    const std::string_view line = line_of(text, where.line);
+    throw InputError(fmt::format(
+        "{}:{}:{}: {}{}", file, where.line, where.column, error.description(),
+        is_behind_decimal_comma(line, where.column) ? "; a decimal number has a point, as 0.49"
+                                                    : advice(value_at(line, where.column))));
   }
 }
 
@@ -172,6 +186,8 @@ std::string read_file(const std::filesystem::path& file, std::string_view kind,
   if (!in.is_open() || in.bad())
     throw InputError(
         fmt::format("{}: the {} file cannot be read: {}", name, kind, std::strerror(errno)));
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(fmt::format("{}: the {} file is in UTF-16: save it in UTF-8", name, kind));
   return text;
 }
 

@@ -79,13 +79,13 @@ class Viewer {
                       slenderness));
   }
 
-  /// Distance of a point from the straight magnet, m; 0 inside.
-  double distance_from_magnet(const Vector3& point) const {
+  /// Distance of a point from the straight cilium, or its magnet alone, m; 0 inside.
+  double distance_from_cilium(const Vector3& point, bool magnet_alone) const {
     const Cilium& cilium = problem_.cilium;
     const std::vector<double> ends = cilium.interfaces();
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < cilium.segments.size(); ++i) {
-      if (!is_magnetic(cilium.segments[i])) continue;
+      if (magnet_alone && !is_magnetic(cilium.segments[i])) continue;
       const double along = std::max({ends[i] - point.z(), point.z() - ends[i + 1], 0.0});
       const double across = std::max(std::hypot(point.x(), point.y()) - cilium.radius(), 0.0);
       nearest = std::min(nearest, std::hypot(along, across));
@@ -95,7 +95,10 @@ class Viewer {
 
   void look_at_sensors() {
     for (std::size_t s = 0; s < problem_.sensors.size(); ++s) {
-      const double distance = distance_from_magnet(problem_.sensors[s]);
+      const double distance = distance_from_cilium(problem_.sensors[s], true);
+      if (distance > 0 && distance_from_cilium(problem_.sensors[s], false) == 0)
+        warn(fmt::format("sensor {} lies inside the straight cilium",
+                         input::sensor_name(problem_, s)));
       if (distance == 0)
         warn(fmt::format("sensor {} lies inside the straight magnet",
                          input::sensor_name(problem_, s)));

@@ -63,7 +63,8 @@ Json load_json(const Load& load) {
   for (std::size_t i = 0; i < load.values().size(); ++i)
     json[std::string(load.type().parameters[i].name)] = load.values()[i];
   for (const auto& setting : load.type().settings)
-    if (setting.get(load) != setting.initial) json[std::string(setting.name)] = value(setting.get(load));
+    if (setting.get(load) != setting.initial)
+      json[std::string(setting.name)] = value(setting.get(load));
   return json;
 }
 
@@ -363,7 +364,7 @@ std::string fields_csv(const models::CaseResult& result) {
     column(parameter.name, parameter.quantity.unit);
   column("sensor", "");
   column("pair", "");
-  for (const char* quantity : {"B", "dB", "uncertainty"})
+  for (const char* quantity : {"B", "dB", "uncertainty", "band"})
     for (const char* axis : {"x", "y", "z"}) column(fmt::format("{}_{}", quantity, axis), "T");
   csv.comment(fmt::format("units: {}", fmt::join(units, ", ")));
   csv.end_row();
@@ -381,6 +382,7 @@ std::string fields_csv(const models::CaseResult& result) {
         add(field ? field->B[sensor] : std::nullopt);
         add(field ? field->dB[sensor] : std::nullopt);
         add(models::uncertainties(result, run, step, sensor, true));
+        add(field ? results::field_bands(result, run, step, true).total[sensor] : std::nullopt);
         csv.end_row();
       }
   return csv.text();

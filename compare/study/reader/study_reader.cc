@@ -436,10 +436,13 @@ void read_varied(input::Section& root, const input::Section& tolerances, Reading
 Study read_study(const fs::path& file) {
   const toml::table root_table =
       input::parse_toml(input::read_toml_file(file, "study"), file.string());
+  constexpr std::string_view header_name = "study";
+  if (!root_table.contains(header_name) && root_table.contains("cilium"))
+    throw InputError(fmt::format("{0}: is a case, not a study: `ciliaval run {0}`", file.string()));
   input::Faults faults;
   input::Section root(&root_table, "the study file", "", {}, faults);
   Reading reading;
-  input::Section header = input::require_section(root, "study");
+  input::Section header = input::require_section(root, header_name);
   if (header.exists() && read_base(header, file, reading.base))
     reading.numbers = case_numbers(reading.base);
   input::Section optimise = root.section("optimise");

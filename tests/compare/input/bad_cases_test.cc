@@ -29,6 +29,8 @@ const PlantedFault syntax[]{
     {"OpenText", "\"good\"", "\"good", "2:13", "Error while parsing string"},
     {"MissingValue", "\"16 mm\"", "", "24:10", "Error while parsing key-value pair"},
     {"RepeatedKey", "azimuth", "height", "25:10", "cannot redefine existing string 'height'"},
+    {"DecimalComma", "poisson_ratio = 0.49", "poisson_ratio = 0,49", "12:18",
+     "saw ','; a decimal number has a point, as 0.49"},
     {"RepeatedTable", "[sensor]", "[load]", "27:1", "cannot redefine existing table 'load'"},
     {"NotUtf8", "A case", "A c\xffse", "3:12", "invalid utf-8 sequence"},
     {"ControlCharacter", "A case", std::string_view("A \0ase", 6), "3:12", "control characters"},

@@ -126,7 +126,7 @@ TEST_F(CaseFiles, AByteOrderMarkAndDosLineEndsAreRead) {
   for (const char c : good_case) dos += c == '\n' ? "\r\n" : std::string(1, c);
   EXPECT_EQ(fault_of(write("dos.toml", dos)), "");
   EXPECT_THAT(fault_of(write("utf16.toml", std::string("\xFF\xFE[\0c\0", 6))),
-              HasSubstr("invalid utf-8 sequence"));
+              HasSubstr("is in UTF-16: save it in UTF-8"));
 }
 
 TEST(BadCaseFiles, ADeeplyNestedFileEndsInAMessage) {

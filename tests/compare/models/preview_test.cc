@@ -32,6 +32,15 @@ TEST(Preview, HasNothingToWarnOfInThePapersCase) {
   EXPECT_THAT(seen.signal, Contains(HasSubstr("sensor 0: |B|")));
 }
 
+TEST(Preview, WarnsOfASensorInTheCilium) {
+  input::Case problem = paper_case({0.5e-3});
+  problem.sensors = {{0, 1e-3, 2e-3}};  // in the base
+  EXPECT_THAT(warnings(problem), Contains(HasSubstr("sensor 0 lies inside the straight cilium")));
+  problem.sensors = {{0, 1e-3, 5e-3}};
+  EXPECT_THAT(warnings(problem), Contains(HasSubstr("sensor 0 lies inside the straight magnet")));
+  EXPECT_THAT(warnings(problem), Not(Contains(HasSubstr("inside the straight cilium"))));
+}
+
 TEST(Preview, WarnsOfTwoCriteriaNearTheEndOfTheRange) {
   input::Case problem = paper_case({5.7e-3});
   const auto warns = Contains(HasSubstr("slip_off = \"rim\" in [load] has both judge by the rim"));

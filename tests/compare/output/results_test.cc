@@ -330,17 +330,18 @@ TEST(FieldsCsv, HasARowForEachStepSensorAndPair) {
       field_entry("known", formula, Vector3(1e-6, 2e-6, 3e-6)), field_entry("unknown", formula)};
   EXPECT_EQ(output::fields_csv(models::run(c, mechanics, fields)),
             "step,force,height,azimuth,sensor,pair,B_x,B_y,B_z,dB_x,dB_y,dB_z,uncertainty_x,"
-            "uncertainty_y,uncertainty_z\n"
+            "uncertainty_y,uncertainty_z,band_x,band_y,band_z\n"
             "# units: force N, height m, azimuth rad, B_x T, B_y T, B_z T, dB_x T, dB_y T, dB_z T, "
-            "uncertainty_x T, uncertainty_y T, uncertainty_z T\n"
-            "0,0.001,0.016,0,left,one/known,,,,,,,,,\n"
-            "0,0.001,0.016,0,left,one/unknown,,,,,,,,,\n"
-            "0,0.001,0.016,0,right,one/known,1,0,2,0,0,0,2e-06,4e-06,6e-06\n"
-            "0,0.001,0.016,0,right,one/unknown,1,0,2,0,0,0,,,\n"
-            "1,0.002,0.016,0,left,one/known,,,,,,,,,\n"
-            "1,0.002,0.016,0,left,one/unknown,,,,,,,,,\n"
-            "1,0.002,0.016,0,right,one/known,,,,,,,,,\n"
-            "1,0.002,0.016,0,right,one/unknown,,,,,,,,,\n");
+            "uncertainty_x T, uncertainty_y T, uncertainty_z T, band_x T, "
+            "band_y T, band_z T\n"
+            "0,0.001,0.016,0,left,one/known,,,,,,,,,,,,\n"
+            "0,0.001,0.016,0,left,one/unknown,,,,,,,,,,,,\n"
+            "0,0.001,0.016,0,right,one/known,1,0,2,0,0,0,2e-06,4e-06,6e-06,,,\n"
+            "0,0.001,0.016,0,right,one/unknown,1,0,2,0,0,0,,,,,,\n"
+            "1,0.002,0.016,0,left,one/known,,,,,,,,,,,,\n"
+            "1,0.002,0.016,0,left,one/unknown,,,,,,,,,,,,\n"
+            "1,0.002,0.016,0,right,one/known,,,,,,,,,,,,\n"
+            "1,0.002,0.016,0,right,one/unknown,,,,,,,,,,,,\n");
 }
 
 TEST(ErrorsCsv, HoldsEveryComparisonWithTheSameFigures) {

@@ -163,7 +163,7 @@ TEST(StudyCommand, WhatCannotBeDoneHasItsExitCodeAndMessage) {
   };
   fails("study", 2, "STUDY");
   fails("study none.toml", 2, "none.toml");
-  fails("study one.toml", 2, "the table [study] is missing");
+  fails("study one.toml", 2, "is a case, not a study: `ciliaval run");
   fails("run varied.study.toml", 2, "`ciliaval study` runs it");
   fails("study varied.study.toml -o one.toml", 4, "one.toml");
   fails("study varied.study.toml --json none/x.json", 4, "none/x.json");
