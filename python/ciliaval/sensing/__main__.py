@@ -15,9 +15,9 @@ from ..command import PASS, SOLVER, UNDECIDED, Outputs, Progress, run_command, t
 from ..errors import InputError
 from ..model import Case
 from .readings import Readings, read_readings
-from .response import Pair, require_load_to_sense
+from .response import Pair, pairs_of, require_load_to_sense
 from .inversion import Chips
-from .loads import case_of, joints_of, largest_load, noise_of, options_of, sense_readings
+from .loads import case_of, joints_of, largest_load, noise_of, options_of, sense_by_pairs
 
 _OF_FILES = ("map", "unit", "scale", "unloaded", "average", "temperature")
 _NOT_OF_BENCHES = ("background", "models", "joints", "noise", "largest", "csv", *_OF_FILES, "skip")
@@ -30,8 +30,9 @@ def main() -> int:
     parser.add_argument("-o", "--output", help="calibrate: the case to write")
     parser.add_argument("--validate", action="store_true", help="only check the benches that the files are")
     parser.add_argument("--background", type=Path)
-    for name in (*_OF_FILES, "models", "joints", "noise", "largest"):
+    for name in (*_OF_FILES, "joints", "noise", "largest"):
         parser.add_argument(f"--{name}")
+    parser.add_argument("--models", help="mechanics/field; of several, with commas between, the spread of their loads")
     parser.add_argument("--skip", action="store_true")
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
     parser.add_argument("--command", default="python3 -m ciliaval.sensing", help="for the provenance")
@@ -84,17 +85,24 @@ def _read(case: Case, options: argparse.Namespace) -> Readings:
     )
 
 
+def _pairs_and_noise(options: argparse.Namespace) -> tuple[list[Pair], float]:
+    return pairs_of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+
+
 def _pair_and_noise(options: argparse.Namespace) -> tuple[Pair, float]:
-    return Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
+    pairs, noise = _pairs_and_noise(options)
+    if len(pairs) > 1:
+        raise InputError("--models: loads alone are found by several pairs, no surface and no calibration: name one")
+    return pairs[0], noise
 
 
 def _loads(case: Case, options: argparse.Namespace, progress: Progress) -> tuple[Any, str, int]:
     """The load and its direction, with intervals, from each reading of the case's sensors."""
     require_load_to_sense(case)
-    pair, noise = _pair_and_noise(options)
+    pairs, noise = _pairs_and_noise(options)
     largest = largest_load(case, options.largest)
     read = _read(case, options)  # before the models run, which may take a minute
-    result = sense_readings(case, read, pair, noise, largest, progress, joints_of(options.joints))
+    result = sense_by_pairs(case, read, pairs, noise, largest, progress, joints_of(options.joints))
     status = result.loads.status
     if (status == "failed").any():
         code = SOLVER

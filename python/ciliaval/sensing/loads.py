@@ -22,7 +22,7 @@ from ..units import shown
 from .inversion import STATUSES, TWO_SIDED_95, UNLIKELY, Chips, SensedLoads, invert
 from .left_out import JOINTS, LeftOut, with_joints
 from .readings import Option, ReadingOptions, Readings, read_readings
-from .response import Pair, Progress, Response, Shapes, require_load_to_sense, shapes_within
+from .response import Pair, Progress, Response, Shapes, pairs_of, require_load_to_sense, shapes_within
 
 BEYOND_THE_LARGEST = 1.25
 """The range of loads that is looked for, over the case's largest."""
@@ -83,6 +83,13 @@ class Sensing:
     left_out: LeftOut
     flow_shifts: list[tuple[FlowLaw, FlowLaw, float]]  # of each input, and the deviations between
     remarks: list[str] = field(default_factory=list)
+    others: Sequence[Sensing] = ()  # the same readings by other pairs
+
+    @property
+    def spread(self) -> Array:
+        """The largest less the smallest magnitude that a pair finds, (n,); NaN where one of them fails."""
+        by_pair = [np.where(s.loads.converged, s.loads.magnitude, np.nan) for s in (self, *self.others)]
+        return np.asarray(np.ptp(by_pair, axis=0))
 
     def velocities(self) -> tuple[Array, Array, Array]:
         """Of q, and at the ends of its interval, m/s, each (n,)."""
@@ -117,6 +124,9 @@ class Sensing:
             table |= {name: ("m/s", values) for name, values in zip(names, self.velocities())}
         if self.readings.time is not None:
             table["time"] = ("s", self.readings.time)
+        if self.others:
+            table |= {f"magnitude {other.pair}": (self.unit, other.loads.magnitude) for other in self.others}
+            table["spread"] = (self.unit, self.spread)
         return table
 
     def frame(self) -> Any:
@@ -151,6 +161,9 @@ class Sensing:
         if self.flow:
             v, low, high = self.velocities()
             each |= {"velocity": v.tolist(), "velocity_interval": np.stack([low, high], axis=-1).tolist()}
+        if self.others:
+            by_pair = {str(sensing.pair): sensing.loads.load.tolist() for sensing in (self, *self.others)}
+            each |= {"loads": [dict(zip(by_pair, loads)) for loads in zip(*by_pair.values())], "spread": self.spread.tolist()}
         return {
             "schema": 1,
             "case": self.case,
@@ -185,10 +198,12 @@ class Sensing:
             )
         columns = {name: np.asarray(values) for name, (_, values) in self.columns().items()}
         n = len(columns["sample"])
-        ends = np.arange(n) if n <= _SHOWN + 1 else np.r_[: _SHOWN // 2, n - _SHOWN // 2 : n]
         heads = ["sample", f"load ({unit})", "+-", "azimuth", "+- deg"]
         rows = [heads + (["v (m/s)", "from", "to"] if self.flow else []) + ["status"]]
-        for i in ends:
+        for i in self._rows_shown():
+            if i is None:
+                rows.append(["…"])
+                continue
             c = {name: values[i] for name, values in columns.items()}
             known = c["azimuth_interval"] < math.pi
             row = [c["sample"], f"{c['magnitude'] / size:.5g}", f"{c['magnitude_interval'] / size:.2g}"]
@@ -198,14 +213,30 @@ class Sensing:
             if self.flow:
                 row += [f"{c[k]:.4f}" for k in ("velocity", "velocity_low", "velocity_high")]
             rows.append([*map(str, row), c["status"]])
-            if n > len(ends) and len(rows) == 1 + _SHOWN // 2:
-                rows.append(["…"])
         text += _core.text_table(rows, "<>>>>>>><" if self.flow else "<>>>><", width)
-        if n > len(ends):
+        if None in self._rows_shown():
             counts = [(status, int((columns["status"] == status).sum())) for status in STATUSES]
             of_each = ", ".join(f"{count} {status}" for status, count in counts if count)
             text += f"{n} samples: {of_each}. --csv and --json have them all; --average takes means.\n"
-        return text + self._of_intervals()
+        return text + self._of_intervals() + (self._of_spread(width) if self.others else "")
+
+    def _rows_shown(self) -> list[int | None]:
+        """All samples, or of many the first and the last ones with None between them."""
+        n = len(self.readings.names)
+        return [*range(n)] if n <= _SHOWN + 1 else [*range(_SHOWN // 2), None, *range(n - _SHOWN // 2, n)]
+
+    def _of_spread(self, width: int) -> str:
+        """A table of the smallest and the largest load that a pair finds."""
+        unit, size = shown(self.unit)
+        pairs = [str(sensing.pair) for sensing in (self, *self.others)]
+        by_pair = np.stack([sensing.loads.magnitude for sensing in (self, *self.others)]) / size
+        least, most, spread = by_pair.argmin(axis=0), by_pair.argmax(axis=0), self.spread / size
+        rows = [["sample", "spread", "least", "by", "most", "by"]]
+        for i in self._rows_shown():
+            ends = [] if i is None else [part for k in (least[i], most[i]) for part in (f"{by_pair[k, i]:.5g}", pairs[k])]
+            rows.append(["…"] if i is None else [self.readings.names[i], f"{spread[i]:.2g}", *ends])
+        text = f"Spread of the load found by {', '.join(pairs[:-1])} and {pairs[-1]}, {unit}:\n"
+        return text + _core.text_table(rows, "<>><><", width)
 
     @property
     def is_corrected(self) -> bool:
@@ -263,6 +294,21 @@ def sense_readings(
     laws = [(FlowLaw.of(Case._of(a)), FlowLaw.of(Case._of(b)), width) for a, b, width in case._core.input_shifts()]
     shifts = [(a, b, width) for a, b, width in laws if a is not None and b is not None]
     return Sensing(case.name, pair, noise, unit, response, readings, loads, flow, left_out, shifts, remarks)
+
+
+def sense_by_pairs(
+    case: Case,
+    readings: Readings,
+    pairs: Sequence[Pair],
+    noise: float,
+    largest: float,
+    progress: Progress | None = None,
+    joints: str = "corrected",
+) -> Sensing:
+    """The loads by the first pair, and by the others for their spread. Raises InputError, SolverError."""
+    first, *others = [sense_readings(case, readings, pair, noise, largest, progress, joints) for pair in pairs]
+    more = [f"{s.pair}: {remark}" for s in others for remark in s.remarks if remark not in first.remarks]
+    return replace(first, others=others, remarks=[*first.remarks, *more])
 
 
 def _range_remark(shapes: Shapes, asked: float, unit: str) -> list[str]:
@@ -384,7 +430,8 @@ def sense(
     frame; "model" takes the model's own B; None: the readings are changes dB. Of a file as --unloaded.
     background: the ambient field that goes with each reading, as large as these, each with the noise of
     a reading; or one field for all, which drops out of dB. Of a file the background's file. models: the
-    pair that is inverted. joints: "corrected", those of a rod where the corrections reach (docs/theory/joints.md), or
+    pair that is inverted, or several with commas between: the first one's loads, and in the columns
+    `magnitude beam/line` and `spread` what the others find. joints: "corrected", those of a rod where the corrections reach (docs/theory/joints.md), or
     "case", as the case states them. largest: the largest load to look for.
 
     Raises InputError, FileError, SolverError.
@@ -414,8 +461,8 @@ def sense(
             raise InputError(f"{', '.join(extra)}: of a file of readings alone; arrays are in T")
         read = readings_of_arrays(readings, len(case.sensors), unloaded, background, Chips.of(case))
     asked = largest_load(case, largest)
-    return sense_readings(
-        case, read, Pair.of(models), noise_of(noise), asked, progress, joints_of(joints)
+    return sense_by_pairs(
+        case, read, pairs_of(models), noise_of(noise), asked, progress, joints_of(joints)
     ).frame()
 
 
