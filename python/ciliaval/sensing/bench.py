@@ -118,7 +118,7 @@ def _ambient(value: Any) -> Array:
 def _case(file: Path, name: Any) -> Case:
     """The case that the bench names, beside the bench's file."""
     if name is None:
-        raise InputError("the bench needs a case")
+        raise InputError("there is no key `case`")
     try:
         case = Case(file.parent / _line(name))
         if not len(case.sensors):
@@ -205,7 +205,7 @@ class Simulation:
     def errors(self, source: str) -> dict[str, Any]:
         """The sizes of the errors of one simulation: those of the bench, or zero where they are left out."""
         bench = self.bench
-        sizes = {
+        sizes: dict[str, tuple[Any, str]] = {
             "noise": (bench.noise, "noise"),
             "background_noise": (bench.noise, "ambient field"),
             "quantum": (bench.quantum, "digits"),
@@ -214,7 +214,7 @@ class Simulation:
             "ambient": (bench.ambient, "ambient field"),
             "models": (bench.truth != bench.models, "models"),
         }
-        chosen: dict[str, Any] = {k: size if source in ("all", of) else 0 * size for k, (size, of) in sizes.items()}
+        chosen = {k: size if source in ("all", of) else 0 * size for k, (size, of) in sizes.items()}
         # An ambient field does no harm without the noise of its reading.
         harm = [k for k, size in chosen.items() if k not in ("background_noise", "ambient") and size > 0]
         return chosen | {"any": bool(harm) or chosen["background_noise"] > 0 and bool(np.any(chosen["ambient"]))}

@@ -22,8 +22,8 @@ from ..model import Case
 from ..units import shown
 from .inversion import TWO_SIDED_95, UNLIKELY, Chips
 from .left_out import with_joints
-from .loads import case_of, joints_of, noise_of, options_of, readings_of_arrays
-from .readings import Readings, read_readings
+from .loads import case_of, noise_of, readings_of
+from .readings import Readings
 from .response import Pair, Progress
 
 _TOGETHER = 0.99  # correlation from which two numbers are named
@@ -159,7 +159,6 @@ def calibrate(
     *,
     models: str = "elastica/volume",
     noise: float | str = 1e-6,
-    unloaded: Any = None,
     joints: str = "corrected",
     progress: Progress | None = None,
     **options: Any,
@@ -169,9 +168,10 @@ def calibrate(
 
     fit: "base.young_modulus", any number by its path in studies or the end of it; "sensor.position" (three
     numbers), "sensor.rotation" (about z), "sensor.orientation" (about x, y, z), "sensor.gain" or "scale"; with
-    several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, unloaded, joints, options:
-    as of sense(); the case that is written has the joints that were used. Weighted least squares (scipy.optimize.least_squares) of dB; the offset's noise, which all
-    readings share, is in the weights. Deviations are (J^T V^-1 J)^-1 by the noise alone.
+    several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, joints, options: as of
+    sense(); the case that is written has the joints that were used. Weighted least squares
+    (scipy.optimize.least_squares) of dB; the offset's noise, which all readings share, is in the weights. Deviations are
+    (J^T V^-1 J)^-1 by the noise alone.
 
     Raises InputError, SolverError.
 
@@ -184,30 +184,9 @@ def calibrate(
     >>> round(float(found.values[0]))
     90000
     """
-    case = case_of(case)
-    if isinstance(readings, (str, Path)):
-        skip = bool(options.pop("skip", False))
-        given = options | {"unloaded": unloaded}
-        reads = Chips.of(case).reads
-        read = read_readings(Path(readings), case.sensor_names, options_of(case, given, skip), None, reads)
-    elif options:
-        raise InputError(f"{', '.join(options)}: of a file of readings alone")
-    else:
-        read = readings_of_arrays(readings, len(case.sensors), unloaded, None, Chips.of(case))
-    return calibrate_readings(case, read, fit, Pair.of(models), noise_of(noise), progress, joints_of(joints))
-
-
-def calibrate_readings(
-    case: Case,
-    read: Readings,
-    fit: Sequence[str],
-    pair: Pair,
-    noise: float,
-    progress: Progress | None = None,
-    joints: str = "corrected",
-) -> Calibration:
-    """See calibrate()."""
-    case, _ = with_joints(case, pair.mechanics, joints)
+    pair, sigma = Pair.of(models), noise_of(noise)
+    case, _ = with_joints(case_of(case), pair.mechanics, joints)
+    read = readings_of(case, readings, **options)
     read.require_offset("a calibration")
     if len(read.change) != len(case.loads):
         raise InputError(
@@ -218,7 +197,7 @@ def calibrate_readings(
     names = [p.name for p in parameters]
     if not parameters or len(set(names)) < len(names):
         raise InputError(f"fit names no number, or one twice: {', '.join(names) or 'none'}")
-    fitting = _Fitting(case, read, parameters, pair, noise, progress)
+    fitting = _Fitting(case, read, parameters, pair, sigma, progress)
     start = fitting.residual(np.zeros(len(parameters)))
     data = int(Chips.of(case).reads.sum()) * len(read.change)
     if data < len(parameters):
@@ -235,7 +214,7 @@ def calibrate_readings(
     return Calibration(
         parameters, values, deviations * [p.slope(v) for p, v in zip(parameters, values)], correlation, float(2 * found.cost),
         data - len(parameters) + len(together), together,
-        fitting.case(values), pair, noise, fitting.read - fitting.computed(values), read.remarks,
+        fitting.case(values), pair, sigma, fitting.read - fitting.computed(values), read.remarks,
     )  # fmt: skip
 
 

@@ -16,7 +16,9 @@ MOST_CELLS = 1000  # of a line
 _MOST_LISTED = 50  # faults of a report
 
 _FILLERS = re.compile(r"[ \t_.:/-]")
-_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
+NUMBER = re.compile(
+    r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:e[+-]?[0-9]+)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
+)
 _PREFIX = r"s|sensor|ch|channel|probe|node|chip|imu|mlx"
 _FIELD = re.compile(
     rf"(?:(?:{_PREFIX}|mag|b|m)?(?P<before>\d{{1,4}}))?"
@@ -132,7 +134,7 @@ def cells_of(line: str, separator: str = ",") -> list[Cell]:
 
 def number_in(text: str) -> float | None:
     """The number of a cell with a decimal point or comma; None if it is none."""
-    return float(text.replace(",", ".")) if len(text) <= 64 and _NUMBER.fullmatch(text) else None
+    return float(text.replace(",", ".")) if len(text) <= 64 and NUMBER.fullmatch(text) else None
 
 
 def thousands_in(cells: Iterable[tuple[int, Cell]]) -> tuple[int, Cell] | None:

@@ -11,17 +11,18 @@ import numpy as np
 
 from .. import _core
 from ..arrays import Array
+from ..errors import InputError
 from ..model import Case
 from .response import Pair, Progress, Response, Shapes, shapes_within
-
-JOINTS = ("corrected", "case")
 
 
 def with_joints(case: Case, mechanics: str, joints: str) -> tuple[Case, str]:
     """The case with the rod's joints corrected ("corrected"), or as it states them ("case"); and why
-    they are not corrected where they cannot be."""
+    they are not corrected where they cannot be. Raises InputError."""
     if joints == "case":
         return case, ""
+    if joints != "corrected":
+        raise InputError(f"joints: `corrected`, or `case`, as the case states them, not `{joints}`")
     core, fault = case._core.corrected(mechanics)
     return (case, fault) if fault else (Case._of(core, case.file), "")
 

@@ -20,7 +20,7 @@ from ..errors import InputError
 from ..model import Case
 from ..units import shown
 from .inversion import STATUSES, TWO_SIDED_95, UNLIKELY, Chips, SensedLoads, invert
-from .left_out import JOINTS, LeftOut, with_joints
+from .left_out import LeftOut, with_joints
 from .readings import Option, ReadingOptions, Readings, read_readings
 from .response import Pair, Progress, Response, Shapes, pairs_of, require_load_to_sense, shapes_within
 
@@ -296,21 +296,6 @@ def sense_readings(
     return Sensing(case.name, pair, noise, unit, response, readings, loads, flow, left_out, shifts, remarks)
 
 
-def sense_by_pairs(
-    case: Case,
-    readings: Readings,
-    pairs: Sequence[Pair],
-    noise: float,
-    largest: float,
-    progress: Progress | None = None,
-    joints: str = "corrected",
-) -> Sensing:
-    """The loads by the first pair, and by the others for their spread. Raises InputError, SolverError."""
-    first, *others = [sense_readings(case, readings, pair, noise, largest, progress, joints) for pair in pairs]
-    more = [f"{s.pair}: {remark}" for s in others for remark in s.remarks if remark not in first.remarks]
-    return replace(first, others=others, remarks=[*first.remarks, *more])
-
-
 def _range_remark(shapes: Shapes, asked: float, unit: str) -> list[str]:
     if not shapes.limit:
         return []
@@ -359,29 +344,12 @@ def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[s
     return remarks
 
 
-def noise_of(value: float | str, where: str = "noise") -> float:
+def noise_of(value: float | str) -> float:
     """The standard deviation of a component, T, of a number or a text. Raises InputError."""
     noise = _core.quantity(value, "T") if isinstance(value, str) else float(value)
     if not _LEAST_NOISE <= noise <= 1:
-        raise InputError(f"{where}: the noise of a reading lies between 1 fT and 1 T, not `{value}`")
+        raise InputError(f"--noise: the noise of a reading lies between 1 fT and 1 T, not `{value}`")
     return noise
-
-
-def joints_of(joints: str | None) -> str:
-    """Raises InputError unless it is one of JOINTS."""
-    if joints is not None and joints not in JOINTS:
-        raise InputError(f"joints: `corrected`, or `case`, as the case states them, not `{joints}`")
-    return joints or JOINTS[0]
-
-
-def largest_load(case: Case, largest: float | str | None = None) -> float:
-    """The largest load to look for: as stated, or 1.25 times the case's largest. Raises InputError."""
-    if largest is not None:
-        return _core.quantity(largest, case.loads[0].unit) if isinstance(largest, str) else float(largest)
-    of_case = max(load.magnitude for load in case.loads)
-    if not of_case > 0:
-        raise InputError("the case has no load but zero: say --largest")
-    return BEYOND_THE_LARGEST * of_case
 
 
 def case_of(case: Case | str | Path) -> Case:
@@ -392,11 +360,46 @@ def case_of(case: Case | str | Path) -> Case:
     return made
 
 
-def options_of(case: Case, given: Mapping[str, str | None], skip: bool = False) -> ReadingOptions:
-    """How a file is read: what is given goes before what the case states in [readings]."""
-    stated = {name: Option(*option) for name, option in case._core.readings.items()}
-    stated |= {name: Option(text, f"--{name}") for name, text in given.items() if text}
-    return ReadingOptions(**stated, skip=skip)
+def readings_of(
+    case: Case, readings: npt.ArrayLike | str | Path, unloaded: Any = None, background: Any = None, **options: Any
+) -> Readings:
+    """Readings of the case's sensors from a file or arrays: see sense(). Raises InputError, FileError."""
+    chips = Chips.of(case)
+    if isinstance(readings, (str, Path)):
+        stated: dict[str, Any] = {name: Option(*option) for name, option in case._core.readings.items()}
+        for name, text in (options | {"unloaded": unloaded}).items():
+            if text:
+                stated[name] = text if name == "skip" else Option(text, f"--{name}")
+        ambient = None if background is None else Path(background)
+        return read_readings(Path(readings), case.sensor_names, ReadingOptions(**stated), ambient, chips.reads)
+    if given := [name for name, value in options.items() if value]:
+        raise InputError(f"{', '.join(given)}: of a file of readings alone; arrays are in T")
+    return readings_of_arrays(readings, len(case.sensors), unloaded, background, chips)
+
+
+def sensed(
+    case: Case | str | Path,
+    readings: npt.ArrayLike | str | Path,
+    models: str = "elastica/volume",
+    noise: float | str = 1e-6,
+    largest: float | str | None = None,
+    joints: str = "corrected",
+    progress: Progress | None = None,
+    **options: Any,
+) -> Sensing:
+    """What sense() makes its frame of."""
+    case = case_of(case)
+    require_load_to_sense(case)
+    pairs, sigma = pairs_of(models), noise_of(noise)
+    limit = BEYOND_THE_LARGEST * max(load.magnitude for load in case.loads)
+    if largest is not None:
+        limit = _core.quantity(largest, case.loads[0].unit) if isinstance(largest, str) else float(largest)
+    elif not limit > 0:
+        raise InputError("the case has no load but zero: say --largest")
+    read = readings_of(case, readings, **options)  # before the models run, which may take a minute
+    first, *others = [sense_readings(case, read, pair, sigma, limit, progress, joints) for pair in pairs]
+    more = [f"{s.pair}: {remark}" for s in others for remark in s.remarks if remark not in first.remarks]
+    return replace(first, others=others, remarks=[*first.remarks, *more])
 
 
 def sense(
@@ -408,14 +411,9 @@ def sense(
     unloaded: Any = None,
     background: npt.ArrayLike | str | Path | None = None,
     largest: float | str | None = None,
-    map: str | None = None,
-    unit: str | None = None,
-    scale: str | None = None,
-    average: str | None = None,
-    temperature: str | None = None,
-    skip: bool = False,
     joints: str = "corrected",
     progress: Progress | None = None,
+    **of_file: Any,
 ) -> Any:
     """The load of each reading: a pandas.DataFrame with a row for each, SI units, whose columns are sample,
     status, load_x, load_y, magnitude, magnitude_interval, model_interval, input_interval, azimuth,
@@ -431,8 +429,8 @@ def sense(
     background: the ambient field that goes with each reading, as large as these, each with the noise of
     a reading; or one field for all, which drops out of dB. Of a file the background's file. models: the
     pair that is inverted, or several with commas between: the first one's loads, and in the columns
-    `magnitude beam/line` and `spread` what the others find. joints: "corrected", those of a rod where the corrections reach (docs/theory/joints.md), or
-    "case", as the case states them. largest: the largest load to look for.
+    `magnitude beam/line` and `spread` what the others find. joints: "corrected", those of a rod where the corrections
+    reach (docs/theory/joints.md), or "case", as the case states them. largest: the largest load to look for.
 
     Raises InputError, FileError, SolverError.
 
@@ -445,25 +443,8 @@ def sense(
     >>> len(frame), list(frame.columns[:4])
     (10, ['sample', 'status', 'load_x', 'load_y'])
     """
-    case = case_of(case)
-    if isinstance(readings, (str, Path)):
-        given = {
-            "map": map, "unit": unit, "scale": scale, "average": average, "temperature": temperature,
-            "unloaded": unloaded,
-        }  # fmt: skip
-        file = None if background is None else Path(background)  # type: ignore[arg-type]
-        read = read_readings(
-            Path(readings), case.sensor_names, options_of(case, given, skip), file, Chips.of(case).reads
-        )
-    else:
-        named = {"map": map, "unit": unit, "scale": scale, "average": average, "temperature": temperature, "skip": skip}
-        if extra := [key for key, value in named.items() if value]:
-            raise InputError(f"{', '.join(extra)}: of a file of readings alone; arrays are in T")
-        read = readings_of_arrays(readings, len(case.sensors), unloaded, background, Chips.of(case))
-    asked = largest_load(case, largest)
-    return sense_by_pairs(
-        case, read, pairs_of(models), noise_of(noise), asked, progress, joints_of(joints)
-    ).frame()
+    of_file |= {"unloaded": unloaded, "background": background}
+    return sensed(case, readings, models, noise, largest, joints, progress, **of_file).frame()
 
 
 def readings_of_arrays(

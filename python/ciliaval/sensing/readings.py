@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +41,8 @@ class ReadingOptions:
     temperature: Option = Option()
     skip: bool = False
 
+
+OPTIONS = [option.name for option in fields(ReadingOptions)]
 
 @dataclass(frozen=True)
 class Readings:
