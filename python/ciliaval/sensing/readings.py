@@ -102,13 +102,12 @@ class Background:
             faults.add("the background is B: name its columns Bx, By, Bz")
         faults.require_none(file)
         assert table is not None and table.azimuth is not None
-        for_all = not table.is_wide and table.sensor is None
         self._azimuths: list[Array] = []  # of each sensor's means, rising, in [0, 2 pi)
         self._B: list[Array] = []
         self._first: list[int] = []  # number of each sensor's first mean
         rows: list[Array] = []
         for s, sensor in enumerate(sensors):
-            if s and for_all:
+            if s and not table.is_wide and table.sensor is None:  # one background for all
                 self._azimuths.append(self._azimuths[0])
                 self._B.append(self._B[0])
                 self._first.append(0)
@@ -119,14 +118,14 @@ class Background:
                 faults.require_none(file)
             azimuth = table.azimuth[mine] % _TURN
             azimuth[azimuth >= _TURN - _SAME_AZIMUTH] -= _TURN  # just below a turn is zero
-            B = table.B[mine, s if table.is_wide else 0]
             order = np.argsort(azimuth, kind="stable")
             group = np.zeros(len(order), dtype=int)
             group[order] = np.cumsum(np.diff(azimuth[order], prepend=azimuth[order[0]]) > _SAME_AZIMUTH)
             count = np.bincount(group)
+            means = _means(np.column_stack([azimuth, table.B[mine, s if table.is_wide else 0]]), group, count)
             self._first.append(sum(map(len, rows)))
-            self._azimuths.append(np.bincount(group, azimuth) / count)
-            self._B.append(np.stack([np.bincount(group, component) for component in B.T], axis=1) / count[:, None])
+            self._azimuths.append(means[:, 0])
+            self._B.append(means[:, 1:])
             rows.append(count)
         self.rows = np.concatenate(rows)
 
@@ -151,46 +150,37 @@ class Background:
         return np.asarray(np.einsum("ni,nij->nj", weights, self._B[sensor][means - self._first[sensor]]))
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Which rows are of the unloaded cilium, besides those of the sample `unloaded`: kind "", "model", "rows" or
-    "time", with the first and the last."""
+def _part_of(option: Option) -> tuple[str, float, float]:
+    """Which rows are of the unloaded cilium, besides those of the sample `unloaded`: "rows" or "time", with the first
+    and the last, of "rows 1..20", "0 s..1 s" or "0..1 s"; "model"; or "". Raises InputError."""
+    text = option.text.strip(" \t")
+    if text in ("", "model"):
+        return text, 0, 0
 
-    kind: str = ""
-    first: float = 0.0
-    last: float = 0.0
+    def refusal(why: str) -> InputError:
+        return InputError(
+            f'{option.where}: {in_quotes(text)} {why}: write "0 s..1 s" by the time, "rows 1..20" by the rows '
+            'below the header, or "model"'
+        )
 
-    @staticmethod
-    def of(option: Option) -> _Part:
-        """ "0 s..1 s", "0..1 s", "rows 1..20" or "model". Raises InputError."""
-        text = option.text.strip(" \t")
-        if text in ("", "model"):
-            return _Part(text)
-
-        def refusal(why: str) -> InputError:
-            return InputError(
-                f'{option.where}: {in_quotes(text)} {why}: write "0 s..1 s" by the time, "rows 1..20" by the rows '
-                'below the header, or "model"'
-            )
-
-        by_rows = text.startswith("rows ")
-        first, dots, last = (part.strip(" \t") for part in text.removeprefix("rows ").partition(".."))
-        if not dots:
-            raise refusal("is no range")
-        if by_rows:
-            if not (first.isdigit() and last.isdigit() and 1 <= int(first) and max(int(first), int(last)) <= MOST_ROWS):
-                raise refusal("is no range of rows from 1 on")
-            part = _Part("rows", int(first), int(last))
-        else:
-            unit = last.lstrip("0123456789.+-eE ")
-            bare = not first.strip("0123456789.+-eE ")  # then it has the unit of the other end
-            try:
-                part = _Part("time", quantity(f"{first} {unit}" if bare else first, "s"), quantity(last, "s"))
-            except InputError as fault:
-                raise refusal(f"is no range of time ({fault})") from fault
-        if part.last < part.first:
-            raise refusal("ends before it begins")
-        return part
+    first, dots, last = (part.strip(" \t") for part in text.removeprefix("rows ").partition(".."))
+    if not dots:
+        raise refusal("is no range")
+    if text.startswith("rows "):
+        if not (first.isdigit() and last.isdigit() and 1 <= int(first) and max(int(first), int(last)) <= MOST_ROWS):
+            raise refusal("is no range of rows from 1 on")
+        kind, ends = "rows", (float(first), float(last))
+    else:
+        number = "0123456789.+-eE "
+        bare = not first.strip(number)  # then it has the unit of the other end
+        try:
+            begin = quantity(f"{first} {last.lstrip(number)}" if bare else first, "s")
+            kind, ends = "time", (begin, quantity(last, "s"))
+        except InputError as fault:
+            raise refusal(f"is no range of time ({fault})") from fault
+    if ends[1] < ends[0]:
+        raise refusal("ends before it begins")
+    return kind, *ends
 
 
 def read_readings(
@@ -215,7 +205,7 @@ def read_readings(
     Raises InputError with every fault, a line each: `file:line:column: what is wrong`.
     """
     file = Path(file)
-    part = _Part.of(options.unloaded)
+    part = _part_of(options.unloaded)
     window = _window(options.average)
     coefficient = _coefficient(options.temperature)
     ambient = None
@@ -275,7 +265,7 @@ def _coefficient(option: Option) -> float:
 
 
 def _unsuitable(
-    table: Table, sensors: Sequence[str], part: _Part, options: ReadingOptions, has_background: bool
+    table: Table, sensors: Sequence[str], part: tuple[str, float, float], options: ReadingOptions, has_background: bool
 ) -> list[str]:
     """What the file lacks for what is asked of it."""
     faults = []
@@ -289,7 +279,7 @@ def _unsuitable(
         faults.append("the background depends on the azimuth: the readings need a column 'azimuth'")
     if has_background and table.is_change:
         faults.append("the change dB has no background any more: leave the background out")
-    if part.kind == "time" and table.time is None:
+    if part[0] == "time" and table.time is None:
         faults.append(
             f'{options.unloaded.where} is a range of time, but {table.timeless}; --unloaded "rows 1..20" needs none'
         )
@@ -302,7 +292,7 @@ class _Grouped:
     """The rows by sample in the order of the file, and those of the unloaded cilium, which are group 0."""
 
     def __init__(
-        self, table: Table, sensors: Sequence[str], part: _Part, window: float, ambient: Background | None,
+        self, table: Table, sensors: Sequence[str], part: tuple[str, float, float], window: float, ambient: Background | None,
         faults: Faults, file: Path, reads: Array | None,
     ):  # fmt: skip
         self.reads = np.ones((len(sensors), 3), dtype=bool) if reads is None else reads
@@ -312,11 +302,11 @@ class _Grouped:
         if table.sample is not None:
             self.named = (np.array(table.names) == _UNLOADED)[table.sample]
         self.unloaded = self.named.copy()
-        if part.kind in ("rows", "time"):
-            values = table.number if part.kind == "rows" else table.time
+        if part[0] in ("rows", "time"):
+            values = table.number if part[0] == "rows" else table.time
             assert values is not None
-            slack = table.resolution if part.kind == "time" else 0  # a row at a boundary belongs to the part
-            self.unloaded |= (values >= part.first - slack) & (values <= part.last + slack)
+            slack = table.resolution if part[0] == "time" else 0  # a row at a boundary belongs to the part
+            self.unloaded |= (values >= part[1] - slack) & (values <= part[2] + slack)
         self.loaded = np.flatnonzero(~self.unloaded)
         key, window_of = self._keys()
         self.group = np.zeros(len(table.B), dtype=int)
@@ -341,25 +331,25 @@ class _Grouped:
 
     def _keys(self) -> tuple[Array, Array]:
         """Of the loaded rows: number of the sample, in the order of the file, and of its window."""
+        import pandas as pd  # it takes half a second
+
         table, loaded = self.table, self.loaded
         window_of = np.zeros(len(loaded), dtype=int)
         if table.sample is not None:
-            key = _in_order(table.sample[loaded])
+            key = pd.factorize(table.sample[loaded])[0]
         elif self.window:
             key = window_of
         elif table.sensor is not None and table.time is not None:
-            key = _in_order(table.time[loaded])
+            key = pd.factorize(table.time[loaded])[0]
         else:
             key = np.arange(len(loaded))
         if self.window and len(loaded):
             assert table.time is not None
             time = table.time[loaded]
-            begin = np.full(int(key.max()) + 1, np.inf)
-            np.minimum.at(begin, key, time)
-            begin = begin[key]
+            begin = pd.Series(time).groupby(key).transform("min").to_numpy()
             slack = table.resolution + 1e-12 * np.abs(time).max()
             window_of = np.floor((time - begin + slack) / self.window).astype(np.int64)
-            key = _in_order(key * (window_of.max() + 1) + window_of)
+            key = pd.factorize(key * (window_of.max() + 1) + window_of)[0]
         return key, window_of
 
     def _names(self, window_of: Array | None) -> list[str]:
@@ -427,16 +417,16 @@ class _Grouped:
         line = int(table.line[np.argmax(self.named)]) if self.named.any() else 0
         if table.is_change and line:
             faults.add("the change dB of the unloaded cilium is zero: leave its rows out", line)
-        elif table.is_change and part.kind:
+        elif table.is_change and part[0]:
             faults.add(f"the change dB needs no unloaded reading: leave {option.where} out")
-        elif line and part.kind:
+        elif line and part[0]:
             faults.add(f"there are rows of the sample `unloaded`: leave {option.where} out", line)
-        elif not any_unloaded and part.kind in ("rows", "time"):
+        elif not any_unloaded and part[0] in ("rows", "time"):
             has = f"the rows 1..{table.number[-1]}"
-            if part.kind == "time" and table.time is not None:
+            if part[0] == "time" and table.time is not None:
                 has = f"the times {table.time[0]:g} s..{table.time[-1]:g} s"
             faults.add(f'no row lies in "{option.text}" of {option.where}: the file has {has}')
-        elif len(self.first) and not any_unloaded and not table.is_change and not part.kind:
+        elif len(self.first) and not any_unloaded and not table.is_change and not part[0]:
             faults.add(
                 "there is no reading of the unloaded cilium, without which the earth's field would be read as load: "
                 "name its rows `unloaded` in a column 'sample', or say which they are: --unloaded \"0 s..1 s\" by the "
@@ -511,12 +501,6 @@ class _Grouped:
         if self.window:
             remark += f"; averaged over {self.window:g} s"
         return [printable(f"{self.file.name}: {text}.") for text in (remark, *silent_doubts(self.table, self.sensors))]
-
-
-def _in_order(keys: Array) -> Array:
-    """The number of each key, by the order in which they first appear."""
-    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    return np.argsort(np.argsort(first))[inverse]
 
 
 def _means(values: Array, at: Array, count: Array) -> Array:
