@@ -196,15 +196,13 @@ def lsb_scale(text: str) -> list[float]:
 
 
 def _one_scale(text: str) -> float:
-    head, _, divisor = (part.strip(" \t") for part in text.partition("/"))
-    number, blank, unit = (part.strip(" \t") for part in re.sub(r"[ \t]+", " ", head).partition(" "))
-    if not unit:
-        raise InputError(f'{in_quotes(text)} is no flux density of an LSB: write "0.15 uT" or "6842 LSB/G"')
+    found = re.fullmatch(r"([^ \t/]+)[ \t]*([^/]*?)[ \t]*(?:/[ \t]*(.*))?", text.strip(" \t"))
+    number, unit, divisor = (part or "" for part in found.groups()) if found else ("", "", "")
     scale = 0.0
     if unit.lower() in _LSB and divisor:
         count = quantity(f"{number} T", "T")
         scale = quantity(f"1 {divisor}", "T") / count if count else 0.0
-    elif not divisor or divisor.lower() in _LSB:
+    elif unit and (not divisor or divisor.lower() in _LSB):
         scale = quantity(f"{number} {unit}", "T")
     if not 1e-15 <= scale <= 1:
         raise InputError(

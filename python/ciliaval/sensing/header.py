@@ -110,20 +110,16 @@ def choose_columns(
     _apply_map(header, entries, where, faults)
     if len(faults) > before:
         return
-    for kind in ("time", "sample", "sensor", "azimuth", *header.needs):
-        known: set[str] = set()
-        for column in header.columns:
-            if column.kind == kind and column.name.lower() in known:
-                faults.add(f"there is a second column '{column.name}'", header.line, column.place)
-            if column.kind == kind:
-                known.add(column.name.lower())
+    names = [(column.kind, column.name.lower()) for column in header.columns]
+    for i, column in enumerate(header.columns):
+        if column.kind in ("time", "sample", "sensor", "azimuth", *header.needs) and names[i] in names[:i]:
+            faults.add(f"there is a second column '{column.name}'", header.line, column.place)
+        if column.kind in header.needs and column.unit is not None and not is_unit(column.unit, column.kind):
+            what = f"the column {in_quotes(column.header)} is in {column.unit}: write it in K or degC"
+            faults.add(what, header.line, column.place)
     for kind in header.needs:
         if header.one(kind) is None:
             faults.add(f"there is no column '{kind}' (columns: {header.names()})", header.line)
-        for column in header.columns:
-            if column.kind == kind and column.unit is not None and not is_unit(column.unit, kind):
-                what = f"the column {in_quotes(column.header)} is in {column.unit}: write it in K or degC"
-                faults.add(what, header.line, column.place)
     _choose_fields(header, sensors, faults)
 
 
@@ -188,8 +184,9 @@ def _choose_fields(header: Header, sensors: Sequence[str], faults: Faults) -> No
     header.is_wide = len(labels) > 1 or (len(sensors) > 1 and labels != {""})
     # Numbered from 1, as in "Bx1, By1, Bz1, Bx2, …": none is called 0.
     first = int(len(labels) == len(sensors) and {"1", str(len(sensors))} <= labels and "0" not in labels)
-    taken = set()
     reads = header.reads if header.is_wide else header.reads.any(axis=0, keepdims=True)
+    missing = {(int(sensor), int(axis)) for sensor, axis in np.argwhere(reads)}
+    taken = set()
     for i, column in chosen:
         sensor = 0 if labels == {""} else sensor_index(column.sensor, sensors, first)
         if sensor is None:
@@ -203,16 +200,13 @@ def _choose_fields(header: Header, sensors: Sequence[str], faults: Faults) -> No
             faults.add(f"there is a second column {in_quotes(column.name)}", header.line, column.place)
             return
         taken.add((sensor, column.axis))
-        if not reads[sensor, column.axis]:
-            continue
-        header.fields.append((i, sensor, column.axis))
-    for sensor in range(len(sensors) if header.is_wide else 1):
-        for axis in range(3):
-            if reads[sensor, axis] and (sensor, axis) not in taken:
-                of = f" of the sensor {sensors[sensor]}" if header.is_wide else ""
-                name = f"{'d' if header.is_change else ''}B{'xyz'[axis]}"
-                faults.add(f"{_EITHER}: there is no column {name}{of} (columns: {header.names()})", header.line)
-                return
+        if reads[sensor, column.axis]:
+            header.fields.append((i, sensor, column.axis))
+    if missing - taken:
+        sensor, axis = min(missing - taken)
+        of = f" of the sensor {sensors[sensor]}" if header.is_wide else ""
+        name = f"{'d' if header.is_change else ''}B{'xyz'[axis]}"
+        faults.add(f"{_EITHER}: there is no column {name}{of} (columns: {header.names()})", header.line)
 
 
 def sensor_index(text: str, sensors: Sequence[str], first: int = 0) -> int | None:
@@ -238,9 +232,8 @@ def find_factors(
     By the header, the row of units (may be empty), comments, the column `units` (its name and unit, "" if
     there is none), --unit, or ROS's message. Two that differ, and none, are faults. Raises InputError.
     """  # fmt: skip
-    scales = None
+    where, scales = scale.where, None
     try:
-        where = scale.where
         scales = lsb_scale(scale.text) if scale.text else None
         where = unit.where
         if unit.text:
@@ -250,46 +243,45 @@ def find_factors(
     factors, units, without, before = [], [], [], len(faults)
     for i, _, axis in header.fields:
         column = header.columns[i]
-        # Unit, by what it is stated, line, column.
-        stated = [(column.unit, "the header", header.line, column.place)] if column.unit is not None else []
-        if i < len(unit_row) and unit_row[i].text:
-            stated.append((without_brackets(unit_row[i].text), "the row of units", unit_line, unit_row[i].column))
-        if column.name in header.units:
-            stated.append((header.units[column.name], "a comment", header.line, column.place))
-        if unit_column[1]:
-            stated.append((unit_column[1], f"the column '{unit_column[0]}'", header.line, column.place))
-        if unit.text:
-            stated.append((unit.text, unit.where, header.line, column.place))
+        here = (header.line, column.place)
+        of_row = unit_row[i] if i < len(unit_row) else Cell("", 1)
+        statements = (  # unit, by what it is stated, line and column
+            (column.unit, "the header", here),
+            (without_brackets(of_row.text) or None, "the row of units", (unit_line, of_row.column)),
+            (header.units.get(column.name), "a comment", here),
+            (unit_column[1] or None, f"the column '{unit_column[0]}'", here),
+            (unit.text or None, unit.where, here),
+        )
+        stated = [(text, by, place) for text, by, place in statements if text is not None]
         if not stated and header.is_ros and _ROS_FIELD.fullmatch(column.name):
-            stated.append(("T", "ROS", header.line, column.place))
+            stated = [("T", "ROS", here)]
         factors.append(1.0)
         units.append(stated[0][0] if stated else "")
         if not stated:
             without.append(in_quotes(column.header))
             continue
-        first, by, line, place = stated[0]
+        first, by, place = stated[0]
         try:
             factor = flux_density_unit(first)
-            for other in stated:
-                if flux_density_unit(other[0]) != factor:
-                    faults.add(
-                        f"the column {in_quotes(column.header)} has two units: {in_quotes(first)} by {by}, "
-                        f"{in_quotes(other[0])} by {other[1]}",
-                        *other[2:],
-                    )
-                    break
+            other = next((other for other in stated if flux_density_unit(other[0]) != factor), None)
+            if other is not None:
+                faults.add(
+                    f"the column {in_quotes(column.header)} has two units: {in_quotes(first)} by {by}, "
+                    f"{in_quotes(other[0])} by {other[1]}",
+                    *other[2],
+                )
             if factor is not None:
                 factors[-1] = factor
-            elif scales is None:
+            elif scales is not None:
+                factors[-1] = scales[axis]
+            else:
                 faults.add(
                     f"the column {in_quotes(column.header)} is in {in_quotes(first)}: state the flux density of one, "
                     'from the sensor\'s data sheet: --scale "0.15 uT" or --scale "6842 LSB/G"',
-                    line, place,
-                )  # fmt: skip
-            else:
-                factors[-1] = scales[axis]
+                    *place,
+                )
         except InputError as fault:
-            faults.add(f"the column '{column.name}': {fault}", line, place)
+            faults.add(f"the column '{column.name}': {fault}", *place)
     if without:
         faults.add(
             f'no unit of {", ".join(without)}: write it into the header, "Bx [uT]", or state it: --unit uT (T, mT, uT, '
