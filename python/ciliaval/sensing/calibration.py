@@ -117,9 +117,9 @@ class Calibration:
                 "wrong, and the intervals are too small"
             )
         text += ".\n"
-        named = {(p.name, q.name): self.correlation[i, j] for i, p in enumerate(self.parameters)
-                 for j, q in enumerate(self.parameters) if j > i}  # fmt: skip
-        close = [f"{a} and {b} ({r:+.3f})" for (a, b), r in named.items() if _TOGETHER < abs(r) < 1 - 1e-9]
+        names, r = [p.name for p in self.parameters], self.correlation
+        pairs = zip(*np.triu_indices(len(names), 1))
+        close = [f"{names[i]} and {names[j]} ({r[i, j]:+.3f})" for i, j in pairs if _TOGETHER < abs(r[i, j]) < 1 - 1e-9]
         if close:
             text += f"Known together better than apart (correlation): {', '.join(close)}.\n"
         for group in self.together:
@@ -164,16 +164,13 @@ def calibrate(
     **options: Any,
 ) -> Calibration:
     """Fits numbers of a case to readings at its loads, which are known: one reading, or sample of averaged ones,
-    for each load step, in their order.
+    for each load step, in their order, by weighted least squares of dB (scipy.optimize.least_squares).
 
     fit: "base.young_modulus", any number by its path in studies or the end of it; "sensor.position" (three
     numbers), "sensor.rotation" (about z), "sensor.orientation" (about x, y, z), "sensor.gain" or "scale"; with
     several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, joints, options: as of
-    sense(); the case that is written has the joints that were used. Weighted least squares
-    (scipy.optimize.least_squares) of dB; the offset's noise, which all readings share, is in the weights. Deviations are
-    (J^T V^-1 J)^-1 by the noise alone.
-
-    Raises InputError, SolverError.
+    sense(); the case that is written has the joints that were used. Deviations are (J^T V^-1 J)^-1 by the noise alone,
+    that of the offset, which all readings share, included. Raises InputError, SolverError.
 
     >>> import ciliaval as cv
     >>> from ciliaval.sensing import calibrate
@@ -289,11 +286,8 @@ class _Fitting:
         self.read = np.where(self._reads, read.change, 0.0)
         self.failure = ""
         self._evaluations = 0
-        # V = sigma^2 (diag(1/rows) + v 1 1^T), v of the offset; V^-1/2 = (I - c u u^T) D^-1/2 with u = D^-1/2 1 sqrt(v).
-        self._own = np.sqrt(read.rows) / noise
-        u = np.sqrt(read.rows * read.offset_variance)
-        squared = float(u @ u)
-        self._shared = u, (1 - 1 / math.sqrt(1 + squared)) / squared if squared else 0.0
+        # V^-1/2 of V = sigma^2 (diag(1/rows) + v 1 1^T), v of the offset.
+        self._whitening = np.linalg.inv(np.linalg.cholesky(np.diag(1 / read.rows) + read.offset_variance)) / noise
 
     def values(self, x: Array) -> Array:
         return np.array([p.value(float(value)) for p, value in zip(self._parameters, x)])
@@ -347,18 +341,10 @@ class _Fitting:
         return np.asarray(chips.own(B[1:] - B[0]))
 
     def residual(self, x: Array) -> Array:
-        return self._whitened(self.computed(self.values(x)) - self.read)
+        off = self.computed(self.values(x)) - self.read
+        return np.asarray(np.tensordot(self._whitening, off, axes=1)[:, self._reads].ravel())
 
     def jacobian(self, x: Array) -> Array:
         """By central differences of 1e-3 steps."""
-        columns = []
-        for i in range(len(x)):
-            h = np.zeros(len(x))
-            h[i] = 1e-3
-            columns.append((self.residual(x + h) - self.residual(x - h)) / 2e-3)
-        return np.stack(columns, axis=1)
-
-    def _whitened(self, off: Array) -> Array:
-        u, c = self._shared
-        own = off.reshape(len(off), -1) * self._own[:, None]
-        return np.asarray((own - c * np.outer(u, u @ own))[:, self._reads.ravel()].ravel())
+        steps = 1e-3 * np.eye(len(x))
+        return np.stack([(self.residual(x + h) - self.residual(x - h)) / 2e-3 for h in steps], axis=1)

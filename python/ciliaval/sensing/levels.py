@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import tomllib
 from collections.abc import Mapping
@@ -146,14 +145,15 @@ class SensedSurface:
 
     def json(self, provenance: Mapping[str, Any]) -> dict[str, Any]:
         """SI; height over the first level, towards the cilium."""
-        readings = zip(self.status.tolist(), self.interference.tolist(), self.interval.tolist())
+        columns = ("status", "interference", "interval")
+        readings = zip(*(getattr(self, name).tolist() for name in columns))
         return {
             "schema": 1,
             "case": self.case,
             "provenance": provenance,
             "models": str(self.pair),
             "noise": self.noise,
-            "readings": [dict(zip(("status", "interference", "interval"), values)) for values in readings],
+            "readings": [dict(zip(columns, values)) for values in readings],
             "levels": [
                 vars(level) | {"height": level.interference - self.levels[0].interference} for level in self.levels
             ],
@@ -161,11 +161,10 @@ class SensedSurface:
 
     def csv(self) -> str:
         """A line for each reading, units in the header."""
-        text = io.StringIO("row,status,interference [m],interval [m]\n")
-        text.seek(0, io.SEEK_END)
-        for i, values in enumerate(zip(self.status, self.interference.tolist(), self.interval.tolist())):
-            text.write(f"{i + 1},{values[0]},{values[1]!r},{values[2]!r}\n")
-        return text.getvalue()
+        import pandas as pd
+
+        columns = {"status": self.status, "interference [m]": self.interference, "interval [m]": self.interval}
+        return str(pd.DataFrame(columns, index=range(1, len(self.status) + 1)).to_csv(index_label="row"))
 
 
 def sense_surface(

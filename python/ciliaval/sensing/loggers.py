@@ -79,14 +79,10 @@ def read_table(
     has_temperature: bool = False,
     reads: Array | None = None,
 ) -> Table | None:
-    """Reads a file as loggers write it; None if it has faults, which are added with their places.
+    """Reads a file as loggers write it (docs/guide/sensing.md); None if it has faults, which are added with their places.
 
-    UTF-8 with or without a byte order mark, or Latin-1; LF or CRLF. Columns between commas, semicolons,
-    tabs, | or blanks; numbers with a decimal point, or with a comma where that separates no columns. Lines
-    of text, a header (columns_of()), perhaps a row of units, rows; comments begin with #, % or //, also that
-    which is the header. B or dB of one sensor, of several side by side, or in a row for each. `skip` leaves
-    rows without B out. has_temperature: a column with it is needed. reads: (sensors, 3), which components the file
-    must have; the others are 0. Raises InputError if an option has a fault.
+    `skip` leaves rows without B out. has_temperature: a column with it is needed. reads: (sensors, 3), which components
+    the file must have; the others are 0. Raises InputError if an option has a fault.
     """
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         faults.add("the file is in UTF-16: save it as UTF-8")

@@ -190,12 +190,8 @@ def read_readings(
     background: Path | None = None,
     reads: Array | None = None,
 ) -> Readings:
-    """Reads readings from a file as loggers write it (loggers.py) for a case with these sensors.
-
-    Rows of one name in the column `sample` are averaged; without it each row is a sample, or all rows of one
-    time where each sensor has its own rows, or those of a window of options.average. The unloaded rows are
-    those of the sample `unloaded`, or those that options.unloaded names. The earth's field and the
-    undeformed magnet's are subtracted:
+    """Reads readings from a file as loggers write it for a case with these sensors, and takes off the earth's field and
+    the undeformed magnet's:
 
         dB = (B - background(azimuth)) - (B_unloaded - background(azimuth of the unloaded)).
 
@@ -462,6 +458,7 @@ class _Grouped:
         Each row has the noise 1 of its own, and by W (rows x means) that of the background: V = I + W D W^T, D
         the variances of its means. V^-1 = I - W (D^-1 + W^T W)^-1 W^T (Woodbury).
         """
+        assert self.ambient is not None
         total = 0.0
         order = np.argsort(at, kind="stable")
         for rows in np.split(order, 1 + np.flatnonzero(np.diff(at[order]))):
@@ -470,14 +467,10 @@ class _Grouped:
             if len(rows) == 1 or np.ptp(W := weights[rows].toarray(), axis=0).max() == 0:
                 total += float((x**2).sum())
                 continue
-            assert self.ambient is not None
             inner = np.diag(self.ambient.rows.astype(float)) + W.T @ W
-
-            def weighted(y: Array) -> Array:
-                return np.asarray(y - W @ np.linalg.solve(inner, W.T @ y))
-
-            of_ones = weighted(np.ones(len(x)))
-            total += float((x * weighted(x)).sum() - ((of_ones @ x) ** 2).sum() / of_ones.sum())
+            ones = np.ones((len(x), 1))
+            of_x, of_ones = (y - W @ np.linalg.solve(inner, W.T @ y) for y in (x, ones))
+            total += float((x * of_x).sum() - ((of_ones.T @ x) ** 2).sum() / of_ones.sum())
         return total
 
     def _covariance(self, at: Array, weights: sparse.csr_matrix, per: Array, n: int, k: int) -> Array:
