@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NoReturn
 
 from .._core import quantity
 from ..command import printable
@@ -58,6 +58,11 @@ class Faults:
     def add(self, what: str, line: int = 1, column: int = 1) -> None:
         self._all.append((line, column, what))
 
+    def refuse(self, file: object, what: str, line: int = 1) -> NoReturn:
+        """Raises InputError with the report and this fault."""
+        self.add(what, line)
+        raise InputError(self.report(file))
+
     def report(self, file: object) -> str:
         """`file:line:column: what`, a line each, in the order of the file; of very many the first."""
         listed = sorted(self._all, key=lambda fault: fault[:2])
@@ -78,6 +83,16 @@ class Option:
 
     text: str = ""
     where: str = ""
+
+    def refusal(self, why: str) -> InputError:
+        return InputError(f"{self.where}: {in_quotes(self.text)} {why}")
+
+    def by(self, read: Callable[[str], Any]) -> Any:
+        """What a function makes of the text; None if it is empty. Raises InputError that names the option."""
+        try:
+            return read(self.text) if self.text else None
+        except InputError as fault:
+            raise InputError(f"{self.where}: {fault}") from fault
 
 
 @dataclass(frozen=True)

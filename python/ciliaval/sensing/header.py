@@ -232,14 +232,8 @@ def find_factors(
     By the header, the row of units (may be empty), comments, the column `units` (its name and unit, "" if
     there is none), --unit, or ROS's message. Two that differ, and none, are faults. Raises InputError.
     """  # fmt: skip
-    where, scales = scale.where, None
-    try:
-        scales = lsb_scale(scale.text) if scale.text else None
-        where = unit.where
-        if unit.text:
-            flux_density_unit(unit.text)
-    except InputError as fault:
-        raise InputError(f"{where}: {fault}") from fault
+    scales = scale.by(lsb_scale)
+    unit.by(flux_density_unit)
     factors, units, without, before = [], [], [], len(faults)
     for i, _, axis in header.fields:
         column = header.columns[i]

@@ -114,8 +114,7 @@ class Background:
                 continue
             mine = np.ones(len(table.B), dtype=bool) if table.sensor is None else table.sensor == s
             if not mine.any():
-                faults.add(f"there is no row of sensor {sensor}")
-                faults.require_none(file)
+                faults.refuse(file, f"there is no row of sensor {sensor}")
             azimuth = table.azimuth[mine] % _TURN
             azimuth[azimuth >= _TURN - _SAME_AZIMUTH] -= _TURN  # just below a turn is zero
             order = np.argsort(azimuth, kind="stable")
@@ -158,10 +157,8 @@ def _part_of(option: Option) -> tuple[str, float, float]:
         return text, 0, 0
 
     def refusal(why: str) -> InputError:
-        return InputError(
-            f'{option.where}: {in_quotes(text)} {why}: write "0 s..1 s" by the time, "rows 1..20" by the rows '
-            'below the header, or "model"'
-        )
+        form = '"0 s..1 s" by the time, "rows 1..20" by the rows below the header, or "model"'
+        return Option(text, option.where).refusal(f"{why}: write {form}")
 
     first, dots, last = (part.strip(" \t") for part in text.removeprefix("rows ").partition(".."))
     if not dots:
@@ -213,9 +210,8 @@ def read_readings(
     )
     faults.require_none(file)
     assert table is not None
-    for fault in _unsuitable(table, sensors, part, options, ambient is not None):
-        faults.add(fault)
-        faults.require_none(file)
+    if fault := _unsuitable(table, sensors, part, options, ambient is not None):
+        faults.refuse(file, fault)
     grouped = _Grouped(table, sensors, part, window, ambient, faults, file, reads)
     if coefficient:
         grouped.to_one_temperature(coefficient, options.temperature.where)
@@ -237,51 +233,42 @@ def _bytes_of(file: Path) -> bytes:
 
 def _window(option: Option) -> float:
     """The length of the windows of --average, s; 0 if it is not given. Raises InputError."""
-    if not option.text:
-        return 0.0
-    try:
-        length = quantity(option.text, "s")
-    except InputError as fault:
-        raise InputError(f"{option.where}: {fault}") from fault
-    if not 1e-9 <= length < 9e9:
-        raise InputError(f'{option.where}: {in_quotes(option.text)} is no length of time, such as "10 ms"')
-    return length
+    length = option.by(lambda text: quantity(text, "s"))
+    if length is not None and not 1e-9 <= length < 9e9:
+        raise option.refusal('is no length of time, such as "10 ms"')
+    return length or 0.0
 
 
 def _coefficient(option: Option) -> float:
     """alpha, 1/K, of "-0.1 %/K"; 0 if it is not given. Raises InputError."""
     found = re.fullmatch(r"\s*([-+]?\d*\.?\d+(?:e[-+]?\d+)?)\s*(%|ppm|1)?\s*/\s*(?:K|degC|°C)\s*", option.text)
     if option.text and not found:
-        raise InputError(f'{option.where}: {in_quotes(option.text)} is no coefficient, such as "-0.1 %/K" or "-1000 ppm/K"')
-    scale = {"%": 1e-2, "ppm": 1e-6}
-    alpha = float(found[1]) * scale.get(found[2] or "1", 1.0) if found else 0.0
+        raise option.refusal('is no coefficient, such as "-0.1 %/K" or "-1000 ppm/K"')
+    alpha = float(found[1]) * {"%": 1e-2, "ppm": 1e-6}.get(found[2], 1.0) if found else 0.0
     if abs(alpha) > 0.1:
-        raise InputError(f"{option.where}: {in_quotes(option.text)} is more than 10 %/K, which no sensor has")
+        raise option.refusal("is more than 10 %/K, which no sensor has")
     return alpha
 
 
 def _unsuitable(
     table: Table, sensors: Sequence[str], part: tuple[str, float, float], options: ReadingOptions, has_background: bool
-) -> list[str]:
+) -> str | None:
     """What the file lacks for what is asked of it."""
-    faults = []
     has_key = table.sensor is not None and (table.sample is not None or table.time is not None)
     if len(sensors) > 1 and not table.is_wide and not has_key:
-        faults.append(
+        return (
             f"the case has {len(sensors)} sensors: the file needs the columns 'sample' and 'sensor', and a row for "
             "each; or columns for each, such as s0_Bx, s0_By, s0_Bz, s1_Bx"
         )
     if has_background and table.azimuth is None:
-        faults.append("the background depends on the azimuth: the readings need a column 'azimuth'")
+        return "the background depends on the azimuth: the readings need a column 'azimuth'"
     if has_background and table.is_change:
-        faults.append("the change dB has no background any more: leave the background out")
+        return "the change dB has no background any more: leave the background out"
     if part[0] == "time" and table.time is None:
-        faults.append(
-            f'{options.unloaded.where} is a range of time, but {table.timeless}; --unloaded "rows 1..20" needs none'
-        )
+        return f'{options.unloaded.where} is a range of time, but {table.timeless}; --unloaded "rows 1..20" needs none'
     if options.average.text and table.time is None:
-        faults.append(f"{options.average.where} is a length of time, but {table.timeless}")
-    return faults
+        return f"{options.average.where} is a length of time, but {table.timeless}"
+    return None
 
 
 class _Grouped:
@@ -314,14 +301,14 @@ class _Grouped:
         """B at the mean temperature of the unloaded rows. Raises InputError."""
         temperature = self.table.temperature
         if self.table.is_change or not self.unloaded.any():
-            self.faults.add(f"{where} needs unloaded rows, against whose temperature the others are corrected")
-            self.faults.require_none(self.file)
+            what = f"{where} needs unloaded rows, against whose temperature the others are corrected"
+            self.faults.refuse(self.file, what)
         assert temperature is not None
         growth = 1 + alpha * (temperature - temperature[self.unloaded].mean())
         if (growth <= 0.5).any():
             line = int(self.table.line[np.argmin(growth)])
-            self.faults.add(f"the temperature {temperature[np.argmin(growth)]:g} is too far from the unloaded rows'", line)
-            self.faults.require_none(self.file)
+            what = f"the temperature {temperature[np.argmin(growth)]:g} is too far from the unloaded rows'"
+            self.faults.refuse(self.file, what, line)
         self.table.B = self.table.B / growth[:, None, None]
         self.table.remark += f"; B at {temperature[self.unloaded].mean():.4g} degrees"
 
