@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NoReturn
 
@@ -150,20 +150,6 @@ def cells_of(line: str, separator: str = ",") -> list[Cell]:
 def number_in(text: str) -> float | None:
     """The number of a cell with a decimal point or comma; None if it is none."""
     return float(text.replace(",", ".")) if len(text) <= 64 and NUMBER.fullmatch(text) else None
-
-
-def thousands_in(cells: Iterable[tuple[int, Cell]]) -> tuple[int, Cell] | None:
-    """The first of the cells, with their lines, that looks like "7,640" beside "122": read as decimals, such marks
-    would make numbers a thousand times too small. None where another number shows that they are decimals."""
-    first, has_plain = None, False
-    for line, cell in cells:
-        if re.fullmatch(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", cell.text):
-            first = first or (line, cell)
-        elif re.fullmatch(r"[+-]?\d{1,3}", cell.text):
-            has_plain |= cell.text.strip("+-0") != ""
-        elif number_in(cell.text) is not None:
-            return None
-    return first if has_plain else None
 
 
 def split_unit(header: str) -> tuple[str, str | None]:

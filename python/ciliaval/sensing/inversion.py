@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from scipy import special
+from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
 from ..errors import InputError
@@ -158,7 +159,7 @@ class Chips:
         axes, reads, gains = [], [], []
         for names, rotation, gain, components in case._core.chips:
             own = [float(f"{name[0]}1") * np.eye(3)["xyz".index(name[1])] for name in names or ("+x", "+y", "+z")]
-            axes.append(turned_about(rotation) @ np.stack(own, axis=1))
+            axes.append(Rotation.from_euler("xyz", rotation).as_matrix() @ np.stack(own, axis=1))
             reads.append([not components or c in components for c in "xyz"])
             gains.append(gain)
         return Chips(np.array(axes), np.array(reads), np.array(gains))
@@ -177,15 +178,6 @@ class Chips:
         """The other way round, 0 for what a chip does not read."""
         own = np.einsum("sij,...si->...sj", self.axes, B) * self.gain[:, None]
         return np.where(self.reads, own, 0.0)
-
-
-def turned_about(angles: npt.ArrayLike) -> Array:
-    """The rotation about x, then y, then z, by three angles, rad: R = R_z R_y R_x."""
-    (a, b, c), (sa, sb, sc) = np.cos(angles), np.sin(angles)
-    x = np.array([[1, 0, 0], [0, a, -sa], [0, sa, a]])
-    y = np.array([[b, 0, sb], [0, 1, 0], [-sb, 0, b]])
-    z = np.array([[c, -sc, 0], [sc, c, 0], [0, 0, 1]])
-    return np.asarray(z @ y @ x)
 
 
 def wrapped(angle: Array) -> Array:
@@ -401,12 +393,9 @@ def _left_out(
 
 def _inverse(A: Array) -> Array:
     """Of symmetric matrices (n, 2, 2); infinite where they are singular."""
-    a, b, d = A[:, 0, 0], A[:, 0, 1], A[:, 1, 1]
-    determinant = a * d - b * b
-    regular = determinant > 1e-12 * (a + d) ** 2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = np.stack([d, -b, -b, a], axis=-1).reshape(-1, 2, 2) / determinant[:, None, None]
-    return np.where(regular[:, None, None], inverse, np.inf)
+    regular = np.linalg.det(A) > 1e-12 * np.trace(A, axis1=1, axis2=2) ** 2
+    regular = regular[:, None, None]
+    return np.where(regular, np.linalg.inv(np.where(regular, A, np.eye(2))), np.inf)
 
 
 def _misfit(

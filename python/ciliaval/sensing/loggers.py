@@ -16,8 +16,8 @@ from .._core import quantity
 from ..arrays import Array
 from ..errors import InputError
 from .columns import (
-    Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, thousands_in,
-    units_in, without_brackets,
+    Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, units_in,
+    without_brackets,
 )  # fmt: skip
 from .header import (
     SEPARATORS, Header, MapEntry, choose_columns, find_factors, find_header, is_comment, map_entries, sensor_index,
@@ -202,7 +202,6 @@ class _Reader:
         needed |= {i for i, kind in enumerate(kinds) if kind in ("time", "sample", "sensor", "unit")}
         # What follows a time without a role may be the time of day.
         needed |= {i for i, kind in enumerate(kinds) if i > 0 and kind == "" and kinds[i - 1] == "time"}
-        self._refuse_thousands()
         frame = pd.DataFrame(columns=sorted(needed), dtype=str)
         if kept:
             frame = pd.read_csv(
@@ -212,6 +211,7 @@ class _Reader:
             )  # fmt: skip
         frame = frame.apply(lambda texts: texts.str.strip(" \t"))
         self.decimal = self._decimal_mark(frame, np.array(index)[rows])
+        self._refuse_thousands(frame, np.array(index)[rows])
         return frame, np.array(rows, dtype=int)
 
     def _numbers(self, texts: Series) -> Array:
@@ -341,68 +341,65 @@ class _Reader:
     def _examine(self, i: int, factors: Array) -> bool:
         """Adds what is wrong with a row that has as many cells as the header. Returns whether it is a row."""
         header, before = self.header, len(self.faults)
-        line = self.first_line + i
         cells = cells_of(self.lines[i], header.separator)
         if [cell.text for cell in cells[: len(header.columns)]] == [column.header for column in header.columns]:
             self._without_B(_REPEATED, i)
             return False
-        values = [self._number(i, cells[field]) for field, _, _ in header.fields]
-        if None in values and self.skip:
+        fields = [field for field, _, _ in header.fields]
+        for at in fields:
+            what, has_number = self._fault_in(cells[at].text)
+            if what and not has_number and "," not in cells[at].text:
+                self._without_B(what, i, cells[at].column)
+            elif what:
+                self._add_fault(what, i, at)
+        if self.skip and any(self._fault_in(cells[at].text)[0] for at in fields):
             return False
-        at = header.one("sensor")
-        if at is not None and sensor_index(cells[at].text, self.sensors) is None:
-            what = f"the sensor {in_quotes(cells[at].text)} is none of the case's, {sensor_list(self.sensors)}"
-            self.faults.add(what, line, cells[at].column)
+        of_sensor = header.one("sensor")
+        if of_sensor is not None and sensor_index(cells[of_sensor].text, self.sensors) is None:
+            self._add_fault(f"the sensor {{}} is none of the case's, {sensor_list(self.sensors)}", i, of_sensor)
         for at in self._others():
-            self._number(i, cells[at], is_B=False)
+            what, _ = self._fault_in(cells[at].text)
+            if what:
+                self._add_fault(what, i, at)
         if len(self.faults) == before:
-            largest = max(abs(v * f) for v, f in zip(values, factors))
+            largest = max(abs((number_in(cells[at].text) or 0.0) * factor) for at, factor in zip(fields, factors))
             if largest > _LARGEST_FIELD:
-                self.faults.add(
-                    f"a field of {largest:.3g} T was read; fields up to {_LARGEST_FIELD} T are taken: is the unit in "
-                    "the header right?",
-                    line,
-                )
+                what = f"a field of {largest:.3g} T was read; fields up to {_LARGEST_FIELD} T are taken: is the unit in "
+                self.faults.add(what + "the header right?", self.first_line + i)
         return True
 
-    def _number(self, i: int, cell: Cell, is_B: bool = True) -> float | None:
-        """The number of a cell; None and a fault if there is none."""
-        comma = "," in cell.text
-        value = number_in(cell.text)
-        fault = ""
-        if not cell.text:
-            fault = "the cell is empty"
-        elif (comma and self.header.separator == ",") or value is None:
+    def _fault_in(self, text: str) -> tuple[str, bool]:
+        """What is wrong with the cell of a number, "" if nothing, and whether it is a finite number nevertheless."""
+        comma, value, (mark, first) = "," in text, number_in(text), self.decimal
+        if not text:
+            return "the cell is empty", False
+        if value is None or (comma and self.header.separator == ","):
             more = ": write a decimal point, and nothing between thousands" if comma else ""
-            fault = f"{in_quotes(cell.text)} is not a number{more}"
-        elif not np.isfinite(value):
-            fault = f"{in_quotes(cell.text)} is not a finite number"
-        elif comma or "." in cell.text:
-            mark, first = self.decimal
-            if mark == ("," if comma else "."):
-                return value
-            self.faults.add(
-                f"{in_quotes(cell.text)} has a decimal {'comma' if comma else 'point'}, line {first} the other: write "
-                "the same in all numbers",
-                self.first_line + i, cell.column,
-            )  # fmt: skip
-            return None
-        if not fault:
-            return value
-        if is_B and not comma:
-            self._without_B(fault, i, cell.column)
-        else:
-            self.faults.add(fault, self.first_line + i, cell.column)
-        return None
+            return f"{in_quotes(text)} is not a number{more}", False
+        if not np.isfinite(value):
+            return f"{in_quotes(text)} is not a finite number", False
+        if (comma or "." in text) and mark != ("," if comma else "."):
+            other = f"has a decimal {'comma' if comma else 'point'}, line {first} the other"
+            return f"{in_quotes(text)} {other}: write the same in all numbers", True
+        return "", True
 
-    def _refuse_thousands(self) -> None:
-        """Adds a fault where marks stand between thousands, as far as the first rows tell."""
-        rows = ((i, cells_of(line, self.header.separator)) for i, line in enumerate(self.lines[:2000], self.first_line))
-        fields = [field for field, _, _ in self.header.fields]
-        if found := thousands_in((i, cells[f]) for i, cells in rows for f in fields if f < len(cells)):
-            what = "is not a number: does it have a mark between thousands, as the others without one suggest? Write a "
-            what = f"{in_quotes(found[1].text)} {what}decimal point, and nothing between thousands"
-            self.faults.add(what, found[0], found[1].column)
+    def _add_fault(self, what: str, i: int, column: int) -> None:
+        """At a cell of a row, which stands for {} in the text."""
+        cells = cells_of(self.lines[i], self.header.separator)
+        cell = cells[column] if column < len(cells) else Cell("", 1)
+        self.faults.add(what.replace("{}", in_quotes(cell.text)), self.first_line + i, cell.column)
+
+    def _refuse_thousands(self, frame: DataFrame, index: Array) -> None:
+        """Adds a fault where "7,640" stands beside "122", as far as the first rows tell: read as decimals, such marks
+        would make numbers a thousand times too small. Another number shows that they are decimals."""
+        texts = frame[[field for field, _, _ in self.header.fields]].head(2000).stack()
+        marked = texts.str.fullmatch(r"[+-]?[1-9]\d{0,2}[.,]\d{3}").astype(bool)
+        plain = texts.str.fullmatch(r"[+-]?\d{1,3}").astype(bool)
+        is_decimal = texts[~marked & ~plain].map(number_in).notna().any()
+        if marked.any() and not is_decimal and (texts[plain].str.strip("+-0") != "").any():
+            row, column = marked.idxmax()
+            what = "{} is not a number: does it have a mark between thousands, as the others without one suggest? Write a "
+            self._add_fault(what + "decimal point, and nothing between thousands", int(index[row]), column)
 
     def _decimal_mark(self, frame: DataFrame, index: Array) -> tuple[str, int]:
         """The first decimal mark of the numbers, and its line. Between commas it is a point."""
@@ -432,7 +429,7 @@ class _Reader:
             forms, ns = calendar_in_ns(parts[0] if len(parts) == 1 else parts[0] + " " + parts[1])
             wrong = forms != (2 if form == "clock" else 1)
         for j in np.flatnonzero(wrong)[: Faults.most]:
-            self._add_time_fault(table, j, columns[0], "{} is no time as in the rows above")
+            self._add_fault("{} is no time as in the rows above", int(table.line[j]) - self.first_line, columns[0])
         self._require_order(table, ns, wrong, columns[0])
         if form == "number" and not unit:
             return columns
@@ -502,30 +499,20 @@ class _Reader:
             return "us"
         return None
 
-    def _add_time_fault(self, table: Table, j: int, column: int, what: str) -> None:
-        line = int(table.line[j])
-        cell = (cells_of(self.lines[line - self.first_line], self.header.separator) + [Cell("", 1)] * column)[column]
-        self.faults.add(what.format(in_quotes(cell.text)), line, cell.column)
-
     def _require_order(self, table: Table, ns: Array, wrong: Array, column: int) -> None:
         """Adds a fault for each time of a sensor that goes back within a sample."""
+        import pandas as pd
+
         right = np.flatnonzero(~wrong)
         sensor = np.zeros(len(ns), dtype=int) if table.sensor is None else table.sensor
         right = right[np.argsort(sensor[right], kind="stable")]
-        same = sensor[right[1:]] == sensor[right[:-1]]
-        if table.sample is not None:
-            same &= table.sample[right[1:]] == table.sample[right[:-1]]
-        if not (same & (np.diff(ns[right]) < 0)).any():
-            return
-        latest = None
-        for j, goes_on in zip(right, np.concatenate([[False], same])):
-            if goes_on and ns[j] < latest:
-                what = "the time goes back at {}: sort the rows, or make a file of each record"
-                self._add_time_fault(table, j, column, what)
-                if len(self.faults) >= Faults.most:
-                    return
-            else:
-                latest = ns[j]
+        record = pd.DataFrame({"sensor": sensor[right]})
+        record["sample"] = 0 if table.sample is None else table.sample[right]
+        begins = (record != record.shift()).any(axis=1).cumsum()
+        latest = pd.Series(ns[right]).groupby(begins).cummax().to_numpy()
+        for j in np.sort(right[ns[right] < latest])[: Faults.most]:
+            what = "the time goes back at {}: sort the rows, or make a file of each record"
+            self._add_fault(what, int(table.line[j]) - self.first_line, column)
 
     def _remark(self, count: int, times: Sequence[int]) -> str:
         header = self.header
