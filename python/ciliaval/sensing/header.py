@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -30,7 +30,7 @@ _NAMED_NUMBER = re.compile(r"[A-Za-z]\w*\"?\s*[:=]\s*[-+]?[.\d]")  # "Bx:1.2,By:
 
 @dataclass
 class Header:
-    """The header of a file. line: its number, 0 of a file that has none. end: where its line ends in the text.
+    """The header of a file. line: its number, 0 of a file that has none. first_row: index of the line below it.
 
     width: with empty names at its end. skipped: lines above it that are no comments. units: by name, of
     comments. fields: of the chosen columns of B or dB (cell, sensor, axis). reads: (sensors, 3), which of them there
@@ -40,7 +40,7 @@ class Header:
     separator: str
     line: int
     columns: list[Column]
-    end: int = 0
+    first_row: int = 0
     width: int = 0
     skipped: int = 0
     units: dict[str, str] = field(default_factory=dict)
@@ -287,44 +287,38 @@ def find_factors(
     return factors, units
 
 
-def _lines(text: str, begin: int = 0) -> Iterator[tuple[str, int]]:
-    """The lines of a text, each with its end, where the next one begins."""
-    while begin < len(text):
-        end = text.find("\n", begin)
-        end = len(text) if end < 0 else end
-        yield text[begin:end], end + 1
-        begin = end + 1
-
-
-def find_header(text: str, sensors: Sequence[str], entries: Sequence[MapEntry], faults: Faults) -> Header | None:
+def find_header(
+    lines: Sequence[str], sensors: Sequence[str], entries: Sequence[MapEntry], faults: Faults
+) -> Header | None:
     """The first line in which two of Bx, By, Bz or of the columns of --map are found with one of the separators; or
     the last comment before the first numbers in which they are. None is a fault."""
     in_comment = None
     units: dict[str, str] = {}
-    skipped, above, above_number, end = 0, "", 1, 0
-    # LabVIEW's own lines may look like numbers.
-    labview = text.rfind("***End_of_Header***") if text.startswith("LabVIEW Measurement") else 0
-    for number, (line, end) in enumerate(_lines(text), 1):
-        if not line.strip(" \t") or end <= labview:
+    skipped, above, above_number, labview = 0, "", 1, 0
+    if lines[0].startswith("LabVIEW Measurement"):  # whose own lines may look like numbers
+        labview = max((i for i, line in enumerate(lines, 1) if line.startswith("***End_of_Header***")), default=0)
+    for number, line in enumerate(lines, 1):
+        if not line.strip(" \t") or number <= labview:
             skipped += bool(line.strip(" \t"))
             continue
         if _COMMENT.match(line):
             stated = units_in(line)
-            header = _header_in(line.lstrip("#%/ \t"), number, text, end, sensors, entries)
+            header = _header_in(line.lstrip("#%/ \t"), number, lines, sensors, entries)
             in_comment = header if header and not stated else in_comment
             units = stated | units
             continue
-        header = _header_in(line, number, text, end, sensors, entries)
-        if header and labview and (stated_unit := re.search(r"^Y_Unit_Label[\t,;]+([^\t,;\n]+)", text, re.MULTILINE)):
-            units = {column.name: stated_unit[1] for column in header.columns if column.is_field} | units
+        header = _header_in(line, number, lines, sensors, entries)
+        if header and labview:
+            stated_unit = re.search(r"^Y_Unit_Label[\t,;]+([^\t,;\n]+)", "\n".join(lines[:labview]), re.MULTILINE)
+            units = {c.name: stated_unit[1] for c in header.columns if c.is_field and stated_unit} | units
+        first_row = number
         if header is None and _is_row(line, in_comment):
-            header = in_comment or _by_numbers(line, entries)
+            header, first_row = in_comment or _by_numbers(line, entries), number - 1
             if header is None:
                 _add_no_header(line, number, above, above_number, sensors, faults)
                 return None
-            end -= len(line) + 1
         if header:
-            header.end, header.skipped, header.units = end, skipped, units
+            header.first_row, header.skipped, header.units = first_row, skipped, units
             return header
         if len(_NAMED_NUMBER.findall(line)) > 2:
             faults.add(
@@ -360,7 +354,7 @@ def _split(line: str, separator: str, count: int = 0) -> list[Cell]:
 
 
 def _header_in(
-    line: str, number: int, text: str, end: int, sensors: Sequence[str], entries: Sequence[MapEntry]
+    line: str, number: int, lines: Sequence[str], sensors: Sequence[str], entries: Sequence[MapEntry]
 ) -> Header | None:
     """The line as a header, with the separator by which the most columns are known; None if fewer than two are.
     Blanks separate only where the rows below have as many cells: else the line is a sentence."""
@@ -370,7 +364,7 @@ def _header_in(
     for separator in SEPARATORS:
         counts = [0]
         if separator == " ":
-            below = (row for row, _ in _lines(text, end) if row.strip(" \t") and not is_comment(row))
+            below = (lines[i] for i in range(number, len(lines)) if lines[i].strip(" \t") and not is_comment(lines[i]))
             counts = [len(row) for row in (cells_of(row, " ") for row, _ in zip(below, range(2))) if _numbers(row) > 2]
         for count in counts:
             cells = _split(line, separator, count)

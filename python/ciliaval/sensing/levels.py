@@ -54,9 +54,8 @@ class LevelCurve:
         count = next((i for i, shape in enumerate(shapes) if shape.status != "converged"), len(shapes))
         self.limit = ""
         if count < len(shapes):
-            self.limit = (
-                f"{pair.mechanics}: no shape under an interference of {sizes[count]:g} m: {shapes[count].message}"
-            )
+            failed = f"no shape under an interference of {sizes[count]:g} m: {shapes[count].message}"
+            self.limit = f"{pair.mechanics}: {failed}"
         if count < 2:
             raise SolverError(self.limit)
         kept = [i for i in range(count) if i + 1 == count or sizes[i + 1] > sizes[i]]  # it begins at rest
@@ -73,7 +72,7 @@ class LevelCurve:
         """Of each reading (n, 3 s) the nearest point of the curve: its interference, m; the distance, T;
         slope |d dB/d delta|, T/m; is_end: it lies beyond the largest interference; other: the distance of
         the nearest point at another interference, where it has a minimum too, or infinity. (n,) each."""
-        chunks = [self._nearest(change[i : i + _CHUNK]) for i in range(0, max(len(change), 1), _CHUNK)]
+        chunks = [self._nearest(part) for part in np.array_split(change, 1 + len(change) // _CHUNK)]
         return {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
 
     def _nearest(self, change: Array) -> dict[str, Array]:
@@ -189,35 +188,24 @@ def sense_surface(
 
 
 def _levels(status: Array, height: Array, interval: Array, shared: Array) -> list[Level]:
-    sums = np.concatenate([[0.0], np.cumsum(height)])
-
-    def inner(first: int, last: int) -> slice:
+    def inner(first: int, end: int) -> slice:
         """All but an eighth at each end, where a flank begins within the noise."""
-        margin = (last - first + 1) // 8
-        return slice(first + margin, last - margin + 1)
-
-    def mean(rows: slice) -> float:
-        return float((sums[rows.stop] - sums[rows.start]) / (rows.stop - rows.start))
-
-    def level_of(first: int, last: int) -> Level:
-        rows = inner(first, last)
-        own = float((interval[rows] ** 2 - shared[rows] ** 2).max())
-        common = float((shared[rows] ** 2).max())
-        return Level(first, last, mean(rows), math.sqrt(own / (rows.stop - rows.start) + common))
-
-    def ends(first: int, i: int) -> bool:
-        """A level goes on while a reading is not farther from the mean so far than two may be by noise."""
-        if status[i] != LEVEL:
-            return True
-        if i == first:
-            return False
-        return bool(abs(height[i] - mean(inner(first, i - 1))) > 2 * max(interval[i], interval[first]))
+        margin = (end - first) // 8
+        return slice(first + margin, end - margin)
 
     levels, first = [], 0
     for i in range(len(status) + 1):
-        if i < len(status) and not ends(first, i):
+        is_level = i < len(status) and status[i] == LEVEL
+        if is_level and i > first:
+            # It goes on while a reading is not farther from the mean so far than two may be by noise.
+            apart = abs(height[i] - height[inner(first, i)].mean())
+            is_level = bool(apart <= 2 * max(interval[i], interval[first]))
+        if is_level:
             continue
         if i - first >= _FEWEST:
-            levels.append(level_of(first, i - 1))
+            rows = inner(first, i)
+            own, common = (interval[rows] ** 2 - shared[rows] ** 2).max(), (shared[rows] ** 2).max()
+            half_width = math.sqrt(own / (rows.stop - rows.start) + common)
+            levels.append(Level(first, i - 1, float(height[rows].mean()), half_width))
         first = i if i < len(status) and status[i] == LEVEL else i + 1
     return levels

@@ -93,22 +93,22 @@ def read_table(
         text = data.decode("latin-1")
     text = text.replace("\r\n", "\n").replace("\r", " " if "\n" in text else "\n").replace("\u2212", "-")
     entries = map_entries(map, sensors)
-    header = find_header(text, sensors, entries, faults)
+    lines = text.split("\n")
+    header = find_header(lines, sensors, entries, faults)
     if header is None:
         return None
     header.reads = np.ones((len(sensors), 3), dtype=bool) if reads is None else reads
     header.needs = ("temperature",) if has_temperature else ()
-    return _Reader(text, header, sensors, faults, skip).read(entries, map.where, unit, scale)
+    return _Reader(lines, header, sensors, faults, skip).read(entries, map.where, unit, scale)
 
 
 class _Reader:
     """Reads the rows below a header. The numbers are read all at once; only rows in which something is wrong are
     looked at one by one, for the place and the reason."""
 
-    def __init__(self, text: str, header: Header, sensors: Sequence[str], faults: Faults, skip: bool):
+    def __init__(self, lines: Sequence[str], header: Header, sensors: Sequence[str], faults: Faults, skip: bool):
         self.header, self.sensors, self.faults, self.skip = header, sensors, faults, skip
-        self.first_line = text.count("\n", 0, header.end) + 1
-        self.lines = text[header.end :].split("\n")
+        self.first_line, self.lines = header.first_row + 1, lines[header.first_row :]
         self.left_out: set[int] = set()  # lines
         self.decimal = ".", self.first_line  # the mark, and its first line
         self.assumed: dict[int, str] = {}  # by column, what is not stated of its time
