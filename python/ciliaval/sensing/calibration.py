@@ -30,11 +30,12 @@ _TOGETHER = 0.99  # correlation from which two numbers are named
 _SINGULAR = 1e-10  # of the eigenvalues of the normal matrix with a unit diagonal: nothing is known beyond rounding
 _PLACE, _ANGLE, _PART = 1e-4, math.radians(1), 0.1  # m, rad, of a number: steps of the fit
 
+_MEMBERS = [*(f"position.{axis}" for axis in "xyz"), *(f"rotation.{axis}" for axis in "xyz"), "gain"]
 # What a sensor has: the words after its name, their members, units and steps.
 _OF_SENSOR = {
-    "position": ([f"position.{axis}" for axis in "xyz"], "m", _PLACE),
+    "position": (_MEMBERS[:3], "m", _PLACE),
     "rotation": (["rotation.z"], "rad", _ANGLE),
-    "orientation": ([f"rotation.{axis}" for axis in "xyz"], "rad", _ANGLE),
+    "orientation": (_MEMBERS[3:6], "rad", _ANGLE),
     "gain": (["gain"], "", _PART),
     "scale": (["gain"], "", _PART),
 }
@@ -241,15 +242,16 @@ def parameters_of(case: Case, name: str) -> list[Parameter]:
     members = _OF_SENSOR.get(what)
     if what in tuple("xyz") and owner.rpartition(".")[2] in ("position", "orientation", "rotation"):
         owner, _, kind = owner.rpartition(".")
-        member = f"{'position' if kind == 'position' else 'rotation'}.{what}"
-        members = ([member], "m" if kind == "position" else "rad", _PLACE if kind == "position" else _ANGLE)
+        each, unit, step = _OF_SENSOR["position" if kind == "position" else "orientation"]
+        members = ([each["xyz".index(what)]], unit, step)
     if members and (owner == "sensor" or owner in sensors):
         paths, unit, step = members
         chosen = range(len(sensors)) if owner == "sensor" else [sensors.index(owner)]
         if sensors[0] == "0" and not paths[0].startswith("position"):
             chosen = [0]  # a list of places has one chip for all
+        starts, names = _sensors_of(case), ["sensor"] if len(sensors) == 1 else sensors
         return [
-            Parameter(path, f"{'sensor' if len(sensors) == 1 else sensors[s]}.{path}", unit, _of_sensor(case, s, path), step, s)
+            Parameter(path, f"{names[s]}.{path}", unit, float(starts[s, _MEMBERS.index(path)]), step, s)
             for s in chosen
             for path in paths
         ]
@@ -267,12 +269,10 @@ def parameters_of(case: Case, name: str) -> list[Parameter]:
     return [Parameter(ends[0], short, unit, value, _PART * abs(value) or _PART)]
 
 
-def _of_sensor(case: Case, sensor: int, member: str) -> float:
-    kind, _, axis = member.partition(".")
-    if kind == "position":
-        return float(case.sensors[sensor]["xyz".index(axis)])
-    _, rotation, gain, _ = case._core.chips[sensor]
-    return float(gain) if kind == "gain" else float(rotation["xyz".index(axis)])
+def _sensors_of(case: Case) -> Array:
+    """Position, m, rotation, rad, and gain of the sensors, (s, 7)."""
+    chips = [[*rotation, gain] for _, rotation, gain, _ in case._core.chips]
+    return np.hstack([case.sensors, chips])
 
 
 class _Fitting:
@@ -299,27 +299,17 @@ class _Fitting:
         of_sensor = [(p, float(v)) for p, v in zip(self._parameters, values) if p.sensor is not None]
         if not of_sensor:
             return changed
-        tables = tomllib.loads(changed.toml())
-        named = isinstance(tables["sensor"], list)
-        places = changed.sensors.copy()
-        chips: list[list[Any]] = [[list(chip[1]), chip[2]] for chip in changed._core.chips]
+        tables, sensors = tomllib.loads(changed.toml()), _sensors_of(changed)
         for p, value in of_sensor:
-            assert p.sensor is not None
-            kind, _, axis = p.path.partition(".")
-            if kind == "position":
-                places[p.sensor, "xyz".index(axis)] = value
-            elif kind == "gain":
-                chips[p.sensor][1] = value
-            else:
-                chips[p.sensor][0]["xyz".index(axis)] = value
-        texts = [[f"{c!r} m" for c in place] for place in places.tolist()]
-        for s in range(len(places) if named else 1):
-            table = tables["sensor"][s] if named else tables["sensor"]
-            table["position"] = texts[s] if named or len(texts) == 1 else texts
+            sensors[p.sensor, _MEMBERS.index(p.path)] = value
+        named = isinstance(tables["sensor"], list)
+        places = [[f"{c!r} m" for c in place] for place in sensors[:, :3].tolist()]
+        for s, table in enumerate(tables["sensor"] if named else [tables["sensor"]]):
+            table["position"] = places[s] if named or len(places) == 1 else places
             if any(p.path.startswith("rotation") for p, _ in of_sensor):
-                table["rotation"] = [f"{float(angle)!r} rad" for angle in chips[s][0]]
+                table["rotation"] = [f"{angle!r} rad" for angle in sensors[s, 3:6].tolist()]
             if any(p.path == "gain" for p, _ in of_sensor):
-                table["gain"] = chips[s][1]
+                table["gain"] = float(sensors[s, 6])
         return Case.from_dict(tables, str(changed.file or changed.name))
 
     def computed(self, values: Array) -> Array:

@@ -296,7 +296,7 @@ def find_header(
     units: dict[str, str] = {}
     skipped, above, above_number, labview = 0, "", 1, 0
     if lines[0].startswith("LabVIEW Measurement"):  # whose own lines may look like numbers
-        labview = max((i for i, line in enumerate(lines, 1) if line.startswith("***End_of_Header***")), default=0)
+        labview = max((i for i, line in enumerate(lines, 1) if "***End_of_Header***" in line), default=0)
     for number, line in enumerate(lines, 1):
         if not line.strip(" \t") or number <= labview:
             skipped += bool(line.strip(" \t"))

@@ -108,7 +108,7 @@ class _Reader:
 
     def __init__(self, lines: Sequence[str], header: Header, sensors: Sequence[str], faults: Faults, skip: bool):
         self.header, self.sensors, self.faults, self.skip = header, sensors, faults, skip
-        self.first_line, self.lines = header.first_row + 1, lines[header.first_row :]
+        self.first_line, self.lines = header.first_row + 1, lines[header.first_row :] or [""]
         self.left_out: set[int] = set()  # lines
         self.decimal = ".", self.first_line  # the mark, and its first line
         self.assumed: dict[int, str] = {}  # by column, what is not stated of its time
