@@ -214,7 +214,7 @@ def invert(
     >>> bool(np.allclose(invert(response, response.change([[1e-3, 5e-4]]), 1e-6).load, [[1e-3, 5e-4]]))
     True
     """
-    change = np.asarray(change, dtype=float)
+    dB = change = np.asarray(change, dtype=float)
     noise = np.broadcast_to(np.asarray(noise, dtype=float), 3)
     if change.ndim != 3 or change.shape[1:] != (response.sensors, 3):
         raise InputError(f"readings have the shape (n, {response.sensors}, 3), not {change.shape}")
@@ -224,13 +224,12 @@ def invert(
         raise InputError("the noise of a reading must be finite and positive")
     if chips is not None and chips.reads.sum() < _COMPONENTS:
         raise InputError("a load has two components: one that a sensor reads does not tell them")
-    dB, sigma, over = change, noise, np.broadcast_to(np.asarray(variance, dtype=float), len(change))
+    V = np.broadcast_to(np.asarray(variance, dtype=float), len(change))[:, None, None] * np.eye(response.sensors)
+    whitening = _Whitening.of(V if common is None else V + common, noise, chips)
 
     def part(start: int) -> tuple[Array, ...]:
         rows = slice(start, start + _CHUNK)
-        shared = None if common is None else common[rows]
-        whitened = _Whitening.of(sigma, over[rows], shared, chips, response.sensors)
-        return _both(response, dB[rows], whitened, left_out)
+        return _both(response, dB[rows], whitening.rows(rows), left_out)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:  # NumPy lets them run side by side
         parts = list(threads.map(part, range(0, max(1, len(change)), _CHUNK)))
@@ -244,17 +243,16 @@ class _Whitening:
         self._factor, self.chips = factor, chips  # (n, 3, s, s)
 
     @staticmethod
-    def of(noise: Array, variance: Array, common: Array | None, chips: Chips | None, sensors: int) -> _Whitening:
-        """V over noise^2 is diag(variance) + common, for each component over the sensors that read it; a number that is
-        not read is 0 whatever it is divided by."""
-        V = variance[:, None, None] * np.eye(sensors) + (0.0 if common is None else common)
-        V = np.broadcast_to(V[:, None], (len(V), 3, sensors, sensors))
+    def of(V: Array, noise: Array, chips: Chips | None) -> _Whitening:
+        """V over noise^2, (n, s, s), holds for each component over the sensors that read it; a number that is not read is
+        0 whatever it is divided by."""
+        V = np.broadcast_to(V[:, None], (len(V), 3, *V.shape[1:]))
         if chips is not None:
-            V = np.where((chips.reads[:, None] & chips.reads).transpose(2, 0, 1), V, np.eye(sensors))
+            V = np.where((chips.reads[:, None] & chips.reads).transpose(2, 0, 1), V, np.eye(V.shape[-1]))
         factor = np.linalg.inv(np.linalg.cholesky(V)) / noise[:, None, None]
         return _Whitening(factor, None if chips is None or chips.is_plain else chips)
 
-    def rows(self, chosen: Array) -> _Whitening:
+    def rows(self, chosen: Array | slice) -> _Whitening:
         return _Whitening(self._factor[chosen], self.chips)
 
     def _own(self, values: Array) -> Array:

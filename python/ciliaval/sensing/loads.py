@@ -287,35 +287,22 @@ def sense_readings(
     loads = invert(response, change, noise, readings.variance(), readings.background, chips, left_out)
     unit = case.loads[0].unit
     remarks = [*readings.remarks]
-    remarks += _range_remark(shapes, largest, unit)
-    remarks += _scatter_remark(readings, noise)
+    if shapes.limit:
+        name, size = shown(unit)
+        reached, asked = shapes.largest / size, largest / size
+        remarks.append(f"Loads are looked for up to {reached:.4g} {name}, not {asked:.4g} {name}: {shapes.limit}")
+    freedom = readings.freedom
+    if freedom and special.chdtrc(freedom, readings.squares / noise**2) < UNLIKELY:
+        remarks.append(
+            f"Rows that are averaged differ by {1e6 * math.sqrt(readings.squares / freedom):.3g} uT (standard deviation), "
+            f"more than the noise of {1e6 * noise:.3g} uT: state --noise as the sensor has it, and see that they are of one "
+            "load."
+        )
     remarks += _axes_remark(readings, response, chips)
     flow = FlowLaw.of(case)
     laws = [(FlowLaw.of(Case._of(a)), FlowLaw.of(Case._of(b)), width) for a, b, width in case._core.input_shifts()]
     shifts = [(a, b, width) for a, b, width in laws if a is not None and b is not None]
     return Sensing(case.name, pair, noise, unit, response, readings, loads, flow, left_out, shifts, remarks)
-
-
-def _range_remark(shapes: Shapes, asked: float, unit: str) -> list[str]:
-    if not shapes.limit:
-        return []
-    name, size = shown(unit)
-    return [
-        f"Loads are looked for up to {shapes.largest / size:.4g} {name}, not {asked / size:.4g} {name}: {shapes.limit}"
-    ]
-
-
-def _scatter_remark(readings: Readings, noise: float) -> list[str]:
-    """A doubt about rows that should read the same and differ by more than the noise; none if noise
-    alone does so once in a thousand times."""
-    freedom = readings.freedom
-    if not freedom or special.chdtrc(freedom, readings.squares / noise**2) >= UNLIKELY:
-        return []
-    deviation = math.sqrt(readings.squares / freedom)
-    return [
-        f"Rows that are averaged differ by {deviation * 1e6:.3g} uT (standard deviation), more than the noise of "
-        f"{noise * 1e6:.3g} uT: state --noise as the sensor has it, and see that they are of one load."
-    ]
 
 
 def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[str]:

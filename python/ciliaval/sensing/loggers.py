@@ -209,7 +209,8 @@ class _Reader:
                 usecols=sorted(needed), dtype=str, na_filter=False, quoting=csv.QUOTE_NONE, skip_blank_lines=False,
                 **is_split_by,
             )  # fmt: skip
-        frame = frame.apply(lambda texts: texts.str.strip(" \t"))
+            if re.search("[ \t]", "".join(kept)):
+                frame = frame.apply(lambda texts: texts.str.strip(" \t"))
         self.decimal = self._decimal_mark(frame, np.array(index)[rows])
         self._refuse_thousands(frame, np.array(index)[rows])
         return frame, np.array(rows, dtype=int)
@@ -220,7 +221,8 @@ class _Reader:
         other, joined = "." if mark == "," else ",", "".join(texts)
         if joined.isascii() and other not in joined and "_" not in joined:
             try:
-                return np.asarray(texts.str.replace(",", ".", regex=False).to_numpy(dtype="U").astype(float))
+                plain = texts if mark == "." else texts.str.replace(",", ".", regex=False)
+                return np.asarray(plain.to_numpy(dtype="U").astype(float))
             except ValueError:
                 pass
         values = (None if other in text else number_in(text) for text in texts)

@@ -102,16 +102,10 @@ class Background:
             faults.add("the background is B: name its columns Bx, By, Bz")
         faults.require_none(file)
         assert table is not None and table.azimuth is not None
-        self._azimuths: list[Array] = []  # of each sensor's means, rising, in [0, 2 pi)
-        self._B: list[Array] = []
-        self._first: list[int] = []  # number of each sensor's first mean
+        is_for_all = not table.is_wide and table.sensor is None
         rows: list[Array] = []
-        for s, sensor in enumerate(sensors):
-            if s and not table.is_wide and table.sensor is None:  # one background for all
-                self._azimuths.append(self._azimuths[0])
-                self._B.append(self._B[0])
-                self._first.append(0)
-                continue
+        self._means = []  # of each sensor: azimuths, rising, in [0, 2 pi), B, and the number of its first mean
+        for s, sensor in enumerate(sensors[:1] if is_for_all else sensors):
             mine = np.ones(len(table.B), dtype=bool) if table.sensor is None else table.sensor == s
             if not mine.any():
                 faults.refuse(file, f"there is no row of sensor {sensor}")
@@ -122,16 +116,15 @@ class Background:
             group[order] = np.cumsum(np.diff(azimuth[order], prepend=azimuth[order[0]]) > _SAME_AZIMUTH)
             count = np.bincount(group)
             means = _means(np.column_stack([azimuth, table.B[mine, s if table.is_wide else 0]]), group, count)
-            self._first.append(sum(map(len, rows)))
-            self._azimuths.append(means[:, 0])
-            self._B.append(means[:, 1:])
+            self._means.append((means[:, 0], means[:, 1:], sum(map(len, rows))))
             rows.append(count)
+        self._means *= len(sensors) if is_for_all else 1
         self.rows = np.concatenate(rows)
 
     def parts(self, azimuth: Array, sensor: int) -> tuple[Array, Array]:
         """The two means at azimuths (n,), rad, and their weights, (n, 2): a row's own, else by linear interpolation
         between the neighbours on the circle; NaN if there are but rows of another azimuth."""
-        known = self._azimuths[sensor]
+        known, _, first = self._means[sensor]
         phi = np.asarray(azimuth, dtype=float) % _TURN
         above = np.searchsorted(known, phi, side="right")
         last, following = (above - 1) % len(known), above % len(known)
@@ -141,12 +134,12 @@ class Background:
             t = ((phi - known[last]) % _TURN) / step  # a single azimuth: no number
         t = np.where(apart[1] <= _SAME_AZIMUTH, 1, t if len(known) > 1 else np.nan)
         t = np.where(apart[0] <= _SAME_AZIMUTH, 0, t)
-        return np.stack([last, following], axis=1) + self._first[sensor], np.stack([1 - t, t], axis=1)
+        return np.stack([last, following], axis=1) + first, np.stack([1 - t, t], axis=1)
 
     def at(self, azimuth: Array, sensor: int) -> Array:
         """The field at azimuths (n,), rad, (n, 3), T."""
-        means, weights = self.parts(azimuth, sensor)
-        return np.asarray(np.einsum("ni,nij->nj", weights, self._B[sensor][means - self._first[sensor]]))
+        (means, weights), (_, B, first) = self.parts(azimuth, sensor), self._means[sensor]
+        return np.asarray(np.einsum("ni,nij->nj", weights, B[means - first]))
 
 
 def _part_of(option: Option) -> tuple[str, float, float]:
