@@ -32,7 +32,7 @@ _NAMED_NUMBER = re.compile(r"[A-Za-z]\w*\"?\s*[:=]\s*[-+]?[.\d]")  # "Bx:1.2,By:
 class Header:
     """The header of a file. line: its number, 0 of a file that has none. first_row: index of the line below it.
 
-    width: with empty names at its end. skipped: lines above it that are no comments. units: by name, of
+    skipped: lines above it that are no comments. units: by name, of
     comments. fields: of the chosen columns of B or dB (cell, sensor, axis). reads: (sensors, 3), which of them there
     must be. needs: kinds of further columns that must be there.
     """
@@ -41,7 +41,6 @@ class Header:
     line: int
     columns: list[Column]
     first_row: int = 0
-    width: int = 0
     skipped: int = 0
     units: dict[str, str] = field(default_factory=dict)
     fields: list[tuple[int, int, int]] = field(default_factory=list)
@@ -375,10 +374,9 @@ def _header_in(
             known = sum(c.is_field or is_named for c, is_named in zip(columns, named))
             if known > most:
                 most = known
-                width = len(columns)
                 while len(columns) > 1 and not columns[-1].header:
                     columns.pop()
-                best = Header(separator, number, columns, width=width)
+                best = Header(separator, number, columns)
     return best
 
 
@@ -407,7 +405,7 @@ def _by_numbers(line: str, entries: Sequence[MapEntry]) -> Header | None:
         return None
     separator = max(SEPARATORS, key=lambda separator: _numbers(cells_of(line, separator)))
     columns = [Column(str(i), str(i)) for i, _ in enumerate(cells_of(line, separator), 1)]
-    return Header(separator, 1, columns, width=len(columns))
+    return Header(separator, 1, columns)
 
 
 def _add_no_header(

@@ -122,7 +122,6 @@ class _Reader:
             # A date and a time of day below one name.
             at = next((i for i, cell in enumerate(first) if time_form(cell.text) == "day"), len(first))
             header.columns.insert(min(at + 1, len(header.columns)), Column("", ""))
-            header.width += 1
         if header.columns[-1].header == "Comment" and len(first) == len(header.columns) - 1:
             header.columns.pop()  # LabVIEW's rows have the cell only where there is a comment
         choose_columns(header, self.sensors, entries, where, faults)
@@ -317,10 +316,8 @@ class _Reader:
                 faults.add("there are no rows with B below the header", self.first_line)
             return None
         if of["sample"] is not None:
-            codes, known = frame[of["sample"]].factorize()
-            texts = [name.replace(_WITHIN, header.separator).strip(" \t") for name in known]
-            number = {text: i for i, text in enumerate(dict.fromkeys(texts))}
-            names, sample = list(number), np.array([number[text] for text in texts])[codes]
+            texts = frame[of["sample"]].str.replace(_WITHIN, header.separator, regex=False)
+            sample, names = texts.str.strip(" \t").factorize()
         k = len(self.sensors) if header.is_wide else 1
         order = [3 * (s if header.is_wide else 0) + axis for _, s, axis in header.fields]
         whole = np.zeros((2, len(B), 3 * k))
@@ -328,7 +325,7 @@ class _Reader:
         table = Table(
             header.is_change, header.is_wide, any(flux_density_unit(u) is None for u in self.units),
             whole[0].reshape(-1, k, 3), whole[1].reshape(-1, k, 3), rows + 1,
-            self.first_line + index[rows], sample, names, None if sensor is None else sensor[keep],
+            self.first_line + index[rows], sample, list(names), None if sensor is None else sensor[keep],
         )  # fmt: skip
         if "azimuth" in others:
             table.azimuth = angle * others["azimuth"][keep]
