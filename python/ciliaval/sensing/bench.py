@@ -25,9 +25,7 @@ from .response import Pair, Progress, Response, require_load_to_sense, shapes_up
 from .loads import BEYOND_THE_LARGEST, FlowLaw
 
 _LEAST_NOISE = 1e-9  # T: weights of a sensor without noise
-_COUNTS = {"azimuths": (1, 3600), "draws": (1, 100_000), "seed": (0, 2**32 - 1)}
 _ERRORS = {"noise": ("T", 1.0), "quantum": ("T", 1.0), "sensor_position": ("m", 1.0), "stage_azimuth": ("rad", 1.6)}
-_KEYS = {"bench": ("title", "case", "models", "truth", *_COUNTS), "errors": (*_ERRORS, "ambient")}
 
 
 @dataclass(frozen=True)
@@ -55,34 +53,37 @@ def read_bench(file: Path) -> Bench:
         root = tomllib.loads(content(file, 1 << 20).decode("utf-8"))
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: {error}") from error
-    faults = [f"there is no key `{name}`; there are the tables {', '.join(_KEYS)}" for name in root if name not in _KEYS]
+    pair = root["bench"].get("models") if isinstance(root.get("bench"), dict) else None
+    keys: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {  # of each table its keys, their defaults and readers
+        "bench": {
+            "title": ("", _line),
+            "case": (None, lambda value: _case(file, value)),
+            "models": ("elastica/volume", lambda value: Pair.of(_line(value))),
+            "truth": (pair or "elastica/volume", lambda value: Pair.of(_line(value))),
+            "azimuths": (Bench.azimuths, _count(1, 3600)),
+            "draws": (Bench.draws, _count(1, 100_000)),
+            "seed": (Bench.seed, _count(0, 2**32 - 1)),
+        },
+        "errors": {key: (f"0 {unit}", _quantity(unit, 0.0, most)) for key, (unit, most) in _ERRORS.items()}
+        | {"ambient": (["0 T"] * 3, _ambient)},
+    }
+    faults = [f"there is no key `{name}`; there are the tables {', '.join(keys)}" for name in root if name not in keys]
     values: dict[str, Any] = {}
-
-    def read(name: str, key: str, default: Any, by: Callable[[Any], Any]) -> None:
+    for name, known in keys.items():
         table = root.get(name)
-        try:
-            values[key] = by(table.get(key, default) if isinstance(table, dict) else default)
-        except InputError as error:
-            faults.append(f"[{name}] {key}: {error}")
-
-    for name, keys in _KEYS.items():
-        if not isinstance(root.get(name), dict):
+        if not isinstance(table, dict):
             faults.append(f"there is no table [{name}]")
-            continue
-        for key in root[name]:
-            if key not in keys:
-                near = difflib.get_close_matches(key, keys, 1)
-                meant = f"; did you mean `{near[0]}`?" if near else f"; its keys are {', '.join(keys)}"
+            table = {}
+        for key in table:
+            if key not in known:
+                near = difflib.get_close_matches(key, known, 1)
+                meant = f"; did you mean `{near[0]}`?" if near else f"; its keys are {', '.join(known)}"
                 faults.append(f"[{name}]: there is no key `{key}`{meant}")
-    read("bench", "title", "", _line)
-    read("bench", "case", None, lambda value: _case(file, value))
-    read("bench", "models", "elastica/volume", lambda value: Pair.of(_line(value)))
-    read("bench", "truth", str(values.get("models", "elastica/volume")), lambda value: Pair.of(_line(value)))
-    for key, ends in _COUNTS.items():
-        read("bench", key, getattr(Bench, key), lambda value: _count(value, *ends))
-    for key, (unit, most) in _ERRORS.items():
-        read("errors", key, f"0 {unit}", lambda value: _quantity(value, unit, 0.0, most))
-    read("errors", "ambient", ["0 T"] * 3, _ambient)
+        for key, (default, read) in known.items():
+            try:
+                values[key] = read(table.get(key, default))
+            except InputError as error:
+                faults.append(f"[{name}] {key}: {error}")
     if faults:
         raise InputError("\n".join(f"{file}: {fault}" for fault in faults))
     return Bench(**values)
@@ -94,25 +95,31 @@ def _line(value: Any) -> str:
     return value
 
 
-def _count(value: Any, least: int, most: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise InputError(f"a whole number from {least} to {most}, not {value!r}")
-    return value
+def _count(least: int, most: int) -> Callable[[Any], int]:
+    def read(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+            raise InputError(f"a whole number from {least} to {most}, not {value!r}")
+        return value
+
+    return read
 
 
-def _quantity(value: Any, unit: str, least: float, most: float) -> float:
-    if not isinstance(value, str):
-        raise InputError(f"a quantity with its unit in quotes, not {value!r:.40}")
-    number = _core.quantity(value, unit)
-    if not least <= number <= most:
-        raise InputError(f"{value} does not lie between {least:g} and {most:g} {unit}: a slip in the unit?")
-    return number
+def _quantity(unit: str, least: float, most: float) -> Callable[[Any], float]:
+    def read(value: Any) -> float:
+        if not isinstance(value, str):
+            raise InputError(f"a quantity with its unit in quotes, not {value!r:.40}")
+        number = _core.quantity(value, unit)
+        if not least <= number <= most:
+            raise InputError(f"{value} does not lie between {least:g} and {most:g} {unit}: a slip in the unit?")
+        return number
+
+    return read
 
 
 def _ambient(value: Any) -> Array:
     if not isinstance(value, list) or len(value) != 3:
         raise InputError('it has three components, such as ["20 uT", "0 uT", "-43 uT"]')
-    return np.array([_quantity(component, "T", -1.0, 1.0) for component in value])
+    return np.array([_quantity("T", -1.0, 1.0)(component) for component in value])
 
 
 def _case(file: Path, name: Any) -> Case:

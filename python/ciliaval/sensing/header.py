@@ -32,9 +32,9 @@ _NAMED_NUMBER = re.compile(r"[A-Za-z]\w*\"?\s*[:=]\s*[-+]?[.\d]")  # "Bx:1.2,By:
 class Header:
     """The header of a file. line: its number, 0 of a file that has none. first_row: index of the line below it.
 
-    skipped: lines above it that are no comments. units: by name, of
-    comments. fields: of the chosen columns of B or dB (cell, sensor, axis). reads: (sensors, 3), which of them there
-    must be. needs: kinds of further columns that must be there.
+    skipped: lines above it that are no comments. units: by name, of comments. fields: of the chosen columns of B or dB
+    (cell, sensor, axis). reads: (sensors, 3), which of them there must be. needs: kinds of further columns that must be
+    there.
     """
 
     separator: str

@@ -28,6 +28,11 @@ BEYOND_THE_LARGEST = 1.25
 """The range of loads that is looked for, over the case's largest."""
 _LEAST_NOISE = 1e-15  # T, less than any magnetometer's
 _SHOWN = 20  # samples of a longer table on the terminal
+_COLUMNS = {  # members of SensedLoads, and their units
+    **dict.fromkeys(["magnitude", "magnitude_interval", "model_interval", "input_interval"], "load"),
+    **dict.fromkeys(["azimuth", "azimuth_interval"], "rad"),
+    **dict.fromkeys(["chi_squared", "misfit_probability", "nothing_probability"], ""),
+}
 _EARTH = 150e-6  # T: the earth's field and a sensor's offset, about, which a reading may be off
 
 
@@ -109,16 +114,9 @@ class Sensing:
             "status": ("", found.status),
             "load_x": (self.unit, found.load[:, 0]),
             "load_y": (self.unit, found.load[:, 1]),
-            "magnitude": (self.unit, found.magnitude),
-            "magnitude_interval": (self.unit, found.magnitude_interval),
-            "model_interval": (self.unit, found.model_interval),
-            "input_interval": (self.unit, found.input_interval),
-            "azimuth": ("rad", found.azimuth),
-            "azimuth_interval": ("rad", found.azimuth_interval),
-            "chi_squared": ("", found.chi_squared),
-            "misfit_probability": ("", found.misfit_probability),
-            "nothing_probability": ("", found.nothing_probability),
         }
+        for name, unit in _COLUMNS.items():
+            table[name] = (self.unit if unit == "load" else unit, getattr(found, name))
         if self.flow:
             names = ("velocity", "velocity_low", "velocity_high")
             table |= {name: ("m/s", values) for name, values in zip(names, self.velocities())}
@@ -154,9 +152,8 @@ class Sensing:
         each: dict[str, Sequence[Any]] = {"sample": self.readings.names, "rows": self.readings.rows.tolist()}
         if self.readings.time is not None:
             each["time"] = self.readings.time.tolist()
-        for name in ("status", "load", "magnitude", "magnitude_interval", "noise_interval", "model_interval",
-                     "input_interval", "azimuth", "azimuth_interval",
-                     "covariance", "model_covariance", "input_covariance", "chi_squared", "misfit_probability", "nothing_probability"):  # fmt: skip
+        covariances = ("covariance", "model_covariance", "input_covariance")
+        for name in ("status", "load", *_COLUMNS, "noise_interval", *covariances):
             each[name] = getattr(found, name).tolist()
         if self.flow:
             v, low, high = self.velocities()
