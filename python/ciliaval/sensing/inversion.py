@@ -28,8 +28,6 @@ _SHIFTS = 4  # steps to the load that better models would have found
 _MOST_STEPS = 200
 _CHUNK = 10_000  # readings at once: what they need stays in the cache
 
-
-
 STATUSES = ("found", "nothing", "ambiguous", "beyond range", "misfit", "failed")
 
 
@@ -69,9 +67,7 @@ class SensedLoads:
 
     @property
     def is_nothing(self) -> Array:
-        """No load is seen: the region of 95 % of the load holds zero. The decrease of chi squared from
-        no load to the load found has as many degrees of freedom as the load has components; beyond 5.99
-        with two. (1.96 standard deviations of one component are passed by noise in 15 % of the readings.)"""
+        """No load is seen: the region of 95 % of the load, chi squared of two degrees of freedom, holds zero."""
         return ~(self.nothing_probability < 0.05)
 
     @property
@@ -81,8 +77,8 @@ class SensedLoads:
 
     @property
     def magnitude_interval(self) -> Array:
-        """Half-widths of the intervals that hold the magnitude with 95 %, to first order: 1.96 standard
-        deviations along the load, of all errors; where none is seen they hold zero too."""
+        """Half-widths of the intervals that hold the magnitude with 95 %, of all errors, to first order; where no load
+        is seen they hold zero too."""
         width = self._along(self.total_covariance)
         return np.where(self.is_nothing, np.maximum(width, self.magnitude), width)
 
@@ -113,9 +109,9 @@ class SensedLoads:
     def azimuth_interval(self) -> Array:
         """Half-widths of the same of the azimuth, rad; pi: not known.
 
-        A direction is in the interval if a load along it is within chi squared of 3.84 of the one
-        found. Where the covariance is a circle of radius sigma these are the directions within
-        asin(1.96 sigma/|p|); by p = L y with L L^T the covariance any other is one.
+        A direction is in the interval if a load along it is within chi squared of 3.84 of the one found. Where the
+        covariance is a circle of radius sigma these are the directions within asin(1.96 sigma/|p|); by p = L y with
+        L L^T the covariance any other is one.
         """
         result = np.full(len(self.load), np.pi)
         covariance = self.total_covariance
@@ -136,8 +132,7 @@ class SensedLoads:
 
     @property
     def status(self) -> Array:
-        """Of each: "found", "nothing" (is_nothing), "ambiguous", "misfit" (no load explains the reading: chance alone
-        does so once in a thousand times), "beyond range", "failed" (the least squares did not converge)."""
+        """Of each one of STATUSES, by the first condition that holds."""
         conditions = [
             ~self.converged, self.is_beyond, self.misfit_probability < UNLIKELY, self.is_nothing, self.is_ambiguous,
         ]  # fmt: skip
@@ -194,18 +189,16 @@ def invert(
     chips: Chips | None = None,
     left_out: LeftOut | None = None,
 ) -> SensedLoads:
-    """The loads whose dB is nearest to readings: the least squares weighted by the noise, by the method of
-    Levenberg and Marquardt with the response's own derivatives, from the nearest of a grid of 129 loads
-    over the whole range. All readings take their steps together: a call of scipy.optimize for each
-    costs a hundred times as much, and gives the same (tests/python/test_sensing.py).
+    """The loads whose dB is nearest to readings: least squares weighted by the noise, by the method of Levenberg and
+    Marquardt with the response's own derivatives, from the nearest of a grid of 129 loads over the whole range. All
+    readings take their steps together: a call of scipy.optimize for each costs a hundred times as much, and gives the
+    same (tests/python/test_sensing.py).
 
     change: dB, (n, s, 3), T. noise: standard deviation of a component of a single reading, T, a number or
     (3,). variance: of dB over noise^2, (n,): 1/m + 1/k of means of m loaded and k unloaded readings.
     common: (n, s, s), the covariance of the sensors by an error that they share, over noise^2. chips: which of
     the components count; None: all. left_out: what the models leave out, and what the inputs make; None:
-    nothing.
-
-    Raises InputError if a number is not finite, the noise not positive, or a shape is another.
+    nothing. Raises InputError if a number is not finite, the noise not positive, or a shape is another.
 
     >>> import ciliaval as cv, numpy as np
     >>> from ciliaval.sensing import Response, invert, shapes_within
