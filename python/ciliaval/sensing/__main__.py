@@ -88,16 +88,16 @@ def _loads(case: Case, readings: Path, given: dict[str, Any], progress: Progress
 
 
 def _calibrate(
-    case: Case, options: argparse.Namespace, given: dict[str, Any], outputs: Outputs, provenance: Any, progress: Progress
+    case: Case, options: argparse.Namespace, given: dict[str, Any], outputs: Outputs, source: Any, progress: Progress
 ) -> int:
-    """Numbers of the case from readings at its loads."""
+    """Numbers of the case from readings at its loads. source: the provenance."""
     from .calibration import calibrate
 
     fit = [name.strip() for name in options.fit.split(",")]
     result = calibrate(case, options.readings, fit, progress=progress, **given)
     progress.clear()
     write_out(result.text(terminal_width()))
-    outputs.write(lambda: result.json(provenance), result.case.toml)
+    outputs.write(lambda: result.json(source), result.case.toml)
     return PASS
 
 

@@ -54,7 +54,8 @@ def read_bench(file: Path) -> Bench:
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: {error}") from error
     pair = root["bench"].get("models") if isinstance(root.get("bench"), dict) else None
-    keys: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {  # of each table its keys, their defaults and readers
+    # Of each table its keys, their defaults and readers.
+    keys: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
         "bench": {
             "title": ("", _line),
             "case": (None, lambda value: _case(file, value)),

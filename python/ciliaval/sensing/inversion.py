@@ -237,8 +237,8 @@ class _Whitening:
 
     @staticmethod
     def of(V: Array, noise: Array, chips: Chips | None) -> _Whitening:
-        """V over noise^2, (n, s, s), holds for each component over the sensors that read it; a number that is not read is
-        0 whatever it is divided by."""
+        """V over noise^2, (n, s, s), holds for each component over the sensors that read it; a number that is not read
+        is 0 whatever it is divided by."""
         V = np.broadcast_to(V[:, None], (len(V), 3, *V.shape[1:]))
         if chips is not None:
             V = np.where((chips.reads[:, None] & chips.reads).transpose(2, 0, 1), V, np.eye(V.shape[-1]))

@@ -160,7 +160,8 @@ class Sensing:
             each |= {"velocity": v.tolist(), "velocity_interval": np.stack([low, high], axis=-1).tolist()}
         if self.others:
             by_pair = {str(sensing.pair): sensing.loads.load.tolist() for sensing in (self, *self.others)}
-            each |= {"loads": [dict(zip(by_pair, loads)) for loads in zip(*by_pair.values())], "spread": self.spread.tolist()}
+            each["loads"] = [dict(zip(by_pair, loads)) for loads in zip(*by_pair.values())]
+            each["spread"] = self.spread.tolist()
         return {
             "schema": 1,
             "case": self.case,
@@ -230,8 +231,12 @@ class Sensing:
         least, most, spread = by_pair.argmin(axis=0), by_pair.argmax(axis=0), self.spread / size
         rows = [["sample", "spread", "least", "by", "most", "by"]]
         for i in self._rows_shown():
-            ends = [] if i is None else [part for k in (least[i], most[i]) for part in (f"{by_pair[k, i]:.5g}", pairs[k])]
-            rows.append(["…"] if i is None else [self.readings.names[i], f"{spread[i]:.2g}", *ends])
+            if i is None:
+                rows.append(["…"])
+                continue
+            rows.append([self.readings.names[i], f"{spread[i]:.2g}"])
+            for k in (least[i], most[i]):
+                rows[-1] += [f"{by_pair[k, i]:.5g}", pairs[k]]
         text = f"Spread of the load found by {', '.join(pairs[:-1])} and {pairs[-1]}, {unit}:\n"
         return text + _core.text_table(rows, "<>><><", width)
 
@@ -291,9 +296,9 @@ def sense_readings(
     freedom = readings.freedom
     if freedom and special.chdtrc(freedom, readings.squares / noise**2) < UNLIKELY:
         remarks.append(
-            f"Rows that are averaged differ by {1e6 * math.sqrt(readings.squares / freedom):.3g} uT (standard deviation), "
-            f"more than the noise of {1e6 * noise:.3g} uT: state --noise as the sensor has it, and see that they are of one "
-            "load."
+            f"Rows that are averaged differ by {1e6 * math.sqrt(readings.squares / freedom):.3g} uT (standard "
+            f"deviation), more than the noise of {1e6 * noise:.3g} uT: state --noise as the sensor has it, and see "
+            "that they are of one load."
         )
     remarks += _axes_remark(readings, response, chips)
     flow = FlowLaw.of(case)

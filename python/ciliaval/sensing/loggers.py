@@ -79,7 +79,8 @@ def read_table(
     has_temperature: bool = False,
     reads: Array | None = None,
 ) -> Table | None:
-    """Reads a file as loggers write it (docs/guide/sensing.md); None if it has faults, which are added with their places.
+    """Reads a file as loggers write it (docs/guide/sensing.md); None if it has faults, which are added with their
+    places.
 
     `skip` leaves rows without B out. has_temperature: a column with it is needed. reads: (sensors, 3), which components
     the file must have; the others are 0. Raises InputError if an option has a fault.
@@ -167,7 +168,8 @@ class _Reader:
             elif start:
                 if not rows:
                     header.units = units_in(line) | header.units
-                if [cell.text for cell in cells_of(line.lstrip("#%/ \t"), header.separator)] == names and len(names) > 2:
+                texts = [cell.text for cell in cells_of(line.lstrip("#%/ \t"), header.separator)]
+                if texts == names and len(names) > 2:
                     self._without_B(_REPEATED, i)
         return rows
 
@@ -176,16 +178,18 @@ class _Reader:
         return any(texts) and all(not t or (number_in(t) is None and is_unit(without_brackets(t))) for t in texts)
 
     def _frame(self, index: Sequence[int]) -> tuple[DataFrame, Array]:
-        """The cells, as texts, of the rows that have as many as the header or empty ones more; and which rows they are."""
+        """The cells, as texts, of the rows that have as many as the header or empty ones more; and which rows these
+        are."""
         import pandas as pd  # it takes half a second
 
         header, at = self.header, self.header.separator
+        within = "[ \t]" if at == " " else re.escape(at)
         is_split_by: dict[str, Any] = {"delim_whitespace": True} if at == " " else {"sep": at}
         rows, kept, most, width = [], [], len(header.columns), len(header.columns)
         for j, i in enumerate(index):
             line = self.lines[i]
             if '"' in line:  # the cells without their quotes, separators within them replaced
-                texts = [re.sub(rf"[{at}\t]" if at == " " else re.escape(at), _WITHIN, c.text) for c in cells_of(line, at)]
+                texts = [re.sub(within, _WITHIN, cell.text) for cell in cells_of(line, at)]
                 line = at.join(texts if at != " " else (text or _WITHIN for text in texts))
             count = len(re.findall("[^ \t]+", line)) if at == " " else line.count(at) + 1
             if count == width or (count > width and line.rstrip(f"{at} \t").count(at) < width and at != " "):
@@ -363,8 +367,8 @@ class _Reader:
         if len(self.faults) == before:
             largest = max(abs((number_in(cells[at].text) or 0.0) * factor) for at, factor in zip(fields, factors))
             if largest > _LARGEST_FIELD:
-                what = f"a field of {largest:.3g} T was read; fields up to {_LARGEST_FIELD} T are taken: is the unit in "
-                self.faults.add(what + "the header right?", self.first_line + i)
+                what = f"a field of {largest:.3g} T was read; fields up to {_LARGEST_FIELD} T are taken"
+                self.faults.add(f"{what}: is the unit in the header right?", self.first_line + i)
         return True
 
     def _fault_in(self, text: str) -> tuple[str, bool]:
@@ -397,8 +401,8 @@ class _Reader:
         is_decimal = texts[~marked & ~plain].map(number_in).notna().any()
         if marked.any() and not is_decimal and (texts[plain].str.strip("+-0") != "").any():
             row, column = marked.idxmax()
-            what = "{} is not a number: does it have a mark between thousands, as the others without one suggest? Write a "
-            self._add_fault(what + "decimal point, and nothing between thousands", int(index[row]), column)
+            what = "{} is not a number: does it have a mark between thousands, as the others without one suggest?"
+            self._add_fault(f"{what} Write a decimal point, and nothing between thousands", int(index[row]), column)
 
     def _decimal_mark(self, frame: DataFrame, index: Array) -> tuple[str, int]:
         """The first decimal mark of the numbers, and its line. Between commas it is a point."""

@@ -268,8 +268,8 @@ class _Grouped:
     """The rows by sample in the order of the file, and those of the unloaded cilium, which are group 0."""
 
     def __init__(
-        self, table: Table, sensors: Sequence[str], part: tuple[str, float, float], window: float, ambient: Background | None,
-        faults: Faults, file: Path, reads: Array | None,
+        self, table: Table, sensors: Sequence[str], part: tuple[str, float, float], window: float,
+        ambient: Background | None, faults: Faults, file: Path, reads: Array | None,
     ):  # fmt: skip
         self.reads = np.ones((len(sensors), 3), dtype=bool) if reads is None else reads
         self.table, self.sensors, self.part, self.ambient = table, sensors, part, ambient
