@@ -225,7 +225,7 @@ class _Reader:
         if joined.isascii() and other not in joined and "_" not in joined:
             try:
                 plain = texts if mark == "." else texts.str.replace(",", ".", regex=False)
-                return np.asarray(plain.to_numpy(dtype="U").astype(float))
+                return np.fromiter(map(float, plain), float, len(plain))
             except ValueError:
                 pass
         values = (None if other in text else number_in(text) for text in texts)

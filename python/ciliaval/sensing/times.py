@@ -37,8 +37,8 @@ def time_form(text: str) -> str | None:
 
 def numbers_in_ns(texts: Series, unit: float) -> tuple[Array, Array]:
     """Numbers (n texts) of a unit (ns) in whole ns, and which are none. Long doubles hold ns since 1970 exactly."""
-    texts = texts.where(texts.str.fullmatch(NUMBER), "nan")
-    texts = texts.str.replace(",", ".", regex=False) if "," in "".join(texts) else texts
+    if not (all(map(str.isdigit, texts)) and "".join(texts).isascii()):  # whole numbers need no second look
+        texts = texts.where(texts.str.fullmatch(NUMBER), "nan").str.replace(",", ".", regex=False)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of exponents beyond a long double
         values = texts.to_numpy(dtype="S").astype(np.longdouble)
