@@ -209,6 +209,39 @@ class Command(unittest.TestCase):
                 self.ciliaval("sense", "one.toml", "bad.csv", *more, code=2)
                 self.assertIn(what, self.err)
 
+    def test_the_spread_between_pairs_is_that_of_the_loads_that_each_finds(self):
+        """Oracle: each pair alone; the true forces by the pair that made the readings."""
+        pairs = ["elastica/volume", "beam/line", "elastica/dipole"]
+        self.write("change.csv", self.changes())
+        self.ciliaval(
+            "sense", "one.toml", "change.csv", "--models", ",".join(pairs), "--json", "found.json", "--csv", "found.csv"
+        )
+        alone = []
+        for pair in pairs:
+            alone.append(cv.sense(self.folder / "one.toml", self.dB, models=pair)[["load_x", "load_y"]].to_numpy())
+        for i, (sample, force) in enumerate(zip(self.found()["samples"], (1e-3, 2.5e-3, 4e-3))):
+            np.testing.assert_allclose([sample["loads"][pair] for pair in pairs], [found[i] for found in alone], rtol=1e-12)
+            self.assertAlmostEqual(np.hypot(*sample["loads"]["beam/line"]), force, delta=1e-8 * force)
+            sizes = [np.hypot(*found[i]) for found in alone]
+            self.assertAlmostEqual(sample["spread"], max(sizes) - min(sizes), delta=1e-12 * force)
+            self.assertGreater(sample["spread"], 0.01 * force)  # a dipole is no rod
+        self.assertIn("Spread of the load found by elastica/volume, beam/line and elastica/dipole, mN:\n", self.out)
+        table = self.out[self.out.index("Spread") :].splitlines()[1:]
+        least, most = sorted(np.hypot(*found[1]) for found in alone)[::2]
+        self.assertRegex(table[2], f"^ *1 .* {1e3 * least:.5g} +elastica/volume +{1e3 * most:.5g} +elastica/dipole$")
+        self.assertLessEqual(max(map(len, table)), 80)
+        self.assertIn("magnitude beam/line [N],magnitude elastica/dipole [N],spread [N]", (self.folder / "found.csv").read_text())
+
+    def test_pairs_that_there_are_not_are_refused_with_those_that_there_are(self):
+        self.write("change.csv", self.changes())
+        for models, what in (
+            ("elastica/volume,beem/line", "no model `beem` among the mechanics: elastica, beam, calculix, solid"),
+            ("elastica/volum", "no model `volum` among the fields: dipole, line, volume, mesh, potential"),
+            ("elastica/volume,", "a pair of models is written mechanics/field"),
+        ):
+            self.ciliaval("sense", "one.toml", "change.csv", "--models", models, code=2)
+            self.assertIn(what, self.err)
+
     def test_ranges_end_at_the_slip_off(self):
         self.write("change.csv", self.changes())
         for largest, said in (("9 mN", "not 9 mN"), ("1 kN", "not 1e+06 mN")):

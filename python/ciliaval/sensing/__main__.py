@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +13,11 @@ from .. import _core
 from ..command import PASS, SOLVER, UNDECIDED, Outputs, Progress, run_command, terminal_width, write_out
 from ..errors import InputError
 from ..model import Case
-from .readings import Readings, read_readings
-from .response import Pair, require_load_to_sense
-from .inversion import Chips
-from .loads import case_of, joints_of, largest_load, noise_of, options_of, sense_readings
+from .readings import OPTIONS
+from .response import Pair
+from .loads import case_of, noise_of, readings_of, sensed
 
-_OF_FILES = ("map", "unit", "scale", "unloaded", "average", "temperature")
-_NOT_OF_BENCHES = ("background", "models", "joints", "noise", "largest", "csv", *_OF_FILES, "skip")
+_GIVEN = (*OPTIONS, "models", "joints", "noise", "largest", "background")
 
 
 def main() -> int:
@@ -29,10 +26,11 @@ def main() -> int:
     parser.add_argument("--fit", help="calibrate: numbers of the case, with commas between")
     parser.add_argument("-o", "--output", help="calibrate: the case to write")
     parser.add_argument("--validate", action="store_true", help="only check the benches that the files are")
-    parser.add_argument("--background", type=Path)
-    for name in (*_OF_FILES, "models", "joints", "noise", "largest"):
-        parser.add_argument(f"--{name}")
     parser.add_argument("--skip", action="store_true")
+    parser.add_argument("--models", help="mechanics/field; of several, with commas between, the spread of their loads")
+    for name in _GIVEN:
+        if name not in ("skip", "models"):
+            parser.add_argument(f"--{name}")
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
     parser.add_argument("--command", default="python3 -m ciliaval.sensing", help="for the provenance")
     Outputs.declare(parser)
@@ -45,19 +43,21 @@ def main() -> int:
     command = options.command.encode("utf-8", "backslashreplace").decode("utf-8")
     progress = Progress(options.quiet)
     provenance = json.loads(_core.provenance(command))
+    given = {name: value for name in _GIVEN if (value := getattr(options, name))}
     if options.case.name.endswith(".sense.toml"):
-        return _simulate(options, provenance, progress)
+        return _simulate(options, given, provenance, progress)
     if options.readings is None:
         raise InputError(
             f"there is no file of readings after {options.case}; a test bench to be simulated is called NAME.sense.toml"
         )
     case = case_of(options.case)
-    inputs = [options.case, *case._core.files, options.readings, options.background]
     if options.fit is not None:
-        return _calibrate(case, options, inputs, provenance, progress)
-    outputs = Outputs(options, inputs)
+        options.csv = options.output  # checked as an output
+    outputs = Outputs(options, [options.case, *case._core.files, options.readings, options.background])
+    if options.fit is not None:
+        return _calibrate(case, options, given, outputs, provenance, progress)
     of = _surface if case.loads[0].type == "sweep" else _loads
-    result, text, code = of(case, options, progress)
+    result, text, code = of(case, options.readings, given, progress)
     progress.clear()
     write_out(text)
     outputs.write(lambda: dict(result.json(provenance)), result.csv)
@@ -76,25 +76,9 @@ def _validate(files: list[Path]) -> int:
     return PASS
 
 
-def _read(case: Case, options: argparse.Namespace) -> Readings:
-    given = {name: getattr(options, name) for name in _OF_FILES}
-    reads = Chips.of(case).reads
-    return read_readings(
-        options.readings, case.sensor_names, options_of(case, given, options.skip), options.background, reads
-    )
-
-
-def _pair_and_noise(options: argparse.Namespace) -> tuple[Pair, float]:
-    return Pair.of(options.models or "elastica/volume"), noise_of(options.noise or "1 uT", "--noise")
-
-
-def _loads(case: Case, options: argparse.Namespace, progress: Progress) -> tuple[Any, str, int]:
+def _loads(case: Case, readings: Path, given: dict[str, Any], progress: Progress) -> tuple[Any, str, int]:
     """The load and its direction, with intervals, from each reading of the case's sensors."""
-    require_load_to_sense(case)
-    pair, noise = _pair_and_noise(options)
-    largest = largest_load(case, options.largest)
-    read = _read(case, options)  # before the models run, which may take a minute
-    result = sense_readings(case, read, pair, noise, largest, progress, joints_of(options.joints))
+    result = sensed(case, readings, progress=progress, **given)
     status = result.loads.status
     if (status == "failed").any():
         code = SOLVER
@@ -104,37 +88,30 @@ def _loads(case: Case, options: argparse.Namespace, progress: Progress) -> tuple
 
 
 def _calibrate(
-    case: Case, options: argparse.Namespace, inputs: list[Any], provenance: dict[str, Any], progress: Progress
+    case: Case, options: argparse.Namespace, given: dict[str, Any], outputs: Outputs, source: Any, progress: Progress
 ) -> int:
-    """Numbers of the case from readings at its loads."""
-    from .calibration import calibrate_readings
+    """Numbers of the case from readings at its loads. source: the provenance."""
+    from .calibration import calibrate
 
-    options.csv = options.output  # checked as an output
-    outputs = Outputs(options, inputs)
-    pair, noise = _pair_and_noise(options)
     fit = [name.strip() for name in options.fit.split(",")]
-    result = calibrate_readings(
-        case, _read(case, options), fit, pair, noise, progress, joints_of(options.joints)
-    )
+    result = calibrate(case, options.readings, fit, progress=progress, **given)
     progress.clear()
     write_out(result.text(terminal_width()))
-    outputs.write(lambda: result.json(provenance), result.case.toml)
+    outputs.write(lambda: result.json(source), result.case.toml)
     return PASS
 
 
-def _surface(case: Case, options: argparse.Namespace, progress: Progress) -> tuple[Any, str, int]:
+def _surface(case: Case, readings: Path, given: dict[str, Any], progress: Progress) -> tuple[Any, str, int]:
     """The surface's levels from the readings of a sweep."""
     from .levels import LevelCurve, sense_surface
 
-    pair, noise = _pair_and_noise(options)
-    read = _read(case, options)
-    if options.largest:
-        largest = _core.quantity(options.largest, "m")
-    else:
-        largest = max(0.0, *(4 * load.magnitude for load in case.loads))
+    pair, noise = Pair.of(given.pop("models", "elastica/volume")), noise_of(given.pop("noise", "1 uT"))
+    asked, _ = given.pop("largest", None), given.pop("joints", None)
+    read = readings_of(case, readings, **given)
+    largest = _core.quantity(asked, "m") if asked else max(0.0, *(4 * load.magnitude for load in case.loads))
     if not 0 < largest < case.cilium.length:
         raise InputError("--largest: the largest interference lies between 0 and the length of the cilium")
-    read.require_offset(f"{options.readings}: a surface")
+    read.require_offset(f"{readings}: a surface")
     curve = LevelCurve(case, pair, largest, progress)
     result = sense_surface(case, read, pair, noise, curve)
     lines = [*read.remarks]
@@ -146,7 +123,7 @@ def _surface(case: Case, options: argparse.Namespace, progress: Progress) -> tup
     return result, text, PASS if result.levels else UNDECIDED
 
 
-def _simulate(options: argparse.Namespace, provenance: dict[str, Any], progress: Callable[[str], None]) -> int:
+def _simulate(options: argparse.Namespace, given: dict[str, Any], provenance: Any, progress: Progress) -> int:
     """The test bench."""
     from .bench import bench_json, bench_text, read_bench, run_bench
 
@@ -154,16 +131,14 @@ def _simulate(options: argparse.Namespace, provenance: dict[str, Any], progress:
         raise InputError(
             f"{options.case} is a test bench, which makes its own readings: leave {options.readings} out"
         )
-    for name in _NOT_OF_BENCHES:
-        if getattr(options, name):
-            raise InputError(
-                f"--{name}: a test bench states its models and errors in its file and has no table: leave it out"
-            )
+    for name in [*given, *["csv"] * bool(options.csv)]:
+        raise InputError(
+            f"--{name}: a test bench states its models and errors in its file and has no table: leave it out"
+        )
     bench = read_bench(options.case)
     outputs = Outputs(options, [options.case, bench.case.file, *bench.case._core.files])
     result = run_bench(bench, progress)
-    if isinstance(progress, Progress):
-        progress.clear()
+    progress.clear()
     write_out(bench_text(bench, result, terminal_width()))
     outputs.write(lambda: bench_json(bench, result, provenance))
     return PASS

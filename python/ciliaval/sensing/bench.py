@@ -6,7 +6,7 @@ from __future__ import annotations
 import difflib
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -25,11 +25,6 @@ from .response import Pair, Progress, Response, require_load_to_sense, shapes_up
 from .loads import BEYOND_THE_LARGEST, FlowLaw
 
 _LEAST_NOISE = 1e-9  # T: weights of a sensor without noise
-_KEYS = {
-    "bench": ("title", "case", "models", "truth", "azimuths", "draws", "seed"),
-    "errors": ("noise", "quantum", "sensor_position", "stage_azimuth", "ambient"),
-}
-_COUNTS = {"azimuths": (1, 3600), "draws": (1, 100_000), "seed": (0, 2**32 - 1)}
 _ERRORS = {"noise": ("T", 1.0), "quantum": ("T", 1.0), "sensor_position": ("m", 1.0), "stage_azimuth": ("rad", 1.6)}
 
 
@@ -58,76 +53,82 @@ def read_bench(file: Path) -> Bench:
         root = tomllib.loads(content(file, 1 << 20).decode("utf-8"))
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: {error}") from error
-    faults: list[str] = []
-    for name in root:
-        if name not in _KEYS:
-            faults.append(f"there is no key `{name}`; there are the tables {', '.join(_KEYS)}")
-    tables: dict[str, Any] = {}
-    for name, keys in _KEYS.items():
-        tables[name] = root.get(name)
-        if not isinstance(tables[name], dict):
+    pair = root["bench"].get("models") if isinstance(root.get("bench"), dict) else None
+    # Of each table its keys, their defaults and readers.
+    keys: dict[str, dict[str, tuple[Any, Callable[[Any], Any]]]] = {
+        "bench": {
+            "title": ("", _line),
+            "case": (None, lambda value: _case(file, value)),
+            "models": ("elastica/volume", lambda value: Pair.of(_line(value))),
+            "truth": (pair or "elastica/volume", lambda value: Pair.of(_line(value))),
+            "azimuths": (Bench.azimuths, _count(1, 3600)),
+            "draws": (Bench.draws, _count(1, 100_000)),
+            "seed": (Bench.seed, _count(0, 2**32 - 1)),
+        },
+        "errors": {key: (f"0 {unit}", _quantity(unit, 0.0, most)) for key, (unit, most) in _ERRORS.items()}
+        | {"ambient": (["0 T"] * 3, _ambient)},
+    }
+    faults = [f"there is no key `{name}`; there are the tables {', '.join(keys)}" for name in root if name not in keys]
+    values: dict[str, Any] = {}
+    for name, known in keys.items():
+        table = root.get(name)
+        if not isinstance(table, dict):
             faults.append(f"there is no table [{name}]")
-            tables[name] = {}
-        for key in tables[name]:
-            if key not in keys:
-                near = difflib.get_close_matches(key, keys, 1)
-                meant = f"; did you mean `{near[0]}`?" if near else f"; its keys are {', '.join(keys)}"
+            table = {}
+        for key in table:
+            if key not in known:
+                near = difflib.get_close_matches(key, known, 1)
+                meant = f"; did you mean `{near[0]}`?" if near else f"; its keys are {', '.join(known)}"
                 faults.append(f"[{name}]: there is no key `{key}`{meant}")
-    bench, errors = tables["bench"], tables["errors"]
-    values: dict[str, Any] = {"title": _text(bench, "title", faults) or ""}
-    values["case"] = _case(bench, file, faults)
-    for key in ("models", "truth"):
-        text = _text(bench, key, faults) or bench.get("models", "elastica/volume")
-        try:
-            values[key] = Pair.of(text)
-        except InputError as error:
-            faults.append(f"[bench] {key}: {error}")
-    for key, (least, most) in _COUNTS.items():
-        value = bench.get(key, getattr(Bench, key))
-        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-            faults.append(f"[bench] {key}: a whole number from {least} to {most}, not {value!r}")
-        values[key] = value
-    for key, (unit, largest) in _ERRORS.items():
-        values[key] = _quantity(errors.get(key, f"0 {unit}"), unit, 0.0, largest, f"[errors] {key}", faults)
-    ambient = errors.get("ambient", ["0 T"] * 3)
-    if not isinstance(ambient, list) or len(ambient) != 3:
-        faults.append('[errors] ambient: it has three components, such as ["20 uT", "0 uT", "-43 uT"]')
-        ambient = ["0 T"] * 3
-    values["ambient"] = np.array([_quantity(c, "T", -1.0, 1.0, "[errors] ambient", faults) for c in ambient])
+        for key, (default, read) in known.items():
+            try:
+                values[key] = read(table.get(key, default))
+            except InputError as error:
+                faults.append(f"[{name}] {key}: {error}")
     if faults:
         raise InputError("\n".join(f"{file}: {fault}" for fault in faults))
     return Bench(**values)
 
 
-def _text(table: Mapping[str, Any], key: str, faults: list[str]) -> str | None:
-    value = table.get(key)
-    if value is not None and (not isinstance(value, str) or "\n" in value or len(value) > 200):
-        faults.append(f"[bench] {key}: a text of one line, not {value!r:.40}")
-        return None
+def _line(value: Any) -> str:
+    if not isinstance(value, str) or "\n" in value or len(value) > 200:
+        raise InputError(f"a text of one line, not {value!r:.40}")
     return value
 
 
-def _quantity(value: Any, unit: str, least: float, most: float, where: str, faults: list[str]) -> float:
-    try:
+def _count(least: int, most: int) -> Callable[[Any], int]:
+    def read(value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+            raise InputError(f"a whole number from {least} to {most}, not {value!r}")
+        return value
+
+    return read
+
+
+def _quantity(unit: str, least: float, most: float) -> Callable[[Any], float]:
+    def read(value: Any) -> float:
         if not isinstance(value, str):
             raise InputError(f"a quantity with its unit in quotes, not {value!r:.40}")
         number = _core.quantity(value, unit)
         if not least <= number <= most:
             raise InputError(f"{value} does not lie between {least:g} and {most:g} {unit}: a slip in the unit?")
-    except InputError as error:
-        faults.append(f"{where}: {error}")
-        return 0.0
-    return number
+        return number
+
+    return read
 
 
-def _case(bench: Mapping[str, Any], file: Path, faults: list[str]) -> Case | None:
+def _ambient(value: Any) -> Array:
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError('it has three components, such as ["20 uT", "0 uT", "-43 uT"]')
+    return np.array([_quantity("T", -1.0, 1.0)(component) for component in value])
+
+
+def _case(file: Path, name: Any) -> Case:
     """The case that the bench names, beside the bench's file."""
-    name = _text(bench, "case", faults)
     if name is None:
-        faults.append("[bench]: there is no key `case`")
-        return None
+        raise InputError("there is no key `case`")
     try:
-        case = Case(file.parent / name)
+        case = Case(file.parent / _line(name))
         if not len(case.sensors):
             raise InputError("the case has no sensor")
         if case.loads[0].type == "sweep":
@@ -138,8 +139,7 @@ def _case(bench: Mapping[str, Any], file: Path, faults: list[str]) -> Case | Non
         if min(load.magnitude for load in case.loads) <= 0:
             raise InputError("the case has a load that is zero")
     except InputError as error:
-        faults.append(f"[bench] case: the case cannot be used: {error}")
-        return None
+        raise InputError(f"the case cannot be used: {error}") from error
     return case
 
 
@@ -212,21 +212,20 @@ class Simulation:
 
     def errors(self, source: str) -> dict[str, Any]:
         """The sizes of the errors of one simulation: those of the bench, or zero where they are left out."""
-        bench, everything = self.bench, source == "all"
-        ambient = everything or source == "ambient field"
-        sizes: dict[str, Any] = {
-            "noise": bench.noise if everything or source == "noise" else 0.0,
-            "background_noise": bench.noise if ambient else 0.0,
-            "quantum": bench.quantum if everything or source == "digits" else 0.0,
-            "sensor_position": bench.sensor_position if everything or source == "sensor position" else 0.0,
-            "stage_azimuth": bench.stage_azimuth if everything or source == "stage azimuth" else 0.0,
-            "ambient": bench.ambient if ambient else np.zeros(3),
-            "models": (everything or source == "models") and bench.truth != bench.models,
+        bench = self.bench
+        sizes: dict[str, tuple[Any, str]] = {
+            "noise": (bench.noise, "noise"),
+            "background_noise": (bench.noise, "ambient field"),
+            "quantum": (bench.quantum, "digits"),
+            "sensor_position": (bench.sensor_position, "sensor position"),
+            "stage_azimuth": (bench.stage_azimuth, "stage azimuth"),
+            "ambient": (bench.ambient, "ambient field"),
+            "models": (bench.truth != bench.models, "models"),
         }
+        chosen = {k: size if source in ("all", of) else 0 * size for k, (size, of) in sizes.items()}
         # An ambient field does no harm without the noise of its reading.
-        harm = [sizes[k] > 0 for k in ("noise", "quantum", "sensor_position", "stage_azimuth")]
-        harm += [sizes["background_noise"] > 0 and bool(np.any(sizes["ambient"])), sizes["models"]]
-        return sizes | {"any": any(harm)}
+        harm = [k for k, size in chosen.items() if k not in ("background_noise", "ambient") and size > 0]
+        return chosen | {"any": bool(harm) or chosen["background_noise"] > 0 and bool(np.any(chosen["ambient"]))}
 
     def readings(self, source: str) -> _Readings:
         """What the sensors of all draws read with the errors of a source; of none and of the models one draw.

@@ -22,19 +22,20 @@ from ..model import Case
 from ..units import shown
 from .inversion import TWO_SIDED_95, UNLIKELY, Chips
 from .left_out import with_joints
-from .loads import case_of, joints_of, noise_of, options_of, readings_of_arrays
-from .readings import Readings, read_readings
+from .loads import case_of, noise_of, readings_of
+from .readings import Readings
 from .response import Pair, Progress
 
 _TOGETHER = 0.99  # correlation from which two numbers are named
 _SINGULAR = 1e-10  # of the eigenvalues of the normal matrix with a unit diagonal: nothing is known beyond rounding
 _PLACE, _ANGLE, _PART = 1e-4, math.radians(1), 0.1  # m, rad, of a number: steps of the fit
 
+_MEMBERS = [*(f"position.{axis}" for axis in "xyz"), *(f"rotation.{axis}" for axis in "xyz"), "gain"]
 # What a sensor has: the words after its name, their members, units and steps.
 _OF_SENSOR = {
-    "position": ([f"position.{axis}" for axis in "xyz"], "m", _PLACE),
+    "position": (_MEMBERS[:3], "m", _PLACE),
     "rotation": (["rotation.z"], "rad", _ANGLE),
-    "orientation": ([f"rotation.{axis}" for axis in "xyz"], "rad", _ANGLE),
+    "orientation": (_MEMBERS[3:6], "rad", _ANGLE),
     "gain": (["gain"], "", _PART),
     "scale": (["gain"], "", _PART),
 }
@@ -117,9 +118,9 @@ class Calibration:
                 "wrong, and the intervals are too small"
             )
         text += ".\n"
-        named = {(p.name, q.name): self.correlation[i, j] for i, p in enumerate(self.parameters)
-                 for j, q in enumerate(self.parameters) if j > i}  # fmt: skip
-        close = [f"{a} and {b} ({r:+.3f})" for (a, b), r in named.items() if _TOGETHER < abs(r) < 1 - 1e-9]
+        names, r = [p.name for p in self.parameters], self.correlation
+        pairs = zip(*np.triu_indices(len(names), 1))
+        close = [f"{names[i]} and {names[j]} ({r[i, j]:+.3f})" for i, j in pairs if _TOGETHER < abs(r[i, j]) < 1 - 1e-9]
         if close:
             text += f"Known together better than apart (correlation): {', '.join(close)}.\n"
         for group in self.together:
@@ -159,21 +160,18 @@ def calibrate(
     *,
     models: str = "elastica/volume",
     noise: float | str = 1e-6,
-    unloaded: Any = None,
     joints: str = "corrected",
     progress: Progress | None = None,
     **options: Any,
 ) -> Calibration:
     """Fits numbers of a case to readings at its loads, which are known: one reading, or sample of averaged ones,
-    for each load step, in their order.
+    for each load step, in their order, by weighted least squares of dB (scipy.optimize.least_squares).
 
     fit: "base.young_modulus", any number by its path in studies or the end of it; "sensor.position" (three
     numbers), "sensor.rotation" (about z), "sensor.orientation" (about x, y, z), "sensor.gain" or "scale"; with
-    several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, unloaded, joints, options:
-    as of sense(); the case that is written has the joints that were used. Weighted least squares (scipy.optimize.least_squares) of dB; the offset's noise, which all
-    readings share, is in the weights. Deviations are (J^T V^-1 J)^-1 by the noise alone.
-
-    Raises InputError, SolverError.
+    several sensors "NAME.gain", or "sensor.gain" for each of them. readings, noise, joints, options: as of
+    sense(); the case that is written has the joints that were used. Deviations are (J^T V^-1 J)^-1 by the noise alone,
+    that of the offset, which all readings share, included. Raises InputError, SolverError.
 
     >>> import ciliaval as cv
     >>> from ciliaval.sensing import calibrate
@@ -184,30 +182,9 @@ def calibrate(
     >>> round(float(found.values[0]))
     90000
     """
-    case = case_of(case)
-    if isinstance(readings, (str, Path)):
-        skip = bool(options.pop("skip", False))
-        given = options | {"unloaded": unloaded}
-        reads = Chips.of(case).reads
-        read = read_readings(Path(readings), case.sensor_names, options_of(case, given, skip), None, reads)
-    elif options:
-        raise InputError(f"{', '.join(options)}: of a file of readings alone")
-    else:
-        read = readings_of_arrays(readings, len(case.sensors), unloaded, None, Chips.of(case))
-    return calibrate_readings(case, read, fit, Pair.of(models), noise_of(noise), progress, joints_of(joints))
-
-
-def calibrate_readings(
-    case: Case,
-    read: Readings,
-    fit: Sequence[str],
-    pair: Pair,
-    noise: float,
-    progress: Progress | None = None,
-    joints: str = "corrected",
-) -> Calibration:
-    """See calibrate()."""
-    case, _ = with_joints(case, pair.mechanics, joints)
+    pair, sigma = Pair.of(models), noise_of(noise)
+    case, _ = with_joints(case_of(case), pair.mechanics, joints)
+    read = readings_of(case, readings, **options)
     read.require_offset("a calibration")
     if len(read.change) != len(case.loads):
         raise InputError(
@@ -218,7 +195,7 @@ def calibrate_readings(
     names = [p.name for p in parameters]
     if not parameters or len(set(names)) < len(names):
         raise InputError(f"fit names no number, or one twice: {', '.join(names) or 'none'}")
-    fitting = _Fitting(case, read, parameters, pair, noise, progress)
+    fitting = _Fitting(case, read, parameters, pair, sigma, progress)
     start = fitting.residual(np.zeros(len(parameters)))
     data = int(Chips.of(case).reads.sum()) * len(read.change)
     if data < len(parameters):
@@ -235,7 +212,7 @@ def calibrate_readings(
     return Calibration(
         parameters, values, deviations * [p.slope(v) for p, v in zip(parameters, values)], correlation, float(2 * found.cost),
         data - len(parameters) + len(together), together,
-        fitting.case(values), pair, noise, fitting.read - fitting.computed(values), read.remarks,
+        fitting.case(values), pair, sigma, fitting.read - fitting.computed(values), read.remarks,
     )  # fmt: skip
 
 
@@ -265,15 +242,16 @@ def parameters_of(case: Case, name: str) -> list[Parameter]:
     members = _OF_SENSOR.get(what)
     if what in tuple("xyz") and owner.rpartition(".")[2] in ("position", "orientation", "rotation"):
         owner, _, kind = owner.rpartition(".")
-        member = f"{'position' if kind == 'position' else 'rotation'}.{what}"
-        members = ([member], "m" if kind == "position" else "rad", _PLACE if kind == "position" else _ANGLE)
+        each, unit, step = _OF_SENSOR["position" if kind == "position" else "orientation"]
+        members = ([each["xyz".index(what)]], unit, step)
     if members and (owner == "sensor" or owner in sensors):
         paths, unit, step = members
         chosen = range(len(sensors)) if owner == "sensor" else [sensors.index(owner)]
         if sensors[0] == "0" and not paths[0].startswith("position"):
             chosen = [0]  # a list of places has one chip for all
+        starts, names = _sensors_of(case), ["sensor"] if len(sensors) == 1 else sensors
         return [
-            Parameter(path, f"{'sensor' if len(sensors) == 1 else sensors[s]}.{path}", unit, _of_sensor(case, s, path), step, s)
+            Parameter(path, f"{names[s]}.{path}", unit, float(starts[s, _MEMBERS.index(path)]), step, s)
             for s in chosen
             for path in paths
         ]
@@ -291,12 +269,10 @@ def parameters_of(case: Case, name: str) -> list[Parameter]:
     return [Parameter(ends[0], short, unit, value, _PART * abs(value) or _PART)]
 
 
-def _of_sensor(case: Case, sensor: int, member: str) -> float:
-    kind, _, axis = member.partition(".")
-    if kind == "position":
-        return float(case.sensors[sensor]["xyz".index(axis)])
-    _, rotation, gain, _ = case._core.chips[sensor]
-    return float(gain) if kind == "gain" else float(rotation["xyz".index(axis)])
+def _sensors_of(case: Case) -> Array:
+    """Position, m, rotation, rad, and gain of the sensors, (s, 7)."""
+    chips = [[*rotation, gain] for _, rotation, gain, _ in case._core.chips]
+    return np.hstack([case.sensors, chips])
 
 
 class _Fitting:
@@ -310,11 +286,8 @@ class _Fitting:
         self.read = np.where(self._reads, read.change, 0.0)
         self.failure = ""
         self._evaluations = 0
-        # V = sigma^2 (diag(1/rows) + v 1 1^T), v of the offset; V^-1/2 = (I - c u u^T) D^-1/2 with u = D^-1/2 1 sqrt(v).
-        self._own = np.sqrt(read.rows) / noise
-        u = np.sqrt(read.rows * read.offset_variance)
-        squared = float(u @ u)
-        self._shared = u, (1 - 1 / math.sqrt(1 + squared)) / squared if squared else 0.0
+        # V^-1/2 of V = sigma^2 (diag(1/rows) + v 1 1^T), v of the offset.
+        self._whitening = np.linalg.inv(np.linalg.cholesky(np.diag(1 / read.rows) + read.offset_variance)) / noise
 
     def values(self, x: Array) -> Array:
         return np.array([p.value(float(value)) for p, value in zip(self._parameters, x)])
@@ -326,27 +299,17 @@ class _Fitting:
         of_sensor = [(p, float(v)) for p, v in zip(self._parameters, values) if p.sensor is not None]
         if not of_sensor:
             return changed
-        tables = tomllib.loads(changed.toml())
-        named = isinstance(tables["sensor"], list)
-        places = changed.sensors.copy()
-        chips: list[list[Any]] = [[list(chip[1]), chip[2]] for chip in changed._core.chips]
+        tables, sensors = tomllib.loads(changed.toml()), _sensors_of(changed)
         for p, value in of_sensor:
-            assert p.sensor is not None
-            kind, _, axis = p.path.partition(".")
-            if kind == "position":
-                places[p.sensor, "xyz".index(axis)] = value
-            elif kind == "gain":
-                chips[p.sensor][1] = value
-            else:
-                chips[p.sensor][0]["xyz".index(axis)] = value
-        texts = [[f"{c!r} m" for c in place] for place in places.tolist()]
-        for s in range(len(places) if named else 1):
-            table = tables["sensor"][s] if named else tables["sensor"]
-            table["position"] = texts[s] if named or len(texts) == 1 else texts
+            sensors[p.sensor, _MEMBERS.index(p.path)] = value
+        named = isinstance(tables["sensor"], list)
+        places = [[f"{c!r} m" for c in place] for place in sensors[:, :3].tolist()]
+        for s, table in enumerate(tables["sensor"] if named else [tables["sensor"]]):
+            table["position"] = places[s] if named or len(places) == 1 else places
             if any(p.path.startswith("rotation") for p, _ in of_sensor):
-                table["rotation"] = [f"{float(angle)!r} rad" for angle in chips[s][0]]
+                table["rotation"] = [f"{angle!r} rad" for angle in sensors[s, 3:6].tolist()]
             if any(p.path == "gain" for p, _ in of_sensor):
-                table["gain"] = chips[s][1]
+                table["gain"] = float(sensors[s, 6])
         return Case.from_dict(tables, str(changed.file or changed.name))
 
     def computed(self, values: Array) -> Array:
@@ -368,18 +331,10 @@ class _Fitting:
         return np.asarray(chips.own(B[1:] - B[0]))
 
     def residual(self, x: Array) -> Array:
-        return self._whitened(self.computed(self.values(x)) - self.read)
+        off = self.computed(self.values(x)) - self.read
+        return np.asarray(np.tensordot(self._whitening, off, axes=1)[:, self._reads].ravel())
 
     def jacobian(self, x: Array) -> Array:
         """By central differences of 1e-3 steps."""
-        columns = []
-        for i in range(len(x)):
-            h = np.zeros(len(x))
-            h[i] = 1e-3
-            columns.append((self.residual(x + h) - self.residual(x - h)) / 2e-3)
-        return np.stack(columns, axis=1)
-
-    def _whitened(self, off: Array) -> Array:
-        u, c = self._shared
-        own = off.reshape(len(off), -1) * self._own[:, None]
-        return np.asarray((own - c * np.outer(u, u @ own))[:, self._reads.ravel()].ravel())
+        steps = 1e-3 * np.eye(len(x))
+        return np.stack([(self.residual(x + h) - self.residual(x - h)) / 2e-3 for h in steps], axis=1)

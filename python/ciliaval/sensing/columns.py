@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NoReturn
 
 from .._core import quantity
 from ..command import printable
@@ -16,7 +16,9 @@ MOST_CELLS = 1000  # of a line
 _MOST_LISTED = 50  # faults of a report
 
 _FILLERS = re.compile(r"[ \t_.:/-]")
-_NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE)
+NUMBER = re.compile(
+    r"[+-]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:e[+-]?[0-9]+)?|[+-]?(?:nan|inf|infinity)", re.IGNORECASE
+)
 _PREFIX = r"s|sensor|ch|channel|probe|node|chip|imu|mlx"
 _FIELD = re.compile(
     rf"(?:(?:{_PREFIX}|mag|b|m)?(?P<before>\d{{1,4}}))?"
@@ -56,6 +58,11 @@ class Faults:
     def add(self, what: str, line: int = 1, column: int = 1) -> None:
         self._all.append((line, column, what))
 
+    def refuse(self, file: object, what: str, line: int = 1) -> NoReturn:
+        """Raises InputError with the report and this fault."""
+        self.add(what, line)
+        raise InputError(self.report(file))
+
     def report(self, file: object) -> str:
         """`file:line:column: what`, a line each, in the order of the file; of very many the first."""
         listed = sorted(self._all, key=lambda fault: fault[:2])
@@ -76,6 +83,16 @@ class Option:
 
     text: str = ""
     where: str = ""
+
+    def refusal(self, why: str) -> InputError:
+        return InputError(f"{self.where}: {in_quotes(self.text)} {why}")
+
+    def by(self, read: Callable[[str], Any]) -> Any:
+        """What a function makes of the text; None if it is empty. Raises InputError that names the option."""
+        try:
+            return read(self.text) if self.text else None
+        except InputError as fault:
+            raise InputError(f"{self.where}: {fault}") from fault
 
 
 @dataclass(frozen=True)
@@ -132,21 +149,7 @@ def cells_of(line: str, separator: str = ",") -> list[Cell]:
 
 def number_in(text: str) -> float | None:
     """The number of a cell with a decimal point or comma; None if it is none."""
-    return float(text.replace(",", ".")) if len(text) <= 64 and _NUMBER.fullmatch(text) else None
-
-
-def thousands_in(cells: Iterable[tuple[int, Cell]]) -> tuple[int, Cell] | None:
-    """The first of the cells, with their lines, that looks like "7,640" beside "122": read as decimals, such marks
-    would make numbers a thousand times too small. None where another number shows that they are decimals."""
-    first, has_plain = None, False
-    for line, cell in cells:
-        if re.fullmatch(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", cell.text):
-            first = first or (line, cell)
-        elif re.fullmatch(r"[+-]?\d{1,3}", cell.text):
-            has_plain |= cell.text.strip("+-0") != ""
-        elif number_in(cell.text) is not None:
-            return None
-    return first if has_plain else None
+    return float(text.replace(",", ".")) if len(text) <= 64 and NUMBER.fullmatch(text) else None
 
 
 def split_unit(header: str) -> tuple[str, str | None]:
@@ -194,15 +197,13 @@ def lsb_scale(text: str) -> list[float]:
 
 
 def _one_scale(text: str) -> float:
-    head, _, divisor = (part.strip(" \t") for part in text.partition("/"))
-    number, blank, unit = (part.strip(" \t") for part in re.sub(r"[ \t]+", " ", head).partition(" "))
-    if not unit:
-        raise InputError(f'{in_quotes(text)} is no flux density of an LSB: write "0.15 uT" or "6842 LSB/G"')
+    found = re.fullmatch(r"([^ \t/]+)[ \t]*([^/]*?)[ \t]*(?:/[ \t]*(.*))?", text.strip(" \t"))
+    number, unit, divisor = (part or "" for part in found.groups()) if found else ("", "", "")
     scale = 0.0
     if unit.lower() in _LSB and divisor:
         count = quantity(f"{number} T", "T")
         scale = quantity(f"1 {divisor}", "T") / count if count else 0.0
-    elif not divisor or divisor.lower() in _LSB:
+    elif unit and (not divisor or divisor.lower() in _LSB):
         scale = quantity(f"{number} {unit}", "T")
     if not 1e-15 <= scale <= 1:
         raise InputError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -30,18 +30,17 @@ _NAMED_NUMBER = re.compile(r"[A-Za-z]\w*\"?\s*[:=]\s*[-+]?[.\d]")  # "Bx:1.2,By:
 
 @dataclass
 class Header:
-    """The header of a file. line: its number, 0 of a file that has none. end: where its line ends in the text.
+    """The header of a file. line: its number, 0 of a file that has none. first_row: index of the line below it.
 
-    width: with empty names at its end. skipped: lines above it that are no comments. units: by name, of
-    comments. fields: of the chosen columns of B or dB (cell, sensor, axis). reads: (sensors, 3), which of them there
-    must be. needs: kinds of further columns that must be there.
+    skipped: lines above it that are no comments. units: by name, of comments. fields: of the chosen columns of B or dB
+    (cell, sensor, axis). reads: (sensors, 3), which of them there must be. needs: kinds of further columns that must be
+    there.
     """
 
     separator: str
     line: int
     columns: list[Column]
-    end: int = 0
-    width: int = 0
+    first_row: int = 0
     skipped: int = 0
     units: dict[str, str] = field(default_factory=dict)
     fields: list[tuple[int, int, int]] = field(default_factory=list)
@@ -110,20 +109,16 @@ def choose_columns(
     _apply_map(header, entries, where, faults)
     if len(faults) > before:
         return
-    for kind in ("time", "sample", "sensor", "azimuth", *header.needs):
-        known: set[str] = set()
-        for column in header.columns:
-            if column.kind == kind and column.name.lower() in known:
-                faults.add(f"there is a second column '{column.name}'", header.line, column.place)
-            if column.kind == kind:
-                known.add(column.name.lower())
+    names = [(column.kind, column.name.lower()) for column in header.columns]
+    for i, column in enumerate(header.columns):
+        if column.kind in ("time", "sample", "sensor", "azimuth", *header.needs) and names[i] in names[:i]:
+            faults.add(f"there is a second column '{column.name}'", header.line, column.place)
+        if column.kind in header.needs and column.unit is not None and not is_unit(column.unit, column.kind):
+            what = f"the column {in_quotes(column.header)} is in {column.unit}: write it in K or degC"
+            faults.add(what, header.line, column.place)
     for kind in header.needs:
         if header.one(kind) is None:
             faults.add(f"there is no column '{kind}' (columns: {header.names()})", header.line)
-        for column in header.columns:
-            if column.kind == kind and column.unit is not None and not is_unit(column.unit, kind):
-                what = f"the column {in_quotes(column.header)} is in {column.unit}: write it in K or degC"
-                faults.add(what, header.line, column.place)
     _choose_fields(header, sensors, faults)
 
 
@@ -188,8 +183,9 @@ def _choose_fields(header: Header, sensors: Sequence[str], faults: Faults) -> No
     header.is_wide = len(labels) > 1 or (len(sensors) > 1 and labels != {""})
     # Numbered from 1, as in "Bx1, By1, Bz1, Bx2, …": none is called 0.
     first = int(len(labels) == len(sensors) and {"1", str(len(sensors))} <= labels and "0" not in labels)
-    taken = set()
     reads = header.reads if header.is_wide else header.reads.any(axis=0, keepdims=True)
+    missing = {(int(sensor), int(axis)) for sensor, axis in np.argwhere(reads)}
+    taken = set()
     for i, column in chosen:
         sensor = 0 if labels == {""} else sensor_index(column.sensor, sensors, first)
         if sensor is None:
@@ -203,16 +199,13 @@ def _choose_fields(header: Header, sensors: Sequence[str], faults: Faults) -> No
             faults.add(f"there is a second column {in_quotes(column.name)}", header.line, column.place)
             return
         taken.add((sensor, column.axis))
-        if not reads[sensor, column.axis]:
-            continue
-        header.fields.append((i, sensor, column.axis))
-    for sensor in range(len(sensors) if header.is_wide else 1):
-        for axis in range(3):
-            if reads[sensor, axis] and (sensor, axis) not in taken:
-                of = f" of the sensor {sensors[sensor]}" if header.is_wide else ""
-                name = f"{'d' if header.is_change else ''}B{'xyz'[axis]}"
-                faults.add(f"{_EITHER}: there is no column {name}{of} (columns: {header.names()})", header.line)
-                return
+        if reads[sensor, column.axis]:
+            header.fields.append((i, sensor, column.axis))
+    if missing - taken:
+        sensor, axis = min(missing - taken)
+        of = f" of the sensor {sensors[sensor]}" if header.is_wide else ""
+        name = f"{'d' if header.is_change else ''}B{'xyz'[axis]}"
+        faults.add(f"{_EITHER}: there is no column {name}{of} (columns: {header.names()})", header.line)
 
 
 def sensor_index(text: str, sensors: Sequence[str], first: int = 0) -> int | None:
@@ -238,58 +231,50 @@ def find_factors(
     By the header, the row of units (may be empty), comments, the column `units` (its name and unit, "" if
     there is none), --unit, or ROS's message. Two that differ, and none, are faults. Raises InputError.
     """  # fmt: skip
-    scales = None
-    try:
-        where = scale.where
-        scales = lsb_scale(scale.text) if scale.text else None
-        where = unit.where
-        if unit.text:
-            flux_density_unit(unit.text)
-    except InputError as fault:
-        raise InputError(f"{where}: {fault}") from fault
+    scales = scale.by(lsb_scale)
+    unit.by(flux_density_unit)
     factors, units, without, before = [], [], [], len(faults)
     for i, _, axis in header.fields:
         column = header.columns[i]
-        # Unit, by what it is stated, line, column.
-        stated = [(column.unit, "the header", header.line, column.place)] if column.unit is not None else []
-        if i < len(unit_row) and unit_row[i].text:
-            stated.append((without_brackets(unit_row[i].text), "the row of units", unit_line, unit_row[i].column))
-        if column.name in header.units:
-            stated.append((header.units[column.name], "a comment", header.line, column.place))
-        if unit_column[1]:
-            stated.append((unit_column[1], f"the column '{unit_column[0]}'", header.line, column.place))
-        if unit.text:
-            stated.append((unit.text, unit.where, header.line, column.place))
+        here = (header.line, column.place)
+        of_row = unit_row[i] if i < len(unit_row) else Cell("", 1)
+        statements = (  # unit, by what it is stated, line and column
+            (column.unit, "the header", here),
+            (without_brackets(of_row.text) or None, "the row of units", (unit_line, of_row.column)),
+            (header.units.get(column.name), "a comment", here),
+            (unit_column[1] or None, f"the column '{unit_column[0]}'", here),
+            (unit.text or None, unit.where, here),
+        )
+        stated = [(text, by, place) for text, by, place in statements if text is not None]
         if not stated and header.is_ros and _ROS_FIELD.fullmatch(column.name):
-            stated.append(("T", "ROS", header.line, column.place))
+            stated = [("T", "ROS", here)]
         factors.append(1.0)
         units.append(stated[0][0] if stated else "")
         if not stated:
             without.append(in_quotes(column.header))
             continue
-        first, by, line, place = stated[0]
+        first, by, place = stated[0]
         try:
             factor = flux_density_unit(first)
-            for other in stated:
-                if flux_density_unit(other[0]) != factor:
-                    faults.add(
-                        f"the column {in_quotes(column.header)} has two units: {in_quotes(first)} by {by}, "
-                        f"{in_quotes(other[0])} by {other[1]}",
-                        *other[2:],
-                    )
-                    break
+            other = next((other for other in stated if flux_density_unit(other[0]) != factor), None)
+            if other is not None:
+                faults.add(
+                    f"the column {in_quotes(column.header)} has two units: {in_quotes(first)} by {by}, "
+                    f"{in_quotes(other[0])} by {other[1]}",
+                    *other[2],
+                )
             if factor is not None:
                 factors[-1] = factor
-            elif scales is None:
+            elif scales is not None:
+                factors[-1] = scales[axis]
+            else:
                 faults.add(
                     f"the column {in_quotes(column.header)} is in {in_quotes(first)}: state the flux density of one, "
                     'from the sensor\'s data sheet: --scale "0.15 uT" or --scale "6842 LSB/G"',
-                    line, place,
-                )  # fmt: skip
-            else:
-                factors[-1] = scales[axis]
+                    *place,
+                )
         except InputError as fault:
-            faults.add(f"the column '{column.name}': {fault}", line, place)
+            faults.add(f"the column '{column.name}': {fault}", *place)
     if without:
         faults.add(
             f'no unit of {", ".join(without)}: write it into the header, "Bx [uT]", or state it: --unit uT (T, mT, uT, '
@@ -301,44 +286,38 @@ def find_factors(
     return factors, units
 
 
-def _lines(text: str, begin: int = 0) -> Iterator[tuple[str, int]]:
-    """The lines of a text, each with its end, where the next one begins."""
-    while begin < len(text):
-        end = text.find("\n", begin)
-        end = len(text) if end < 0 else end
-        yield text[begin:end], end + 1
-        begin = end + 1
-
-
-def find_header(text: str, sensors: Sequence[str], entries: Sequence[MapEntry], faults: Faults) -> Header | None:
+def find_header(
+    lines: Sequence[str], sensors: Sequence[str], entries: Sequence[MapEntry], faults: Faults
+) -> Header | None:
     """The first line in which two of Bx, By, Bz or of the columns of --map are found with one of the separators; or
     the last comment before the first numbers in which they are. None is a fault."""
     in_comment = None
     units: dict[str, str] = {}
-    skipped, above, above_number, end = 0, "", 1, 0
-    # LabVIEW's own lines may look like numbers.
-    labview = text.rfind("***End_of_Header***") if text.startswith("LabVIEW Measurement") else 0
-    for number, (line, end) in enumerate(_lines(text), 1):
-        if not line.strip(" \t") or end <= labview:
+    skipped, above, above_number, labview = 0, "", 1, 0
+    if lines[0].startswith("LabVIEW Measurement"):  # whose own lines may look like numbers
+        labview = max((i for i, line in enumerate(lines, 1) if "***End_of_Header***" in line), default=0)
+    for number, line in enumerate(lines, 1):
+        if not line.strip(" \t") or number <= labview:
             skipped += bool(line.strip(" \t"))
             continue
         if _COMMENT.match(line):
             stated = units_in(line)
-            header = _header_in(line.lstrip("#%/ \t"), number, text, end, sensors, entries)
+            header = _header_in(line.lstrip("#%/ \t"), number, lines, sensors, entries)
             in_comment = header if header and not stated else in_comment
             units = stated | units
             continue
-        header = _header_in(line, number, text, end, sensors, entries)
-        if header and labview and (stated_unit := re.search(r"^Y_Unit_Label[\t,;]+([^\t,;\n]+)", text, re.MULTILINE)):
-            units = {column.name: stated_unit[1] for column in header.columns if column.is_field} | units
+        header = _header_in(line, number, lines, sensors, entries)
+        if header and labview:
+            stated_unit = re.search(r"^Y_Unit_Label[\t,;]+([^\t,;\n]+)", "\n".join(lines[:labview]), re.MULTILINE)
+            units = {c.name: stated_unit[1] for c in header.columns if c.is_field and stated_unit} | units
+        first_row = number
         if header is None and _is_row(line, in_comment):
-            header = in_comment or _by_numbers(line, entries)
+            header, first_row = in_comment or _by_numbers(line, entries), number - 1
             if header is None:
                 _add_no_header(line, number, above, above_number, sensors, faults)
                 return None
-            end -= len(line) + 1
         if header:
-            header.end, header.skipped, header.units = end, skipped, units
+            header.first_row, header.skipped, header.units = first_row, skipped, units
             return header
         if len(_NAMED_NUMBER.findall(line)) > 2:
             faults.add(
@@ -374,7 +353,7 @@ def _split(line: str, separator: str, count: int = 0) -> list[Cell]:
 
 
 def _header_in(
-    line: str, number: int, text: str, end: int, sensors: Sequence[str], entries: Sequence[MapEntry]
+    line: str, number: int, lines: Sequence[str], sensors: Sequence[str], entries: Sequence[MapEntry]
 ) -> Header | None:
     """The line as a header, with the separator by which the most columns are known; None if fewer than two are.
     Blanks separate only where the rows below have as many cells: else the line is a sentence."""
@@ -384,7 +363,7 @@ def _header_in(
     for separator in SEPARATORS:
         counts = [0]
         if separator == " ":
-            below = (row for row, _ in _lines(text, end) if row.strip(" \t") and not is_comment(row))
+            below = (lines[i] for i in range(number, len(lines)) if lines[i].strip(" \t") and not is_comment(lines[i]))
             counts = [len(row) for row in (cells_of(row, " ") for row, _ in zip(below, range(2))) if _numbers(row) > 2]
         for count in counts:
             cells = _split(line, separator, count)
@@ -395,10 +374,9 @@ def _header_in(
             known = sum(c.is_field or is_named for c, is_named in zip(columns, named))
             if known > most:
                 most = known
-                width = len(columns)
                 while len(columns) > 1 and not columns[-1].header:
                     columns.pop()
-                best = Header(separator, number, columns, width=width)
+                best = Header(separator, number, columns)
     return best
 
 
@@ -427,7 +405,7 @@ def _by_numbers(line: str, entries: Sequence[MapEntry]) -> Header | None:
         return None
     separator = max(SEPARATORS, key=lambda separator: _numbers(cells_of(line, separator)))
     columns = [Column(str(i), str(i)) for i, _ in enumerate(cells_of(line, separator), 1)]
-    return Header(separator, 1, columns, width=len(columns))
+    return Header(separator, 1, columns)
 
 
 def _add_no_header(

@@ -8,15 +8,16 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 from scipy import special
+from scipy.spatial.transform import Rotation
 
 from ..arrays import Array
 from ..errors import InputError
 from ..model import Case
+from .left_out import LeftOut
 from .response import Response
 
 TWO_SIDED_95 = float(special.ndtri(0.975))
@@ -26,17 +27,6 @@ _COMPONENTS = 2  # of a load
 _SHIFTS = 4  # steps to the load that better models would have found
 _MOST_STEPS = 200
 _CHUNK = 10_000  # readings at once: what they need stays in the cache
-
-
-
-class LeftOutOfLoads(Protocol):
-    """What is left out of dB at loads (n, 2), lists of (n, s, 3), T: by the models, bounds for 95 % that add up; by the
-    inputs, independent standard deviations."""
-
-    def of_models(self, load: Array) -> list[Array]: ...
-
-    def of_inputs(self, load: Array) -> list[Array]: ...
-
 
 STATUSES = ("found", "nothing", "ambiguous", "beyond range", "misfit", "failed")
 
@@ -77,9 +67,7 @@ class SensedLoads:
 
     @property
     def is_nothing(self) -> Array:
-        """No load is seen: the region of 95 % of the load holds zero. The decrease of chi squared from
-        no load to the load found has as many degrees of freedom as the load has components; beyond 5.99
-        with two. (1.96 standard deviations of one component are passed by noise in 15 % of the readings.)"""
+        """No load is seen: the region of 95 % of the load, chi squared of two degrees of freedom, holds zero."""
         return ~(self.nothing_probability < 0.05)
 
     @property
@@ -89,8 +77,8 @@ class SensedLoads:
 
     @property
     def magnitude_interval(self) -> Array:
-        """Half-widths of the intervals that hold the magnitude with 95 %, to first order: 1.96 standard
-        deviations along the load, of all errors; where none is seen they hold zero too."""
+        """Half-widths of the intervals that hold the magnitude with 95 %, of all errors, to first order; where no load
+        is seen they hold zero too."""
         width = self._along(self.total_covariance)
         return np.where(self.is_nothing, np.maximum(width, self.magnitude), width)
 
@@ -121,9 +109,9 @@ class SensedLoads:
     def azimuth_interval(self) -> Array:
         """Half-widths of the same of the azimuth, rad; pi: not known.
 
-        A direction is in the interval if a load along it is within chi squared of 3.84 of the one
-        found. Where the covariance is a circle of radius sigma these are the directions within
-        asin(1.96 sigma/|p|); by p = L y with L L^T the covariance any other is one.
+        A direction is in the interval if a load along it is within chi squared of 3.84 of the one found. Where the
+        covariance is a circle of radius sigma these are the directions within asin(1.96 sigma/|p|); by p = L y with
+        L L^T the covariance any other is one.
         """
         result = np.full(len(self.load), np.pi)
         covariance = self.total_covariance
@@ -144,8 +132,7 @@ class SensedLoads:
 
     @property
     def status(self) -> Array:
-        """Of each: "found", "nothing" (is_nothing), "ambiguous", "misfit" (no load explains the reading: chance alone
-        does so once in a thousand times), "beyond range", "failed" (the least squares did not converge)."""
+        """Of each one of STATUSES, by the first condition that holds."""
         conditions = [
             ~self.converged, self.is_beyond, self.misfit_probability < UNLIKELY, self.is_nothing, self.is_ambiguous,
         ]  # fmt: skip
@@ -167,7 +154,7 @@ class Chips:
         axes, reads, gains = [], [], []
         for names, rotation, gain, components in case._core.chips:
             own = [float(f"{name[0]}1") * np.eye(3)["xyz".index(name[1])] for name in names or ("+x", "+y", "+z")]
-            axes.append(turned_about(rotation) @ np.stack(own, axis=1))
+            axes.append(Rotation.from_euler("xyz", rotation).as_matrix() @ np.stack(own, axis=1))
             reads.append([not components or c in components for c in "xyz"])
             gains.append(gain)
         return Chips(np.array(axes), np.array(reads), np.array(gains))
@@ -188,15 +175,6 @@ class Chips:
         return np.where(self.reads, own, 0.0)
 
 
-def turned_about(angles: npt.ArrayLike) -> Array:
-    """The rotation about x, then y, then z, by three angles, rad: R = R_z R_y R_x."""
-    (a, b, c), (sa, sb, sc) = np.cos(angles), np.sin(angles)
-    x = np.array([[1, 0, 0], [0, a, -sa], [0, sa, a]])
-    y = np.array([[b, 0, sb], [0, 1, 0], [-sb, 0, b]])
-    z = np.array([[c, -sc, 0], [sc, c, 0], [0, 0, 1]])
-    return np.asarray(z @ y @ x)
-
-
 def wrapped(angle: Array) -> Array:
     """Angles within (-pi, pi]."""
     return -(np.remainder(-np.asarray(angle) + np.pi, 2 * np.pi) - np.pi)
@@ -209,20 +187,18 @@ def invert(
     variance: npt.ArrayLike = 1.0,
     common: Array | None = None,
     chips: Chips | None = None,
-    left_out: LeftOutOfLoads | None = None,
+    left_out: LeftOut | None = None,
 ) -> SensedLoads:
-    """The loads whose dB is nearest to readings: the least squares weighted by the noise, by the method of
-    Levenberg and Marquardt with the response's own derivatives, from the nearest of a grid of 129 loads
-    over the whole range. All readings take their steps together: a call of scipy.optimize for each
-    costs a hundred times as much, and gives the same (tests/python/test_sensing.py).
+    """The loads whose dB is nearest to readings: least squares weighted by the noise, by the method of Levenberg and
+    Marquardt with the response's own derivatives, from the nearest of a grid of 129 loads over the whole range. All
+    readings take their steps together: a call of scipy.optimize for each costs a hundred times as much, and gives the
+    same (tests/python/test_sensing.py).
 
     change: dB, (n, s, 3), T. noise: standard deviation of a component of a single reading, T, a number or
     (3,). variance: of dB over noise^2, (n,): 1/m + 1/k of means of m loaded and k unloaded readings.
     common: (n, s, s), the covariance of the sensors by an error that they share, over noise^2. chips: which of
     the components count; None: all. left_out: what the models leave out, and what the inputs make; None:
-    nothing.
-
-    Raises InputError if a number is not finite, the noise not positive, or a shape is another.
+    nothing. Raises InputError if a number is not finite, the noise not positive, or a shape is another.
 
     >>> import ciliaval as cv, numpy as np
     >>> from ciliaval.sensing import Response, invert, shapes_within
@@ -231,7 +207,7 @@ def invert(
     >>> bool(np.allclose(invert(response, response.change([[1e-3, 5e-4]]), 1e-6).load, [[1e-3, 5e-4]]))
     True
     """
-    change = np.asarray(change, dtype=float)
+    dB = change = np.asarray(change, dtype=float)
     noise = np.broadcast_to(np.asarray(noise, dtype=float), 3)
     if change.ndim != 3 or change.shape[1:] != (response.sensors, 3):
         raise InputError(f"readings have the shape (n, {response.sensors}, 3), not {change.shape}")
@@ -241,76 +217,58 @@ def invert(
         raise InputError("the noise of a reading must be finite and positive")
     if chips is not None and chips.reads.sum() < _COMPONENTS:
         raise InputError("a load has two components: one that a sensor reads does not tell them")
-    dB, sigma, over = change, noise, np.broadcast_to(np.asarray(variance, dtype=float), len(change))
+    V = np.broadcast_to(np.asarray(variance, dtype=float), len(change))[:, None, None] * np.eye(response.sensors)
+    whitening = _Whitening.of(V if common is None else V + common, noise, chips)
 
     def part(start: int) -> tuple[Array, ...]:
         rows = slice(start, start + _CHUNK)
-        whitened = _Whitening(sigma, over[rows], None if common is None else common[rows], chips)
-        return _both(response, dB[rows], whitened, left_out)
+        return _both(response, dB[rows], whitening.rows(rows), left_out)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:  # NumPy lets them run side by side
-        parts = [_nothing_read(), *threads.map(part, range(0, len(change), _CHUNK))]
+        parts = list(threads.map(part, range(0, max(1, len(change)), _CHUNK)))
     return SensedLoads(*(np.concatenate(arrays) for arrays in zip(*parts)))
-
-
-def _nothing_read() -> tuple[Array, ...]:
-    none = np.zeros(0)
-    no = none.astype(bool)
-    return np.zeros((0, 2)), np.zeros((0, 2, 2)), none, none, none, no, no, np.zeros((0, 2, 2)), np.zeros((0, 2, 2)), no
 
 
 class _Whitening:
     """V^-1/2 of readings: values times it have the covariance 1."""
 
-    def __init__(self, noise: Array, variance: Array, common: Array | None, chips: Chips | None):
-        self._weights = 1 / noise
-        self.chips = None if chips is None or chips.is_plain else chips
-        self._scale = 1 / np.sqrt(variance)
-        self._factor = None
-        if common is not None:
-            V = common + variance[:, None, None] * np.eye(common.shape[-1])
-            if self.chips is not None and not self.chips.reads.all():
-                # Of each component over the sensors that read it; a number of the others is 0 whatever it is divided by.
-                reads = self.chips.reads.T
-                V = np.where(reads[:, :, None] & reads[:, None, :], V[:, None], np.eye(common.shape[-1]))
-            else:
-                V = V[:, None]
-            self._factor = np.linalg.inv(np.linalg.cholesky(V))  # (n, 3 or 1, s, s)
+    def __init__(self, factor: Array, chips: Chips | None):
+        self._factor, self.chips = factor, chips  # (n, 3, s, s)
 
-    def rows(self, chosen: Array) -> _Whitening:
-        part = object.__new__(_Whitening)
-        part._weights, part._scale, part.chips = self._weights, self._scale[chosen], self.chips
-        part._factor = None if self._factor is None else self._factor[chosen]
-        return part
+    @staticmethod
+    def of(V: Array, noise: Array, chips: Chips | None) -> _Whitening:
+        """V over noise^2, (n, s, s), holds for each component over the sensors that read it; a number that is not read
+        is 0 whatever it is divided by."""
+        V = np.broadcast_to(V[:, None], (len(V), 3, *V.shape[1:]))
+        if chips is not None:
+            V = np.where((chips.reads[:, None] & chips.reads).transpose(2, 0, 1), V, np.eye(V.shape[-1]))
+        factor = np.linalg.inv(np.linalg.cholesky(V)) / noise[:, None, None]
+        return _Whitening(factor, None if chips is None or chips.is_plain else chips)
 
-    def _weighted(self, values: Array) -> Array:
-        return np.asarray((values if self.chips is None else self.chips.own(values)) * self._weights)
+    def rows(self, chosen: Array | slice) -> _Whitening:
+        return _Whitening(self._factor[chosen], self.chips)
+
+    def _own(self, values: Array) -> Array:
+        return values if self.chips is None else self.chips.own(values)
 
     def __call__(self, values: Array) -> Array:
-        """values: (n, …, s, 3), of each reading, with any axes between."""
-        weighted = self._weighted(values)
-        if self._factor is None:
-            return np.asarray(weighted * self._scale.reshape(-1, *[1] * (values.ndim - 1)))
-        factor = np.broadcast_to(self._factor, (len(self._factor), 3, *self._factor.shape[2:]))
-        return np.asarray(np.einsum("ncst,n...tc->n...sc", factor, weighted))
+        """Of each reading's values, (n, …, s, 3) with any axes between: (n, …, 3 s)."""
+        *axes, s, _ = values.shape
+        return np.asarray(np.einsum("ncst,n...tc->n...sc", self._factor, self._own(values)).reshape(*axes, 3 * s))
 
     def squares(self, known: Array, read: Array) -> Array:
         """|V^-1/2 (known - read)|^2 of each reading (n, s, 3) and known value (l, s, 3), less a number of
         each reading: (n, l)."""
-        known, read = self._weighted(known), self._weighted(read)
-        if self._factor is None:
-            own = np.einsum("lsc,lsc->l", known, known)
-        else:
-            factor = np.broadcast_to(self._factor, (len(read), 3, *self._factor.shape[2:]))
-            metric = np.einsum("ncrs,ncrt->ncst", factor, factor)
-            products = np.einsum("lsc,ltc->lcst", known, known)
-            own = metric.reshape(len(read), -1) @ products.reshape(len(known), -1).T
-            read = np.einsum("ncst,ntc->nsc", metric, read)
-        return np.asarray(own - 2 * read.reshape(len(read), -1) @ known.reshape(len(known), -1).T)
+        (n, s, _), known = read.shape, self._own(known)
+        metric = np.einsum("ncrs,ncrt->ncst", self._factor, self._factor)
+        products = np.einsum("lsc,ltc->lcst", known, known)
+        weighted = np.einsum("ncst,ntc->nsc", metric, self._own(read)).reshape(n, 3 * s)
+        own = metric.reshape(n, 3 * s * s) @ products.reshape(-1, 3 * s * s).T
+        return np.asarray(own - 2 * weighted @ known.reshape(-1, 3 * s).T)
 
 
 def _both(
-    response: Response, change: Array, whitened: _Whitening, left_out: LeftOutOfLoads | None
+    response: Response, change: Array, whitened: _Whitening, left_out: LeftOut | None
 ) -> tuple[Array, ...]:
     """_invert(), and whether another load explains the reading as well; the better one is the first."""
     first = _invert(response, change, whitened, _starts(response, change, whitened), left_out)
@@ -325,7 +283,7 @@ def _both(
 
 
 def _invert(
-    response: Response, change: Array, whitened: _Whitening, starts: Array, left_out: LeftOutOfLoads | None
+    response: Response, change: Array, whitened: _Whitening, starts: Array, left_out: LeftOut | None
 ) -> tuple[Array, ...]:
     n, largest = len(change), response.largest
     x = starts / largest
@@ -358,11 +316,11 @@ def _invert(
     load = x * largest
     J = J / largest
     covariance = _inverse(np.einsum("nki,nkj->nij", J, J))
-    without = np.einsum("nk,nk->n", *[whitened(change).reshape(n, -1)] * 2)
+    without = np.einsum("nk,nk->n", *[whitened(change)] * 2)
     known = np.where(np.isfinite(covariance), covariance, 0)
     input_covariance = np.zeros((n, 2, 2))
     explained = np.zeros(n)  # of chi squared by V + sum d d^T, d of the inputs
-    inputs = [whitened(d).reshape(n, -1) for d in left_out.of_inputs(load)] if left_out is not None and n else []
+    inputs = [whitened(d) for d in left_out.of_inputs(load)] if left_out is not None else []
     if inputs:
         d = np.stack(inputs, axis=-1)
         shift = np.einsum("nij,nkj,nkd->nid", known, J, d)
@@ -388,7 +346,7 @@ def _invert(
 
 
 def _left_out(
-    response: Response, change: Array, whitened: _Whitening, left_out: LeftOutOfLoads | None, load: Array, J: Array,
+    response: Response, change: Array, whitened: _Whitening, left_out: LeftOut | None, load: Array, J: Array,
     known: Array,
 ) -> tuple[Callable[[Array], Array], Array]:
     """chi squared by better models, of chosen rows (infinite of the others), and the covariance of the load by what
@@ -403,7 +361,7 @@ def _left_out(
         parts = left_out.of_models(load - shifts.sum(axis=2)) if left_out is not None else []
         if not parts:
             break
-        d = np.stack([whitened(part).reshape(n, -1) for part in parts], axis=-1)
+        d = np.stack([whitened(part) for part in parts], axis=-1)
         before, shifts = shifts.sum(axis=2), np.einsum("nij,nkj,nkd->nid", known, J, d)
         if np.abs(shifts.sum(axis=2) - before).max() < 1e-3 * response.largest:
             break
@@ -413,7 +371,7 @@ def _left_out(
         if left_out is not None and shifts.size and chosen.any():
             true = load[chosen] - shifts[chosen, :, 0]
             off = response.change(true) + left_out.of_models(true)[0] - change[chosen]
-            rest = whitened.rows(chosen)(off).reshape(chosen.sum(), -1)
+            rest = whitened.rows(chosen)(off)
             result[chosen] = np.einsum("nk,nk->n", rest, rest)
         return result
 
@@ -426,12 +384,9 @@ def _left_out(
 
 def _inverse(A: Array) -> Array:
     """Of symmetric matrices (n, 2, 2); infinite where they are singular."""
-    a, b, d = A[:, 0, 0], A[:, 0, 1], A[:, 1, 1]
-    determinant = a * d - b * b
-    regular = determinant > 1e-12 * (a + d) ** 2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = np.stack([d, -b, -b, a], axis=-1).reshape(-1, 2, 2) / determinant[:, None, None]
-    return np.where(regular[:, None, None], inverse, np.inf)
+    regular = np.linalg.det(A) > 1e-12 * np.trace(A, axis1=1, axis2=2) ** 2
+    regular = regular[:, None, None]
+    return np.where(regular, np.linalg.inv(np.where(regular, A, np.eye(2))), np.inf)
 
 
 def _misfit(
@@ -440,7 +395,7 @@ def _misfit(
     """V^-1/2 (dB(p) - reading), (n, 3 s), and its derivative by x, p over the largest load, (n, 3 s, 2)."""
     dB, derivative = response.change_and_derivative(response.largest * x)
     J = whitened(response.largest * np.moveaxis(derivative, -1, 1))
-    return whitened(dB - change).reshape(len(x), -1), np.moveaxis(J, 1, -1).reshape(len(x), -1, 2)
+    return whitened(dB - change), np.moveaxis(J, 1, -1)
 
 
 def _solved(A: Array, g: Array, damping: Array) -> Array:

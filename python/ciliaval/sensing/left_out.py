@@ -11,17 +11,18 @@ import numpy as np
 
 from .. import _core
 from ..arrays import Array
+from ..errors import InputError
 from ..model import Case
 from .response import Pair, Progress, Response, Shapes, shapes_within
-
-JOINTS = ("corrected", "case")
 
 
 def with_joints(case: Case, mechanics: str, joints: str) -> tuple[Case, str]:
     """The case with the rod's joints corrected ("corrected"), or as it states them ("case"); and why
-    they are not corrected where they cannot be."""
+    they are not corrected where they cannot be. Raises InputError."""
     if joints == "case":
         return case, ""
+    if joints != "corrected":
+        raise InputError(f"joints: `corrected`, or `case`, as the case states them, not `{joints}`")
     core, fault = case._core.corrected(mechanics)
     return (case, fault) if fault else (Case._of(core, case.file), "")
 
@@ -57,24 +58,21 @@ class LeftOut:
             return Response(shifted, pair.field, within, shifted.sensors)
 
         inputs = tuple((response(low), response(high), width) for low, high, width in case._core.input_shifts())
-        return replace(LeftOut._of_models(case, pair, shapes, asked, progress), inputs=inputs)
-
-    @staticmethod
-    def _of_models(case: Case, pair: Pair, shapes: Shapes, asked: Response, progress: Progress | None) -> LeftOut:
         better = shapes
         if shapes.nodes[0].with_softer_joints is None:
             corrected, fault = with_joints(case, pair.mechanics, "corrected")
             if fault:
-                return LeftOut(asked, unknown=fault)
+                return LeftOut(asked, unknown=fault, inputs=inputs)
             better = shapes_within(corrected, pair.mechanics, shapes.largest, progress)
         nodes, checks = ([s.with_softer_joints for s in of] for of in (better.nodes, better.checks))
         if None in nodes or None in checks:
-            return LeftOut(asked, unknown="with joints as soft as they may be, a load has no equilibrium")
+            unknown = "with joints as soft as they may be, a load has no equilibrium"
+            return LeftOut(asked, unknown=unknown, inputs=inputs)
         field = _core.best_field()
         known = asked if better is shapes and pair.field == field else Response(case, field, better, case.sensors)
         softer = Response(case, field, replace(better, nodes=nodes, checks=checks), case.sensors)
         outside = [m for s, m in zip(better.nodes, better.node_magnitudes) if "outside of the domain" in s.message]
-        return LeftOut(asked, known, softer, "", better is shapes, min(outside, default=math.inf))
+        return LeftOut(asked, known, softer, "", better is shapes, min(outside, default=math.inf), inputs)
 
     def of_models(self, load: Array) -> list[Array]:
         """dB of the better models less theirs, and of the softer joints less that, each (n, s, 3), T."""

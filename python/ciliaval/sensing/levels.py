@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import io
 import math
 import tomllib
 from collections.abc import Mapping
@@ -55,9 +54,8 @@ class LevelCurve:
         count = next((i for i, shape in enumerate(shapes) if shape.status != "converged"), len(shapes))
         self.limit = ""
         if count < len(shapes):
-            self.limit = (
-                f"{pair.mechanics}: no shape under an interference of {sizes[count]:g} m: {shapes[count].message}"
-            )
+            failed = f"no shape under an interference of {sizes[count]:g} m: {shapes[count].message}"
+            self.limit = f"{pair.mechanics}: {failed}"
         if count < 2:
             raise SolverError(self.limit)
         kept = [i for i in range(count) if i + 1 == count or sizes[i + 1] > sizes[i]]  # it begins at rest
@@ -74,7 +72,7 @@ class LevelCurve:
         """Of each reading (n, 3 s) the nearest point of the curve: its interference, m; the distance, T;
         slope |d dB/d delta|, T/m; is_end: it lies beyond the largest interference; other: the distance of
         the nearest point at another interference, where it has a minimum too, or infinity. (n,) each."""
-        chunks = [self._nearest(change[i : i + _CHUNK]) for i in range(0, max(len(change), 1), _CHUNK)]
+        chunks = [self._nearest(part) for part in np.array_split(change, 1 + len(change) // _CHUNK)]
         return {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
 
     def _nearest(self, change: Array) -> dict[str, Array]:
@@ -146,14 +144,15 @@ class SensedSurface:
 
     def json(self, provenance: Mapping[str, Any]) -> dict[str, Any]:
         """SI; height over the first level, towards the cilium."""
-        readings = zip(self.status.tolist(), self.interference.tolist(), self.interval.tolist())
+        columns = ("status", "interference", "interval")
+        readings = zip(*(getattr(self, name).tolist() for name in columns))
         return {
             "schema": 1,
             "case": self.case,
             "provenance": provenance,
             "models": str(self.pair),
             "noise": self.noise,
-            "readings": [dict(zip(("status", "interference", "interval"), values)) for values in readings],
+            "readings": [dict(zip(columns, values)) for values in readings],
             "levels": [
                 vars(level) | {"height": level.interference - self.levels[0].interference} for level in self.levels
             ],
@@ -161,11 +160,10 @@ class SensedSurface:
 
     def csv(self) -> str:
         """A line for each reading, units in the header."""
-        text = io.StringIO("row,status,interference [m],interval [m]\n")
-        text.seek(0, io.SEEK_END)
-        for i, values in enumerate(zip(self.status, self.interference.tolist(), self.interval.tolist())):
-            text.write(f"{i + 1},{values[0]},{values[1]!r},{values[2]!r}\n")
-        return text.getvalue()
+        import pandas as pd
+
+        columns = {"status": self.status, "interference [m]": self.interference, "interval [m]": self.interval}
+        return str(pd.DataFrame(columns, index=range(1, len(self.status) + 1)).to_csv(index_label="row"))
 
 
 def sense_surface(
@@ -190,35 +188,24 @@ def sense_surface(
 
 
 def _levels(status: Array, height: Array, interval: Array, shared: Array) -> list[Level]:
-    sums = np.concatenate([[0.0], np.cumsum(height)])
-
-    def inner(first: int, last: int) -> slice:
+    def inner(first: int, end: int) -> slice:
         """All but an eighth at each end, where a flank begins within the noise."""
-        margin = (last - first + 1) // 8
-        return slice(first + margin, last - margin + 1)
-
-    def mean(rows: slice) -> float:
-        return float((sums[rows.stop] - sums[rows.start]) / (rows.stop - rows.start))
-
-    def level_of(first: int, last: int) -> Level:
-        rows = inner(first, last)
-        own = float((interval[rows] ** 2 - shared[rows] ** 2).max())
-        common = float((shared[rows] ** 2).max())
-        return Level(first, last, mean(rows), math.sqrt(own / (rows.stop - rows.start) + common))
-
-    def ends(first: int, i: int) -> bool:
-        """A level goes on while a reading is not farther from the mean so far than two may be by noise."""
-        if status[i] != LEVEL:
-            return True
-        if i == first:
-            return False
-        return bool(abs(height[i] - mean(inner(first, i - 1))) > 2 * max(interval[i], interval[first]))
+        margin = (end - first) // 8
+        return slice(first + margin, end - margin)
 
     levels, first = [], 0
     for i in range(len(status) + 1):
-        if i < len(status) and not ends(first, i):
+        is_level = i < len(status) and status[i] == LEVEL
+        if is_level and i > first:
+            # It goes on while a reading is not farther from the mean so far than two may be by noise.
+            apart = abs(height[i] - height[inner(first, i)].mean())
+            is_level = bool(apart <= 2 * max(interval[i], interval[first]))
+        if is_level:
             continue
         if i - first >= _FEWEST:
-            levels.append(level_of(first, i - 1))
+            rows = inner(first, i)
+            own, common = (interval[rows] ** 2 - shared[rows] ** 2).max(), (shared[rows] ** 2).max()
+            half_width = math.sqrt(own / (rows.stop - rows.start) + common)
+            levels.append(Level(first, i - 1, float(height[rows].mean()), half_width))
         first = i if i < len(status) and status[i] == LEVEL else i + 1
     return levels

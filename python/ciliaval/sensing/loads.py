@@ -20,14 +20,19 @@ from ..errors import InputError
 from ..model import Case
 from ..units import shown
 from .inversion import STATUSES, TWO_SIDED_95, UNLIKELY, Chips, SensedLoads, invert
-from .left_out import JOINTS, LeftOut, with_joints
+from .left_out import LeftOut, with_joints
 from .readings import Option, ReadingOptions, Readings, read_readings
-from .response import Pair, Progress, Response, Shapes, require_load_to_sense, shapes_within
+from .response import Pair, Progress, Response, Shapes, pairs_of, require_load_to_sense, shapes_within
 
 BEYOND_THE_LARGEST = 1.25
 """The range of loads that is looked for, over the case's largest."""
 _LEAST_NOISE = 1e-15  # T, less than any magnetometer's
 _SHOWN = 20  # samples of a longer table on the terminal
+_COLUMNS = {  # members of SensedLoads, and their units
+    **dict.fromkeys(["magnitude", "magnitude_interval", "model_interval", "input_interval"], "load"),
+    **dict.fromkeys(["azimuth", "azimuth_interval"], "rad"),
+    **dict.fromkeys(["chi_squared", "misfit_probability", "nothing_probability"], ""),
+}
 _EARTH = 150e-6  # T: the earth's field and a sensor's offset, about, which a reading may be off
 
 
@@ -83,6 +88,13 @@ class Sensing:
     left_out: LeftOut
     flow_shifts: list[tuple[FlowLaw, FlowLaw, float]]  # of each input, and the deviations between
     remarks: list[str] = field(default_factory=list)
+    others: Sequence[Sensing] = ()  # the same readings by other pairs
+
+    @property
+    def spread(self) -> Array:
+        """The largest less the smallest magnitude that a pair finds, (n,); NaN where one of them fails."""
+        by_pair = [np.where(s.loads.converged, s.loads.magnitude, np.nan) for s in (self, *self.others)]
+        return np.asarray(np.ptp(by_pair, axis=0))
 
     def velocities(self) -> tuple[Array, Array, Array]:
         """Of q, and at the ends of its interval, m/s, each (n,)."""
@@ -102,21 +114,17 @@ class Sensing:
             "status": ("", found.status),
             "load_x": (self.unit, found.load[:, 0]),
             "load_y": (self.unit, found.load[:, 1]),
-            "magnitude": (self.unit, found.magnitude),
-            "magnitude_interval": (self.unit, found.magnitude_interval),
-            "model_interval": (self.unit, found.model_interval),
-            "input_interval": (self.unit, found.input_interval),
-            "azimuth": ("rad", found.azimuth),
-            "azimuth_interval": ("rad", found.azimuth_interval),
-            "chi_squared": ("", found.chi_squared),
-            "misfit_probability": ("", found.misfit_probability),
-            "nothing_probability": ("", found.nothing_probability),
         }
+        for name, unit in _COLUMNS.items():
+            table[name] = (self.unit if unit == "load" else unit, getattr(found, name))
         if self.flow:
             names = ("velocity", "velocity_low", "velocity_high")
             table |= {name: ("m/s", values) for name, values in zip(names, self.velocities())}
         if self.readings.time is not None:
             table["time"] = ("s", self.readings.time)
+        if self.others:
+            table |= {f"magnitude {other.pair}": (self.unit, other.loads.magnitude) for other in self.others}
+            table["spread"] = (self.unit, self.spread)
         return table
 
     def frame(self) -> Any:
@@ -144,13 +152,16 @@ class Sensing:
         each: dict[str, Sequence[Any]] = {"sample": self.readings.names, "rows": self.readings.rows.tolist()}
         if self.readings.time is not None:
             each["time"] = self.readings.time.tolist()
-        for name in ("status", "load", "magnitude", "magnitude_interval", "noise_interval", "model_interval",
-                     "input_interval", "azimuth", "azimuth_interval",
-                     "covariance", "model_covariance", "input_covariance", "chi_squared", "misfit_probability", "nothing_probability"):  # fmt: skip
+        covariances = ("covariance", "model_covariance", "input_covariance")
+        for name in ("status", "load", *_COLUMNS, "noise_interval", *covariances):
             each[name] = getattr(found, name).tolist()
         if self.flow:
             v, low, high = self.velocities()
             each |= {"velocity": v.tolist(), "velocity_interval": np.stack([low, high], axis=-1).tolist()}
+        if self.others:
+            by_pair = {str(sensing.pair): sensing.loads.load.tolist() for sensing in (self, *self.others)}
+            each["loads"] = [dict(zip(by_pair, loads)) for loads in zip(*by_pair.values())]
+            each["spread"] = self.spread.tolist()
         return {
             "schema": 1,
             "case": self.case,
@@ -185,10 +196,12 @@ class Sensing:
             )
         columns = {name: np.asarray(values) for name, (_, values) in self.columns().items()}
         n = len(columns["sample"])
-        ends = np.arange(n) if n <= _SHOWN + 1 else np.r_[: _SHOWN // 2, n - _SHOWN // 2 : n]
         heads = ["sample", f"load ({unit})", "+-", "azimuth", "+- deg"]
         rows = [heads + (["v (m/s)", "from", "to"] if self.flow else []) + ["status"]]
-        for i in ends:
+        for i in self._rows_shown():
+            if i is None:
+                rows.append(["…"])
+                continue
             c = {name: values[i] for name, values in columns.items()}
             known = c["azimuth_interval"] < math.pi
             row = [c["sample"], f"{c['magnitude'] / size:.5g}", f"{c['magnitude_interval'] / size:.2g}"]
@@ -198,14 +211,34 @@ class Sensing:
             if self.flow:
                 row += [f"{c[k]:.4f}" for k in ("velocity", "velocity_low", "velocity_high")]
             rows.append([*map(str, row), c["status"]])
-            if n > len(ends) and len(rows) == 1 + _SHOWN // 2:
-                rows.append(["…"])
         text += _core.text_table(rows, "<>>>>>>><" if self.flow else "<>>>><", width)
-        if n > len(ends):
+        if None in self._rows_shown():
             counts = [(status, int((columns["status"] == status).sum())) for status in STATUSES]
             of_each = ", ".join(f"{count} {status}" for status, count in counts if count)
             text += f"{n} samples: {of_each}. --csv and --json have them all; --average takes means.\n"
-        return text + self._of_intervals()
+        return text + self._of_intervals() + (self._of_spread(width) if self.others else "")
+
+    def _rows_shown(self) -> list[int | None]:
+        """All samples, or of many the first and the last ones with None between them."""
+        n = len(self.readings.names)
+        return [*range(n)] if n <= _SHOWN + 1 else [*range(_SHOWN // 2), None, *range(n - _SHOWN // 2, n)]
+
+    def _of_spread(self, width: int) -> str:
+        """A table of the smallest and the largest load that a pair finds."""
+        unit, size = shown(self.unit)
+        pairs = [str(sensing.pair) for sensing in (self, *self.others)]
+        by_pair = np.stack([sensing.loads.magnitude for sensing in (self, *self.others)]) / size
+        least, most, spread = by_pair.argmin(axis=0), by_pair.argmax(axis=0), self.spread / size
+        rows = [["sample", "spread", "least", "by", "most", "by"]]
+        for i in self._rows_shown():
+            if i is None:
+                rows.append(["…"])
+                continue
+            rows.append([self.readings.names[i], f"{spread[i]:.2g}"])
+            for k in (least[i], most[i]):
+                rows[-1] += [f"{by_pair[k, i]:.5g}", pairs[k]]
+        text = f"Spread of the load found by {', '.join(pairs[:-1])} and {pairs[-1]}, {unit}:\n"
+        return text + _core.text_table(rows, "<>><><", width)
 
     @property
     def is_corrected(self) -> bool:
@@ -256,35 +289,22 @@ def sense_readings(
     loads = invert(response, change, noise, readings.variance(), readings.background, chips, left_out)
     unit = case.loads[0].unit
     remarks = [*readings.remarks]
-    remarks += _range_remark(shapes, largest, unit)
-    remarks += _scatter_remark(readings, noise)
+    if shapes.limit:
+        name, size = shown(unit)
+        reached, asked = shapes.largest / size, largest / size
+        remarks.append(f"Loads are looked for up to {reached:.4g} {name}, not {asked:.4g} {name}: {shapes.limit}")
+    freedom = readings.freedom
+    if freedom and special.chdtrc(freedom, readings.squares / noise**2) < UNLIKELY:
+        remarks.append(
+            f"Rows that are averaged differ by {1e6 * math.sqrt(readings.squares / freedom):.3g} uT (standard "
+            f"deviation), more than the noise of {1e6 * noise:.3g} uT: state --noise as the sensor has it, and see "
+            "that they are of one load."
+        )
     remarks += _axes_remark(readings, response, chips)
     flow = FlowLaw.of(case)
     laws = [(FlowLaw.of(Case._of(a)), FlowLaw.of(Case._of(b)), width) for a, b, width in case._core.input_shifts()]
     shifts = [(a, b, width) for a, b, width in laws if a is not None and b is not None]
     return Sensing(case.name, pair, noise, unit, response, readings, loads, flow, left_out, shifts, remarks)
-
-
-def _range_remark(shapes: Shapes, asked: float, unit: str) -> list[str]:
-    if not shapes.limit:
-        return []
-    name, size = shown(unit)
-    return [
-        f"Loads are looked for up to {shapes.largest / size:.4g} {name}, not {asked / size:.4g} {name}: {shapes.limit}"
-    ]
-
-
-def _scatter_remark(readings: Readings, noise: float) -> list[str]:
-    """A doubt about rows that should read the same and differ by more than the noise; none if noise
-    alone does so once in a thousand times."""
-    freedom = readings.freedom
-    if not freedom or special.chdtrc(freedom, readings.squares / noise**2) >= UNLIKELY:
-        return []
-    deviation = math.sqrt(readings.squares / freedom)
-    return [
-        f"Rows that are averaged differ by {deviation * 1e6:.3g} uT (standard deviation), more than the noise of "
-        f"{noise * 1e6:.3g} uT: state --noise as the sensor has it, and see that they are of one load."
-    ]
 
 
 def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[str]:
@@ -313,29 +333,12 @@ def _axes_remark(readings: Readings, response: Response, chips: Chips) -> list[s
     return remarks
 
 
-def noise_of(value: float | str, where: str = "noise") -> float:
+def noise_of(value: float | str) -> float:
     """The standard deviation of a component, T, of a number or a text. Raises InputError."""
     noise = _core.quantity(value, "T") if isinstance(value, str) else float(value)
     if not _LEAST_NOISE <= noise <= 1:
-        raise InputError(f"{where}: the noise of a reading lies between 1 fT and 1 T, not `{value}`")
+        raise InputError(f"--noise: the noise of a reading lies between 1 fT and 1 T, not `{value}`")
     return noise
-
-
-def joints_of(joints: str | None) -> str:
-    """Raises InputError unless it is one of JOINTS."""
-    if joints is not None and joints not in JOINTS:
-        raise InputError(f"joints: `corrected`, or `case`, as the case states them, not `{joints}`")
-    return joints or JOINTS[0]
-
-
-def largest_load(case: Case, largest: float | str | None = None) -> float:
-    """The largest load to look for: as stated, or 1.25 times the case's largest. Raises InputError."""
-    if largest is not None:
-        return _core.quantity(largest, case.loads[0].unit) if isinstance(largest, str) else float(largest)
-    of_case = max(load.magnitude for load in case.loads)
-    if not of_case > 0:
-        raise InputError("the case has no load but zero: say --largest")
-    return BEYOND_THE_LARGEST * of_case
 
 
 def case_of(case: Case | str | Path) -> Case:
@@ -346,11 +349,46 @@ def case_of(case: Case | str | Path) -> Case:
     return made
 
 
-def options_of(case: Case, given: Mapping[str, str | None], skip: bool = False) -> ReadingOptions:
-    """How a file is read: what is given goes before what the case states in [readings]."""
-    stated = {name: Option(*option) for name, option in case._core.readings.items()}
-    stated |= {name: Option(text, f"--{name}") for name, text in given.items() if text}
-    return ReadingOptions(**stated, skip=skip)
+def readings_of(
+    case: Case, readings: npt.ArrayLike | str | Path, unloaded: Any = None, background: Any = None, **options: Any
+) -> Readings:
+    """Readings of the case's sensors from a file or arrays: see sense(). Raises InputError, FileError."""
+    chips = Chips.of(case)
+    if isinstance(readings, (str, Path)):
+        stated: dict[str, Any] = {name: Option(*option) for name, option in case._core.readings.items()}
+        for name, text in (options | {"unloaded": unloaded}).items():
+            if text:
+                stated[name] = text if name == "skip" else Option(text, f"--{name}")
+        ambient = None if background is None else Path(background)
+        return read_readings(Path(readings), case.sensor_names, ReadingOptions(**stated), ambient, chips.reads)
+    if given := [name for name, value in options.items() if value]:
+        raise InputError(f"{', '.join(given)}: of a file of readings alone; arrays are in T")
+    return readings_of_arrays(readings, len(case.sensors), unloaded, background, chips)
+
+
+def sensed(
+    case: Case | str | Path,
+    readings: npt.ArrayLike | str | Path,
+    models: str = "elastica/volume",
+    noise: float | str = 1e-6,
+    largest: float | str | None = None,
+    joints: str = "corrected",
+    progress: Progress | None = None,
+    **options: Any,
+) -> Sensing:
+    """What sense() makes its frame of."""
+    case = case_of(case)
+    require_load_to_sense(case)
+    pairs, sigma = pairs_of(models), noise_of(noise)
+    limit = BEYOND_THE_LARGEST * max(load.magnitude for load in case.loads)
+    if largest is not None:
+        limit = _core.quantity(largest, case.loads[0].unit) if isinstance(largest, str) else float(largest)
+    elif not limit > 0:
+        raise InputError("the case has no load but zero: say --largest")
+    read = readings_of(case, readings, **options)  # before the models run, which may take a minute
+    first, *others = [sense_readings(case, read, pair, sigma, limit, progress, joints) for pair in pairs]
+    more = [f"{s.pair}: {remark}" for s in others for remark in s.remarks if remark not in first.remarks]
+    return replace(first, others=others, remarks=[*first.remarks, *more])
 
 
 def sense(
@@ -362,14 +400,9 @@ def sense(
     unloaded: Any = None,
     background: npt.ArrayLike | str | Path | None = None,
     largest: float | str | None = None,
-    map: str | None = None,
-    unit: str | None = None,
-    scale: str | None = None,
-    average: str | None = None,
-    temperature: str | None = None,
-    skip: bool = False,
     joints: str = "corrected",
     progress: Progress | None = None,
+    **of_file: Any,
 ) -> Any:
     """The load of each reading: a pandas.DataFrame with a row for each, SI units, whose columns are sample,
     status, load_x, load_y, magnitude, magnitude_interval, model_interval, input_interval, azimuth,
@@ -384,8 +417,9 @@ def sense(
     frame; "model" takes the model's own B; None: the readings are changes dB. Of a file as --unloaded.
     background: the ambient field that goes with each reading, as large as these, each with the noise of
     a reading; or one field for all, which drops out of dB. Of a file the background's file. models: the
-    pair that is inverted. joints: "corrected", those of a rod where the corrections reach (docs/theory/joints.md), or
-    "case", as the case states them. largest: the largest load to look for.
+    pair that is inverted, or several with commas between: the first one's loads, and in the columns
+    `magnitude beam/line` and `spread` what the others find. joints: "corrected", those of a rod where the corrections
+    reach (docs/theory/joints.md), or "case", as the case states them. largest: the largest load to look for.
 
     Raises InputError, FileError, SolverError.
 
@@ -398,25 +432,8 @@ def sense(
     >>> len(frame), list(frame.columns[:4])
     (10, ['sample', 'status', 'load_x', 'load_y'])
     """
-    case = case_of(case)
-    if isinstance(readings, (str, Path)):
-        given = {
-            "map": map, "unit": unit, "scale": scale, "average": average, "temperature": temperature,
-            "unloaded": unloaded,
-        }  # fmt: skip
-        file = None if background is None else Path(background)  # type: ignore[arg-type]
-        read = read_readings(
-            Path(readings), case.sensor_names, options_of(case, given, skip), file, Chips.of(case).reads
-        )
-    else:
-        named = {"map": map, "unit": unit, "scale": scale, "average": average, "temperature": temperature, "skip": skip}
-        if extra := [key for key, value in named.items() if value]:
-            raise InputError(f"{', '.join(extra)}: of a file of readings alone; arrays are in T")
-        read = readings_of_arrays(readings, len(case.sensors), unloaded, background, Chips.of(case))
-    asked = largest_load(case, largest)
-    return sense_readings(
-        case, read, Pair.of(models), noise_of(noise), asked, progress, joints_of(joints)
-    ).frame()
+    of_file |= {"unloaded": unloaded, "background": background}
+    return sensed(case, readings, models, noise, largest, joints, progress, **of_file).frame()
 
 
 def readings_of_arrays(

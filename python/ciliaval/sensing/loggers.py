@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import compress
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,26 +16,26 @@ from .._core import quantity
 from ..arrays import Array
 from ..errors import InputError
 from .columns import (
-    Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, thousands_in,
-    units_in, without_brackets,
+    Cell, Column, Faults, Option, cells_of, flux_density_unit, in_quotes, is_unit, number_in, units_in,
+    without_brackets,
 )  # fmt: skip
 from .header import (
     SEPARATORS, Header, MapEntry, choose_columns, find_factors, find_header, is_comment, map_entries, sensor_index,
     sensor_list,
 )  # fmt: skip
-from .times import bytes_of, calendar_in_ns, numbers_in_ns, time_form
+from .times import calendar_in_ns, numbers_in_ns, time_form
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
+    from pandas import DataFrame, Series
 
 MOST_ROWS = 1_000_000
+_WITHIN = "\x01"  # in place of separators within quotes
 _LARGEST_FIELD = 100  # T: more than any magnet makes
 _SINCE_1970 = 10**17  # ns: of no record from its beginning
 _REPEATED = (
     "the header is repeated: the file holds two records, of which each has its own unloaded reading; make two files "
     "of it"
 )
-_NOTHING = ["", "nan", "NaN", "NAN", "NA", "N/A", "null", "None"]
 
 
 @dataclass
@@ -79,14 +79,11 @@ def read_table(
     has_temperature: bool = False,
     reads: Array | None = None,
 ) -> Table | None:
-    """Reads a file as loggers write it; None if it has faults, which are added with their places.
+    """Reads a file as loggers write it (docs/guide/sensing.md); None if it has faults, which are added with their
+    places.
 
-    UTF-8 with or without a byte order mark, or Latin-1; LF or CRLF. Columns between commas, semicolons,
-    tabs, | or blanks; numbers with a decimal point, or with a comma where that separates no columns. Lines
-    of text, a header (columns_of()), perhaps a row of units, rows; comments begin with #, % or //, also that
-    which is the header. B or dB of one sensor, of several side by side, or in a row for each. `skip` leaves
-    rows without B out. has_temperature: a column with it is needed. reads: (sensors, 3), which components the file
-    must have; the others are 0. Raises InputError if an option has a fault.
+    `skip` leaves rows without B out. has_temperature: a column with it is needed. reads: (sensors, 3), which components
+    the file must have; the others are 0. Raises InputError if an option has a fault.
     """
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         faults.add("the file is in UTF-16: save it as UTF-8")
@@ -97,47 +94,35 @@ def read_table(
         text = data.decode("latin-1")
     text = text.replace("\r\n", "\n").replace("\r", " " if "\n" in text else "\n").replace("\u2212", "-")
     entries = map_entries(map, sensors)
-    header = find_header(text, sensors, entries, faults)
+    lines = text.split("\n")
+    header = find_header(lines, sensors, entries, faults)
     if header is None:
         return None
     header.reads = np.ones((len(sensors), 3), dtype=bool) if reads is None else reads
     header.needs = ("temperature",) if has_temperature else ()
-    return _Reader(text, header, sensors, faults, skip).read(entries, map.where, unit, scale)
+    return _Reader(lines, header, sensors, faults, skip).read(entries, map.where, unit, scale)
 
 
 class _Reader:
     """Reads the rows below a header. The numbers are read all at once; only rows in which something is wrong are
     looked at one by one, for the place and the reason."""
 
-    def __init__(self, text: str, header: Header, sensors: Sequence[str], faults: Faults, skip: bool):
+    def __init__(self, lines: Sequence[str], header: Header, sensors: Sequence[str], faults: Faults, skip: bool):
         self.header, self.sensors, self.faults, self.skip = header, sensors, faults, skip
-        self.first_line = text.count("\n", 0, header.end) + 1
-        body = text[header.end :]
-        self.lines = self.plain = body.split("\n")
-        if '"' in body:  # the cells without their quotes, separators within them replaced
-            at = re.escape(header.separator)
-            if header.separator != " ":
-                body = re.sub(rf'(?<![^\n{at}])"([^"\n{at}]*)"(?![^\n{at}])', r"\1", body)
-            self.plain = [self._unquoted(line) if '"' in line else line for line in body.split("\n")]
+        self.first_line, self.lines = header.first_row + 1, lines[header.first_row :] or [""]
         self.left_out: set[int] = set()  # lines
-        self.decimal: tuple[str, int] | None = None  # the mark, and its first line
+        self.decimal = ".", self.first_line  # the mark, and its first line
         self.assumed: dict[int, str] = {}  # by column, what is not stated of its time
         self.asked = False  # whether --skip was named
 
-    def _unquoted(self, line: str) -> str:
-        separator = self.header.separator
-        within, empty = ("[ \t]", "\x1f") if separator == " " else (re.escape(separator), "")
-        return separator.join(re.sub(within, "\x1f", cell.text) or empty for cell in cells_of(line, separator))
-
     def read(self, entries: Sequence[MapEntry], where: str, unit: Option, scale: Option) -> Table | None:
         header, faults = self.header, self.faults
-        index, widths, trailing = self._rows()
-        first = cells_of(self.lines[index[0]], header.separator) if len(index) else []
+        index = self._rows()
+        first = cells_of(self.lines[index[0]], header.separator) if index else []
         if header.separator == " " and len(first) == len(header.columns) + 1:
             # A date and a time of day below one name.
             at = next((i for i, cell in enumerate(first) if time_form(cell.text) == "day"), len(first))
             header.columns.insert(min(at + 1, len(header.columns)), Column("", ""))
-            header.width += 1
         if header.columns[-1].header == "Comment" and len(first) == len(header.columns) - 1:
             header.columns.pop()  # LabVIEW's rows have the cell only where there is a comment
         choose_columns(header, self.sensors, entries, where, faults)
@@ -145,19 +130,19 @@ class _Reader:
             return None
         unit_row: list[Cell] = []
         if self._is_unit_row(first):
-            unit_row, unit_line = first, self.first_line + int(index[0])
-            index, widths, trailing = index[1:], widths[1:], trailing[1:]
+            unit_row, unit_line = first, self.first_line + index[0]
+            index = index[1:]
             for i, column in enumerate(header.columns):
                 if column.kind in ("time", "azimuth") and i < len(first) and first[i].text and column.unit is None:
                     header.columns[i] = replace(column, unit=without_brackets(first[i].text))
-        if not len(index):
+        if not index:
             last = self.first_line - 1 + len(self.lines) - (not self.lines[-1])
             faults.add("there are no rows below the header", last)
             return None
         if len(index) > MOST_ROWS:
-            faults.add(f"there are more than {MOST_ROWS} rows", self.first_line + int(index[MOST_ROWS]))
+            faults.add(f"there are more than {MOST_ROWS} rows", self.first_line + index[MOST_ROWS])
             return None
-        frame, rows = self._frame(index, widths, trailing)
+        frame, rows = self._frame(index)
         before = len(faults)
         unit_column = self._unit_column(frame)
         self.has_unit_column = bool(unit_column[1])
@@ -170,95 +155,87 @@ class _Reader:
                 "the columns are of several sensors already: the column 'sensor' is too much",
                 header.line, header.columns[sensor].place,
             )  # fmt: skip
-        return None if len(faults) > before else self._table(frame, rows, index, np.array(factors), angle)
+        return None if len(faults) > before else self._table(frame, rows, np.array(index), np.array(factors), angle)
 
-    def _rows(self) -> tuple[Array, Array, Array]:
-        """Of the lines of rows: which they are, how many cells they have, and how many empty ones at their end
-        beyond the header's. Takes the units of comments above the first row."""
-        header = self.header
-        buffer = np.frombuffer(("\n".join(self.plain) + "\n").encode(), np.uint8)
-        ends = np.flatnonzero(buffer == ord("\n"))
-        begins = np.concatenate([[0], ends[:-1] + 1])
-        while (blank := (buffer[begins] == ord(" ")) | (buffer[begins] == ord("\t"))).any():
-            begins[blank] += 1
-        if header.separator == " ":
-            is_blank = np.isin(buffer, list(b" \t\n"))
-            marks = np.flatnonzero(~is_blank & np.concatenate([[True], is_blank[:-1]])) + 1
-        else:
-            marks = np.flatnonzero(buffer == ord(header.separator))
-        widths = np.diff(np.searchsorted(marks, ends, side="right"), prepend=0) + (header.separator != " ")
-        is_row = buffer[begins] != ord("\n")
-        for i in np.flatnonzero(is_row & np.isin(buffer[begins], list(b"#%/-=|+:"))):
-            is_row[i] = not is_comment(self.lines[i])
-        index = np.flatnonzero(is_row)
+    def _rows(self) -> list[int]:
+        """The lines that are rows. Takes the units of comments above the first one."""
+        header, rows = self.header, []
         names = [column.header for column in header.columns]
-        for i in np.flatnonzero(~is_row & (buffer[begins] != ord("\n"))):
-            line = self.lines[i]
-            if not len(index) or i < index[0]:
-                header.units = units_in(line) | header.units
-            if [cell.text for cell in cells_of(line.lstrip("#%/ \t"), header.separator)] == names and len(names) > 2:
-                self._without_B(_REPEATED, int(i))
-        trailing = np.zeros(len(ends), dtype=int)
-        for extra in range(1, header.width - len(header.columns) + 1):
-            empty = buffer[np.maximum(ends[:, None] - np.arange(1, extra + 1), 0)] == ord(header.separator)
-            trailing[empty.all(axis=1)] = extra
-        return index, widths[index], trailing[index]
+        for i, line in enumerate(self.lines):
+            start = line.lstrip(" \t")[:1]
+            if start and not (start in "#%/-=|+:" and is_comment(line)):
+                rows.append(i)
+            elif start:
+                if not rows:
+                    header.units = units_in(line) | header.units
+                texts = [cell.text for cell in cells_of(line.lstrip("#%/ \t"), header.separator)]
+                if texts == names and len(names) > 2:
+                    self._without_B(_REPEATED, i)
+        return rows
 
     def _is_unit_row(self, cells: Sequence[Cell]) -> bool:
         texts = [cells[i].text if i < len(cells) else "?" for i, _, _ in self.header.fields]
         return any(texts) and all(not t or (number_in(t) is None and is_unit(without_brackets(t))) for t in texts)
 
-    def _frame(self, index: Array, widths: Array, trailing: Array) -> tuple[DataFrame, Array]:
-        """The rows that have as many cells as the header: numbers as such, where all are, the others as texts."""
+    def _frame(self, index: Sequence[int]) -> tuple[DataFrame, Array]:
+        """The cells, as texts, of the rows that have as many as the header or empty ones more; and which rows these
+        are."""
         import pandas as pd  # it takes half a second
 
-        header = self.header
-        width = len(header.columns)
-        good = (widths == width) | ((widths > width) & (widths <= width + trailing))
-        for j in np.flatnonzero(~good):
-            good[j] = self._has_width(int(index[j]), bool(j == len(index) - 1))
-            if len(self.faults) >= Faults.most:
-                break
-        rows = np.flatnonzero(good)
-        numbers = {i for i, _, _ in header.fields} | set(self._others())
-        kept = list(compress(self.plain, np.bincount(index[good], minlength=len(self.plain))))
+        header, at = self.header, self.header.separator
+        within = "[ \t]" if at == " " else re.escape(at)
+        is_split_by: dict[str, Any] = {"delim_whitespace": True} if at == " " else {"sep": at}
+        rows, kept, most, width = [], [], len(header.columns), len(header.columns)
+        for j, i in enumerate(index):
+            line = self.lines[i]
+            if '"' in line:  # the cells without their quotes, separators within them replaced
+                texts = [re.sub(within, _WITHIN, cell.text) for cell in cells_of(line, at)]
+                line = at.join(texts if at != " " else (text or _WITHIN for text in texts))
+            count = len(re.findall("[^ \t]+", line)) if at == " " else line.count(at) + 1
+            if count == width or (count > width and line.rstrip(f"{at} \t").count(at) < width and at != " "):
+                rows.append(j)
+                kept.append(line)
+                most = max(most, count)
+            else:
+                self._add_width_fault(i, is_last=j == len(index) - 1)
+                if len(self.faults) >= Faults.most:
+                    break
         kinds = [column.kind for column in header.columns]
-        texts = [i for i, kind in enumerate(kinds) if kind in ("time", "sample", "sensor", "unit")]
+        needed = {i for i, _, _ in header.fields} | set(self._others())
+        needed |= {i for i, kind in enumerate(kinds) if kind in ("time", "sample", "sensor", "unit")}
         # What follows a time without a role may be the time of day.
-        texts += [i for i, kind in enumerate(kinds) if i > 0 and kind == "" and kinds[i - 1] == "time"]
-        text = "\n".join(kept).replace("\0", "?")
-        self._refuse_thousands()
-        mark = self._decimal_mark()[0] if header.separator != "," and "," in text else "."
-        form = {"sep": header.separator, "skipinitialspace": True}
-        if header.separator == " ":
-            form = {"delim_whitespace": True}
-        frame = pd.read_csv(
-            io.StringIO(text), header=None, names=range(int(widths[good].max(initial=width))), index_col=False,
-            usecols=sorted(numbers | set(texts)), dtype={i: str for i in texts}, decimal=mark,
-            quoting=3, float_precision="round_trip", low_memory=False, keep_default_na=False, na_filter=True,
-            na_values={i: _NOTHING for i in numbers}, skip_blank_lines=False, **form,
-        ) if len(kept) else pd.DataFrame({i: [] for i in sorted(numbers | set(texts))})  # fmt: skip
-        for i in numbers:
-            if frame[i].dtype.kind not in "iuf":
-                frame[i] = [self._float(cell, mark) for cell in frame[i]]
-        return frame, rows
+        needed |= {i for i, kind in enumerate(kinds) if i > 0 and kind == "" and kinds[i - 1] == "time"}
+        frame = pd.DataFrame(columns=sorted(needed), dtype=str)
+        if kept:
+            frame = pd.read_csv(
+                io.StringIO("\n".join(kept).replace("\0", "?")), header=None, names=range(most), index_col=False,
+                usecols=sorted(needed), dtype=str, na_filter=False, quoting=csv.QUOTE_NONE, skip_blank_lines=False,
+                **is_split_by,
+            )  # fmt: skip
+            if re.search("[ \t]", "".join(kept)):
+                frame = frame.apply(lambda texts: texts.str.strip(" \t"))
+        self.decimal = self._decimal_mark(frame, np.array(index)[rows])
+        self._refuse_thousands(frame, np.array(index)[rows])
+        return frame, np.array(rows, dtype=int)
 
-    @staticmethod
-    def _float(cell: object, mark: str) -> float:
-        """The number of a cell; NaN if it is none, or has the other decimal mark: it is looked at later."""
-        if not isinstance(cell, str):
-            return np.nan
-        cell = cell.strip(" \t")
-        value = number_in(cell)
-        return np.nan if value is None or (".", ",")[mark == "."] in cell else value
+    def _numbers(self, texts: Series) -> Array:
+        """NaN for a cell that is no number, or has the other decimal mark."""
+        mark, _ = self.decimal
+        other, joined = "." if mark == "," else ",", "".join(texts)
+        if joined.isascii() and other not in joined and "_" not in joined:
+            try:
+                plain = texts if mark == "." else texts.str.replace(",", ".", regex=False)
+                return np.fromiter(map(float, plain), float, len(plain))
+            except ValueError:
+                pass
+        values = (None if other in text else number_in(text) for text in texts)
+        return np.array([np.nan if value is None else value for value in values])
 
-    def _has_width(self, i: int, is_last: bool) -> bool:
-        """Whether the cells beyond the header's are empty. A row with too few or too many is a fault."""
+    def _add_width_fault(self, i: int, is_last: bool) -> None:
+        """Of a row with too few or too many cells."""
         header = self.header
         cells = cells_of(self.lines[i], header.separator)
         width = len(header.columns)
-        if len(cells) >= width and not any(cell.text for cell in cells[width:]):
-            return True
         why = ": are there commas in the numbers?" if len(cells) > width else ""
         for other in ";\t,":
             if not why and other != header.separator and other in self.lines[i]:
@@ -267,7 +244,6 @@ class _Reader:
             why = ": the last row is cut off; delete it"
         place = cells[min(len(cells) - 1, width)].column
         self._without_B(f"the row has {len(cells)} cells and the header {width}{why}", i, place)
-        return False
 
     def _without_B(self, what: str, i: int, place: int = 1) -> None:
         """A fault of a row that has no B, which --skip leaves out."""
@@ -284,7 +260,7 @@ class _Reader:
         i = self.header.one("unit")
         if i is None or not len(frame):
             return "", ""
-        units = [text for text in frame[i].str.strip(" \t").unique() if text]
+        units = [text for text in frame[i].unique() if text]
         if not units or not all(is_unit(text) for text in units):
             return "", ""
         if len(units) > 1:
@@ -320,17 +296,17 @@ class _Reader:
         header, faults = self.header, self.faults
         fields = [i for i, _, _ in header.fields]
         of = {kind: header.one(kind) for kind in ("sample", "sensor")}
-        numbers = frame[fields].to_numpy(dtype=float)
+        numbers = np.stack([self._numbers(frame[i]) for i in fields], axis=-1)
         B = numbers * factors
         wrong = ~np.isfinite(B).all(axis=1) | (np.abs(B) > _LARGEST_FIELD).any(axis=1)
         sensor = sample = None
         names: list[str] = []
-        others = {kind: frame[i].to_numpy(dtype=float) for i, kind in self._others().items()}
+        others = {kind: self._numbers(frame[i]) for i, kind in self._others().items()}
         for values in others.values():
             wrong |= ~np.isfinite(values)
         if of["sensor"] is not None:
             codes, known = frame[of["sensor"]].factorize()
-            found = [sensor_index(name.strip(" \t"), self.sensors) for name in known]
+            found = [sensor_index(name, self.sensors) for name in known]
             sensor = np.array([-1 if s is None else s for s in found])[codes]
             wrong |= sensor < 0
         keep = np.ones(len(frame), dtype=bool)
@@ -344,10 +320,8 @@ class _Reader:
                 faults.add("there are no rows with B below the header", self.first_line)
             return None
         if of["sample"] is not None:
-            codes, known = frame[of["sample"]].factorize()
-            texts = [name.replace("\x1f", header.separator).strip(" \t") for name in known]
-            number = {text: i for i, text in enumerate(dict.fromkeys(texts))}
-            names, sample = list(number), np.array([number[text] for text in texts])[codes]
+            texts = frame[of["sample"]].str.replace(_WITHIN, header.separator, regex=False)
+            sample, names = texts.str.strip(" \t").factorize()
         k = len(self.sensors) if header.is_wide else 1
         order = [3 * (s if header.is_wide else 0) + axis for _, s, axis in header.fields]
         whole = np.zeros((2, len(B), 3 * k))
@@ -355,7 +329,7 @@ class _Reader:
         table = Table(
             header.is_change, header.is_wide, any(flux_density_unit(u) is None for u in self.units),
             whole[0].reshape(-1, k, 3), whole[1].reshape(-1, k, 3), rows + 1,
-            self.first_line + index[rows], sample, names, None if sensor is None else sensor[keep],
+            self.first_line + index[rows], sample, list(names), None if sensor is None else sensor[keep],
         )  # fmt: skip
         if "azimuth" in others:
             table.azimuth = angle * others["azimuth"][keep]
@@ -370,85 +344,75 @@ class _Reader:
     def _examine(self, i: int, factors: Array) -> bool:
         """Adds what is wrong with a row that has as many cells as the header. Returns whether it is a row."""
         header, before = self.header, len(self.faults)
-        line = self.first_line + i
         cells = cells_of(self.lines[i], header.separator)
-        if len(cells) < len(header.columns):  # a quote that does not end
-            return self._has_width(i, is_last=False)
         if [cell.text for cell in cells[: len(header.columns)]] == [column.header for column in header.columns]:
             self._without_B(_REPEATED, i)
             return False
-        values = [self._number(i, cells[field]) for field, _, _ in header.fields]
-        if None in values and self.skip:
+        fields = [field for field, _, _ in header.fields]
+        for at in fields:
+            what, has_number = self._fault_in(cells[at].text)
+            if what and not has_number and "," not in cells[at].text:
+                self._without_B(what, i, cells[at].column)
+            elif what:
+                self._add_fault(what, i, at)
+        if self.skip and any(self._fault_in(cells[at].text)[0] for at in fields):
             return False
-        at = header.one("sensor")
-        if at is not None and sensor_index(cells[at].text, self.sensors) is None:
-            what = f"the sensor {in_quotes(cells[at].text)} is none of the case's, {sensor_list(self.sensors)}"
-            self.faults.add(what, line, cells[at].column)
+        of_sensor = header.one("sensor")
+        if of_sensor is not None and sensor_index(cells[of_sensor].text, self.sensors) is None:
+            self._add_fault(f"the sensor {{}} is none of the case's, {sensor_list(self.sensors)}", i, of_sensor)
         for at in self._others():
-            self._number(i, cells[at], is_B=False)
+            what, _ = self._fault_in(cells[at].text)
+            if what:
+                self._add_fault(what, i, at)
         if len(self.faults) == before:
-            largest = max(abs(v * f) for v, f in zip(values, factors))
+            largest = max(abs((number_in(cells[at].text) or 0.0) * factor) for at, factor in zip(fields, factors))
             if largest > _LARGEST_FIELD:
-                self.faults.add(
-                    f"a field of {largest:.3g} T was read; fields up to {_LARGEST_FIELD} T are taken: is the unit in "
-                    "the header right?",
-                    line,
-                )
+                what = f"a field of {largest:.3g} T was read; fields up to {_LARGEST_FIELD} T are taken"
+                self.faults.add(f"{what}: is the unit in the header right?", self.first_line + i)
         return True
 
-    def _number(self, i: int, cell: Cell, is_B: bool = True) -> float | None:
-        """The number of a cell; None and a fault if there is none."""
-        comma = "," in cell.text
-        value = number_in(cell.text)
-        fault = ""
-        if not cell.text:
-            fault = "the cell is empty"
-        elif (comma and self.header.separator == ",") or value is None:
+    def _fault_in(self, text: str) -> tuple[str, bool]:
+        """What is wrong with the cell of a number, "" if nothing, and whether it is a finite number nevertheless."""
+        comma, value, (mark, first) = "," in text, number_in(text), self.decimal
+        if not text:
+            return "the cell is empty", False
+        if value is None or (comma and self.header.separator == ","):
             more = ": write a decimal point, and nothing between thousands" if comma else ""
-            fault = f"{in_quotes(cell.text)} is not a number{more}"
-        elif not np.isfinite(value):
-            fault = f"{in_quotes(cell.text)} is not a finite number"
-        elif comma or "." in cell.text:
-            mark, first = self._decimal_mark()
-            if mark == ("," if comma else "."):
-                return value
-            self.faults.add(
-                f"{in_quotes(cell.text)} has a decimal {'comma' if comma else 'point'}, line {first} the other: write "
-                "the same in all numbers",
-                self.first_line + i, cell.column,
-            )  # fmt: skip
-            return None
-        if not fault:
-            return value
-        if is_B and not comma:
-            self._without_B(fault, i, cell.column)
-        else:
-            self.faults.add(fault, self.first_line + i, cell.column)
-        return None
+            return f"{in_quotes(text)} is not a number{more}", False
+        if not np.isfinite(value):
+            return f"{in_quotes(text)} is not a finite number", False
+        if (comma or "." in text) and mark != ("," if comma else "."):
+            other = f"has a decimal {'comma' if comma else 'point'}, line {first} the other"
+            return f"{in_quotes(text)} {other}: write the same in all numbers", True
+        return "", True
 
-    def _refuse_thousands(self) -> None:
-        """Adds a fault where marks stand between thousands, as far as the first rows tell."""
-        rows = ((i, cells_of(line, self.header.separator)) for i, line in enumerate(self.lines[:2000], self.first_line))
+    def _add_fault(self, what: str, i: int, column: int) -> None:
+        """At a cell of a row, which stands for {} in the text."""
+        cells = cells_of(self.lines[i], self.header.separator)
+        cell = cells[column] if column < len(cells) else Cell("", 1)
+        self.faults.add(what.replace("{}", in_quotes(cell.text)), self.first_line + i, cell.column)
+
+    def _refuse_thousands(self, frame: DataFrame, index: Array) -> None:
+        """Adds a fault where "7,640" stands beside "122", as far as the first rows tell: read as decimals, such marks
+        would make numbers a thousand times too small. Another number shows that they are decimals."""
+        texts = frame[[field for field, _, _ in self.header.fields]].head(2000).stack()
+        marked = texts.str.fullmatch(r"[+-]?[1-9]\d{0,2}[.,]\d{3}").astype(bool)
+        plain = texts.str.fullmatch(r"[+-]?\d{1,3}").astype(bool)
+        is_decimal = texts[~marked & ~plain].map(number_in).notna().any()
+        if marked.any() and not is_decimal and (texts[plain].str.strip("+-0") != "").any():
+            row, column = marked.idxmax()
+            what = "{} is not a number: does it have a mark between thousands, as the others without one suggest?"
+            self._add_fault(f"{what} Write a decimal point, and nothing between thousands", int(index[row]), column)
+
+    def _decimal_mark(self, frame: DataFrame, index: Array) -> tuple[str, int]:
+        """The first decimal mark of the numbers, and its line. Between commas it is a point."""
         fields = [field for field, _, _ in self.header.fields]
-        if found := thousands_in((i, cells[f]) for i, cells in rows for f in fields if f < len(cells)):
-            what = "is not a number: does it have a mark between thousands, as the others without one suggest? Write a "
-            what = f"{in_quotes(found[1].text)} {what}decimal point, and nothing between thousands"
-            self.faults.add(what, found[0], found[1].column)
-
-    def _decimal_mark(self) -> tuple[str, int]:
-        """The first decimal mark of the numbers, and its line."""
-        if self.decimal is None:
-            for i, line in enumerate(self.lines):
-                if "," not in line and "." not in line:
-                    continue
-                cells = cells_of(line, self.header.separator)
-                for field, _, _ in self.header.fields:
-                    mark = [c for c in (cells[field].text if field < len(cells) else "") if c in ".,"]
-                    if mark and number_in(cells[field].text) is not None:
-                        self.decimal = mark[0], self.first_line + i
-                        return self.decimal
-            self.decimal = ".", self.first_line
-        return self.decimal
+        if self.header.separator != "," and frame[fields].apply(lambda texts: "," in "".join(texts)).any():
+            for i, texts in zip(index, frame[fields].itertuples(index=False)):
+                for text in texts:
+                    if number_in(text) is not None and (mark := re.search("[.,]", text)):
+                        return mark[0], self.first_line + int(i)
+        return ".", self.first_line
 
     # --- Times ---
 
@@ -457,20 +421,18 @@ class _Reader:
         columns, unit = self._choose_time(frame, table)
         if not columns:
             return []
-        parts = [bytes_of(frame[i]) for i in columns]
-        form = time_form(frame[columns[0]].iloc[0].strip(" \t"))
+        parts = [frame[i] for i in columns]
+        form = time_form(parts[0].iloc[0])
         if len(columns) == 2 and form == "number":  # seconds and nanoseconds
             (seconds, wrong), (more, wrong_more) = numbers_in_ns(parts[0], 1e9), numbers_in_ns(parts[1], 1.0)
             ns, wrong = seconds + more, wrong | wrong_more
         elif form == "number":
             ns, wrong = numbers_in_ns(parts[0], 1e9 * quantity(f"1 {unit}", "s") if unit else 1.0)
         else:
-            if len(parts) == 2:
-                parts = [np.char.add(np.char.add(np.char.strip(parts[0]), b" "), parts[1])]
-            forms, ns = calendar_in_ns(parts[0])
+            forms, ns = calendar_in_ns(parts[0] if len(parts) == 1 else parts[0] + " " + parts[1])
             wrong = forms != (2 if form == "clock" else 1)
         for j in np.flatnonzero(wrong)[: Faults.most]:
-            self._add_time_fault(table, j, columns[0], "{} is no time as in the rows above")
+            self._add_fault("{} is no time as in the rows above", int(table.line[j]) - self.first_line, columns[0])
         self._require_order(table, ns, wrong, columns[0])
         if form == "number" and not unit:
             return columns
@@ -489,7 +451,7 @@ class _Reader:
         if not found:
             table.timeless = "there is no column 'time'"
             return [], None
-        first = {i: frame[i].iloc[0].strip(" \t") for i in frame if isinstance(frame[i].iloc[0], str)}
+        first = {i: frame[i].iloc[0] for i in frame}
         forms = {i: time_form(text) for i, text in first.items()}
         clocks = [i for i in [*found, *(i + 1 for i in found)] if forms.get(i) == "clock"]
         names = [column.name.lower() for column in header.columns]
@@ -540,30 +502,20 @@ class _Reader:
             return "us"
         return None
 
-    def _add_time_fault(self, table: Table, j: int, column: int, what: str) -> None:
-        line = int(table.line[j])
-        cell = (cells_of(self.lines[line - self.first_line], self.header.separator) + [Cell("", 1)] * column)[column]
-        self.faults.add(what.format(in_quotes(cell.text)), line, cell.column)
-
     def _require_order(self, table: Table, ns: Array, wrong: Array, column: int) -> None:
         """Adds a fault for each time of a sensor that goes back within a sample."""
+        import pandas as pd
+
         right = np.flatnonzero(~wrong)
         sensor = np.zeros(len(ns), dtype=int) if table.sensor is None else table.sensor
         right = right[np.argsort(sensor[right], kind="stable")]
-        same = sensor[right[1:]] == sensor[right[:-1]]
-        if table.sample is not None:
-            same &= table.sample[right[1:]] == table.sample[right[:-1]]
-        if not (same & (np.diff(ns[right]) < 0)).any():
-            return
-        latest = None
-        for j, goes_on in zip(right, np.concatenate([[False], same])):
-            if goes_on and ns[j] < latest:
-                what = "the time goes back at {}: sort the rows, or make a file of each record"
-                self._add_time_fault(table, j, column, what)
-                if len(self.faults) >= Faults.most:
-                    return
-            else:
-                latest = ns[j]
+        record = pd.DataFrame({"sensor": sensor[right]})
+        record["sample"] = 0 if table.sample is None else table.sample[right]
+        begins = (record != record.shift()).any(axis=1).cumsum()
+        latest = pd.Series(ns[right]).groupby(begins).cummax().to_numpy()
+        for j in np.sort(right[ns[right] < latest])[: Faults.most]:
+            what = "the time goes back at {}: sort the rows, or make a file of each record"
+            self._add_fault(what, int(table.line[j]) - self.first_line, column)
 
     def _remark(self, count: int, times: Sequence[int]) -> str:
         header = self.header

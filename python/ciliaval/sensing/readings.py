@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +41,8 @@ class ReadingOptions:
     temperature: Option = Option()
     skip: bool = False
 
+
+OPTIONS = [option.name for option in fields(ReadingOptions)]
 
 @dataclass(frozen=True)
 class Readings:
@@ -100,38 +102,29 @@ class Background:
             faults.add("the background is B: name its columns Bx, By, Bz")
         faults.require_none(file)
         assert table is not None and table.azimuth is not None
-        for_all = not table.is_wide and table.sensor is None
-        self._azimuths: list[Array] = []  # of each sensor's means, rising, in [0, 2 pi)
-        self._B: list[Array] = []
-        self._first: list[int] = []  # number of each sensor's first mean
+        is_for_all = not table.is_wide and table.sensor is None
         rows: list[Array] = []
-        for s, sensor in enumerate(sensors):
-            if s and for_all:
-                self._azimuths.append(self._azimuths[0])
-                self._B.append(self._B[0])
-                self._first.append(0)
-                continue
+        self._means = []  # of each sensor: azimuths, rising, in [0, 2 pi), B, and the number of its first mean
+        for s, sensor in enumerate(sensors[:1] if is_for_all else sensors):
             mine = np.ones(len(table.B), dtype=bool) if table.sensor is None else table.sensor == s
             if not mine.any():
-                faults.add(f"there is no row of sensor {sensor}")
-                faults.require_none(file)
+                faults.refuse(file, f"there is no row of sensor {sensor}")
             azimuth = table.azimuth[mine] % _TURN
             azimuth[azimuth >= _TURN - _SAME_AZIMUTH] -= _TURN  # just below a turn is zero
-            B = table.B[mine, s if table.is_wide else 0]
             order = np.argsort(azimuth, kind="stable")
             group = np.zeros(len(order), dtype=int)
             group[order] = np.cumsum(np.diff(azimuth[order], prepend=azimuth[order[0]]) > _SAME_AZIMUTH)
             count = np.bincount(group)
-            self._first.append(sum(map(len, rows)))
-            self._azimuths.append(np.bincount(group, azimuth) / count)
-            self._B.append(np.stack([np.bincount(group, component) for component in B.T], axis=1) / count[:, None])
+            means = _means(np.column_stack([azimuth, table.B[mine, s if table.is_wide else 0]]), group, count)
+            self._means.append((means[:, 0], means[:, 1:], sum(map(len, rows))))
             rows.append(count)
+        self._means *= len(sensors) if is_for_all else 1
         self.rows = np.concatenate(rows)
 
     def parts(self, azimuth: Array, sensor: int) -> tuple[Array, Array]:
         """The two means at azimuths (n,), rad, and their weights, (n, 2): a row's own, else by linear interpolation
         between the neighbours on the circle; NaN if there are but rows of another azimuth."""
-        known = self._azimuths[sensor]
+        known, _, first = self._means[sensor]
         phi = np.asarray(azimuth, dtype=float) % _TURN
         above = np.searchsorted(known, phi, side="right")
         last, following = (above - 1) % len(known), above % len(known)
@@ -141,54 +134,43 @@ class Background:
             t = ((phi - known[last]) % _TURN) / step  # a single azimuth: no number
         t = np.where(apart[1] <= _SAME_AZIMUTH, 1, t if len(known) > 1 else np.nan)
         t = np.where(apart[0] <= _SAME_AZIMUTH, 0, t)
-        return np.stack([last, following], axis=1) + self._first[sensor], np.stack([1 - t, t], axis=1)
+        return np.stack([last, following], axis=1) + first, np.stack([1 - t, t], axis=1)
 
     def at(self, azimuth: Array, sensor: int) -> Array:
         """The field at azimuths (n,), rad, (n, 3), T."""
-        means, weights = self.parts(azimuth, sensor)
-        return np.asarray(np.einsum("ni,nij->nj", weights, self._B[sensor][means - self._first[sensor]]))
+        (means, weights), (_, B, first) = self.parts(azimuth, sensor), self._means[sensor]
+        return np.asarray(np.einsum("ni,nij->nj", weights, B[means - first]))
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Which rows are of the unloaded cilium, besides those of the sample `unloaded`: kind "", "model", "rows" or
-    "time", with the first and the last."""
+def _part_of(option: Option) -> tuple[str, float, float]:
+    """Which rows are of the unloaded cilium, besides those of the sample `unloaded`: "rows" or "time", with the first
+    and the last, of "rows 1..20", "0 s..1 s" or "0..1 s"; "model"; or "". Raises InputError."""
+    text = option.text.strip(" \t")
+    if text in ("", "model"):
+        return text, 0, 0
 
-    kind: str = ""
-    first: float = 0.0
-    last: float = 0.0
+    def refusal(why: str) -> InputError:
+        form = '"0 s..1 s" by the time, "rows 1..20" by the rows below the header, or "model"'
+        return Option(text, option.where).refusal(f"{why}: write {form}")
 
-    @staticmethod
-    def of(option: Option) -> _Part:
-        """ "0 s..1 s", "0..1 s", "rows 1..20" or "model". Raises InputError."""
-        text = option.text.strip(" \t")
-        if text in ("", "model"):
-            return _Part(text)
-
-        def refusal(why: str) -> InputError:
-            return InputError(
-                f'{option.where}: {in_quotes(text)} {why}: write "0 s..1 s" by the time, "rows 1..20" by the rows '
-                'below the header, or "model"'
-            )
-
-        by_rows = text.startswith("rows ")
-        first, dots, last = (part.strip(" \t") for part in text.removeprefix("rows ").partition(".."))
-        if not dots:
-            raise refusal("is no range")
-        if by_rows:
-            if not (first.isdigit() and last.isdigit() and 1 <= int(first) and max(int(first), int(last)) <= MOST_ROWS):
-                raise refusal("is no range of rows from 1 on")
-            part = _Part("rows", int(first), int(last))
-        else:
-            unit = last.lstrip("0123456789.+-eE ")
-            bare = not first.strip("0123456789.+-eE ")  # then it has the unit of the other end
-            try:
-                part = _Part("time", quantity(f"{first} {unit}" if bare else first, "s"), quantity(last, "s"))
-            except InputError as fault:
-                raise refusal(f"is no range of time ({fault})") from fault
-        if part.last < part.first:
-            raise refusal("ends before it begins")
-        return part
+    first, dots, last = (part.strip(" \t") for part in text.removeprefix("rows ").partition(".."))
+    if not dots:
+        raise refusal("is no range")
+    if text.startswith("rows "):
+        if not (first.isdigit() and last.isdigit() and 1 <= int(first) and max(int(first), int(last)) <= MOST_ROWS):
+            raise refusal("is no range of rows from 1 on")
+        kind, ends = "rows", (float(first), float(last))
+    else:
+        number = "0123456789.+-eE "
+        bare = not first.strip(number)  # then it has the unit of the other end
+        try:
+            begin = quantity(f"{first} {last.lstrip(number)}" if bare else first, "s")
+            kind, ends = "time", (begin, quantity(last, "s"))
+        except InputError as fault:
+            raise refusal(f"is no range of time ({fault})") from fault
+    if ends[1] < ends[0]:
+        raise refusal("ends before it begins")
+    return kind, *ends
 
 
 def read_readings(
@@ -198,12 +180,8 @@ def read_readings(
     background: Path | None = None,
     reads: Array | None = None,
 ) -> Readings:
-    """Reads readings from a file as loggers write it (loggers.py) for a case with these sensors.
-
-    Rows of one name in the column `sample` are averaged; without it each row is a sample, or all rows of one
-    time where each sensor has its own rows, or those of a window of options.average. The unloaded rows are
-    those of the sample `unloaded`, or those that options.unloaded names. The earth's field and the
-    undeformed magnet's are subtracted:
+    """Reads readings from a file as loggers write it for a case with these sensors, and takes off the earth's field and
+    the undeformed magnet's:
 
         dB = (B - background(azimuth)) - (B_unloaded - background(azimuth of the unloaded)).
 
@@ -213,7 +191,7 @@ def read_readings(
     Raises InputError with every fault, a line each: `file:line:column: what is wrong`.
     """
     file = Path(file)
-    part = _Part.of(options.unloaded)
+    part = _part_of(options.unloaded)
     window = _window(options.average)
     coefficient = _coefficient(options.temperature)
     ambient = None
@@ -225,9 +203,8 @@ def read_readings(
     )
     faults.require_none(file)
     assert table is not None
-    for fault in _unsuitable(table, sensors, part, options, ambient is not None):
-        faults.add(fault)
-        faults.require_none(file)
+    if fault := _unsuitable(table, sensors, part, options, ambient is not None):
+        faults.refuse(file, fault)
     grouped = _Grouped(table, sensors, part, window, ambient, faults, file, reads)
     if coefficient:
         grouped.to_one_temperature(coefficient, options.temperature.where)
@@ -249,59 +226,50 @@ def _bytes_of(file: Path) -> bytes:
 
 def _window(option: Option) -> float:
     """The length of the windows of --average, s; 0 if it is not given. Raises InputError."""
-    if not option.text:
-        return 0.0
-    try:
-        length = quantity(option.text, "s")
-    except InputError as fault:
-        raise InputError(f"{option.where}: {fault}") from fault
-    if not 1e-9 <= length < 9e9:
-        raise InputError(f'{option.where}: {in_quotes(option.text)} is no length of time, such as "10 ms"')
-    return length
+    length = option.by(lambda text: quantity(text, "s"))
+    if length is not None and not 1e-9 <= length < 9e9:
+        raise option.refusal('is no length of time, such as "10 ms"')
+    return length or 0.0
 
 
 def _coefficient(option: Option) -> float:
     """alpha, 1/K, of "-0.1 %/K"; 0 if it is not given. Raises InputError."""
     found = re.fullmatch(r"\s*([-+]?\d*\.?\d+(?:e[-+]?\d+)?)\s*(%|ppm|1)?\s*/\s*(?:K|degC|°C)\s*", option.text)
     if option.text and not found:
-        raise InputError(f'{option.where}: {in_quotes(option.text)} is no coefficient, such as "-0.1 %/K" or "-1000 ppm/K"')
-    scale = {"%": 1e-2, "ppm": 1e-6}
-    alpha = float(found[1]) * scale.get(found[2] or "1", 1.0) if found else 0.0
+        raise option.refusal('is no coefficient, such as "-0.1 %/K" or "-1000 ppm/K"')
+    alpha = float(found[1]) * {"%": 1e-2, "ppm": 1e-6}.get(found[2], 1.0) if found else 0.0
     if abs(alpha) > 0.1:
-        raise InputError(f"{option.where}: {in_quotes(option.text)} is more than 10 %/K, which no sensor has")
+        raise option.refusal("is more than 10 %/K, which no sensor has")
     return alpha
 
 
 def _unsuitable(
-    table: Table, sensors: Sequence[str], part: _Part, options: ReadingOptions, has_background: bool
-) -> list[str]:
+    table: Table, sensors: Sequence[str], part: tuple[str, float, float], options: ReadingOptions, has_background: bool
+) -> str | None:
     """What the file lacks for what is asked of it."""
-    faults = []
     has_key = table.sensor is not None and (table.sample is not None or table.time is not None)
     if len(sensors) > 1 and not table.is_wide and not has_key:
-        faults.append(
+        return (
             f"the case has {len(sensors)} sensors: the file needs the columns 'sample' and 'sensor', and a row for "
             "each; or columns for each, such as s0_Bx, s0_By, s0_Bz, s1_Bx"
         )
     if has_background and table.azimuth is None:
-        faults.append("the background depends on the azimuth: the readings need a column 'azimuth'")
+        return "the background depends on the azimuth: the readings need a column 'azimuth'"
     if has_background and table.is_change:
-        faults.append("the change dB has no background any more: leave the background out")
-    if part.kind == "time" and table.time is None:
-        faults.append(
-            f'{options.unloaded.where} is a range of time, but {table.timeless}; --unloaded "rows 1..20" needs none'
-        )
+        return "the change dB has no background any more: leave the background out"
+    if part[0] == "time" and table.time is None:
+        return f'{options.unloaded.where} is a range of time, but {table.timeless}; --unloaded "rows 1..20" needs none'
     if options.average.text and table.time is None:
-        faults.append(f"{options.average.where} is a length of time, but {table.timeless}")
-    return faults
+        return f"{options.average.where} is a length of time, but {table.timeless}"
+    return None
 
 
 class _Grouped:
     """The rows by sample in the order of the file, and those of the unloaded cilium, which are group 0."""
 
     def __init__(
-        self, table: Table, sensors: Sequence[str], part: _Part, window: float, ambient: Background | None,
-        faults: Faults, file: Path, reads: Array | None,
+        self, table: Table, sensors: Sequence[str], part: tuple[str, float, float], window: float,
+        ambient: Background | None, faults: Faults, file: Path, reads: Array | None,
     ):  # fmt: skip
         self.reads = np.ones((len(sensors), 3), dtype=bool) if reads is None else reads
         self.table, self.sensors, self.part, self.ambient = table, sensors, part, ambient
@@ -310,11 +278,11 @@ class _Grouped:
         if table.sample is not None:
             self.named = (np.array(table.names) == _UNLOADED)[table.sample]
         self.unloaded = self.named.copy()
-        if part.kind in ("rows", "time"):
-            values = table.number if part.kind == "rows" else table.time
+        if part[0] in ("rows", "time"):
+            values = table.number if part[0] == "rows" else table.time
             assert values is not None
-            slack = table.resolution if part.kind == "time" else 0  # a row at a boundary belongs to the part
-            self.unloaded |= (values >= part.first - slack) & (values <= part.last + slack)
+            slack = table.resolution if part[0] == "time" else 0  # a row at a boundary belongs to the part
+            self.unloaded |= (values >= part[1] - slack) & (values <= part[2] + slack)
         self.loaded = np.flatnonzero(~self.unloaded)
         key, window_of = self._keys()
         self.group = np.zeros(len(table.B), dtype=int)
@@ -326,38 +294,38 @@ class _Grouped:
         """B at the mean temperature of the unloaded rows. Raises InputError."""
         temperature = self.table.temperature
         if self.table.is_change or not self.unloaded.any():
-            self.faults.add(f"{where} needs unloaded rows, against whose temperature the others are corrected")
-            self.faults.require_none(self.file)
+            what = f"{where} needs unloaded rows, against whose temperature the others are corrected"
+            self.faults.refuse(self.file, what)
         assert temperature is not None
         growth = 1 + alpha * (temperature - temperature[self.unloaded].mean())
         if (growth <= 0.5).any():
             line = int(self.table.line[np.argmin(growth)])
-            self.faults.add(f"the temperature {temperature[np.argmin(growth)]:g} is too far from the unloaded rows'", line)
-            self.faults.require_none(self.file)
+            what = f"the temperature {temperature[np.argmin(growth)]:g} is too far from the unloaded rows'"
+            self.faults.refuse(self.file, what, line)
         self.table.B = self.table.B / growth[:, None, None]
         self.table.remark += f"; B at {temperature[self.unloaded].mean():.4g} degrees"
 
     def _keys(self) -> tuple[Array, Array]:
         """Of the loaded rows: number of the sample, in the order of the file, and of its window."""
+        import pandas as pd  # it takes half a second
+
         table, loaded = self.table, self.loaded
         window_of = np.zeros(len(loaded), dtype=int)
         if table.sample is not None:
-            key = _in_order(table.sample[loaded])
+            key = pd.factorize(table.sample[loaded])[0]
         elif self.window:
             key = window_of
         elif table.sensor is not None and table.time is not None:
-            key = _in_order(table.time[loaded])
+            key = pd.factorize(table.time[loaded])[0]
         else:
             key = np.arange(len(loaded))
         if self.window and len(loaded):
             assert table.time is not None
             time = table.time[loaded]
-            begin = np.full(int(key.max()) + 1, np.inf)
-            np.minimum.at(begin, key, time)
-            begin = begin[key]
+            begin = pd.Series(time).groupby(key).transform("min").to_numpy()
             slack = table.resolution + 1e-12 * np.abs(time).max()
             window_of = np.floor((time - begin + slack) / self.window).astype(np.int64)
-            key = _in_order(key * (window_of.max() + 1) + window_of)
+            key = pd.factorize(key * (window_of.max() + 1) + window_of)[0]
         return key, window_of
 
     def _names(self, window_of: Array | None) -> list[str]:
@@ -425,16 +393,16 @@ class _Grouped:
         line = int(table.line[np.argmax(self.named)]) if self.named.any() else 0
         if table.is_change and line:
             faults.add("the change dB of the unloaded cilium is zero: leave its rows out", line)
-        elif table.is_change and part.kind:
+        elif table.is_change and part[0]:
             faults.add(f"the change dB needs no unloaded reading: leave {option.where} out")
-        elif line and part.kind:
+        elif line and part[0]:
             faults.add(f"there are rows of the sample `unloaded`: leave {option.where} out", line)
-        elif not any_unloaded and part.kind in ("rows", "time"):
+        elif not any_unloaded and part[0] in ("rows", "time"):
             has = f"the rows 1..{table.number[-1]}"
-            if part.kind == "time" and table.time is not None:
+            if part[0] == "time" and table.time is not None:
                 has = f"the times {table.time[0]:g} s..{table.time[-1]:g} s"
             faults.add(f'no row lies in "{option.text}" of {option.where}: the file has {has}')
-        elif len(self.first) and not any_unloaded and not table.is_change and not part.kind:
+        elif len(self.first) and not any_unloaded and not table.is_change and not part[0]:
             faults.add(
                 "there is no reading of the unloaded cilium, without which the earth's field would be read as load: "
                 "name its rows `unloaded` in a column 'sample', or say which they are: --unloaded \"0 s..1 s\" by the "
@@ -470,6 +438,7 @@ class _Grouped:
         Each row has the noise 1 of its own, and by W (rows x means) that of the background: V = I + W D W^T, D
         the variances of its means. V^-1 = I - W (D^-1 + W^T W)^-1 W^T (Woodbury).
         """
+        assert self.ambient is not None
         total = 0.0
         order = np.argsort(at, kind="stable")
         for rows in np.split(order, 1 + np.flatnonzero(np.diff(at[order]))):
@@ -478,14 +447,10 @@ class _Grouped:
             if len(rows) == 1 or np.ptp(W := weights[rows].toarray(), axis=0).max() == 0:
                 total += float((x**2).sum())
                 continue
-            assert self.ambient is not None
             inner = np.diag(self.ambient.rows.astype(float)) + W.T @ W
-
-            def weighted(y: Array) -> Array:
-                return np.asarray(y - W @ np.linalg.solve(inner, W.T @ y))
-
-            of_ones = weighted(np.ones(len(x)))
-            total += float((x * weighted(x)).sum() - ((of_ones @ x) ** 2).sum() / of_ones.sum())
+            ones = np.ones((len(x), 1))
+            of_x, of_ones = (y - W @ np.linalg.solve(inner, W.T @ y) for y in (x, ones))
+            total += float((x * of_x).sum() - ((of_ones.T @ x) ** 2).sum() / of_ones.sum())
         return total
 
     def _covariance(self, at: Array, weights: sparse.csr_matrix, per: Array, n: int, k: int) -> Array:
@@ -509,12 +474,6 @@ class _Grouped:
         if self.window:
             remark += f"; averaged over {self.window:g} s"
         return [printable(f"{self.file.name}: {text}.") for text in (remark, *silent_doubts(self.table, self.sensors))]
-
-
-def _in_order(keys: Array) -> Array:
-    """The number of each key, by the order in which they first appear."""
-    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    return np.argsort(np.argsort(first))[inverse]
 
 
 def _means(values: Array, at: Array, count: Array) -> Array:

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from .. import _core
 from ..arrays import Array
 from ..errors import InputError, SolverError
+from ..files import declared
 from ..model import Case
 
 Progress = Callable[[str], None]
@@ -38,11 +39,13 @@ class Pair:
     @staticmethod
     def of(text: str) -> Pair:
         """Of "elastica/volume". Raises InputError if there is no such pair."""
-        mechanics, slash, field = text.partition("/")
-        if not slash:
-            raise InputError(
-                f"a pair of models is written mechanics/field, such as elastica/volume, not `{text}`"
-            )
+        mechanics, slash, field = (part.strip() for part in text.partition("/"))
+        if not slash or "," in text:
+            raise InputError(f"a pair of models is written mechanics/field, such as elastica/volume, not `{text}`")
+        models = declared()["models"]
+        for name, kind in ((mechanics, "mechanics"), (field, "fields")):
+            if name not in models[kind]:
+                raise InputError(f"`{text}`: there is no model `{name}` among the {kind}: {', '.join(models[kind])}")
         has_body, needs_body = _core.has_body(mechanics, field)
         if needs_body and not has_body:
             raise InputError(f"`{field}` needs the body of a solid; `{mechanics}` has none")
@@ -50,6 +53,11 @@ class Pair:
 
     def __str__(self) -> str:
         return f"{self.mechanics}/{self.field}"
+
+
+def pairs_of(text: str) -> list[Pair]:
+    """Of "elastica/volume, beam/line". Raises InputError."""
+    return list(dict.fromkeys(map(Pair.of, text.split(","))))
 
 
 @dataclass(frozen=True)

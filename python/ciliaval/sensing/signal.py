@@ -55,15 +55,11 @@ def record(
     """The record of a sensor that sees the field B, (m, 3), T, at increasing times, (m,), s.
 
     1. Samples at t_k = t_0 + k/f_s, up to the last time. B between two times lies on the straight
-       line: a sweep's field jumps, and a polynomial of higher degree overshoots at a jump. As in a
-       logger without an anti-aliasing filter, what happens between two samples is not seen.
+       line: a sweep's field jumps, and a polynomial of higher degree overshoots at a jump.
     2. Gaussian noise of the standard deviation `noise`, T, independent from sample to sample and
        from component to component; `seed` and `sensor` (its number) give the numbers, and a longer
        record begins with the same noise.
-    3. A Butterworth high-pass filter with the cut-off in Hz (None: no filter), of the order 1 to 20
-       (4: the paper's): "causal" from the first sample's steady state, as a filter in the logger, or
-       "zero_phase", of the whole record afterwards, which shifts nothing and has the square of the
-       magnitude. scipy.signal.butter, sosfilt, sosfiltfilt.
+    3. highpass() with the cut-off in Hz; None: no filter.
 
     Raises InputError if the times do not increase, a number is not finite or out of its range, or the
     record has fewer samples than two or than the filter needs, or more than ten million.
@@ -96,10 +92,11 @@ def record(
 def highpass(
     series: npt.ArrayLike, sampling_rate: float, cutoff: float, order: int = 4, phase: str = "causal"
 ) -> Array:
-    """The columns of a series, (n, …), after a Butterworth high-pass filter: see record().
+    """The columns of a series, (n, …), after a Butterworth high-pass filter of the order 1 to 20 (4: the paper's).
 
-    |H(f)| = 1/sqrt(1 + (tan(pi f_c/f_s)/tan(pi f/f_s))^(2 order)), by the bilinear transform. Raises
-    InputError.
+    phase: "causal" from the first sample's steady state, as a filter in the logger, or "zero_phase", of the whole
+    record afterwards, which shifts nothing and has the square of the magnitude,
+    |H(f)| = 1/sqrt(1 + (tan(pi f_c/f_s)/tan(pi f/f_s))^(2 order)), by the bilinear transform. Raises InputError.
     """
     series = np.asarray(series, dtype=float)
     if not (isinstance(order, (int, np.integer)) and 1 <= order <= _HIGHEST_ORDER):
