@@ -92,7 +92,8 @@ void add_reading_options(CLI::App* command) {
   command->add_flag_callback(
       "--skip", [] {}, "Leave rows without B out, and count them");
   add_text(command, "--models", "MECHANICS/FIELD",
-           "The pair of models, such as solid/mesh [elastica/volume]");
+           "The pair of models, such as solid/mesh; of several, with commas between, the first\n"
+           "one's loads and how far those of the others spread [elastica/volume]");
   add_text(command, "--joints", "WHICH",
            "Of the rod: `corrected` where the corrections reach, or `case`, as the case states\n"
            "them [corrected]");

@@ -400,9 +400,14 @@ def sense(
     unloaded: Any = None,
     background: npt.ArrayLike | str | Path | None = None,
     largest: float | str | None = None,
+    map: str | None = None,
+    unit: str | None = None,
+    scale: str | None = None,
+    average: str | None = None,
+    temperature: str | None = None,
+    skip: bool = False,
     joints: str = "corrected",
     progress: Progress | None = None,
-    **of_file: Any,
 ) -> Any:
     """The load of each reading: a pandas.DataFrame with a row for each, SI units, whose columns are sample,
     status, load_x, load_y, magnitude, magnitude_interval, model_interval, input_interval, azimuth,
@@ -432,8 +437,10 @@ def sense(
     >>> len(frame), list(frame.columns[:4])
     (10, ['sample', 'status', 'load_x', 'load_y'])
     """
-    of_file |= {"unloaded": unloaded, "background": background}
-    return sensed(case, readings, models, noise, largest, joints, progress, **of_file).frame()
+    return sensed(
+        case, readings, models, noise, largest, joints, progress, unloaded=unloaded, background=background, map=map,
+        unit=unit, scale=scale, average=average, temperature=temperature, skip=skip,
+    ).frame()  # fmt: skip
 
 
 def readings_of_arrays(
