@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iomanip>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -22,14 +23,21 @@ constexpr double tolerance = 1e-11;  ///< of the largest load, relative
 constexpr double difference = 1e-3;  ///< of the load, for the rate at which the rim sinks
 constexpr std::uintmax_t patience = 100;
 
-/// How far the lowest point of the end face lies below its centre, m.
-double drop_of_face(const Cilium& cilium, const CentrelinePoint& tip) {
-  if (!cilium.is_rectangular()) return cilium.radius() * tip.normal().head<2>().norm();
-  const CrossSection& section = cilium.section;
-  const double c = std::cos(section.orientation);
-  const double s = std::sin(section.orientation);
-  return section.width / 2 * std::abs((tip.rotation * Vector3(c, s, 0)).z()) +
-         section.height / 2 * std::abs((tip.rotation * Vector3(-s, c, 0)).z());
+/// Half the extent of the section along the direction in which the tip leans, m.
+double half_extent(const Cilium& cilium, const Load& load) {
+  return cilium.is_rectangular() ? cilium.extent(azimuth(load)) / 2 : cilium.radius();
+}
+
+/// ε: how far the rim of an end face that leans by θ is in the contact when the force falls short.
+double depth_of_shortfall(const Cilium& cilium, double R, double sin_theta, double w) {
+  constexpr double B = 32.0 / 315;  // B(3/2, 4)
+  const double pi2 = std::numbers::pi * std::numbers::pi;
+  const double w3 = w * w * w;
+  if (cilium.is_rectangular())
+    return std::pow(force_shortfall * 96 * R * w3 * sin_theta / pi2, 1.0 / 4);
+  return std::pow(force_shortfall * 6 * cilium.area() * w3 * std::pow(sin_theta, 1.5) /
+                      (pi2 * std::sqrt(2 * R) * B),
+                  1 / 4.5);
 }
 
 /// The largest load of one kind that a rod bears: its magnitude, with what goes with it.
@@ -44,10 +52,13 @@ class RimSearch {
   RimSearch(const MechanicsModel& rod, const Cilium& cilium, double half_width)
       : rod_(rod), cilium_(cilium), half_width_(half_width) {}
 
-  /// How far the rim is above the contact's upper edge, m.
+  /// How far the rim is above the place where the cilium lets go, m.
   double clearance(const MechanicsStep& step) const {
     const CentrelinePoint tip = step.deformation->centreline.at(cilium_.length());
-    return tip.position.z() - drop_of_face(cilium_, tip) - edge(step.load);
+    const double R = half_extent(cilium_, step.load);
+    const double sin_theta = tip.normal().head<2>().norm();
+    return tip.position.z() - R * sin_theta - edge(step.load) +
+           depth_of_shortfall(cilium_, R, sin_theta, half_width_);
   }
 
   /// `step` is beyond the limit, or states the limit of the axis. Throws SolverError.

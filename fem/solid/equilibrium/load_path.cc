@@ -10,6 +10,7 @@
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/environment_forces.h"
 #include "fem/solid/loads/probe.h"
+#include "problem/continuation/slip_off.h"
 
 namespace ciliaval::fem::solid::equilibrium {
 using namespace discretisation;
@@ -23,7 +24,6 @@ constexpr double cut_factor = 0.25;
 /// max_cutbacks: each takes a single factorisation.
 constexpr unsigned int max_overshoots = 10;
 
-constexpr double force_shortfall = 1e-6;   ///< relative: a contact force short by more slips off
 constexpr double slip_off_bracket = 0.01;  ///< relative width that ends the search for the slip-off
 
 std::string number(double value) {
@@ -137,9 +137,9 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
     return attempt;
   }
   attempt.equilibrium.applied_force = force_of_load(load, result.external, state.displacement);
-  attempt.applied =
-      contact_force == 0 || attempt.equilibrium.applied_force >=
-                                contact_force - force_shortfall * std::abs(contact_force);
+  attempt.applied = contact_force == 0 ||
+                    attempt.equilibrium.applied_force >=
+                        contact_force - continuation::force_shortfall * std::abs(contact_force);
   return attempt;
 }
 
