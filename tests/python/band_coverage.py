@@ -87,7 +87,8 @@ def of_design(seed):
                 values = run.tip if quantity == "tip" else run.tip_angle
                 known = result.tip if quantity == "tip" else result.tip_angle
                 error = float(np.linalg.norm(values(model)[0] - known("solid")[0]))
-                own = float(result.tip_uncertainty("solid")[0]) if quantity == "tip" else result.steps[0]["mechanics"]["solid"]["tip_angle_uncertainty"]
+                own = result.steps[0]["mechanics"]["solid"][f"{quantity}_uncertainty"]
+                own = math.nan if own is None else own
                 found[word + model, quantity] = [(error, float(run.band(model, quantity)[0]), own)]
         for pair in set(PAIRS) & set(run.pairs):
             change = np.linalg.norm(run.dB(pair)[0], axis=1) - np.linalg.norm(dB, axis=1)

@@ -377,7 +377,8 @@ class Command(unittest.TestCase):
         for pair in design["pairs"].values():
             del pair["limits"]
         diameter = design["parameters"]["cilium.diameter"]
-        write_study(self.folder, header, f'[[parameter]]\npath = "cilium.diameter"\nvalues = ["{diameter!r} m"]\n')
+        point = f'[[parameter]]\npath = "cilium.diameter"\nvalues = ["{diameter!r} m"]\n'
+        write_study(self.folder, header + "model_uncertainty = true\n", point)
         self.assertEqual(self.call().returncode, 4)  # the folder is another study's
         self.assertEqual(self.call("--fresh").returncode, 0)
         self.assertEqual(self.document()["points"][0]["pairs"], design["pairs"])

@@ -258,6 +258,15 @@ class Optimum(unittest.TestCase):
         self.assertEqual(optimum.search.local_searches, 1)
         self.assertAlmostEqual(best_value(optimum, 1), 2e-3, delta=2e-8 * 2e-3)
 
+    # A plain rod's range is off by more than nothing, which is what its optimum keeps the limit by.
+    def test_a_limit_kept_by_less_than_the_model_leaves_out_is_shown(self):
+        study, optimum = optimum_of(VOLUME, RANGE + ONE_SEARCH + DIAMETER)
+        result = optimum.designs[1].results["elastica/volume"]
+        self.assertGreater(result.range_model_uncertainty, 0.02 * 2e-3)
+        self.assertRegex(optimum_report.optimum_text(study, optimum), r"range kept by [-0-9.e]+ \+-\d")
+        (limit,) = optimum_report.limit_states(study, result)
+        self.assertAlmostEqual(limit["band"] * 2e-3, result.range_uncertainty + result.range_model_uncertainty)
+
     def test_without_a_design_that_keeps_the_limits_there_is_none(self):
         study, optimum = optimum_of(VOLUME, RANGE.replace("2 mN", "1 N") + DIAMETER)
         self.assertFalse(optimum.found)
@@ -294,7 +303,7 @@ class Optimum(unittest.TestCase):
         self.assertIn("kept", text)
         pairs = optimum_report.optimum_json(study, optimum)["designs"][1]["pairs"]
         (kept,), (missed,) = (pairs[pair]["limits"] for pair in study.pairs)
-        self.assertEqual(kept, {"output": "range", "status": "kept", "value": 5e-3, "by": 0.0})
+        self.assertEqual(kept, {"output": "range", "status": "kept", "value": 5e-3, "by": 0.0, "band": None})
         self.assertEqual((missed["output"], missed["status"], missed["value"]), ("range", "missed", 4.9e-3))
         self.assertAlmostEqual(missed["by"], 0.02)
 
@@ -308,7 +317,7 @@ class Optimum(unittest.TestCase):
         self.assertIn("range unknown", optimum_report.optimum_text(study, optimum))
         for design in optimum_report.optimum_json(study, optimum)["designs"]:
             (limit,) = design["pairs"]["beam/line"]["limits"]
-            self.assertEqual(limit, {"output": "range", "status": "unknown", "value": None, "by": None})
+            self.assertEqual(limit, {"output": "range", "status": "unknown", "value": None, "by": None, "band": None})
 
     def test_goes_on_from_the_store_and_evaluates_nothing_twice(self):
         def kept(folder):
