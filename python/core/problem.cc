@@ -124,8 +124,9 @@ std::string representation(const Load& load) {
   for (std::size_t i = 0; i < load.values().size(); ++i)
     parameters += fmt::format(", {}={:.6g}", load.type().parameters[i].name, load.values()[i]);
   for (const auto& setting : load.type().settings)
-    parameters += fmt::format(", {}={}", setting.name,
-                              std::string(py::str(to_python(setting, setting.get(load)))));
+    if (setting.get(load) != setting.initial)
+      parameters += fmt::format(", {}={}", setting.name,
+                                std::string(py::str(to_python(setting, setting.get(load)))));
   const std::string around = surroundings::is_empty(load.environment())
                                  ? ""
                                  : fmt::format(" in {}", representation(load.environment()));
@@ -294,7 +295,8 @@ void bind_problem(py::module_& module) {
             for (std::size_t i = 0; i < of.values().size(); ++i)
               result[py::str(std::string(of.type().parameters[i].name))] = of.values()[i];
             for (const auto& setting : of.type().settings)
-              result[py::str(std::string(setting.name))] = to_python(setting, setting.get(of));
+              if (setting.get(of) != setting.initial)
+                result[py::str(std::string(setting.name))] = to_python(setting, setting.get(of));
             return result;
           })
       .def_property_readonly(

@@ -58,6 +58,16 @@ class Numbers(unittest.TestCase):
         load = cv.Load("contact", force="1 mN", height="16 mm", azimuth="180 deg")
         self.assertEqual(load.parameters, {"force": 1e-3, "height": 16e-3, "azimuth": np.pi})
         self.assertEqual(repr(segment(length="17 mm", magnetization="75 kA/m")), repr(segment(magnetization=75e3)))
+
+    def test_of_words_are_those_of_case_files(self):
+        load = cv.Load("probe", displacement=1e-3, height=16e-3, slip_off="rim")
+        self.assertEqual(load.parameters["slip_off"], "rim")
+        self.assertEqual(cv.Load(load.type, **load.parameters).parameters, load.parameters)
+        self.assertNotIn("slip_off", load.changed(slip_off="axis").parameters)
+        with self.assertRaisesRegex(cv.InputError, "slip_off.*rin"):
+            cv.Load("contact", force=1e-3, height=16e-3, slip_off="rin")
+        with self.assertRaisesRegex(cv.InputError, "has no `slip_off`"):
+            cv.Load("flow", force_per_height=1e-3, slip_off="rim")
         around = cv.Environment(gravity=["0 m/s2", 0, "-9.81 m/s2"], uniform_field=["5 mT", 0, 0])
         self.assertEqual(around, cv.Environment(gravity=[0, 0, -9.81], uniform_field=[5e-3, 0, 0]))
         shape = cv.bend(paper_cilium(), contact(1e-3))

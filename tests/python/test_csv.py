@@ -45,7 +45,7 @@ class Csv(unittest.TestCase):
         self.assertEqual(
             table.dtype.names,
             ("step", "force", "height", "azimuth", "sensor", "pair", "B_x", "B_y", "B_z", "dB_x")
-            + ("dB_y", "dB_z", "uncertainty_x", "uncertainty_y", "uncertainty_z"),
+            + ("dB_y", "dB_z", "uncertainty_x", "uncertainty_y", "uncertainty_z", "band_x", "band_y", "band_z"),
         )
         self.assertEqual(len(table), 4 * 4)
         for pair in result.pairs:
@@ -56,6 +56,7 @@ class Csv(unittest.TestCase):
                 np.testing.assert_array_equal(rows[f"dB_{axis}"], result.dB(pair)[:, 0, i])
                 both = result.dB_uncertainty(pair)[:, 0, i]
                 np.testing.assert_array_equal(rows[f"uncertainty_{axis}"], both)
+                np.testing.assert_array_equal(rows[f"band_{axis}"], result.dB_band(pair)[:, 0, i])
 
     def test_an_unknown_value_is_nan(self):
         _, folder = self.run_case("fig3b", force='["1 mN", "9 mN"]')  # the second slips off

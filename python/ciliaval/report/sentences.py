@@ -68,7 +68,9 @@ def _range(result: Result) -> str:
         limits = [s["mechanics"].get(model, {}).get("slip_off_force") for s in result.steps]
         known = [limit for limit in limits if limit is not None]
         if known:
-            text = f"The contact slips off the tip at {quantity(known[-1], 'N')} ({model})"
+            band = result.band(model, "slip_off")[limits.index(known[-1])]
+            within = f" ± {percent(band / known[-1], 2)}" if np.isfinite(band) and known[-1] else ""
+            text = f"The contact slips off the tip at {quantity(known[-1], 'N')}{within} ({model})"
             largest = max(float(load.get("force") or 0) for load in result.loads)
             if largest:
                 text += f", {number(known[-1] / largest, 1, 3)} times the largest load here"
