@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 #include <utility>
 
 #include "compare/models/errors.h"
@@ -85,7 +84,9 @@ std::vector<MechanicsRun> runs_across_the_contact(const input::Case& problem,
 Better better_models(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                      std::span<const FieldEntry> fields, const Progress& progress) {
   Better better;
-  for (const MechanicsEntry& entry : mechanics | std::views::reverse) {
+  for (auto most_detailed = mechanics.rbegin(); most_detailed != mechanics.rend();
+       ++most_detailed) {
+    const MechanicsEntry& entry = *most_detailed;
     if (!entry.correct) continue;
     input::Case corrected = problem;
     const std::string fault = correct(entry, corrected);
