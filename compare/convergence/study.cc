@@ -222,7 +222,7 @@ std::string describe(const Judgement& judgement) {
   return text;
 }
 
-/// What a person asks: how well tip and dB are known, and whether to refine.
+/// Two lines for people: how well tip and dB are known, and whether to refine.
 std::string in_words(const RefinementStudy& study) {
   constexpr double enough = 0.01;
   const auto own = std::ranges::find(study.settings, study.own_setting);

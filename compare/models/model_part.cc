@@ -25,7 +25,7 @@ struct Better {
   std::optional<FieldRun> field;  ///< of that shape
   /// Steps that state a slip-off limit, each by its load of magnitude 0; sought when asked for.
   std::vector<std::pair<Load, MechanicsStep>> limits{};
-  /// Of a contact: the path as it is, and with the contact a standard deviation of the solid's
+  /// The path of a contact as it is, and with the contact a standard deviation of the solid's
   /// kernel lower and higher; by the simplest rod with corrected joints.
   std::vector<MechanicsRun> across{};
 };
@@ -143,7 +143,7 @@ double size_of(const Vector3& value) {
   return value.norm();
 }
 
-/// What a contact of some width makes of a number of a step, to second order:
+/// The change that a contact of some width makes of a step's number, to second order:
 /// |Q(h + σ) + Q(h − σ) − 2 Q(h)|/2. At the end of the range, where one of the two has no such
 /// number, |Q(h ± σ) − Q(h)|, which is more. None where there is none of them.
 template <class Number>
@@ -214,7 +214,7 @@ ShapeModelParts shape_parts(const input::Case& problem, const MechanicsRun& run,
   return parts;
 }
 
-/// Of B, or of ΔB: values, the field model's uncertainty and what the shape's error makes.
+/// Members for B or for ΔB: values, the field model's uncertainty, the effect of the shape's error.
 struct Members {
   AtSensors FieldStep::*value;
   AtSensors FieldStep::*uncertainty;
@@ -226,7 +226,7 @@ constexpr Members members[] = {
     {&FieldStep::dB, &FieldStep::dB_uncertainty, &FieldStep::dB_from_mechanics,
      &FieldStep::dB_model_part}};
 
-/// Of a sensor; none where there is no list.
+/// The value at a sensor; none where there is no list.
 template <class T>
 std::optional<T> at(const std::vector<std::optional<T>>& values, std::size_t sensor) {
   return sensor < values.size() ? values[sensor] : std::nullopt;

@@ -20,7 +20,7 @@ struct PairResult {
   std::vector<std::optional<double>> values;  ///< of the study's outputs, in their order
   std::optional<double> uncertainty = std::nullopt;  ///< numerical, of the components of ΔB, T
   std::optional<double> range_uncertainty = std::nullopt;  ///< numerical, in the range's unit
-  /// Of rods, if the study asks for it: what the models leave out, of the components of ΔB (T) and
+  /// Model parts of rods, if the study asks for them, of the components of ΔB (T) and
   /// of a range by slip-off.
   std::optional<double> model_uncertainty = std::nullopt;
   std::optional<double> range_model_uncertainty = std::nullopt;

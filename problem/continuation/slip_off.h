@@ -12,7 +12,7 @@ inline constexpr double force_shortfall = 1e-6;
 /// does: where the end face has come so far into the contact of half-width w that `force_shortfall`
 /// of its force finds no material,
 ///   z(L) − R sin θ_L = h + w − ε.
-/// Of the kernel k(s) = (1 + cos(πs/w))/(2w) a line that ends ε' below the edge lacks π²ε'³/(12w³);
+/// A line that ends ε' below the edge of the kernel k(s) = (1 + cos(πs/w))/(2w) lacks π²ε'³/(12w³);
 /// the mean over a disc or a tube of area A whose lowest point is ε below it is
 ///   π² √(2R) B(3/2, 4) ε^4.5/(6 A w³ (sin θ)^1.5),
 /// and over a rectangle of the side 2a along e π² ε⁴/(96 a w³ sin θ).
