@@ -139,8 +139,10 @@ Types point_arrays(const std::string& series) {
   Types sensors;
   for (const char* mechanics : {"elastica", "beam", "solid"})
     for (const char* field : {"line", "volume", "potential"})
-      for (const char* kind : {"B", "dB"}) {
-        const std::string name = std::string(kind) + "_" + mechanics + "_" + field;
+      for (const std::string kind : {"B", "dB", "band_dB"}) {
+        // The solid has no model part, thus no band.
+        if (kind == "band_dB" && std::string(mechanics) == "solid") continue;
+        const std::string name = kind + "_" + mechanics + "_" + field;
         sensors[name] = {"double", 3};
         sensors["valid_" + name] = {"unsigned char", 1};
       }
