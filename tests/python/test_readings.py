@@ -6,9 +6,11 @@ import time
 import unittest
 
 import numpy as np
+import pandas as pd
 
 from ciliaval.errors import InputError
 from ciliaval.sensing.readings import Background
+from ciliaval.sensing.times import calendar_in_ns
 from test_loggers import COMMAS, HEADER, Files, message
 
 
@@ -71,6 +73,15 @@ class Samples(Files):
         self.assertLess(time.perf_counter() - start, 20)  # 2.5 s measured
         self.assertEqual(read.rows.tolist(), [10] * 90_000)
         self.assertIn("more than 1000000 rows", message(text + "1000001,1,2,3\n"))
+
+    def test_dates_read_fast_are_those_read_part_by_part(self):
+        days = [year + day for year in ("1900", "1969", "2026", "2100")
+                for day in ("-02-29", "-02-28", "-12-31", "-13-01", "-01-00")]
+        for text in (day + clock for day in days for clock in (
+                "T00:00:00", "T24:00:00", " 23:59:60", "T23:59:61", "T12:60:00", "T10:18:38.5Z", "T10:18:38.123456789")):
+            # A column with a time of day is read part by part.
+            (form, ns), (forms, all_ns) = calendar_in_ns(pd.Series([text])), calendar_in_ns(pd.Series([text, "10:00"]))
+            self.assertEqual((form[0], ns[0] * (form[0] > 0)), (forms[0], all_ns[0] * (forms[0] > 0)), text)
 
 
 class Backgrounds(Files):
