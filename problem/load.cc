@@ -142,8 +142,8 @@ double minus_the_clearance(const LoadStatement::Values& values, const Cilium& /*
 
 std::vector<const LoadType*>& all_types() {
   static std::vector<const LoadType*> types{
-      &ContactLoad::type(), &FlowLoad::type(),  &SectionLoad::type(),    &DeadLoad::type(),
-      &ProbeLoad::type(),   &SweepLoad::type(), &EnvironmentLoad::type()};
+      &ContactLoad::type(), &FlowLoad::type(),  &SectionLoad::type(),     &DeadLoad::type(),
+      &ProbeLoad::type(),   &SweepLoad::type(), &EnvironmentLoad::type(), &MomentLoad::type()};
   return types;
 }
 
@@ -268,6 +268,18 @@ const LoadType& DeadLoad::type() {
       "dead force per unit of reference length",
       {load_parameter("force_per_length", quantity::force_per_length, any_magnitude,
                       "`dead`: the force per reference length.", ", {:g} N per metre of length"),
+       azimuth_parameter()}};
+  return type;
+}
+
+const LoadType& MomentLoad::type() {
+  static const LoadType type{
+      "moment",
+      "dead couple on the end face that turns the tip towards the azimuth",
+      {load_parameter("moment", quantity::moment, any_magnitude,
+                      "`moment`: the couple at the tip about the horizontal axis across the "
+                      "azimuth; 2 pi E I/L rolls a uniform cilium up into a circle.",
+                      ", moment {:g} uN m", 1e6),
        azimuth_parameter()}};
   return type;
 }

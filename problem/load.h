@@ -123,6 +123,14 @@ struct DeadLoad {
   double azimuth = 0;           ///< φ, rad
 };
 
+/// Dead couple on the end face about the axis e_z × e, which turns the tip towards e. It has no
+/// resultant force.
+struct MomentLoad {
+  static const LoadType& type();
+  double moment = 0;   ///< M, N·m
+  double azimuth = 0;  ///< φ, rad
+};
+
 /// Displacement control of the contact point (the test bench): the point of the cilium at the
 /// current height z = h is pushed aside to the deflection δ along e. The contact force is as of a
 /// ContactLoad; its amount is a result (MechanicsStep::applied_force). A δ that the cilium cannot
@@ -227,9 +235,10 @@ std::string_view type(const Load& load);
 double azimuth(const Load& load);
 /// e = (cos φ, sin φ, 0), the direction of the load.
 Vector3 direction(const Load& load);
-/// The force F (N), the force per length q (N/m) or the displacement δ (m), whichever the type has.
+/// The force F (N), the force per length q (N/m), the moment M (N·m) or the displacement δ (m),
+/// whichever the type has.
 double magnitude(const Load& load);
-/// Unit of the magnitude: "N", "N/m" or "m".
+/// Unit of the magnitude: "N", "N/m", "N m" or "m".
 std::string_view magnitude_unit(const Load& load);
 /// h of a load that acts at a current height (contact, probe), m.
 std::optional<double> contact_height(const Load& load);

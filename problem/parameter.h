@@ -19,6 +19,7 @@ inline constexpr Quantity pressure{"a", "pressure", "Pa", "0.1 MPa"};
 inline constexpr Quantity magnetization{"a", "magnetization M = B_r/mu_0", "A/m", "75 kA/m"};
 inline constexpr Quantity force{"a", "force", "N", "1 mN"};
 inline constexpr Quantity force_per_length{"a", "force per length", "N/m", "0.3 N/m"};
+inline constexpr Quantity moment{"a", "moment", "N m", "1 uN m"};
 inline constexpr Quantity velocity{"a", "velocity", "m/s", "0.5 m/s"};
 inline constexpr Quantity acceleration{"an", "acceleration", "m/s^2", "-9.81 m/s2"};
 inline constexpr Quantity density{"a", "density", "kg/m^3", "1000 kg/m^3"};

@@ -34,19 +34,21 @@ enum class Reached {
   level     ///< θ = 90° with z < h: the height h is out of reach
 };
 
-/// Integrates from the base to z = h, and keeps the steps if asked.
+/// Integrates from the base to z = h, of a couple to the tip, and keeps the steps if asked.
 std::pair<Reached, PlanarState> climb(const PlanarProblem& problem, double load,
                                       const Accuracy& accuracy, std::vector<TaylorStep>* steps) {
   PlanarState state;
-  state.moment = problem.point;
-  state.force = 1;
+  const bool is_couple = problem.kind == PlanarLoad::moment;
+  const auto is_level = [&] { return !is_couple && state.phi <= 0; };
+  state.moment = is_couple ? 1 : problem.point;
+  state.force = is_couple ? 0 : 1;
   for (std::size_t i = 0; i < problem.compliance.size(); ++i) {
     if (!problem.joints.empty()) {
       const PlanarState lower = state;
       const PlanarJoint joint = problem.joint(i, load);
       state = jumps::across(joint, ForceLaw::constant, lower, jumps::Side::lower);
       if (state.moment <= 0) return {Reached::contact, jumps::inside(joint, lower)};
-      if (state.phi <= 0) return {Reached::level, state};
+      if (is_level()) return {Reached::level, state};
     }
     while (state.S < problem.ends[i + 1]) {
       support::check_interruption();
@@ -60,7 +62,7 @@ std::pair<Reached, PlanarState> climb(const PlanarProblem& problem, double load,
       }
       if (steps != nullptr) steps->push_back(step);
       if (contact) return {Reached::contact, state};
-      if (state.phi <= 0) return {Reached::level, state};
+      if (is_level()) return {Reached::level, state};
     }
   }
   return {Reached::tip, state};
@@ -317,6 +319,16 @@ std::optional<PlanarShape> solve_contact(const PlanarProblem& problem, const Acc
   return shape;
 }
 
+PlanarShape solve_couple(const PlanarProblem& problem, const Accuracy& accuracy,
+                         const Accuracy& finer, double tolerance) {
+  std::vector<TaylorStep> steps;
+  const PlanarState tip = climb(problem, problem.load, finer, &steps).second;
+  const PlanarState check = climb(problem, problem.load, accuracy, nullptr).second;
+  ErrorEstimate error = difference(tip, check, tip.theta);
+  error.rounding = 4 * epsilon * (1 + tip.theta) * static_cast<double>(steps.size());
+  return shape_of(problem, std::move(steps), std::nullopt, error, 2, tolerance);
+}
+
 PlanarShape solve_from_top(const PlanarProblem& problem, const Accuracy& accuracy,
                            const Accuracy& finer, double tolerance) {
   int iterations = 0;
@@ -357,6 +369,7 @@ std::optional<PlanarShape> solve_arclength(const PlanarProblem& problem, double 
   const Accuracy finer{accuracy.tolerance, 0.6};
   if (problem.kind == PlanarLoad::contact)
     return solve_contact(problem, accuracy, finer, tolerance);
+  if (problem.kind == PlanarLoad::moment) return solve_couple(problem, accuracy, finer, tolerance);
   return solve_from_top(problem, accuracy, finer, tolerance);
 }
 

@@ -92,6 +92,7 @@ ProbeForce probe_force(const Cilium& cilium, const ProbeLoad& load, double slip_
 /// The horizontal force along e: F, q z_tip or q L.
 double applied_force(const Load& load, const PlanarUnits& units, const Deformation& deformation) {
   const Centreline& centreline = deformation.centreline;
+  if (load.is<MomentLoad>()) return 0;
   if (const auto flow = load.as<FlowLoad>())
     return flow->force_per_height * centreline.at(centreline.length()).position.z();
   if (const auto dead = load.as<DeadLoad>()) return dead->force_per_length * centreline.length();

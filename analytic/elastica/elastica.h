@@ -30,7 +30,8 @@ struct ElasticaOptions {
 /// measured errors. A contact step above the slip-off force, or a probe beyond the displacement
 /// that goes with it, has the status slipped_off; one that misses the tolerance has the status
 /// failed. Both leave the other steps alone. solve() throws InputError if the cilium, a load or the
-/// tolerance is not valid, or if the height form is asked for a section or dead load.
+/// tolerance is not valid, or if the height form is asked for a section load, a dead load or a
+/// moment.
 class Elastica : public MechanicsModel {
  public:
   explicit Elastica(ElasticaOptions options = {}) : options_(options) {}

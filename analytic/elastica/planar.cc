@@ -137,6 +137,7 @@ std::pair<PlanarLoad, double> kind_and_point(const Load& load) {
   if (const auto section = load.as<SectionLoad>()) return {PlanarLoad::section, section->arclength};
   if (load.is<FlowLoad>()) return {PlanarLoad::flow, 0};
   if (load.is<DeadLoad>()) return {PlanarLoad::dead, 0};
+  if (load.is<MomentLoad>()) return {PlanarLoad::moment, 0};
   refuse_type(load, "elastica");
 }
 
@@ -191,6 +192,7 @@ PlanarJoint PlanarProblem::joint(std::size_t i, double under) const {
 PlanarUnits planar_units(const Cilium& cilium, const Load& load) {
   const double length = cilium.length();
   if (load.is<ProbeLoad>()) return {length, 1};
+  if (load.is<MomentLoad>()) return {length, magnitude(load) / length};
   const bool distributed = load.is<FlowLoad>() || load.is<DeadLoad>();
   return {length, distributed ? magnitude(load) * length : magnitude(load)};
 }

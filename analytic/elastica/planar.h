@@ -13,7 +13,7 @@
 #include "problem/load.h"
 
 /// The planar elastica without units, which both forms of analytic::Elastica solve: lengths in L,
-/// forces in P (F of a point force, qL of a distributed one), moments in PL.
+/// forces in P (F of a point force, qL of a distributed one, M/L of a couple), moments in PL.
 namespace ciliaval::analytic::elastica {
 
 /// How the internal force H(S) depends on the shape.
@@ -21,7 +21,8 @@ enum class PlanarLoad {
   contact,  ///< H = 1 below z = h, M = (h − z)₊
   flow,     ///< H = z_tip − z, M = (z_tip − z)²/2
   section,  ///< H = 1 below S = s, M = z(s) − z
-  dead      ///< H = 1 − S, M = ∫_S^1 (z(σ) − z(S)) dσ
+  dead,     ///< H = 1 − S, M = ∫_S^1 (z(σ) − z(S)) dσ
+  moment    ///< H = 0, M = 1
 };
 
 /// The second-order law of bending (problem/joints/joints.h) without units: θ' = … + 2 p N M + g M³

@@ -186,6 +186,7 @@ std::span<const std::string_view> usual_units(const Quantity& expected) {
       {"T", {"T", "mT", "uT", "nT", "G", "mG", "kG", "tesla", "millitesla", "microtesla", "gauss"}},
       {"N", {"N", "mN", "uN", "kN", "newton", "millinewton", "micronewton", "lbf", "kgf"}},
       {"N/m", {"N/m", "mN/m", "uN/m", "kN/m", "N/mm", "mN/mm"}},
+      {"N m", {"N m", "N.m", "mN m", "uN m", "nN m", "N mm", "mN mm", "uN mm"}},
       {"m/s", {"m/s", "mm/s", "cm/s", "km/h"}},
       {"kg/m^3", {"kg/m^3", "kg/m3", "g/cm^3", "g/cm3"}},
       {"rad", {"deg", "degree", "degrees", "rad", "radian", "turn"}}};

@@ -208,7 +208,7 @@ void estimate_from_mechanics(const FieldModel& model, const MechanicsResult& mec
 /// NaN for a probe.
 double stated_force(const Load& load, const Cilium& cilium, const Vector3& tip) {
   if (load.is<ProbeLoad>()) return std::numeric_limits<double>::quiet_NaN();
-  if (load.is<EnvironmentLoad>()) return 0;
+  if (load.is<EnvironmentLoad>() || load.is<MomentLoad>()) return 0;
   if (load.is<FlowLoad>()) return magnitude(load) * tip.z();
   return magnitude(load) * (load.is<DeadLoad>() ? cilium.length() : 1);
 }

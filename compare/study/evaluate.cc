@@ -35,6 +35,7 @@ double soft_magnitude(const Cilium& cilium, const Load& load) {
     E = E == 0 ? s.young_modulus : std::min(E, s.young_modulus);
   const double L = cilium.length();
   const double force = E * cilium.second_moment(azimuth(load)) / (L * L);
+  if (load.is<MomentLoad>()) return force * L;
   return load.is<SectionLoad>() ? force : force / L;
 }
 

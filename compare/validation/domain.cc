@@ -32,6 +32,7 @@ std::optional<LoadNumber> load_number(const Load& load, double length, double st
   const std::string_view unit = magnitude_unit(load);
   if (unit == "N") return LoadNumber{length * length / stiffness, "F L^2/(E I)"};
   if (unit == "N/m") return LoadNumber{std::pow(length, 3) / stiffness, "q L^3/(E I)"};
+  if (unit == "N m") return LoadNumber{length / stiffness, "M L/(E I)"};
   if (unit == "m") return LoadNumber{1 / length, "displacement/L"};
   return std::nullopt;
 }

@@ -55,7 +55,8 @@ class PathSolver {
     };
     NewtonOptions newton{options_.tolerance, options_.max_iterations, options_.max_cutbacks};
     newton.largest_turn = largest_turn(load);
-    const bool may_buckle = newton.largest_turn && !load.is<FlowLoad>();  // which has no potential
+    // A flow and a dead couple, which is about a fixed axis, have no potential.
+    const bool may_buckle = newton.largest_turn && !load.is<FlowLoad>() && !load.is<MomentLoad>();
     if (may_buckle) newton.unstable_modes = unstable_modes;
     const PathReport report = advance(beam_->system, state_, from, to, newton, {}, progress);
     applied_ = report.converged ? to : combine(1 - report.reached, from, report.reached, to);

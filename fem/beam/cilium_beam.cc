@@ -162,6 +162,9 @@ Loads loads(const Cilium& cilium, const Load& load, const CiliumBeam& beam) {
     result.force_per_length.assign(beam.system.mesh().n_elements(), force);
   else if (load.is<ContactLoad>() || load.is<SectionLoad>())
     result.points.push_back({beam.loaded, force, Vector3::Zero()});
+  else if (const auto couple = load.as<MomentLoad>())
+    result.points.push_back(
+        {beam.loaded, Vector3::Zero(), couple->moment * Vector3::UnitZ().cross(direction(load))});
   else if (!load.is<EnvironmentLoad>())
     refuse_type(load, "beam");
   return combine(1, result, 1, environment_loads(cilium, load, beam));

@@ -28,6 +28,7 @@ _SHOWN = {
     "Pa": Unit("MPa", 1e6),
     "A/m": Unit("kA/m", 1e3),
     "N/m": Unit("N/m", 1.0),
+    "N m": Unit("µN m", 1e-6),
     "J": Unit("µJ", 1e-6),
 }
 

@@ -23,7 +23,7 @@ struct Accuracy {
 template <class T>
 class Descent {
  public:
-  /// At the tip, where M = 0 and w = z = 0.
+  /// At the tip, where M is the couple and w = z = 0.
   Descent(const Rod& rod, const T& tip_angle, const T& force, const T& at, const Accuracy& accuracy)
       : rod_(rod),
         accuracy_(accuracy),
@@ -32,6 +32,7 @@ class Descent {
         segment_(rod.compliance.size() - 1) {
     state_.S = T(1.0);
     state_.theta = tip_angle;
+    state_.moment = T(rod.tip_moment);
     add(rod.at_ends.back());
     if (value_of(at) >= 1) pass();
   }

@@ -269,6 +269,7 @@ Rod scaled(const Rod& rod, double t) {
   std::ranges::for_each(result.per_length, scale);
   std::ranges::for_each(result.at_ends, scale);
   result.per_height *= t;
+  result.tip_moment *= t;
   return result;
 }
 

@@ -26,6 +26,7 @@ struct Rod {
   std::vector<PlanarForce> per_length;  ///< dead, of each segment
   std::vector<PlanarForce> at_ends;     ///< dead, at each of `ends`
   double per_height = 0;                ///< q, along e
+  double tip_moment = 0;                ///< dead couple at the tip
 };
 
 /// The same with all its forces times t.

@@ -173,6 +173,8 @@ Rod rod_of(const Cilium& cilium, const Load& load) {
   for (const Vector3& force : at_ends) rod.at_ends.push_back(in_plane(force / units.force, e));
   if (const auto flow = load.as<FlowLoad>())
     rod.per_height = flow->force_per_height * units.length / units.force;
+  if (const auto couple = load.as<MomentLoad>())
+    rod.tip_moment = couple->moment / (units.force * units.length);
   return rod;
 }
 

@@ -10,17 +10,17 @@ using namespace discretisation;
 
 void BorderedSystem::prepare(const Vector& u, const Solve& solve) {
   gradient_.reinit(u);
-  force_.condition(u, &gradient_);
+  force_.condition(u, force_.amplitude, &gradient_);
   constraints_.set_zero(gradient_);
-  Vector unit;
-  unit.reinit(u);
-  force_.forces(1)(u, unit, nullptr);
-  unit.compress(dealii::VectorOperation::add);
-  constraints_.set_zero(unit);
+  Vector rate;
+  rate.reinit(u);
+  (force_.rate ? force_.rate(force_.amplitude) : force_.forces(1))(u, rate, nullptr);
+  rate.compress(dealii::VectorOperation::add);
+  constraints_.set_zero(rate);
   response_.reinit(u);
-  solve(unit, response_);
+  solve(rate, response_);
   constraints_.set_zero(response_);
-  pivot_ = gradient_ * response_;
+  pivot_ = gradient_ * response_ + force_.condition_rate;
   if (!std::isfinite(pivot_) || pivot_ == 0)
     throw SolverError("the displacement does not depend on the force that is sought");
 }

@@ -10,13 +10,13 @@
 
 namespace ciliaval::fem::solid::equilibrium {
 
-/// The tangent K bordered by a force F f(u) of unknown amplitude F and its condition g(u) = 0:
+/// The tangent K bordered by a force f(u, F) of unknown amplitude F and its condition g(u, F) = 0:
 ///
-///   [ K      −f ] [Δu]   [ r]
-///   [ ∂g/∂u   0 ] [ΔF] = [−g],   r = F f − internal,
+///   [ K      −∂f/∂F ] [Δu]   [ r]
+///   [ ∂g/∂u   ∂g/∂F ] [ΔF] = [−g],   r = f − internal,
 ///
-/// solved by block elimination with the factorisation of K: b = K⁻¹ f once for each tangent, and
-/// for each right-hand side a = K⁻¹ r, ΔF = −(g + ∂g/∂u·a)/(∂g/∂u·b), Δu = a + ΔF b.
+/// solved by block elimination with the factorisation of K: b = K⁻¹ ∂f/∂F once for each tangent,
+/// and for each right-hand side a = K⁻¹ r, ΔF = −(g + ∂g/∂u·a)/(∂g/∂u·b + ∂g/∂F), Δu = a + ΔF b.
 class BorderedSystem {
  public:
   /// x = K⁻¹ rhs, the constrained components of both zero.
@@ -35,7 +35,9 @@ class BorderedSystem {
   double complete(const discretisation::Vector& u, discretisation::Vector& increment) const;
 
   /// g at the displacement u.
-  double gap(const discretisation::Vector& u) const { return force_.condition(u, nullptr); }
+  double gap(const discretisation::Vector& u) const {
+    return force_.condition(u, force_.amplitude, nullptr);
+  }
   void advance(double amplitude_increment) { force_.amplitude += amplitude_increment; }
 
  private:
@@ -43,7 +45,7 @@ class BorderedSystem {
   const dealii::AffineConstraints<double>& constraints_;
   discretisation::Vector gradient_;  ///< ∂g/∂u
   discretisation::Vector response_;  ///< b
-  double pivot_ = 0;                 ///< ∂g/∂u·b
+  double pivot_ = 0;                 ///< ∂g/∂u·b + ∂g/∂F
 };
 
 }  // namespace ciliaval::fem::solid::equilibrium

@@ -75,7 +75,7 @@ class FoldSearch::SolidBranch {
     UnknownForce unknown;
     unknown.forces = [this](double t) { return forces(t); };
     unknown.amplitude = now_.at.fraction + s * now_.rate;
-    unknown.condition = [&](const Vector& u, Vector* gradient) {
+    unknown.condition = [&](const Vector& u, double /*t*/, Vector* gradient) {
       if (gradient != nullptr) gradient->add(1, now_.along);
       return now_.along * u - now_.along * before.displacement - s;
     };

@@ -10,6 +10,7 @@
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/environment_forces.h"
 #include "fem/solid/loads/probe.h"
+#include "fem/solid/loads/tip_couple.h"
 #include "problem/continuation/slip_off.h"
 
 namespace ciliaval::fem::solid::equilibrium {
@@ -116,13 +117,17 @@ LoadPathSolver::Attempt LoadPathSolver::attempt_from(Equilibrium start, int& ite
   };
   NewtonResult result;
   double contact_force = 0;
-  if (const auto probe = load.as<ProbeLoad>()) {
-    UnknownForce force = probe_force(space_, quadrature_, *probe, options_.kernel_width,
-                                     attempt.equilibrium.applied_force);
+  const auto probe = load.as<ProbeLoad>();
+  const auto couple = load.as<MomentLoad>();
+  if (probe || couple) {
+    UnknownForce force =
+        probe ? probe_force(space_, quadrature_, *probe, options_.kernel_width,
+                            attempt.equilibrium.applied_force)
+              : TipCouple(space_, quadrature_, *couple).with_unknown_angle(state.displacement);
     if (const auto around = acting_environment(load); !surroundings::is_empty(around))
       force.others = environment_forces(space_, cilium_, around);
     result = newton_.solve(force, state, options_.newton, report);
-    contact_force = force.amplitude;
+    if (probe) contact_force = force.amplitude;
   } else {
     result =
         newton_.solve(external_forces(space_, quadrature_, cilium_, load, options_.kernel_width),

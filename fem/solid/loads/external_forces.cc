@@ -6,6 +6,7 @@
 #include "fem/parallel.h"
 #include "fem/solid/loads/dead_forces.h"
 #include "fem/solid/loads/environment_forces.h"
+#include "fem/solid/loads/tip_couple.h"
 #include "problem/cilium.h"
 #include "problem/error.h"
 
@@ -23,7 +24,7 @@ SpreadLoad spread_alone(const Load& load, double area, double kernel_width) {
     result.per_height = flow_density(flow->force_per_height, area);
   if (const auto dead = load.as<DeadLoad>()) result.per_volume = dead->force_per_length / area;
   if (!result.per_height && !load.is<DeadLoad>() && !load.is<SectionLoad>() &&
-      !load.is<EnvironmentLoad>())
+      !load.is<MomentLoad>() && !load.is<EnvironmentLoad>())
     refuse_type(load, "solid");
   return result;
 }
@@ -51,6 +52,8 @@ ExternalForces load_forces(const SolidSpace& space, const ExtrudedQuadrature& qu
   if (const auto section = load.as<SectionLoad>())
     return dead_forces(
         section_force(space, quadrature, section->force, section->arclength, spread.direction));
+  if (const auto couple = load.as<MomentLoad>())
+    return TipCouple(space, quadrature, *couple).forces();
   if (!spread.per_height) {
     const auto b = [&spread](const Vector3&) -> Vector3 {
       return spread.per_volume * spread.direction;

@@ -23,15 +23,19 @@ discretisation::Vector forces_at(const discretisation::Vector& displacement,
                                  const discretisation::SolidSpace& space,
                                  const ExternalForces& external);
 
-/// A force F f(u) whose amplitude F is one more unknown, and the condition g(u) = 0 that determines
-/// it.
+/// A force f(u, F) with one more unknown, its amplitude F, and the condition g(u, F) = 0 that
+/// determines it.
 struct UnknownForce {
   std::function<ExternalForces(double amplitude)> forces;
   /// g; adds ∂g/∂u to `gradient` where that is not null.
-  std::function<double(const discretisation::Vector& u, discretisation::Vector* gradient)>
+  std::function<double(const discretisation::Vector& u, double amplitude,
+                       discretisation::Vector* gradient)>
       condition;
   double amplitude = 0;     ///< F: the guess, and the result
   ExternalForces others{};  ///< what acts besides; empty: nothing
+  /// ∂f/∂F; empty: f(u, 1), of a force that is linear in F.
+  std::function<ExternalForces(double amplitude)> rate{};
+  double condition_rate = 0;  ///< ∂g/∂F
 };
 
 /// The load as spread over the solid, of a section load the direction e alone, and the environment.

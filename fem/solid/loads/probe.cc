@@ -110,7 +110,8 @@ UnknownForce probe_force(const SolidSpace& space, const ExtrudedQuadrature& quad
                        kernel_width);
   };
   const HeightDensity kernel = contact_density(1, 1, load.height, kernel_width);
-  const auto condition = [&space, &quadrature, kernel, load](const Vector& u, Vector* gradient) {
+  const auto condition = [&space, &quadrature, kernel, load](const Vector& u, double /*force*/,
+                                                             Vector* gradient) {
     return mean_displacement(space, quadrature, kernel, direction(load), u, gradient) -
            load.displacement;
   };

@@ -130,6 +130,11 @@ def _draw_load(axes: Axes, cilium: Any, load: Any, d: float) -> None:
         text = f"surface, {quantity(p['interference'], 'm')} below the tip"
     elif load.type == "environment":
         return  # its arrows are drawn beside the cilium
+    elif load.type == "moment":
+        z, r = length, 0.16 * length
+        ends = [(-0.6 * r, z), (r, z - 0.4 * r)]
+        axes.add_patch(FancyArrowPatch(*ends, connectionstyle="arc3,rad=-0.8", color=_LOAD, linewidth=1.4, **_ARROW))
+        text = f"moment, {quantity(p['moment'], 'N m')}"
     else:
         z = 1e3 * p.get("height", p.get("arclength", cilium.length))
         arrow(-d / 2, z, 0.3 * length)

@@ -319,6 +319,26 @@ TEST(BeamLoads, TheBaseBearsTheLoadAsked) {
   }
 }
 
+TEST(BeamLoads, ACoupleRollsTheTipUp) {
+  // Oracle: θ = ∫ M/(EI) dS; n = 0 and m = M e_z × e in every section.
+  const Cilium cilium = paper_cilium();
+  double flexibility = 0;
+  for (const Segment& segment : cilium.segments)
+    flexibility += segment.length / (segment.young_modulus * cilium.second_moment(0));
+  const double M = 1.8 * pi / flexibility;
+  const MechanicsStep step = fem::beam::Beam().solve(cilium, {MomentLoad{M, 2.1}}).steps[0];
+  ASSERT_EQ(step.status, Status::converged) << step.message;
+  const Vector3 e = direction(step.load);
+  for (const double S : {0.0, 5e-3, L}) {
+    const SectionForces forces = step.deformation->centreline.at(S).forces;
+    EXPECT_LT((forces.moment - M * Vector3::UnitZ().cross(e)).norm(), 1e-11 * M);
+    EXPECT_LT(forces.force.norm() * L, 1e-11 * M);
+  }
+  const Vector3 normal = step.deformation->centreline.at(L).normal();
+  EXPECT_NEAR(normal.dot(e), std::sin(1.8 * pi), 1e-9);
+  EXPECT_NEAR(normal.z(), std::cos(1.8 * pi), 1e-9);
+}
+
 TEST(BeamLoads, AzimuthTurnsTheSolution) {
   const Cilium cilium = paper_cilium();
   const double phi = 0.7;
