@@ -25,7 +25,7 @@ enum class Status {
   failed        ///< the solver did not converge
 };
 
-/// What the surface of a sweep does to the cilium.
+/// Contact of the cilium with the surface of a sweep.
 struct SurfaceContact {
   enum class State { open, stick, slip };
   enum class Where { rim, mantle, surface };  ///< of a rod's end disc; of its side; of a solid
@@ -146,9 +146,9 @@ inline void report_step(const Progress& progress, const std::vector<MechanicsSte
   progress(report);
 }
 
-/// What a model keeps of its way along a load path, to go on from there: bytes of its own making
-/// under names. The n-th finished step has the name n, from 1. (That of a model that is refined has
-/// parts, by prefixes of the names.)
+/// State of a solution along a load path, from which a model resumes: bytes in the model's own
+/// format under names. The n-th finished step has the name n, from 1. (A refined model's checkpoint
+/// has parts, by prefixes of the names.)
 struct Checkpoint {
   using Entries = std::map<std::string, std::string>;
   Entries kept;  ///< by an earlier run; empty: start from the straight cilium

@@ -36,10 +36,10 @@ struct Case {
   std::string title;  ///< for people
   Cilium cilium;
   LoadPath load_path;
-  /// Of each step the values of the load type's LoadStatement (a flow's velocity, density and drag
+  /// Values, for each step, of the load type's LoadStatement (a flow's velocity, density and drag
   /// coefficient), if the file states the magnitude by them; otherwise empty.
   std::vector<LoadStatement::Values> stated_by;
-  /// Of a sweep; each of its loads has what is made of it.
+  /// Surface of a sweep as the file states it; each load of the sweep has the surface made from it.
   std::optional<surroundings::StatedSurface> surface;
   std::optional<sweep::SignalOptions> signal;  ///< what a logger makes of a sweep
   std::vector<Vector3> sensors;                ///< m

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What must hold between the tables of a case file.
+// Conditions between the tables of a case file.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -63,7 +63,7 @@ void check_load(const Case& c, const Report& report) {
   }
 }
 
-/// Whether an environment acts at any step.
+/// True if an environment acts at any step.
 template <class Acts>
 bool any_environment(const LoadPath& path, const Acts& acts) {
   return std::ranges::any_of(path, [&](const Load& load) { return acts(load.environment()); });
@@ -152,7 +152,7 @@ void check_signal(const Case& c, const Report& report) {
                        seconds, seconds * c.signal->sampling_rate, longest_record));
 }
 
-/// What goes with a rectangle or a tube.
+/// Checks that the case suits a rectangle or a tube.
 void check_section(const Case& c, const Report& report) {
   if (c.cilium.section.shape == CrossSection::Shape::circle) return;
   const Load& first = c.load_path.front();

@@ -22,7 +22,7 @@ using input::ErrorLimit;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// Whether the cilium is straight because nothing acts on it.
+/// True if the cilium is straight because nothing acts on it.
 bool bears_nothing(const Load& load) {
   return surroundings::is_empty(acting_environment(load)) &&
          (load.is<EnvironmentLoad>() || magnitude(load) == 0);
@@ -63,7 +63,7 @@ double largest_field_error(const MechanicsRun& run, const input::Case& problem,
   return largest;
 }
 
-/// What came of a limit, to be read beside the results.
+/// Message on the outcome of an error limit, to be read beside the results.
 std::string outcome(const std::string& refinement, double percent, const ErrorLimit& limit) {
   if (!std::isfinite(percent))
     return fmt::format("{}: the error is not known, so the tolerance of {:g} % is not met",

@@ -8,7 +8,7 @@
 
 namespace ciliaval::compare::models {
 
-/// What to expect of a case, in lines for people.
+/// Expected signal of a case and warnings, in lines for people.
 struct Preview {
   std::vector<std::string> signal;    ///< by the paper's elastica and the closed form of its magnet
   std::vector<std::string> warnings;  ///< what is odd, or beyond what the models are made for

@@ -62,7 +62,7 @@ std::optional<int> standard_stream(const fs::path& file) {
   return std::nullopt;
 }
 
-/// Whether the file is there and no regular one: a device, a FIFO, a socket.
+/// True if the file exists and is neither regular nor a folder: a device, a FIFO, a socket.
 bool is_special(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);

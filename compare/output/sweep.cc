@@ -32,7 +32,7 @@ std::optional<Vector3> tip_of(const MechanicsStep& step) {
   return centreline.at(centreline.length()).position;
 }
 
-/// What stands after B in the columns of a sensor: "0", or "_left" for a sensor with a name.
+/// Suffix of B in the columns of a sensor: "0", or "_left" for a sensor with a name.
 std::string column_label(const input::Case& problem, std::size_t sensor) {
   return fmt::format("{}{}", problem.sensor_names.empty() ? "" : "_",
                      input::sensor_name(problem, sensor));

@@ -7,10 +7,10 @@
 #include "compare/models/errors.h"
 #include "compare/models/run.h"
 
-/// What a sweep has that other load paths have not.
+/// Output that sweeps alone have.
 namespace ciliaval::compare::output {
 
-/// Whether the case's load is a sweep.
+/// True if the case's load is a sweep.
 bool is_sweep(const input::Case& problem);
 
 /// How far the surface has moved up to each step, there and back, m.
@@ -28,7 +28,7 @@ struct EnergyBalance {
   /// The rest over the scale; 0 if all vanish.
   double relative_rest() const;
 };
-/// Of the steps up to the first without a contact.
+/// Balance of the steps up to the first without a contact.
 EnergyBalance energy_balance(const models::MechanicsRun& run);
 
 /// sweep.csv as text: a row for each sample; travel, way and time (by the speed), then of each

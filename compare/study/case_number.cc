@@ -36,7 +36,7 @@ Part<T> one(const Member& member) {
           [=](Case& c, const std::vector<T>& parts) { member(c) = parts.front(); }};
 }
 
-/// What a number is, without what it is of.
+/// Number described by the key, without its accessors.
 CaseNumber number_of(const description::Key& key, std::string path) {
   CaseNumber number;
   static_cast<description::Key&>(number) = key;

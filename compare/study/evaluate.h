@@ -12,7 +12,7 @@
 
 namespace ciliaval::compare::study {
 
-/// What a pair of models makes of a point.
+/// Results of a pair of models at a point.
 struct PairResult {
   Status status = Status::failed;
   std::string message;                        ///< why it failed or slipped off, or why a value is

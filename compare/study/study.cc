@@ -84,7 +84,7 @@ Names names_of(Output output) {
 /// Where the differences are taken, in steps.
 constexpr std::array<int, 4> steps{-2, -1, 1, 2};
 
-/// What is moved at a point behind the sweep; nothing at the first one.
+/// Number that is moved at a point behind the sweep; none at the first one.
 std::optional<Setting> moved_number(const Study& study, std::size_t point) {
   const std::size_t index = point - study.point_count();
   if (index == 0) return std::nullopt;

@@ -45,7 +45,7 @@ std::vector<PairResult> from_bytes(const std::string& bytes);
 struct Task {
   std::size_t point = 0;
   std::string mechanics;
-  /// Of its solution.
+  /// Name of the task's solution.
   std::string name() const;
 };
 
@@ -54,7 +54,7 @@ struct Tasks {
   std::vector<Task> side_by_side;  ///< rods and their fields: several at once
   std::vector<Task> one_by_one;    ///< models that use all cores by themselves
 };
-/// What is not solved yet.
+/// Tasks that are not solved yet.
 Tasks missing_tasks(const Study& study, const Solutions& solutions,
                     std::span<const models::MechanicsEntry> mechanics_models,
                     std::span<const models::FieldEntry> field_models);

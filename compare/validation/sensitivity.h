@@ -19,8 +19,8 @@ enum class Sensitivities {
   own     ///< each model's own, which solves a slow one twice for each input
 };
 
-/// What takes the derivatives of a model: itself, or, if it is slow and `whose` says so, the most
-/// detailed quick one that takes the load. For a pair of models each of the two.
+/// Model whose derivatives are taken: the model itself, or, if it is slow and `whose` says so, the
+/// most detailed quick one that takes the load. For a pair of models each of the two.
 struct Stand {
   std::string mechanics;
   std::string field;  ///< empty: of the shape
@@ -28,7 +28,8 @@ struct Stand {
   std::string name() const { return field.empty() ? mechanics : mechanics + "/" + field; }
   auto operator<=>(const Stand&) const = default;
 };
-/// None if no such model takes the load. `field` is empty for a measurand of the shape.
+/// The stand-in for a model or a pair; none if no such model takes the load. `field` is empty for a
+/// measurand of the shape.
 std::optional<Stand> stand_in(const std::string& mechanics, const std::string& field,
                               Sensitivities whose, const input::Case& problem,
                               std::span<const models::MechanicsEntry> mechanics_entries,

@@ -20,7 +20,7 @@ struct Point {
   std::optional<double> simulated;           ///< S
   std::optional<double> u_num;
   std::optional<double> u_input;
-  /// What one standard uncertainty of each input makes of S.
+  /// Shift of S by one standard uncertainty of each input.
   std::vector<std::optional<double>> contributions;
   std::optional<Assessment> assessment;  ///< none: a part is not known, which `note` says
   std::string note;
@@ -34,7 +34,7 @@ struct Series {
   std::string
       sensitivities_by;       ///< whose derivatives u_input is from; empty: no quick model has any
   std::vector<Point> points;  ///< in the order of the case
-  // Of the points that have an assessment:
+  // Statistics of the points that have an assessment:
   std::size_t assessed = 0;
   std::optional<double> chi_squared;
   std::optional<double> rms_error;  ///< √mean E²

@@ -34,8 +34,8 @@ std::vector<double> length_nodes();
 /// A joint whose segments are long: the softer one, of Poisson's ratio node i, below the stiffer
 /// one, of node j, at ratio node k. With the stiffer one below, the coupling changes its sign.
 extern const Entry alone[n_poisson][n_poisson][n_ratio];
-/// What a segment between a rigid body below and a stiffer one above (ratio node j, length node k)
-/// has beyond its two joints alone, M taken at its middle.
+/// Excess compliance of a segment between a rigid body below and a stiffer one above (ratio node j,
+/// length node k) beyond its two joints alone, M taken at its middle.
 extern const Entry together[n_poisson][n_ratio][n_length];
 
 }  // namespace ciliaval::joints

@@ -44,7 +44,7 @@ class SignalPause {
   SignalPause(const SignalPause&) = delete;
   SignalPause& operator=(const SignalPause&) = delete;
 
-  /// Whether one of the signals has come.
+  /// True if one of the signals has come.
   static bool interrupted();
 };
 

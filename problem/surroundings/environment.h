@@ -24,8 +24,8 @@ enum class MagneticEnergy {
 /// "F" or "R".
 std::string_view name(MagneticEnergy energy);
 
-/// What surrounds the cilium, besides what its load says: weight and buoyancy, a magnetic field,
-/// and magnets at rest beside it. By default there is nothing.
+/// Surroundings of the cilium, besides its load: weight and buoyancy, a magnetic field, and magnets
+/// at rest beside it. By default there is nothing.
 struct Environment {
   Vector3 gravity = Vector3::Zero();        ///< g, m/s²
   double fluid_density = 0;                 ///< ρ_f, kg/m³
@@ -36,7 +36,7 @@ struct Environment {
   bool operator==(const Environment& other) const = default;
 };
 
-/// Whether nothing acts on the cilium.
+/// True if nothing acts on the cilium.
 bool is_empty(const Environment& environment);
 /// Gravity, field and the magnets' magnetisation by the factor; the fluid's density stays.
 Environment scaled(const Environment& environment, double factor);

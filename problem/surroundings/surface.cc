@@ -204,7 +204,7 @@ RandomProfile::RandomProfile(const Parameters& parameters) : parameters_(paramet
     const double number = static_cast<double>(j);
     const double amplitude = std::pow(number, -(1 + 2 * parameters.hurst) / 2);
     power += amplitude * amplitude / 2;
-    // Of the standard library's distributions the bits differ from machine to machine.
+    // The standard library's distributions give other bits on other machines.
     const double unit = (static_cast<double>(generator()) + 0.5) / 4294967296.0;
     waves_.push_back({amplitude, two_pi * number / parameters.longest, two_pi * unit});
   }

@@ -87,7 +87,7 @@ std::string change_line(const regression::Change& change) {
   return line + "\n";
 }
 
-/// Whether they differ in nothing but where they come from.
+/// True if the baselines differ at most in their origin and their list of changes.
 bool same_content(regression::Baseline a, const regression::Baseline& b) {
   a.origin = b.origin;
   a.changes = b.changes;

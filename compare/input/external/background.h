@@ -12,7 +12,7 @@
 #include "compare/input/csv.h"
 #include "problem/types.h"
 
-/// What the CSV files of readings have in common.
+/// Common parts of the CSV files of readings.
 namespace ciliaval::compare::input::external {
 
 /// Rows of Bx, By, Bz in columns first … first + 2.

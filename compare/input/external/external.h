@@ -25,7 +25,7 @@ struct ExternalReading {
   std::vector<std::optional<Vector3>> dB;  ///< B − B(undeformed)
 };
 
-/// What another program or a test bench found out about the cilium of the case, as the tables
+/// Results of another program or a test bench for the cilium of the case, as the tables
 /// [[models.external]] and the CSV files that they name state it (docs/guide/referees.md).
 struct ExternalModel {
   std::string name;                                     ///< a plain file name, not that of a model

@@ -17,11 +17,11 @@ class Section;
 struct Case;
 }  // namespace ciliaval::compare::input
 
-/// What was measured, [[measurement]], and how well the inputs of the case are known,
+/// Measured values, [[measurement]], and the uncertainty of the case's inputs,
 /// [[input_uncertainty]] (docs/guide/validation.md).
 namespace ciliaval::compare::input::measurement {
 
-/// The number that was measured, and that a model computes.
+/// Number that was measured, and that a model computes.
 struct Measurand {
   enum class Kind {
     position,    ///< a coordinate of a point of the end section, m
