@@ -47,7 +47,7 @@ struct PlanarJoint {
   PlanarLaw law{};
 };
 
-/// What a section gives way to its moment and force.
+/// Strains of a section per unit of its moment and force.
 struct Flexibility {
   double bending = 0;    ///< θ' = bending·M
   double shear = 0;      ///< along the section shear·Q, Q = H cos θ
@@ -69,7 +69,7 @@ struct PlanarProblem {
   std::vector<double> extension{};    ///< max(EI)/(EA L²) of each segment
   std::vector<PlanarLaw> laws{};      ///< of each segment
 
-  /// Of segment i under the load.
+  /// Flexibility of segment i under the load.
   Flexibility flexibility(std::size_t i, double under) const;
   /// Joint i under the load.
   PlanarJoint joint(std::size_t i, double under) const;

@@ -21,7 +21,7 @@ namespace {
 constexpr int most_iterations = 40;
 constexpr int swinging_iterations = 8;
 constexpr double largest_change = 0.5;  ///< of an unknown in an iteration, over its size + 1
-// Of the path of equilibria, in lengths over L with forces and moments over their scale.
+// Limits of the path of equilibria, in lengths over L with forces and moments over their scale.
 constexpr double first_path_step = 1e-4;
 constexpr double longest_path_step = 0.03;
 constexpr double shortest_path_step = 1e-9;

@@ -161,8 +161,8 @@ constexpr double safety = 1.25;
 /// 1.3e-15 (docs/evidence/beam.md).
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
-/// Of the equilibria of a sweep, in the same units: a held tip keeps what was wrong with the place
-/// where it stopped (Sweep tests of the beam).
+/// Relative error of the equilibria of a sweep, in the same units: a held tip keeps the error of
+/// the place where it stopped (Sweep tests of the beam).
 constexpr double sweep_error = 1e-8;
 
 bool is_sweep(const LoadPath& path) {

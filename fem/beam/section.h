@@ -34,7 +34,7 @@ struct Section {
   Eigen::Matrix<double, 6, 6> compliance(const Vector3& n, const Vector3& m) const;
 
  private:
-  /// Of K over m in bending.
+  /// Additional K over m in bending, beyond the linear compliance.
   double softening(const Vector3& n, const Vector3& m) const {
     const double square = m.head<2>().squaredNorm();
     return 2 * beyond.lengthening * n[2] + beyond.softening * square +

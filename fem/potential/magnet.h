@@ -60,7 +60,8 @@ class Magnet {
   /// Appends the n³ points of the Gauss–Legendre product rule on the block.
   void sample(const Block& block, std::size_t n, std::vector<MagnetSample>& samples) const;
 
-  /// Whether any part of the magnet lies in the box, to a hundredth of the magnet's smallest block.
+  /// True if any part of the magnet lies in the box, to a hundredth of the shortest edge of its
+  /// block.
   bool meets(const Eigen::AlignedBox3d& box) const;
 
   /// Distance of the point from the magnet, m, from below, to 2 % or twice the resolution

@@ -5,7 +5,7 @@
 #include "fem/solid/equilibrium/load_path.h"
 #include "problem/support/archive.h"
 
-// What a state of the solid consists of: see there.
+// Members of the solid's state.
 namespace boost::serialization {
 
 template <class Archive>

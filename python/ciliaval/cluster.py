@@ -27,7 +27,7 @@ Task = tuple[int, str]  # point, mechanics model
 Files = tuple[tuple[str, bytes], ...]
 Fingerprint = tuple[tuple[str, str], ...]
 
-# Of rods, whose solution takes a millisecond: what a worker that dies may lose.
+# Largest batch of rods, whose solution takes a millisecond: a worker that dies may lose one.
 _LARGEST_BATCH = 64
 _BATCHES_PER_WORKER = 8
 
@@ -148,7 +148,7 @@ def _workers(client: Any) -> int:
 
 
 def _key(study: StudyFile, batch: list[Task]) -> str:
-    """What dask's pages call the batch; random in part, for a second call is a second computation."""
+    """Name of the batch on dask's pages; random in part, for a second call is a second computation."""
     point, mechanics = batch[0]
     return f"{study.name}.{mechanics}.{point}-{os.urandom(8).hex()}"
 

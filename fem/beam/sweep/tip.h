@@ -20,9 +20,9 @@ inline Place between(const Place& a, const Place& b, double t) {
   return {std::lerp(a.height, b.height, t), std::lerp(a.travel, b.travel, t)};
 }
 
-/// What of the end section touches: the end x − R d₁ of its diameter in the plane (upper one of a
-/// tip bent forward; also the tip that is a point), the other end, the line between them, or two of
-/// these, as across a hollow.
+/// Part of the end section that touches: the end x − R d₁ of its diameter in the plane (upper one
+/// of a tip bent forward; also the tip that is a point), the other end, the line between them, or
+/// two of these, as across a hollow.
 enum class Touch { none, rear, front, face, both_ends, rear_and_face, face_and_front };
 /// The touches of single points that a touch is made of.
 std::vector<Touch> parts(Touch touch);
@@ -56,7 +56,7 @@ struct TipState {
   Pair pair;  ///< of two points ξ of the first, and the η of the resultant
   std::vector<ContactPoint> points;
   double ratio = 0;  ///< T/N, of two points the same
-  // What follows from them:
+  // Quantities that follow from them:
   double normal_force = 0;
   double friction_force = 0;
   Vector2d tip{0, 1};

@@ -199,8 +199,8 @@ Eigen::Matrix<double, element_nodes, 3> nodal_displacements(const SolidElement& 
 
 dealii::AffineConstraints<double> increment_constraints(
     const SolidSpace& space, std::span<const DirichletCondition> conditions) {
-  // Of the unknowns of others their owners tell: the cells beside a rank's own end in faces that
-  // look like the body's surface.
+  // The owners tell which of the others' unknowns are constrained: the cells beside a rank's own
+  // end in faces that look like the body's surface.
   Vector is_constrained = space.vector();
   for (const DirichletCondition& condition : conditions)
     for (const auto& [dof, value] : boundary_values(space, condition))

@@ -42,7 +42,7 @@ struct CellNodes {
 /// stand together.
 CellNodes element_cell_nodes(const discretisation::SolidSpace& space);
 
-/// Of each of this rank's unknowns, whether it is constrained.
+/// True for each constrained one among this rank's unknowns and its ghosts.
 std::vector<bool> constrained_unknowns(const discretisation::SolidSpace& space,
                                        const dealii::AffineConstraints<double>& constraints);
 

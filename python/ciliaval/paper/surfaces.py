@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the paper says of surfaces (3.6, Fig. 6), by the rods."""
+"""Claims of the paper on surfaces (3.6, Fig. 6), by the rods."""
 
 from __future__ import annotations
 

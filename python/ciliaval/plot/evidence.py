@@ -76,7 +76,7 @@ def _waterfall(axes: Axes, row: dict[str, Any], names: list[str]) -> None:
 
 
 def _place(name: str, names: list[str]) -> int:
-    """Of a link's model in the chain. A link between shapes names the mechanics model alone."""
+    """Index of a link's model in the chain. A link between shapes names the mechanics model alone."""
     if name in names:
         return names.index(name)
     return next(i for i, stage in enumerate(names) if stage.split("/", 1)[0] == name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a case has found, in five sentences made from its numbers."""
+"""Findings of a case, in five sentences made from its numbers."""
 
 from __future__ import annotations
 
@@ -230,7 +230,7 @@ def _verdict(result: Result, step: int, model: str, reference: str) -> str:
 
 
 def remarks(result: Result) -> Iterator[str]:
-    """What the models say beside their numbers, each once with its steps."""
+    """Remarks of the models beside their numbers, each once with its steps."""
     found: dict[str, list[int]] = {}
     for i, step in enumerate(result.steps):
         entries: list[tuple[str, dict[str, Any]]] = [*step["mechanics"].items(), *step["fields"].items()]

@@ -31,7 +31,7 @@ _SINGULAR = 1e-10  # of the eigenvalues of the normal matrix with a unit diagona
 _PLACE, _ANGLE, _PART = 1e-4, math.radians(1), 0.1  # m, rad, of a number: steps of the fit
 
 _MEMBERS = [*(f"position.{axis}" for axis in "xyz"), *(f"rotation.{axis}" for axis in "xyz"), "gain"]
-# What a sensor has: the words after its name, their members, units and steps.
+# Words after a sensor's name, with their members, units and steps.
 _OF_SENSOR = {
     "position": (_MEMBERS[:3], "m", _PLACE),
     "rotation": (["rotation.z"], "rad", _ANGLE),
@@ -62,13 +62,13 @@ class Parameter:
         return self.start * math.exp(self.step / self.start * x) if self.is_ratio else self.start + self.step * x
 
     def slope(self, value: float) -> float:
-        """Of the value by x."""
+        """Derivative of the value by x."""
         return self.step * value / self.start if self.is_ratio else self.step
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """What readings at known loads say of a case's numbers.
+    """Numbers of a case as readings at known loads give them.
 
     values, deviations: (k,), found, and standard deviations by the noise; infinite where the readings do
     not tell. correlation: (k, k). chi_squared, freedom, misfit_probability: of the fit. together: groups of
@@ -91,7 +91,7 @@ class Calibration:
 
     @property
     def misfit_probability(self) -> float:
-        """Of a larger chi squared by noise alone."""
+        """Probability of a larger chi squared by noise alone."""
         return float(special.chdtrc(self.freedom, self.chi_squared)) if self.freedom > 0 else 1.0
 
     def text(self, width: int) -> str:
