@@ -43,8 +43,8 @@ PlanarSolver solver(const ElasticaOptions& options) {
   return [options](const PlanarProblem& p) { return solve_arclength(p, options.tolerance); };
 }
 
-/// Relative tolerance of a probe's displacement found by its force; the height form's quadrature
-/// holds 1e-9 near 90°.
+/// Tolerance of a probe's displacement found by its force, relative to max(δ, h); the height form's
+/// quadrature holds 1e-9 near 90°.
 double probe_tolerance(const ElasticaOptions& options) {
   return has_height_form(options) ? 1e-9 : 1e-12;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a real ParaView makes of a result folder. Oracle: ParaView's own readers and filters against
-// summary.json and the case.
+// Pictures and arrays of a result folder in a real ParaView. Oracle: ParaView's own readers and
+// filters against summary.json and the case.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -268,7 +268,7 @@ TEST_F(ParaView, OpensTheFolderWarpedWithTubesArrowsAndFieldLines) {
   EXPECT_GT(objects["picture"]["colours"], 1000);
 }
 
-// What is not a folder of results, and a file that is cut off.
+// A folder without results, and a file that is cut off.
 TEST_F(ParaView, SaysWhatItCannotRead) {
   run_case("mechanics = [\"beam\"]\n");
   fs::create_directory(path() / "empty");

@@ -134,7 +134,7 @@ TEST(SlipOffAtTheRim, IsWhereTheLowestPointOfTheFaceComesDown) {
   }
 }
 
-// Of a rectangle it is an edge, by whichever side leans.
+// The rim of a rectangle is an edge, by whichever side leans.
 TEST(SlipOffAtTheRim, OfARectangleIsTheEdgeThatLeans) {
   Cilium cilium = cilium_of_the_paper();
   cilium.diameter = 0;

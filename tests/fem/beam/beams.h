@@ -18,7 +18,7 @@
 #include "oracles.h"
 #include "problem/cilium.h"
 
-// What the tests of the beam share.
+// Declarations that the tests of the beam share.
 namespace beams {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
