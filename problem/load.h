@@ -38,7 +38,7 @@ LoadParameter load_parameter(std::string_view name, const Quantity& quantity, co
                              double display_factor = 1,
                              LoadParameter::Site site = LoadParameter::Site::none);
 
-/// Where cylinder_drag_coefficient() holds.
+/// Range of Re in which cylinder_drag_coefficient() holds.
 inline constexpr Range cylinder_reynolds_numbers{1e-4, 2e5, false, ""};
 
 /// C_d of a long circular cylinder across the flow, Re = v d/ν,
@@ -170,7 +170,7 @@ class Load {
   Load(const SweepLoad& load, std::shared_ptr<const surroundings::Surface> surface) : Load(load) {
     surface_ = std::move(surface);
   }
-  /// With the values that stand for keys that are not stated.
+  /// A load with the values that stand for keys that are not stated.
   explicit Load(const LoadType& type);
 
   const LoadType& type() const { return *type_; }

@@ -97,7 +97,7 @@ struct MechanicsResult {
   double algebraic_error = 0;
 };
 
-/// How far a long solution is.
+/// Progress of a long solution.
 struct ProgressReport {
   std::string text;       ///< a short line, "step 2/4, load 0.5, iteration 3, residual 1e-4"
   std::size_t done = 0;   ///< equal parts of the work that are done, such as steps …

@@ -16,7 +16,7 @@
 /// forces in P (F of a point force, qL of a distributed one), moments in PL.
 namespace ciliaval::analytic::elastica {
 
-/// How the internal force H(S) depends on the shape.
+/// Dependence of the internal force H(S) on the shape.
 enum class PlanarLoad {
   contact,  ///< H = 1 below z = h, M = (h − z)₊
   flow,     ///< H = z_tip − z, M = (z_tip − z)²/2

@@ -278,8 +278,8 @@ class Follower {
     return std::nullopt;
   }
 
-  /// How fast the pull on the held tip, beyond what friction bears, grows with ξ: where it grows,
-  /// a tip that slides away from its equilibrium comes back.
+  /// Growth with ξ of the pull on the held tip, beyond what friction bears: if it is positive, a
+  /// tip that slides away from its equilibrium comes back.
   double stiffness(const TipContact& contact, double direction) const {
     return contact.friction_slope - direction * surface_.friction * contact.normal_slope;
   }
@@ -381,7 +381,7 @@ class Follower {
     return {outline_.nearest(place, rest()).gap < 0, {}};
   }
 
-  /// Where the outline meets the surface, between a place under it and one beyond.
+  /// Contact where the outline meets the surface, between a place under it and one beyond.
   std::optional<TipContact> landing(const SurfacePlace& place, double inclination,
                                     const TipContact& under, const TipContact& beyond) const {
     double low = under.touches.front().x;
@@ -484,7 +484,7 @@ class Follower {
     return surface_.friction * sum;
   }
 
-  /// Where the excess vanishes within a slip of the held tip.
+  /// Held contact at which the excess vanishes within a slip of the held tip.
   std::optional<TipContact> hold(const SurfacePlace& place, const TipContact& pulled, double slip,
                                  double direction) const {
     double a = 0;

@@ -41,7 +41,7 @@ std::vector<Touch> first_touches(const TipProblem& problem, const TipContact& gu
   return {touch};
 }
 
-/// How the state changes with the slip and with the surface's place.
+/// Computes the derivatives of the state by the slip and by the surface's place.
 void differentiate(const System& system, TipContact& contact) {
   const auto factors = system.jacobian.partialPivLu();
   contact.unknowns_by_place = -factors.solve(system.by_place);

@@ -26,7 +26,7 @@ struct TipProblem {
   double tolerance = 1e-12;
 };
 
-/// Where the surface stands: z = height − p(x − travel).
+/// Place of the surface: z = height − p(x − travel).
 struct SurfacePlace {
   double height = 1;
   double travel = 0;
@@ -86,7 +86,7 @@ struct TipContact {
   double contact_x = 0;  ///< of the touching point; of several the centre of the normal forces
   double contact_z = 0;
   double energy = 0;  ///< elastic, ∫ M²/(2EI) dS
-  // How the forces of a tip that is held change with its slip on the surface.
+  // Derivatives of a held tip's forces by its slip on the surface:
   double normal_slope = 0;    ///< dN/dξ
   double friction_slope = 0;  ///< dT/dξ
   int iterations = 0;

@@ -57,7 +57,7 @@ std::string failure_of(const models::CaseResult& result, const ModelRefinement& 
   return {};
 }
 
-/// Why a field model does not know the error of this level; else empty.
+/// Reason why a field model does not know the error of this level; else empty.
 std::string unknown_error_of(const models::CaseResult& result, const ModelRefinement& refinement) {
   if (!refinement.is_field) return {};
   for (const models::FieldRun& run : result.fields)

@@ -21,8 +21,7 @@
 
 namespace ciliaval::compare::input {
 
-/// A validation case, as a case file states it (docs/guide/cases.md), in SI units.
-/// How a sensor's chip sits: what `ciliaval sense` makes of its readings.
+/// Orientation and gain of a sensor's chip, by which `ciliaval sense` converts its readings.
 struct Chip {
   std::vector<std::string> axes;        ///< of the case, along its x, y, z: "+y"; empty: its own
   Vector3 rotation = Vector3::Zero();   ///< of those about the case's x, then y, then z, rad
@@ -31,6 +30,7 @@ struct Chip {
   bool operator==(const Chip&) const = default;
 };
 
+/// A validation case, as a case file states it (docs/guide/cases.md), in SI units.
 struct Case {
   std::string name;   ///< a plain file name: the results go to DIR/name
   std::string title;  ///< for people

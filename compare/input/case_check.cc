@@ -23,7 +23,7 @@ bool asks_for(const std::vector<std::string>& ids, std::string_view id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-/// Where the value of a dotted path stands; of a path that is not in the file, its table.
+/// Place of the value of a dotted path; of a path that is not in the file, its table's place.
 Place place_of(const toml::table& root, std::string path) {
   while (!path.empty()) {
     if (const toml::node* node = root.at_path(path).node()) return place(*node);
@@ -33,7 +33,7 @@ Place place_of(const toml::table& root, std::string path) {
   return {};
 }
 
-/// Where a list of ids names one of them, as a path.
+/// Dotted path of an id in a list of ids.
 std::string path_of_id(std::string_view list, const std::vector<std::string>& ids,
                        std::string_view id) {
   const auto at = std::find(ids.begin(), ids.end(), id) - ids.begin();

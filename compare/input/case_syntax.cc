@@ -28,7 +28,7 @@ bool starts_character(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
 }
 
-/// Where a byte of the text stands; columns count characters, as those of toml++ do.
+/// Line and column of a byte of the text; columns count characters, as toml++ does.
 Place place_of_byte(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, byte);
   const std::size_t line_end = before.rfind('\n');

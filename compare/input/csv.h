@@ -59,7 +59,7 @@ std::vector<CsvCell> csv_cells(std::string_view line, std::size_t number, char s
 /// A number with a decimal point or comma; none if the text is another thing.
 std::optional<double> csv_number(std::string text);
 
-/// How a file of columns is laid out.
+/// Layout of a file of columns.
 struct CsvLayout {
   char separator = ',';                      ///< ',', ';', a tab, or ' ' for blanks
   std::vector<CsvCell> header;               ///< as the file has it; empty: there is none

@@ -25,7 +25,7 @@ namespace ciliaval::compare::input {
 struct Case;
 class Section;
 
-/// How a model is refined: by which of its options, and through which values.
+/// Refinement of a model: the option that refines it, and its values.
 struct Refinement {
   enum class Law {
     power,     ///< the error is α h^p, or nearly

@@ -156,7 +156,7 @@ MechanicsResult Evaluator::solve_from(const Cilium& cilium, const LoadPath& path
     }
     if (!is_solved) return result;
     const double error = 100 * error_of(result);
-    // Where the model does not know its error, it says why, and finer meshes are not tried.
+    // If the model does not know its error, it says why, and finer meshes are not tried.
     const bool is_last = i + 1 == refinement.values.size() || !std::isfinite(error);
     if (error > limit.percent && !is_last) continue;
     const std::string reached = outcome(name, error, limit);

@@ -110,7 +110,7 @@ class Viewer {
     }
   }
 
-  /// How far plain rods of the case are off at the step that bends most.
+  /// Warns of the error of plain rods of the case at the step that bends most.
   void look_at_joints(std::size_t step) {
     const MechanicsEntry* first = nullptr;
     std::string plain;
@@ -210,8 +210,8 @@ class Viewer {
     look_at_field(alone);
   }
 
-  /// How often gravity and field along the axis are borne, at the steps where they are extreme. A
-  /// magnet across the axis has no straight state in a field.
+  /// Reports how many times gravity and field along the axis buckle the cilium, at the steps where
+  /// they are extreme. A magnet across the axis has no straight state in a field.
   void look_at_buckling() {
     const auto extremes = [this](const auto& along) {
       const auto [low, high] = std::ranges::minmax_element(problem_.load_path, {}, along);

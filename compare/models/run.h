@@ -39,7 +39,7 @@ struct ModelPart {
   }
 };
 
-/// That of the shape at a step.
+/// Model parts of the shape at a step.
 struct ShapeModelParts {
   std::optional<ModelPart<double>> tip;            ///< position, m
   std::optional<ModelPart<double>> tip_angle;      ///< rad

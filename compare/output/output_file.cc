@@ -128,7 +128,7 @@ void write_file(const fs::path& file, const std::function<void(const fs::path&)>
 }
 
 void remove_unfinished(const fs::path& folder) {
-  // As make_temporary() and python/ciliaval/files.py call them: .study.4711.0.tmp.csv
+  // Names by make_temporary() and python/ciliaval/files.py: .study.4711.0.tmp.csv
   static const std::regex name(R"(\..+\.[0-9]+\.[0-9]+\.tmp\.[a-z]+)");
   std::error_code error;  // what cannot be taken away disturbs nobody
   for (fs::directory_iterator file(folder, error), end; file != end; file.increment(error))

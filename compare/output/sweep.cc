@@ -161,7 +161,7 @@ std::string models_table(const models::CaseResult& result) {
   return text_table(rows, "<>");
 }
 
-/// Where the models jump, and the messages of those that did not get through.
+/// Jumps of the models, and messages of their steps.
 std::string events(const models::CaseResult& result) {
   std::string text;
   for (const models::MechanicsRun& run : result.mechanics) {

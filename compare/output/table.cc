@@ -198,7 +198,7 @@ std::string fields_table(const models::CaseResult& result,
   return rows.size() == 1 ? "" : fmt::format("\n{}", text_table(rows, "<>"));
 }
 
-/// Why values are missing, or their errors not known.
+/// Reasons why values are missing, or their errors not known.
 std::string failures(const models::CaseResult& result, std::size_t step) {
   std::string text;
   for (const models::FieldRun& run : result.fields)

@@ -10,7 +10,7 @@
 
 namespace ciliaval::compare::regression {
 
-/// How a model ended a step: `steps/1/mechanics/solid/status`: "converged", "slipped_off",
+/// End of a model's step, `steps/1/mechanics/solid/status`: "converged", "slipped_off",
 /// "pulled_in", "failed"; of a field "computed" or "failed".
 struct Outcome {
   std::string id;

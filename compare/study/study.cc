@@ -44,7 +44,7 @@ struct Number {
   std::string title;  ///< "tip x"
 };
 
-/// Those of all quantities. What was returned once stays where it is.
+/// Numbers of all quantities. References to them stay valid.
 const std::deque<Number>& numbers() {
   static std::deque<Number> all;
   static std::size_t known = 0;
@@ -81,7 +81,7 @@ Names names_of(Output output) {
   return {number.id, number.id};
 }
 
-/// Where the differences are taken, in steps.
+/// Points of the central differences, in steps.
 constexpr std::array<int, 4> steps{-2, -1, 1, 2};
 
 /// Number that is moved at a point behind the sweep; none at the first one.

@@ -18,7 +18,7 @@ namespace ciliaval::compare::study {
 /// that says so. A store keeps each from add() on, and every number as it was.
 class Solutions {
  public:
-  /// None, and kept in memory alone.
+  /// No solutions; those added are kept in memory alone.
   Solutions() = default;
   /// Reads what the store keeps of the study. Throws CheckpointError, also if that is of another
   /// study or program.
@@ -26,7 +26,7 @@ class Solutions {
 
   /// Null if it is not there. Not while another thread adds.
   const std::vector<PairResult>* find(const std::string& name) const;
-  /// By any thread; returns how many there are now. Throws CheckpointError.
+  /// Adds a solution, by any thread; returns their number then. Throws CheckpointError.
   std::size_t add(const std::string& name, std::vector<PairResult> results);
   std::size_t size() const { return all_.size(); }
 

@@ -13,7 +13,7 @@
 
 namespace ciliaval::compare::validation {
 
-/// Whose derivatives u_input is from.
+/// Model whose derivatives give u_input.
 enum class Sensitivities {
   quick,  ///< of quick models: a slow one has those of the most detailed quick one
   own     ///< each model's own, which solves a slow one twice for each input
@@ -40,7 +40,7 @@ std::optional<Stand> stand_in(const std::string& mechanics, const std::string& f
 /// value.
 using Contributions = std::vector<std::vector<std::optional<double>>>;
 
-/// Those of each stand, of the measurands that are its: of the shape or of the field.
+/// Contributions to the values of each stand, of its own measurands: of the shape or of the field.
 std::map<Stand, Contributions> contributions(
     const input::Case& problem, const std::vector<Input>& inputs, const std::vector<Stand>& stands,
     std::span<const models::MechanicsEntry> mechanics_entries,

@@ -235,7 +235,7 @@ MechanicsResult Beam::solve(const Cilium& cilium, const LoadPath& path,
                               return solve_path(cilium, loads, options_, changed, {});
                             });
     estimate_errors(result);
-    // Where it slips off, the force follows from the tip's height, to Newton's tolerance.
+    // At slip-off the force follows from the tip's height, to Newton's tolerance.
     for (MechanicsStep& step : result.steps)
       if (step.slip_off_uncertainty)
         *step.slip_off_uncertainty += options_.tolerance * *slip_off_limit(step);

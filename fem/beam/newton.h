@@ -57,7 +57,7 @@ struct NewtonReport {
   std::string reason;              ///< why it did not converge
 };
 
-/// Why Newton's method failed, with the history of its residuals.
+/// Description of a failure of Newton's method, with the history of its residuals.
 std::string describe(const NewtonReport& report);
 
 /// Newton's method with the consistent tangent from the given state. Converged: the strain

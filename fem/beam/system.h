@@ -9,7 +9,7 @@
 
 namespace ciliaval::fem::beam {
 
-/// Where a cross-section is and how it is turned: r and the directors d_i = Λ e_i.
+/// Position and rotation of a cross-section: r and the directors d_i = Λ e_i.
 struct Pose {
   Vector3 position = Vector3::Zero();
   Quaternion rotation = Quaternion::Identity();

@@ -18,8 +18,8 @@ struct PermeableBox {
   double relative_permeability = 1;  ///< μ_r > 0
 };
 
-/// How the reference magnetisation M enters the current configuration: `F`, m = F·M/J, an ideal
-/// hard magnet; `R`, m = R·M with the rotation R of F = R·U (solid) or of the section (rod).
+/// Law by which the reference magnetisation M enters the current configuration: `F`, m = F·M/J, an
+/// ideal hard magnet; `R`, m = R·M with the rotation R of F = R·U (solid) or of the section (rod).
 enum class MagnetPushForward { F, R };
 
 /// A quadrature point of the deformed magnet.

@@ -126,7 +126,7 @@ bool is_sweep(const LoadPath& path) {
   return !path.empty() && path.front().is<SweepLoad>();
 }
 
-/// As the solid's symmetry needs it.
+/// True if the environment lies in the load's plane, as the solid's symmetry needs it.
 bool is_planar(const Load& load) {
   return surroundings::lies_in_plane(load.environment(), direction(load));
 }

@@ -22,8 +22,8 @@ inline constexpr double largest_poisson_ratio = 0.4999;  ///< from 0
 inline constexpr double shortest = 0.3;                  ///< segment, in diameters
 inline constexpr double apart = 1.5;  ///< length from which on a segment's ends are alone
 
-/// Its nodes: Chebyshev's, ends included; of the ratio t of the softer modulus to the stiffer one,
-/// 0 … 1, in s = t (1 + κ)/(t + κ).
+/// Nodes of the table: Chebyshev's, ends included; of the ratio t of the softer modulus to the
+/// stiffer one, 0 … 1, in s = t (1 + κ)/(t + κ).
 inline constexpr std::size_t n_poisson = 6;
 inline constexpr std::size_t n_ratio = 7;
 inline constexpr std::size_t n_length = 7;

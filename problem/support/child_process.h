@@ -18,7 +18,7 @@ struct ChildCommand {
   std::map<std::string, std::string> variables;  ///< set in its environment; empty: taken away
 };
 
-/// How a program ended.
+/// End of a program.
 struct ChildEnd {
   enum class How { exited, signalled, timed_out, not_found, not_started };
   How how = How::not_started;

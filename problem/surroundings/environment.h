@@ -15,7 +15,8 @@
 
 namespace ciliaval::surroundings {
 
-/// How a deformed magnet's magnetisation enters its energy in the field B₀, per reference volume.
+/// Law by which a deformed magnet's magnetisation enters its energy in the field B₀, per reference
+/// volume.
 enum class MagneticEnergy {
   F,  ///< −(F·M)·B₀, M carried along by the deformation (Zhao et al., JMPS 124, 2019)
   R   ///< −(R·M)·B₀, M turned by the polar rotation (Danas & Reis, JMPS 191, 2024)

@@ -42,13 +42,13 @@ ProfilePoint point(const SineProfile& sine, double x) {
   return {height, sine.amplitude * k * std::cos(k * x), -k * k * height};
 }
 
-/// On an arc of radius r that touches the level p = 0 at x = 0 and rises.
+/// Point of an arc of radius r that touches the level p = 0 at x = 0 and rises.
 ProfilePoint on_arc(double radius, double x) {
   const double cosine = std::sqrt(1 - x * x / (radius * radius));
   return {radius * (1 - cosine), x / (radius * cosine), 1 / (radius * std::pow(cosine, 3))};
 }
 
-/// How far from a corner its arc touches the level side.
+/// Distance from a corner at which its arc touches the level side, m.
 double edge_length(const TrapezoidProfile& t) {
   return t.radius * std::tan(std::atan2(t.height, t.flank) / 2);
 }

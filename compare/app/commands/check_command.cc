@@ -27,7 +27,7 @@ struct CheckOptions {
   Outputs outputs;
 };
 
-/// Those of the case's models that are not run: `--quick` leaves out the slow ones.
+/// Ids of the case's models that are not run: `--quick` leaves out the slow ones.
 std::vector<std::string> left_out_of(const input::Case& problem, bool quick) {
   std::vector<std::string> result;
   const auto add = [&](const std::vector<std::string>& ids, const auto& entries) {

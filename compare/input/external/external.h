@@ -58,7 +58,7 @@ void read_external_files(std::vector<ExternalModel>& models, const Cilium& ciliu
 
 namespace ciliaval::description {
 
-/// Those of [[models.external]] but for the name and the list of centrelines.
+/// Fields of [[models.external]] but for the name and the list of centrelines.
 template <>
 const Fields<compare::input::external::ExternalModel>&
 fields<compare::input::external::ExternalModel>();

@@ -58,8 +58,8 @@ struct Measurement {
   bool fitted = false;     ///< parameters of the case were fitted to it
 };
 
-/// How well a number of the case is known, as the file states it: what the number is, the studies
-/// know (compare/study/case_number.h), so it is read by compare/validation/input_number.h.
+/// Uncertainty of a number of the case, as the file states it. The studies know the numbers
+/// (compare/study/case_number.h), so compare/validation/input_number.h reads it.
 struct InputUncertainty {
   std::string number;        ///< dotted: "cilium.segment.base.young_modulus"
   std::string uncertainty;   ///< standard: "2 %", "0.05 MPa" or, of a plain number, "0.005"
@@ -73,8 +73,7 @@ struct Statement {
   std::vector<Measurement> measurements;
   std::vector<InputUncertainty> inputs;
   std::vector<std::filesystem::path> files;  ///< from which values were read
-  /// How the rows of each file were matched to the load steps, and which columns were not read; for
-  /// people.
+  /// Matches of each file's rows with the load steps, and columns that were not read; for people.
   std::vector<std::string> remarks;
 };
 

@@ -27,7 +27,7 @@ bool is_near(const Tip& tip, const TipState& state) {
   return rest.depth > -near_gap;
 }
 
-/// Which touches come next to one.
+/// Touches that may follow one.
 std::vector<Touch> neighbours(const Tip& tip, const TipState& before) {
   using enum Touch;
   const Touch touch = before.status.touch;

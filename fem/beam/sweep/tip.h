@@ -11,7 +11,7 @@
 
 namespace ciliaval::fem::beam::sweep {
 
-/// Where the surface stands: z = height − p(x − travel), without units.
+/// Place of the surface: z = height − p(x − travel), without units.
 struct Place {
   double height = 1;
   double travel = 0;
@@ -62,8 +62,8 @@ struct TipState {
   Vector2d tip{0, 1};
   Vector2d point{0, 1};  ///< touching
   double energy = 0;     ///< elastic
-  /// How fast |T| − μN of the contact that is held grows as it is moved on against T, d(T ∓ μN)/dg,
-  /// g the way of sliding. Sliding is stable where this is positive.
+  /// Growth of |T| − μN of the held contact as it is moved on against T, d(T ∓ μN)/dg, g the way of
+  /// sliding. Sliding is stable where this is positive.
   double stiffness = 0;
   bool is_held_stable = true;  ///< sign of the determinant of the held contact's equations
   /// Displacement of the angles in the mode of sliding, largest angle 1, and the way g of it.
@@ -106,7 +106,7 @@ class Tip {
 
   /// The straight beam.
   TipState straight(const Place& place) const;
-  /// How far the surface is above a point at η of a tip.
+  /// Height of the surface above a point at η of a tip.
   double gap(const TipState& state, const Place& place, double eta) const;
   Vector2d point_at(const TipState& state, double eta) const {
     return state.tip + eta * d1(state.angle());

@@ -14,7 +14,7 @@
 
 namespace ciliaval::fem::solid::contact {
 
-/// Where the surface stands, and what else holds the tip on the way to the first place.
+/// Place of the surface, and what else holds the tip on the way to the first place.
 struct SweepPlace {
   double interference = 0;  ///< δ, H = L − δ, m
   double travel = 0;        ///< s, m
@@ -86,7 +86,7 @@ class Follower {
   const FollowerState& state() const { return state_; }
   void restore(FollowerState state) { state_ = std::move(state); }
   const std::vector<ContactNode>& nodes() const { return nodes_; }
-  /// How deep the body penetrates the surface between its nodes, m.
+  /// Largest depth of the body in the surface between its nodes, m.
   double penetration() const {
     return penetration_between(nodes_, faces_, surface_at(current().place),
                                current().solid.displacement);

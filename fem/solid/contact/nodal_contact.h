@@ -103,7 +103,7 @@ std::vector<NodeMemory> remembered(const std::vector<ContactNode>& nodes,
 double smallest_gap(const std::vector<ContactNode>& nodes, const RigidSurface& surface,
                     const discretisation::Vector& displacement);
 
-/// How deep the faces penetrate, at 6 × 6 points of each, m: 0 or more.
+/// Largest depth of the faces in the surface, at 6 × 6 points of each, m: 0 or more.
 double penetration_between(const std::vector<ContactNode>& nodes,
                            const std::vector<ContactFace>& faces, const RigidSurface& surface,
                            const discretisation::Vector& displacement);

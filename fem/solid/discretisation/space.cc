@@ -23,7 +23,7 @@ namespace {
 
 using dealii::types::global_dof_index;
 
-/// Where the nodes of an element lie in the unit cell, lexicographic.
+/// Places of the nodes of an element in the unit cell, lexicographic.
 dealii::Quadrature<3> unit_nodes() {
   std::vector<dealii::Point<3>> points;
   for (const double zeta : {0.0, 0.5, 1.0})

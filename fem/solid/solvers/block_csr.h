@@ -38,7 +38,7 @@ struct CellNodes {
   std::size_t cells() const { return nodes.size() / nodes_per_cell; }
 };
 
-/// Those of a space's elements, in their order. Throws SolverError if the unknowns of a node do not
+/// Nodes of a space's elements, in their order. Throws SolverError if the unknowns of a node do not
 /// stand together.
 CellNodes element_cell_nodes(const discretisation::SolidSpace& space);
 
