@@ -175,8 +175,9 @@ class MechanicsModel {
                                 const Progress& progress = {}) const = 0;
 
   /// solve() that goes on from the checkpoint and keeps it up to date; the steps are those of
-  /// solve(). Steps from the first failed one on are not kept: they are solved again. Of several
-  /// ranks the first alone is given one. Throws CheckpointError, besides the interface's errors.
+  /// solve(). Steps from the first failed one on are not kept: they are solved again. Among several
+  /// ranks the first alone has a checkpoint. Throws CheckpointError, besides the interface's
+  /// errors.
   virtual MechanicsResult solve_from(const Cilium& cilium, const LoadPath& path,
                                      const Checkpoint& /*checkpoint*/,
                                      const Progress& progress = {}) const {

@@ -148,8 +148,8 @@ class Follower {
     return last_try && jump(place, at, stuck);
   }
 
-  /// The equilibrium in which the touching points stick. Of two between which the rod bends, one
-  /// may slide: then so that it is beyond the cone of friction if it sticks.
+  /// The equilibrium in which the touching points stick. One of two between which the rod bends may
+  /// slide, if it would be beyond the cone of friction when it sticks.
   std::optional<TipContact> stick(const SurfacePlace& place, bool last_try) const {
     FrictionLaw law{FrictionLaw::Kind::moved, 0};
     const std::vector<Touch>& touches = now_.contact.touches;

@@ -53,7 +53,7 @@ struct Chain {
 
 /// Stages by which the models' entries add to the models before them (Entry::budget_stages), one
 /// assumption each: the mechanics with the field of the paper's pair, which is the first of each,
-/// then the fields on the best mechanics. Of the shipped models: elastica/line → beam/line → the
+/// then the fields on the best mechanics. For the shipped models: elastica/line → beam/line → the
 /// same with corrected joints, if the case has them in the beam → solid/line → solid/volume stacked
 /// → solid/volume wedge → solid/mesh R → solid/mesh F → solid/potential mu_r = 1 → the same with
 /// the case's μ_r, if it is another → with the case's plates, if it has any. In an environment the

@@ -120,12 +120,11 @@ struct CaseResult {
 
 /// Runs the models that the case asks for, and puts its external ones beside them: each mechanics
 /// model along the load path, then each field model on the undeformed cilium and on every converged
-/// step (a model that needs a body only where there is one). What one model throws, or a result
+/// step (a model that needs a body only where there is one). An exception of one model, or a result
 /// that is not finite, is recorded as its failure and does not stop the others; where B diverges at
 /// one sensor, the rest are computed. A mechanics model goes on from the checkpoint under its id,
 /// if there is one. Throws InputError if the case names a model that is not among the entries, or
-/// an external one is of another load path,
-/// CheckpointError, RankFailure.
+/// an external one is of another load path, CheckpointError, RankFailure.
 CaseResult run(const input::Case& problem, std::span<const MechanicsEntry> mechanics,
                std::span<const FieldEntry> fields, const Progress& progress = {},
                const std::map<std::string, Checkpoint>& checkpoints = {});

@@ -63,7 +63,7 @@ def _require_same_program(study: StudyFile) -> None:
 
 
 def _batches(rods: list[Task], others: list[Task], workers: int) -> list[list[Task]]:
-    """Those of models that use all cores by themselves come first, one by one: they take longest."""
+    """Batches of tasks. Models that use all cores by themselves come first, one by one: they take longest."""
     share = -(-len(rods) // (_BATCHES_PER_WORKER * max(workers, 1)))
     size = max(1, min(share, _LARGEST_BATCH))
     return [[task] for task in others] + [rods[i : i + size] for i in range(0, len(rods), size)]

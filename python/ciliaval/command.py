@@ -67,7 +67,7 @@ def terminal_width() -> int:
 
 
 def json_text(value: Any) -> str:
-    """As the program writes JSON: null for a number that is not finite."""
+    """JSON text as the program writes it: null for a number that is not finite."""
     if not isinstance(value, dict):
         return _dumped(value, 1) + "\n"
     # Each object of a list has its own line; in a very long list 500 share one, since indenting a hundred thousand

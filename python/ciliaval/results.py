@@ -135,8 +135,8 @@ class Validation:
     remarks: tuple[str, ...]
 
     def of(self, **what: Any) -> list[ValidationSeries]:
-        """Those with these attributes: of(model="beam", quantity="tip.deflection"). Raises InputError
-        if no series has the model, quantity or point at all."""
+        """Series with these attributes: of(model="beam", quantity="tip.deflection"). Raises InputError if no series has
+        the model, quantity or point at all."""
         names = {"model": (), "quantity": (), "point": ()}
         return _chosen(self.series, ValidationSeries, what, names)
 
@@ -331,7 +331,7 @@ class Result:
         ]
 
     def compare(self, **what: Any) -> list[Comparison]:
-        """Those with these attributes: compare(quantity="tip", step=0, verdict="below uncertainty").
+        """Comparisons with these attributes: compare(quantity="tip", step=0, verdict="below uncertainty").
         Raises InputError where there can be none, as with a misspelt model."""
         names = [*self.models, *self.pairs]
         valid = {
@@ -561,7 +561,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _numbers(values: list[Any], size: int | None = None) -> Array:
-    """With NaN for None."""
+    """Array of the values, with NaN for None."""
     array = np.array(values, dtype=object)
     array = np.where(np.equal(array, np.array(None)), np.nan, array).astype(float)
     return array.reshape(-1, size) if size else array

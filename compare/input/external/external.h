@@ -46,8 +46,8 @@ struct ExternalModel {
 ///
 /// Centrelines are interpolated by cubic polynomials between the points; without a column S it is
 /// the length along the points, scaled to the cilium's; without theta the sections are normal to
-/// the curve. Of the readings B the background at the load's azimuth is taken off, that of the row
-/// of this azimuth, or interpolated linearly on the circle.
+/// the curve. The background at the load's azimuth is subtracted from the readings B: the row of
+/// this azimuth, or a linear interpolation on the circle.
 ///
 /// `sensors`: their names. Throws InputError with every fault found, a line each:
 /// `file:line:column: what is wrong`.

@@ -99,7 +99,7 @@ struct MeasuredFile {
 };
 
 /// Reads both tables; `file` is the case file. Faults with their places go to the root's. Sensors,
-/// cilium and load are compared with if they are right. What the files hold is read afterwards.
+/// cilium and load are compared with if they are right. The files' contents are read afterwards.
 std::vector<MeasuredFile> read_measurements(Section& root, std::string_view file,
                                             bool case_is_right, Case& c);
 

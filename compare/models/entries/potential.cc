@@ -111,8 +111,8 @@ std::vector<input::BudgetStage> budget_stages(const input::ModelOptions& options
   return stages;
 }
 
-/// The potential, which takes seconds to minutes for each deformation. What the mechanics' error
-/// makes of its field is told by the field of the same magnets in vacuum.
+/// The potential, which takes seconds to minutes for each deformation. The effect of the mechanics'
+/// error on its field is that on the field of the same magnets in vacuum.
 class PotentialAndItsChanges : public FieldModel {
  public:
   explicit PotentialAndItsChanges(const PotentialOptions& options)

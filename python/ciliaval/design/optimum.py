@@ -173,7 +173,7 @@ class _Designs:
         return Trial(gain, tuple(violations), goal is not None), goal
 
     def confirmed(self, name: str, values: list[float], mechanics: Sequence[str]) -> Design:
-        """By some of the mechanics models."""
+        """Design with its results by some of the mechanics models."""
         say = self.progress
         inner = (lambda text: say(f"{self.study.name}: {name}: {text}")) if say else None
         design = Design(name, values)

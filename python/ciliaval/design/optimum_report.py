@@ -137,7 +137,8 @@ def _result_table(study: StudyFile, optimum: Optimum, width: int) -> str:
 
 
 def _limits_text(study: StudyFile, result: Result) -> str:
-    """Which of the study's limits a pair misses, or keeps by less than it is uncertain; in per cent of the limit."""
+    """Limits of the study that a pair misses, or keeps by less than the value's uncertainty; in per cent of the
+    limit."""
     states = limit_states(study, result)
     if not states:
         return "-"
@@ -152,7 +153,7 @@ def _limits_text(study: StudyFile, result: Result) -> str:
 
 
 def _messages(optimum: Optimum) -> str:
-    """Why a pair has no result at a design."""
+    """Reasons why a pair has no result at a design."""
     lines = [
         f"{design.name}, {pair}: {result.status}: {result.message}\n"
         for design in optimum.designs

@@ -117,7 +117,7 @@ def _evenly(count: int, shown: int) -> list[int]:
 
 
 def _shown_points(study: StudyFile) -> list[int]:
-    """As many points as fit a screen; of a product whole values are left out, of the longest parameter."""
+    """Indices of as many points as fit a screen; of a product whole values are left out, of the longest parameter."""
     if study.zipped:
         return _evenly(study.point_count, _MOST_ROWS)
     counts = [len(p.values) for p in study.parameters]
@@ -131,7 +131,7 @@ def _shown_points(study: StudyFile) -> list[int]:
 
 
 def _exceptions(study: StudyFile, points: Points) -> str:
-    """How many points of each pair slipped off, were pulled in or failed, and why the first one did."""
+    """Numbers of points of each pair that slipped off, were pulled in or failed, and the reason of the first one."""
     lines = ""
     for p, pair in enumerate(study.pairs):
         for status in ("slipped_off", "pulled_in", "failed"):

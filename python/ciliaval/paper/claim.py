@@ -87,8 +87,8 @@ class Unstated:
 
 @dataclass(frozen=True)
 class Scan:
-    """Where in the range of an unstated number a claim holds by one pair of models: closed
-    intervals, in the number's unit."""
+    """Part of the range of an unstated number in which a claim holds by one pair of models: closed intervals, in the
+    number's unit."""
 
     of: Unstated
     models: str
@@ -168,7 +168,7 @@ class Claim:
         return REPRODUCED if any(f.holds for f in self.findings) else NOT_REPRODUCED
 
     def json(self) -> dict[str, Any]:
-        """As it stands in `claims --json`: docs/guide/accuracy.md."""
+        """Claim as `claims --json` writes it: docs/guide/accuracy.md."""
         entries = [
             {
                 "parameter": scan.of.name,

@@ -55,7 +55,7 @@ class Piece:
 
 
 def confusion(features: Array) -> Array:
-    """How often a piece of each texture (row) is found as each (column), by the nearest mean of the
+    """Numbers of the pieces of each texture (row) that are found as each texture (column), by the nearest mean of the
     others, each feature over its scatter within a texture. features: (textures, pieces, n)."""
     textures, pieces, _ = features.shape
     found = np.zeros((textures, textures), dtype=int)

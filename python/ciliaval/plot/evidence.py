@@ -201,8 +201,8 @@ def readings(data: Any) -> Figure:
 
 
 def levels(data: dict[str, Any]) -> Figure:
-    """How far each reading of a sweep pressed the surface in, and the levels found, with their 95 %
-    intervals. Readings that no level surface gives are left out."""
+    """Interference of each reading of a sweep, and the levels found, with their 95 % intervals. Readings that no level
+    surface gives are left out."""
     readings_of = data["readings"]
     x = np.arange(1, len(readings_of) + 1)
     known = np.array([r["status"] == "level" for r in readings_of])

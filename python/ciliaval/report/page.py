@@ -211,7 +211,7 @@ def _pictures(folder: Path, damaged: list[str]) -> list[Image]:
 
 
 def _origins(shown: list[tuple[Path, Found]], folder: Path) -> Block:
-    """Which program made which file; says so if they come from different states of it."""
+    """Table of the program that made each file; remarks on files from different states of it."""
     table = Table(
         "Which program made which file, when and how", ["file", "version", "git", "date", "command"]
     )

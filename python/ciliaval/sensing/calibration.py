@@ -58,7 +58,7 @@ class Parameter:
         return self.start > 0 and (self.sensor is None or self.path == "gain")
 
     def value(self, x: float) -> float:
-        """At so many steps from the start."""
+        """Value at x steps from the start."""
         return self.start * math.exp(self.step / self.start * x) if self.is_ratio else self.start + self.step * x
 
     def slope(self, value: float) -> float:
@@ -335,6 +335,6 @@ class _Fitting:
         return np.asarray(np.tensordot(self._whitening, off, axes=1)[:, self._reads].ravel())
 
     def jacobian(self, x: Array) -> Array:
-        """By central differences of 1e-3 steps."""
+        """Jacobian by central differences of 1e-3 steps."""
         steps = 1e-3 * np.eye(len(x))
         return np.stack([(self.residual(x + h) - self.residual(x - h)) / 2e-3 for h in steps], axis=1)

@@ -72,7 +72,7 @@ class SensedLoads:
 
     @property
     def total_covariance(self) -> Array:
-        """By the noise, what the models leave out and the inputs, (n, 2, 2)."""
+        """Covariance by the noise, the effects that the models leave out and the inputs, (n, 2, 2)."""
         return self.covariance + self.model_covariance + self.input_covariance
 
     @property
@@ -141,8 +141,8 @@ class SensedLoads:
 
 @dataclass(frozen=True)
 class Chips:
-    """How the sensors' chips sit: axes (s, 3, 3), whose columns are where the chip's own x, y, z point in the case;
-    reads (s, 3), which of them it reads. gain (s,): what it reads over what there is."""
+    """Orientation and gain of the sensors' chips: axes (s, 3, 3), whose columns are where the chip's own x, y, z point
+    in the case; reads (s, 3), which of them it reads. gain (s,): what it reads over what there is."""
 
     axes: Array
     reads: Array
@@ -303,7 +303,7 @@ def _invert(
         new = np.einsum("nk,nk->n", r_new, r_new)
         better = new <= cost[active]
         size = np.hypot(*step.T)
-        # As small as the step is the error that is left; rounding of the cost leaves no smaller one.
+        # The error left is as small as the step; rounding of the cost leaves no smaller one.
         done = size <= 1e-10 * (np.hypot(*x[active].T) + 1e-3)
         done |= np.abs(cost[active] - new) <= 1e-11 * cost[active] + 1e-24
         done |= ~better & (size <= 1e-9)

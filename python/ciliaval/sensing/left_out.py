@@ -87,7 +87,7 @@ class LeftOut:
         return [(dB[1] - dB[0]) / width for dB, width in each]
 
     def _within(self, responses: list[Response], load: Array) -> list[Array]:
-        """Each one's dB, or B, at the loads, or at the largest along them that all of them know."""
+        """dB, or B, of each response at the loads, or at the largest along them that all of them know."""
         most = min(r.largest for r in responses)
         size = np.hypot(*load.T)
         inside = load * np.minimum(1, most / np.where(size > 0, size, 1))[:, None]

@@ -38,7 +38,7 @@ _EARTH = 150e-6  # T: the earth's field and a sensor's offset, about, which a re
 
 @dataclass(frozen=True)
 class FlowLaw:
-    """How a flow's force per height q becomes a velocity, v = sqrt(2 q/(rho d C_d)) (paper, Eq. 10-11).
+    """Law by which a flow's force per height q gives a velocity, v = sqrt(2 q/(rho d C_d)) (paper, Eq. 10-11).
 
     density rho, kg/m^3; drag_coefficient C_d, 0: that of a cylinder at its Reynolds number
     rho v d/viscosity; diameter d, m; viscosity, Pa s.

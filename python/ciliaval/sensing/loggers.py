@@ -387,7 +387,7 @@ class _Reader:
         return "", True
 
     def _add_fault(self, what: str, i: int, column: int) -> None:
-        """At a cell of a row, which stands for {} in the text."""
+        """Adds a fault at a cell of a row, which stands for {} in the text."""
         cells = cells_of(self.lines[i], self.header.separator)
         cell = cells[column] if column < len(cells) else Cell("", 1)
         self.faults.add(what.replace("{}", in_quotes(cell.text)), self.first_line + i, cell.column)

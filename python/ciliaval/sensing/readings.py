@@ -31,7 +31,7 @@ _ONE_BY_CHANCE = 1e-6
 
 @dataclass(frozen=True)
 class ReadingOptions:
-    """How a file of readings is to be read where it does not say so itself: docs/guide/sensing.md."""
+    """Options for reading a file of readings where it does not say so itself: docs/guide/sensing.md."""
 
     map: Option = Option()
     unit: Option = Option()
@@ -143,8 +143,8 @@ class Background:
 
 
 def _part_of(option: Option) -> tuple[str, float, float]:
-    """Which rows are of the unloaded cilium, besides those of the sample `unloaded`: "rows" or "time", with the first
-    and the last, of "rows 1..20", "0 s..1 s" or "0..1 s"; "model"; or "". Raises InputError."""
+    """Rows of the unloaded cilium, besides those of the sample `unloaded`: "rows" or "time", with the first and the
+    last, of "rows 1..20", "0 s..1 s" or "0..1 s"; "model"; or "". Raises InputError."""
     text = option.text.strip(" \t")
     if text in ("", "model"):
         return text, 0, 0

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Every key of a case file is changed in turn. What a stored state belongs to must change with it.
+// Every key of a case file is changed in turn. The fingerprint of a stored state must change with
+// it.
 #include "compare/models/fingerprint.h"
 
 #include <fmt/format.h>
