@@ -120,7 +120,7 @@ struct Entry {
   /// it takes but a moment.
   std::optional<std::vector<std::string_view>> checkpoint_without{};
 
-  /// True if correct() would change nothing.
+  /// True if the model has a correct() and it would change nothing.
   bool is_corrected(const ModelOptions& given) const {
     if (!correct) return false;
     ModelOptions best = given;

@@ -5,7 +5,7 @@
 #include "fem/solid/equilibrium/load_path.h"
 #include "problem/support/archive.h"
 
-// Members of the solid's state.
+// Serialisation of the solid's state, as in problem/support/archive.h.
 namespace boost::serialization {
 
 template <class Archive>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pictures and arrays of a result folder in a real ParaView. Oracle: ParaView's own readers and
-// filters against summary.json and the case.
+// Reading of a result folder by a real ParaView. Oracle: ParaView's own readers and filters against
+// summary.json and the case.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

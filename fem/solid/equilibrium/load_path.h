@@ -16,7 +16,7 @@
 
 namespace ciliaval::fem::solid::equilibrium {
 
-/// True if two loads differ in nothing but their magnitude and the environment.
+/// True if two loads have the same type, azimuth and contact height or loaded section.
 bool same_place(const Load& a, const Load& b);
 
 /// The solid in equilibrium with a load.
